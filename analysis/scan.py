@@ -1,0 +1,521 @@
+"""A scan of a body of revolution: what is removed of its points, the curve that is taken, and how far off it may be.
+
+    z(x) = f(|x − c|; θ) + t (x − c) + z₀ + noise
+
+with the apex at c, the tilt t and the offset z₀. The shape f has f(0) = 0 and rises. Its parameters θ are those of a
+named shape, or of a smooth curve the slopes f′ ≥ 0 at knots, linear between them and 0 on the axis. All are found
+together by least squares, so that both sides of a scan say what f is, and their covariance is known. The noise may be
+correlated: n points are worth n/τ independent ones, τ = 1 + 2 Σ ρ_k of the residual's autocorrelation ρ. The knots of
+a smooth curve are added one by one, each that lowers the residual most by halving an interval, and removed again where
+they have become needless, as the extended Bayesian information criterion says (J. Chen, Z. Chen, Biometrika 95 (2008)
+759) under a noise that is read off the difference of both sides, which knows nothing of the shape.
+
+Lengths have any one unit.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+from scipy.optimize import lsq_linear
+from scipy.stats import t as student
+
+Array = NDArray[np.float64]
+Named = Literal["parabola", "circle", "power"]
+COVERAGE = 0.95
+FEWEST = 8
+"""Points of a scan."""
+ROUNDS = 30
+"""Gauss-Newton steps at most: a few suffice."""
+STEP = 0.05
+"""Of the position of the apex, over the width, and of the tilt: the largest change at once."""
+CONVERGED = 1e-10
+"""Relative change of the fitted curve from which on it counts as found."""
+SIDE = 0.05
+"""Share of a scan's width that must be on either side of an apex that is looked for."""
+PER_KNOT = 4
+"""Points in an interval between two knots at least."""
+FIRST_KNOTS = 24
+"""Intervals of the curve whose residual is the first estimate of the noise: more than any shape needs off its kinks."""
+BLOCKS = 12
+"""Parts of a residual of one side, whose median autocovariance a kink in one of them leaves as it is."""
+LARGEST_SELECTED = 4000
+"""Points from which the knots are chosen: of more, means of neighbours."""
+NEEDLESS = 4.0
+"""Increase of the squares of the residual by all removed knots together, over σ²τ, at most."""
+NEAR_BOUND, DRAWS = 3.0, 200
+"""Standard deviations between a parameter and its bound below which its distribution is drawn, and how many draws."""
+KEPT = 1e-4
+"""Variance of a deviation over that of all below which it is left out."""
+GRID = 200
+"""Radii at which heights decide which deviations count."""
+TINY = 1e-300
+"""In place of 0 below a fraction."""
+ASPERITY = 2.0
+"""Standard deviations of the noise above the lowest point up to which patches are counted."""
+
+
+class ScanError(ValueError):
+    """Points of which no profile can be taken; the message says why, and what to do."""
+
+
+@dataclass(frozen=True)
+class Form:
+    """A shape f(r; θ).
+
+    Attributes:
+        name: of a named shape, or "smooth".
+        value: f, (n,), of r ≥ 0 and θ.
+        slope: ∂f/∂r, (n,).
+        gradient: ∂f/∂θ, (n, k).
+        start: θ, (k,), to begin with.
+        least: lower bounds of θ, (k,).
+        knots: of a smooth curve, (k + 1,), from 0.
+    """
+
+    name: str
+    value: Callable[[Array, Array], Array]
+    slope: Callable[[Array, Array], Array]
+    gradient: Callable[[Array, Array], Array]
+    start: Array
+    least: Array
+    knots: Array | None = None
+
+
+def named(shape: Named, curvature: float, reach: float) -> Form:
+    """A named shape: θ = (1/R), or (h, n) of h (r/reach)ⁿ."""
+    if shape == "power":
+        return Form(
+            shape,
+            lambda r, p: p[0] * (r / reach) ** p[1],
+            lambda r, p: p[0] * p[1] / reach * (r / reach) ** (p[1] - 1.0),
+            lambda r, p: np.stack([(s := (r / reach) ** p[1]), p[0] * s * np.log(np.maximum(r / reach, TINY))], 1),
+            np.asarray([0.5 * curvature * reach**2, 2.0]),
+            np.asarray([0.0, 1.0]),
+        )
+    bend = 0.0 if shape == "parabola" else 1.0
+
+    def root(r: Array, p: Array) -> Array:
+        """√(1 − r²/R²) of a circle, 1 of a parabola."""
+        return np.sqrt(np.maximum(1.0 - bend * (p[0] * r) ** 2, 1e-6))
+
+    return Form(
+        shape,
+        lambda r, p: p[0] * r**2 / (1.0 + root(r, p)),
+        lambda r, p: p[0] * r / root(r, p),
+        lambda r, p: (r**2 / root(r, p) ** bend / (1.0 + root(r, p)))[:, None],
+        np.asarray([curvature]),
+        np.zeros(1),
+    )
+
+
+def smooth(knots: Array, start: Array) -> Form:
+    """A smooth curve: θ are the slopes at the knots but that on the axis, where it is 0."""
+
+    def hats(r: Array) -> tuple[Array, Array]:
+        cell = np.clip(np.searchsorted(knots, r, side="right") - 1, 0, len(knots) - 2)
+        return cell, (r - knots[cell]) / (knots[cell + 1] - knots[cell])
+
+    def gradient(r: Array, _: Array) -> Array:
+        """∫ of each hat up to r."""
+        steps, (cell, share) = np.diff(knots), hats(r)
+        full = np.zeros((len(knots), len(knots)))
+        full[1:] = np.cumsum(0.5 * steps[:, None] * (np.eye(len(knots))[:-1] + np.eye(len(knots))[1:]), axis=0)
+        found, rows = full[cell], np.arange(len(r))
+        found[rows, cell] += steps[cell] * (share - 0.5 * share**2)
+        found[rows, cell + 1] += 0.5 * steps[cell] * share**2
+        return found[:, 1:]
+
+    def slope(r: Array, p: Array) -> Array:
+        return np.interp(r, knots, np.append(0.0, p))
+
+    return Form("smooth", lambda r, p: gradient(r, p) @ p, slope, gradient, start, np.zeros(len(knots) - 1), knots)
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Standard deviation of the residual, and how many points τ are worth one."""
+
+    deviation: float
+    together: float
+
+    @property
+    def power(self) -> float:
+        """σ²τ: variance of a mean of n points, times n."""
+        return self.deviation**2 * self.together
+
+
+@dataclass(frozen=True)
+class Taken:
+    """What was taken of a scan.
+
+    Attributes:
+        shape: "smooth", or the name of what was fitted.
+        parameters: θ, (k,): 1/R; h and n of h (r/reach)ⁿ; the slopes at the knots.
+        knots: of a smooth curve, (k + 1,), from 0.
+        deviations: independent changes of θ at 95 %, (m, k).
+        centre, tilt, offset: position of the apex, slope and height there; each with its uncertainty at 95 %, 0 of
+            what was given.
+        reach: largest distance of a point from the apex.
+        noise, correlation: standard deviation of the residual, and its correlation length, Σ ρ_k of the points' pitch.
+        x: positions of the points from the apex, rising, (n,).
+        heights, residual: without tilt and offset, and without the curve, too, (n,).
+        autocorrelation: ρ_k of the residual.
+        patches: parts in which the measured points would touch a plane ASPERITY σ above the lowest one.
+    """
+
+    shape: str
+    parameters: Array
+    knots: Array
+    deviations: Array
+    centre: tuple[float, float]
+    tilt: tuple[float, float]
+    offset: tuple[float, float]
+    reach: float
+    noise: float
+    correlation: float
+    x: Array
+    heights: Array
+    residual: Array
+    autocorrelation: Array
+    patches: int
+
+    def scaled(self, size: float, origin: float, base: float) -> Taken:
+        """The same with lengths `size` times as large, positions from `origin`, heights from `base`."""
+        powers = {"smooth": 0.0, "power": np.asarray([1.0, 0.0])}.get(self.shape, -1.0)
+        lengths = ("knots", "reach", "noise", "correlation", "x", "heights", "residual")
+        return replace(
+            self,
+            parameters=self.parameters * size**powers,
+            deviations=self.deviations * size**powers,
+            centre=(origin + size * self.centre[0], size * self.centre[1]),
+            offset=(base + size * self.offset[0], size * self.offset[1]),
+            **{name: size * getattr(self, name) for name in lengths},
+        )
+
+    @property
+    def both_sides(self) -> bool:
+        """Whether points are on both sides of the apex."""
+        return is_two_sided(self.x)
+
+    def folded(self) -> tuple[Array, Array]:
+        """Radii and heights (n,) of the points themselves: the mean of both sides where there are two, z(0) = 0."""
+        sides = [PchipInterpolator(*_rising(side * self.x, self.heights)) for side in (1.0, -1.0)]
+        end = float(min(self.x[-1], -self.x[0])) if self.both_sides else float(self.x[-1])
+        r = np.linspace(0.0, end, 1 + round(end / float(np.median(np.diff(self.x)))))
+        z = np.mean([one(r) for one in sides[: 1 + self.both_sides]], axis=0)
+        return r, z - z[0]
+
+
+def is_two_sided(x: Array) -> bool:
+    """Whether rising positions have points on both sides of 0."""
+    return float(min(-x[0], x[-1])) > SIDE * float(x[-1] - x[0])
+
+
+def _rising(x: Array, z: Array) -> tuple[Array, Array]:
+    order = np.argsort(x)
+    return x[order], z[order]
+
+
+def one_pass(x: Array, z: Array) -> tuple[Array, Array]:
+    """The points in rising x; a scan that goes forth and back as the mean of both, on the positions of the first."""
+    turns = np.flatnonzero(np.diff(np.sign(np.diff(x)))) + 1
+    ends = [0, *turns.tolist(), len(x) - 1]
+    passes = [_rising(x[first : last + 1], z[first : last + 1]) for first, last in pairwise(ends)]
+    passes = [one for one in passes if len(one[0]) > 0.5 * max(len(one[0]) for one in passes)]
+    low, high = max(one[0][0] for one in passes), min(one[0][-1] for one in passes)
+    at = passes[0][0]
+    at = at[(at >= low) & (at <= high)]
+    return at, np.mean([np.interp(at, *one) for one in passes], axis=0)
+
+
+def take(
+    x: Array,
+    z: Array,
+    centre: float | None = 0.0,
+    level: bool = False,
+    length: float | None = None,
+    shape: Named | None = None,
+) -> Taken:
+    """What is taken of the points of a scan.
+
+    Args:
+        x, z: positions and heights, (n,), growing away from the plane; a scan may go forth and back.
+        centre: position of the apex; None: it is looked for.
+        level: whether a tilt is removed.
+        length: distance of the knots of a smooth curve; None: by the noise.
+        shape: the named shape that is fitted, in place of a smooth curve.
+
+    Raises:
+        ScanError: the points are no such profile.
+    """
+    x, z = one_pass(x, z)
+    if len(x) < FEWEST:
+        raise ScanError(f"has {len(x)} points, at least {FEWEST} are needed")
+    wide, base = float(np.ptp(x)), float(z.min())
+    if float(z.max()) == base:
+        raise ScanError('is flat: write kind = "flat_punch"')
+    origin = float(x[0]) if centre is None else centre
+    fit = _Fit((x - origin) / wide, (z - base) / wide, centre is None, level)
+    return fit.of(shape, length and length / wide).scaled(wide, origin, base)
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """Points of a scan whose width is 1, from the given apex or the first one, and what is looked for."""
+
+    x: Array
+    z: Array
+    moves: bool
+    tilts: bool
+
+    def of(self, shape: Named | None, length: float | None) -> Taken:
+        """The points by a named shape, or a smooth curve."""
+        square, linear, _ = np.polyfit(self.x, self.z, 2)
+        start = -0.5 * linear / square if self.moves else 0.0
+        if square <= 0.0 and float(np.median(self.z)) > 0.5 * float(self.z.max()):
+            raise ScanError(
+                "its heights decrease from the apex outwards, as those of a bump seen from above; heights are "
+                "measured from the plane and grow outwards: change the sign of z"
+            )
+        start = min(max(start, float(self.x[0])), float(self.x[-1]))
+        reach = float(np.abs(self.x - start).max())
+        if shape:
+            solved = self.solve(named(shape, max(2.0 * float(square), 1e-6), reach), start)
+        elif length:
+            solved = self.solve(self.knotted(np.linspace(0.0, reach, 1 + max(1, round(reach / length)))), start)
+        else:
+            solved = self.adapted(reach, start)
+        return self.judged(solved)
+
+    @staticmethod
+    def knotted(knots: Array) -> Form:
+        return smooth(knots, knots[1:])
+
+    def design(self, form: Form, found: Array) -> tuple[Array, Array]:
+        """The curve at the points, (n,), and its derivatives by all parameters: θ, z₀, then c and t if looked for."""
+        many = len(form.start)
+        theta, (offset, centre, tilt) = found[:many], found[many:]
+        away = self.x - centre
+        r, side = np.abs(away), np.sign(away)
+        columns = [form.gradient(r, theta), np.ones((len(r), 1))]
+        if self.moves:
+            columns.append((-side * form.slope(r, theta) - tilt)[:, None])
+        if self.tilts:
+            columns.append(away[:, None])
+        return form.value(r, theta) + offset + tilt * away, np.hstack(columns)
+
+    def solve(self, form: Form, centre: float) -> _Solved:
+        """Least squares by Gauss and Newton, with the bounds of θ in each step."""
+        many = len(form.start)
+        found = np.concatenate([form.start, [0.0, centre, 0.0]])
+        open_ = np.r_[np.ones(many + 1, dtype=bool), self.moves, self.tilts]
+        before = np.full_like(self.z, math.inf)
+        for step in range(ROUNDS):
+            curve, columns = self.design(form, found)
+            if np.abs(curve - before).max() < CONVERGED * self.z.max():
+                break
+            before, now = curve, open_.copy()
+            now[many + 1 :] &= step > 0  # the shape first: its slope says how the apex moves heights
+            columns = columns[:, now[open_]]
+            moved = bounded(columns, self.z - curve + columns @ found[now], form.least) - found[now]
+            moved[many + 1 :] = np.clip(moved[many + 1 :], -STEP, STEP)
+            found[now] += moved
+            found[many + 1] = min(max(found[many + 1], float(self.x[0])), float(self.x[-1]))
+        curve, columns = self.design(form, found)
+        return _Solved(form, found, columns, self.z - curve)
+
+    def adapted(self, reach: float, centre: float) -> _Solved:
+        """A smooth curve with as many knots as the noise allows."""
+        pitch = float(np.median(np.diff(self.x)))
+        first = min(FIRST_KNOTS, max(2, round(reach / pitch / PER_KNOT)))
+        solved = self.solve(self.knotted(np.linspace(0.0, reach, first + 1)), centre)
+        noise = self.noise_of(solved)
+        for _ in range(2):
+            solved = self.solve(self.knotted(self.selected(solved, noise)), solved.centre)
+            if not is_two_sided(self.x - solved.centre):
+                break
+            noise = self.noise_of(solved)
+        return self.solve(self.knotted(self.selected(solved, noise)), solved.centre)
+
+    def noise_of(self, solved: _Solved) -> Noise:
+        """The noise, by the difference of both sides; of one side by the residual in blocks, whose median counts."""
+        x, residual = self.x - solved.centre, solved.residual
+        if is_two_sided(x):
+            right = x > 0.0
+            left = np.interp(x[right], -x[::-1], residual[::-1], right=math.nan)
+            odd = (residual[right] - left) / math.sqrt(2.0)
+            return noise_in(odd[np.isfinite(odd)])
+        size = max(FEWEST, len(x) // BLOCKS)
+        blocks = [residual[i : i + size] for i in range(0, len(x) - size + 1, size)]
+        spectrum = np.median([autocovariance(one) for one in blocks], axis=0)
+        return noise_by(spectrum, len(x))
+
+    def selected(self, solved: _Solved, noise: Noise) -> Array:
+        """The knots: intervals are halved, that first which lowers the residual most, while the criterion falls."""
+        away = np.abs(self.x - solved.centre)
+        reach, group = float(away.max()), -(-len(away) // LARGEST_SELECTED)
+        order = np.argsort(away)[: len(away) // group * group].reshape(-1, group)
+        columns = solved.columns[:, len(solved.form.start) :]
+        r, rest, z = away[order].mean(axis=1), columns[order].mean(axis=1), self.z[order].mean(axis=1)
+        worth = max(2.0, group * len(r) / noise.together)
+        knots = np.asarray([0.0, reach])
+
+        def price() -> float:
+            return noise.power / group * (math.log(worth) + 2.0 * math.log(len(knots)))
+
+        def columns_of(knots: Array) -> Array:
+            return np.hstack([smooth(knots, knots[1:]).gradient(r, knots), rest])
+
+        def squares_of(knots: Array) -> float:
+            """Of the residual of a curve that rises."""
+            one = columns_of(knots)
+            return float(np.sum((z - one @ bounded(one, z, np.zeros(len(knots) - 1))) ** 2))
+
+        while True:
+            q, _ = np.linalg.qr(columns_of(knots))
+            new = np.stack([_bump(r, *ends) for ends in pairwise(knots)], axis=1)
+            new -= q @ (q.T @ new)
+            gain = (new.T @ z / np.linalg.norm(new, axis=0)) ** 2
+            gain[np.diff(np.searchsorted(r, knots)) * group < 2 * PER_KNOT] = 0.0
+            best = int(gain.argmax())
+            if gain[best] <= price():
+                break
+            knots = np.insert(knots, best + 1, 0.5 * (knots[best] + knots[best + 1]))
+        own = squares_of(knots)
+        while len(knots) > 2:
+            fewer = [np.delete(knots, i) for i in range(1, len(knots) - 1)]
+            squares = [squares_of(one) for one in fewer]
+            best = int(np.argmin(squares))
+            if squares[best] > own + NEEDLESS * noise.power / group:
+                break
+            knots = fewer[best]
+        return knots
+
+    def judged(self, solved: _Solved) -> Taken:
+        """What was found with its uncertainties, and the deviations of the shape."""
+        form, found, many = solved.form, solved.found, len(solved.form.start)
+        x, points = self.x - solved.centre, len(self.x)
+        if self.moves and not is_two_sided(x):
+            raise ScanError(
+                'its apex would be at the edge of the scan or outside: centre = "auto" needs points on both sides '
+                "of it; give centre as a length, or a wider scan"
+            )
+        noise = noise_in(solved.residual)
+        size = np.linalg.norm(solved.columns, axis=0)
+        size[size == 0.0] = 1.0
+        _, singular, turned = np.linalg.svd(solved.columns / size, full_matrices=False)
+        if self.tilts and singular[-1] < 1e-6 * singular[0]:
+            raise ScanError(
+                "its tilt and the position of its apex cannot be told apart, since a tilt of a parabola only moves the "
+                "apex; remove level = true"
+            )
+        inverse = turned.T / np.maximum(singular, 1e-9 * singular[0]) ** 2 @ turned / np.outer(size, size)
+        free = max(1.0, points / noise.together - len(size))
+        power = noise.power * max(1.0, points / noise.together / free)
+        covariance, open_ = power * inverse, np.r_[np.ones(many + 1, dtype=bool), self.moves, self.tilts]
+        if np.any(found[:many] - form.least < NEAR_BOUND * np.sqrt(np.diag(covariance)[:many])):
+            covariance = _of_bounded(solved.columns, found[open_], form.least, math.sqrt(power))
+        reach, factor = float(np.abs(x).max()), float(student.ppf(0.5 + 0.5 * COVERAGE, free))
+        spread = np.zeros(3)
+        spread[[True, self.moves, self.tilts]] = factor * np.sqrt(np.diag(covariance)[many:])
+        theta, (offset, centre, tilt) = found[:many], found[many:].tolist()
+        heights = self.z - offset - tilt * x
+        touching = heights < heights.min() + ASPERITY * noise.deviation
+        knots = np.zeros(0) if form.knots is None else form.knots
+        return Taken(
+            shape=form.name,
+            parameters=theta,
+            knots=knots,
+            deviations=factor * independent(covariance[:many, :many], form.gradient(np.linspace(0.0, reach, GRID), theta)),
+            centre=(centre, spread[1]),
+            tilt=(tilt, spread[2]),
+            offset=(offset, spread[0]),
+            reach=reach,
+            noise=noise.deviation,
+            correlation=0.5 * (noise.together - 1.0) * float(np.median(np.diff(x))),
+            x=x,
+            heights=heights,
+            residual=solved.residual,
+            autocorrelation=autocovariance(solved.residual)[: points // 4] / max(noise.deviation**2, TINY),
+            patches=int(np.count_nonzero(np.diff(np.append(0, touching.astype(int))) > 0)),
+        )
+
+
+@dataclass(frozen=True)
+class _Solved:
+    """A fitted form: θ, z₀, c and t, the derivatives by those looked for, and the residual (n,)."""
+
+    form: Form
+    found: Array
+    columns: Array
+    residual: Array
+
+    @property
+    def centre(self) -> float:
+        return float(self.found[-2])
+
+
+def bounded(columns: Array, target: Array, least: Array) -> Array:
+    """Least squares (n, k) p = (n,), the first ones of p ≥ `least`."""
+    least = np.append(least, np.full(columns.shape[1] - len(least), -math.inf))
+    size = np.linalg.norm(columns, axis=0)
+    size[size == 0.0] = 1.0
+    q, upper = np.linalg.qr(columns / size)
+    return np.asarray(lsq_linear(upper, q.T @ target, (least * size, math.inf), method="bvls").x / size)
+
+
+def _of_bounded(columns: Array, found: Array, least: Array, deviation: float) -> Array:
+    """Mean square (k, k) about p, (k,), of what bounded least squares find where p is true, by DRAWS of the noise.
+
+    The first parameters have the bounds. A land, whose slope is 0, is known better than the normal equations say.
+    """
+    q, upper = np.linalg.qr(columns)
+    noise = deviation * np.random.default_rng(1).standard_normal((DRAWS, len(found)))
+    off = np.stack([bounded(upper, upper @ found + one, least) - found for one in noise])
+    return np.asarray(off.T @ off / DRAWS)
+
+
+def _bump(r: Array, first: float, last: float) -> Array:
+    """∫ of the hat between two knots that a knot in the middle adds, up to r."""
+    half = 0.5 * (last - first)
+    share = np.clip((r - first) / half, 0.0, 2.0)
+    return half * np.where(share < 1.0, 0.5 * share**2, 1.0 - 0.5 * (2.0 - share) ** 2)
+
+
+def independent(covariance: Array, heights: Array) -> Array:
+    """Independent standard deviations of θ, (m, k), whose squares add up to the covariance (k, k).
+
+    Principal ones of the heights (n, k) by θ; those that move these by next to nothing are left out.
+    """
+    values, vectors = np.linalg.eigh(covariance)
+    root = vectors * np.sqrt(np.maximum(values, 0.0))
+    _, sizes, turned = np.linalg.svd(heights @ root, full_matrices=False)
+    return np.asarray((root @ turned.T).T[sizes**2 > KEPT * np.sum(sizes**2)])
+
+
+def autocovariance(residual: Array) -> Array:
+    """Mean of e_i e_{i+k}, k from 0, (n,)."""
+    power = np.abs(np.fft.rfft(residual, 2 * len(residual))) ** 2
+    return np.asarray(np.fft.irfft(power)[: len(residual)] / len(residual))
+
+
+def noise_in(residual: Array) -> Noise:
+    """The noise of a residual."""
+    return noise_by(autocovariance(residual), len(residual))
+
+
+def noise_by(covariance: Array, points: int) -> Noise:
+    """The noise by its autocovariance: correlations add up to the first one that is no more than chance, 2/√n."""
+    if covariance[0] <= 0.0:
+        return Noise(0.0, 1.0)
+    rho = covariance[1:] / covariance[0]
+    end = int(np.argmax(np.append(rho, -1.0) < 2.0 / math.sqrt(points)))
+    return Noise(math.sqrt(covariance[0]), 1.0 + 2.0 * float(rho[:end].sum()))
