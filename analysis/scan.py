@@ -54,6 +54,8 @@ NEAR_BOUND, DRAWS = 3.0, 200
 """Standard deviations between a parameter and its bound below which its distribution is drawn, and how many draws."""
 KEPT = 1e-4
 """Variance of a deviation over that of all below which it is left out."""
+FLATTEST = 1e-6
+"""1 − r²/R² of a circle at least, while its radius is sought."""
 GRID = 200
 """Radii at which heights decide which deviations count."""
 TINY = 1e-300
@@ -104,7 +106,7 @@ def named(shape: Named, curvature: float, reach: float) -> Form:
 
     def root(r: Array, p: Array) -> Array:
         """√(1 − r²/R²) of a circle, 1 of a parabola."""
-        return np.sqrt(np.maximum(1.0 - bend * (p[0] * r) ** 2, 1e-6))
+        return np.asarray(np.sqrt(np.maximum(1.0 - bend * (p[0] * r) ** 2, FLATTEST)))
 
     return Form(
         shape,
@@ -119,22 +121,19 @@ def named(shape: Named, curvature: float, reach: float) -> Form:
 def smooth(knots: Array, start: Array) -> Form:
     """A smooth curve: θ are the slopes at the knots but that on the axis, where it is 0."""
 
-    def hats(r: Array) -> tuple[Array, Array]:
-        cell = np.clip(np.searchsorted(knots, r, side="right") - 1, 0, len(knots) - 2)
-        return cell, (r - knots[cell]) / (knots[cell + 1] - knots[cell])
-
     def gradient(r: Array, _: Array) -> Array:
         """∫ of each hat up to r."""
-        steps, (cell, share) = np.diff(knots), hats(r)
+        steps, cell = np.diff(knots), np.clip(np.searchsorted(knots, r, side="right") - 1, 0, len(knots) - 2)
+        share = (r - knots[cell]) / steps[cell]
         full = np.zeros((len(knots), len(knots)))
         full[1:] = np.cumsum(0.5 * steps[:, None] * (np.eye(len(knots))[:-1] + np.eye(len(knots))[1:]), axis=0)
         found, rows = full[cell], np.arange(len(r))
         found[rows, cell] += steps[cell] * (share - 0.5 * share**2)
         found[rows, cell + 1] += 0.5 * steps[cell] * share**2
-        return found[:, 1:]
+        return np.asarray(found[:, 1:])
 
     def slope(r: Array, p: Array) -> Array:
-        return np.interp(r, knots, np.append(0.0, p))
+        return np.asarray(np.interp(r, knots, np.append(0.0, p)))
 
     return Form("smooth", lambda r, p: gradient(r, p) @ p, slope, gradient, start, np.zeros(len(knots) - 1), knots)
 
@@ -189,7 +188,7 @@ class Taken:
 
     def scaled(self, size: float, origin: float, base: float) -> Taken:
         """The same with lengths `size` times as large, positions from `origin`, heights from `base`."""
-        powers = {"smooth": 0.0, "power": np.asarray([1.0, 0.0])}.get(self.shape, -1.0)
+        powers = np.asarray({"smooth": [0.0], "power": [1.0, 0.0]}.get(self.shape, [-1.0]))
         lengths = ("knots", "reach", "noise", "correlation", "x", "heights", "residual")
         return replace(
             self,
@@ -201,6 +200,11 @@ class Taken:
         )
 
     @property
+    def pitch(self) -> float:
+        """Distance of neighbouring points."""
+        return float(np.median(np.diff(self.x)))
+
+    @property
     def both_sides(self) -> bool:
         """Whether points are on both sides of the apex."""
         return is_two_sided(self.x)
@@ -209,7 +213,7 @@ class Taken:
         """Radii and heights (n,) of the points themselves: the mean of both sides where there are two, z(0) = 0."""
         sides = [PchipInterpolator(*_rising(side * self.x, self.heights)) for side in (1.0, -1.0)]
         end = float(min(self.x[-1], -self.x[0])) if self.both_sides else float(self.x[-1])
-        r = np.linspace(0.0, end, 1 + round(end / float(np.median(np.diff(self.x)))))
+        r = np.linspace(0.0, end, 1 + round(end / self.pitch))
         z = np.mean([one(r) for one in sides[: 1 + self.both_sides]], axis=0)
         return r, z - z[0]
 
@@ -434,7 +438,8 @@ class _Fit:
             shape=form.name,
             parameters=theta,
             knots=knots,
-            deviations=factor * independent(covariance[:many, :many], form.gradient(np.linspace(0.0, reach, GRID), theta)),
+            deviations=factor
+            * independent(covariance[:many, :many], form.gradient(np.linspace(0.0, reach, GRID), theta)),
             centre=(centre, spread[1]),
             tilt=(tilt, spread[2]),
             offset=(offset, spread[0]),
@@ -477,7 +482,7 @@ def _of_bounded(columns: Array, found: Array, least: Array, deviation: float) ->
 
     The first parameters have the bounds. A land, whose slope is 0, is known better than the normal equations say.
     """
-    q, upper = np.linalg.qr(columns)
+    _, upper = np.linalg.qr(columns)
     noise = deviation * np.random.default_rng(1).standard_normal((DRAWS, len(found)))
     off = np.stack([bounded(upper, upper @ found + one, least) - found for one in noise])
     return np.asarray(off.T @ off / DRAWS)

@@ -123,13 +123,19 @@ class Reduction:
 
     @cached_property
     def inputs(self) -> Values:
-        """By name of a result, by how much the bodies that the scene may mean differ from the one that runs, in sum."""
+        """By name of a result, by how much the bodies that the scene may mean differ from the one that runs, in sum.
+
+        Independent deviations of the body, the larger one of both ways of each, are added in squares.
+        """
         profile = self.scene.bodies.profile
         others = [model for shape in profile.alternatives if (model := self._of_shape(shape))]
         if len(others) < len(profile.alternatives):
             others += [model for shape in profile.coarser if (model := self._of_shape(shape))]
         each = [self._apart([other]) for other in others]
-        return {name: sum(one[name] for one in each) for name in self.own}
+        pairs = [[model for shape in both if (model := self._of_shape(shape))] for both in profile.deviations]
+        moved = [self._apart(both) for both in pairs]
+        squares = {name: sum(one[name] ** 2 for one in moved) ** 0.5 for name in self.own}
+        return {name: sum(one[name] for one in each) + squares[name] for name in self.own}
 
     def _of_shape(self, shape: Shape) -> Reduced | None:
         """The model of another body; None of one that is no contact, as where its edge would jump at a corner."""
@@ -249,7 +255,8 @@ def budgeted(
         for source, others in repeated.items()
     }
     lattice = case.followed(values) if "time" in repeated else case.lattice
-    inputs = case.inputs if case.scene.bodies.profile.alternatives else {}
+    profile = case.scene.bodies.profile
+    inputs = case.inputs if profile.alternatives or profile.deviations else {}
     found = {}
     for name, one in readings.items():
         errors = {"solver": solver[name], LATTICE: lattice.get(name, 0.0) + read[name]}

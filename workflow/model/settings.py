@@ -46,7 +46,7 @@ from contact1d.workflow.model.chain import (
 from contact1d.workflow.model.dynamics import Motion, measured, motion_of, whole_steps
 from contact1d.workflow.model.pairs import ContactEstimate, NotCarriedError, particles_estimate, tabulated
 from contact1d.workflow.model.pairs import Profile as Undeformed
-from contact1d.workflow.scene import Interaction, Measured, Scene
+from contact1d.workflow.scene import Interaction, Scene
 from contact1d.workflow.scene.remedies import less_compression
 
 FILE = Path(__file__).with_name("calibration.json")
@@ -561,7 +561,7 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
 def _forces(scene: Scene, tolerance: float, calibration: Calibration) -> tuple[Forces, ContactEstimate]:
     """Springs, plane and interaction, without table and scales; the predictor of the contact that they make."""
     law, bodies, spring = interaction_law(scene), scene.bodies, scene.bulk_stiffness
-    shape: Undeformed = tabulated(bodies, bodies.spacing) if isinstance(bodies.profile, Measured) else bodies
+    shape: Undeformed = tabulated(bodies, bodies.spacing) if bodies.profile.slow else bodies
     if law is None:
         plane = plane_stiffness_of(scene, tolerance)
         bond = spring if scene.stands else _beside_plane(spring, plane)

