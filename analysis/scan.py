@@ -52,6 +52,8 @@ NEEDLESS = 4.0
 """Increase of the squares of the residual by all removed knots together, over σ²τ, at most."""
 NEAR_BOUND, DRAWS = 3.0, 200
 """Standard deviations between a parameter and its bound below which its distribution is drawn, and how many draws."""
+ALIKE = 0.9999
+"""Correlation of what a tilt and a moved apex do to heights from which on they cannot be told apart."""
 KEPT = 1e-4
 """Variance of a deviation over that of all below which it is left out."""
 FLATTEST = 1e-6
@@ -416,7 +418,7 @@ class _Fit:
         size = np.linalg.norm(solved.columns, axis=0)
         size[size == 0.0] = 1.0
         _, singular, turned = np.linalg.svd(solved.columns / size, full_matrices=False)
-        if self.tilts and singular[-1] < 1e-6 * singular[0]:
+        if self.moves and self.tilts and abs(np.corrcoef(solved.columns[:, -2:].T)[0, 1]) > ALIKE:
             raise ScanError(
                 "its tilt and the position of its apex cannot be told apart, since a tilt of a parabola only moves the "
                 "apex; remove level = true"
