@@ -50,8 +50,8 @@ LARGEST_SELECTED = 4000
 """Points from which the knots are chosen: of more, means of neighbours."""
 NEEDLESS = 4.0
 """Increase of the squares of the residual by all removed knots together, over σ²τ, at most."""
-NEAR_BOUND, DRAWS = 3.0, 200
-"""Standard deviations between a parameter and its bound below which its distribution is drawn, and how many draws."""
+DRAWS = 300
+"""Of the noise: a standard deviation is then known to 4 %."""
 ALIKE = 0.9999
 """Correlation of what a tilt and a moved apex do to heights from which on they cannot be told apart."""
 KEPT = 1e-4
@@ -82,6 +82,7 @@ class Form:
         start: θ, (k,), to begin with.
         least: lower bounds of θ, (k,).
         knots: of a smooth curve, (k + 1,), from 0.
+        convex: whether θ of a smooth curve is by how much the slope rises from knot to knot, and not the slope itself.
     """
 
     name: str
@@ -91,6 +92,12 @@ class Form:
     start: Array
     least: Array
     knots: Array | None = None
+    convex: bool = False
+
+    def shown(self, theta: Array) -> Array:
+        """θ, (…, k), within its bounds, as slopes."""
+        theta = np.maximum(theta, self.least)
+        return np.cumsum(theta, axis=-1) if self.convex else theta
 
 
 def named(shape: Named, curvature: float, reach: float) -> Form:
@@ -120,24 +127,27 @@ def named(shape: Named, curvature: float, reach: float) -> Form:
     )
 
 
-def smooth(knots: Array, start: Array) -> Form:
-    """A smooth curve: θ are the slopes at the knots but that on the axis, where it is 0."""
+def smooth(knots: Array, convex: bool) -> Form:
+    """A smooth curve: θ are the slopes at the knots but that on the axis, where it is 0, or their increments."""
+    many = len(knots) - 1
+    slopes = np.tril(np.ones((many, many))) if convex else np.eye(many)
 
     def gradient(r: Array, _: Array) -> Array:
         """∫ of each hat up to r."""
-        steps, cell = np.diff(knots), np.clip(np.searchsorted(knots, r, side="right") - 1, 0, len(knots) - 2)
+        steps, cell = np.diff(knots), np.clip(np.searchsorted(knots, r, side="right") - 1, 0, many - 1)
         share = (r - knots[cell]) / steps[cell]
-        full = np.zeros((len(knots), len(knots)))
-        full[1:] = np.cumsum(0.5 * steps[:, None] * (np.eye(len(knots))[:-1] + np.eye(len(knots))[1:]), axis=0)
+        full = np.zeros((many + 1, many + 1))
+        full[1:] = np.cumsum(0.5 * steps[:, None] * (np.eye(many + 1)[:-1] + np.eye(many + 1)[1:]), axis=0)
         found, rows = full[cell], np.arange(len(r))
         found[rows, cell] += steps[cell] * (share - 0.5 * share**2)
         found[rows, cell + 1] += 0.5 * steps[cell] * share**2
-        return np.asarray(found[:, 1:])
+        return np.asarray(found[:, 1:] @ slopes)
 
     def slope(r: Array, p: Array) -> Array:
-        return np.asarray(np.interp(r, knots, np.append(0.0, p)))
+        return np.asarray(np.interp(r, knots, np.append(0.0, slopes @ p)))
 
-    return Form("smooth", lambda r, p: gradient(r, p) @ p, slope, gradient, start, np.zeros(len(knots) - 1), knots)
+    start = np.asarray(np.linalg.solve(slopes, knots[1:]))
+    return Form("smooth", lambda r, p: gradient(r, p) @ p, slope, gradient, start, np.zeros(many), knots, convex)
 
 
 @dataclass(frozen=True)
@@ -152,6 +162,10 @@ class Noise:
         """σ²τ: variance of a mean of n points, times n."""
         return self.deviation**2 * self.together
 
+    def price(self, points: int, choices: int) -> float:
+        """By how much a parameter must lower the squares of the residual of n points, one of so many choices."""
+        return self.power * (math.log(max(2.0, points / self.together)) + 2.0 * math.log(choices))
+
 
 @dataclass(frozen=True)
 class Taken:
@@ -161,7 +175,7 @@ class Taken:
         shape: "smooth", or the name of what was fitted.
         parameters: θ, (k,): 1/R; h and n of h (r/reach)ⁿ; the slopes at the knots.
         knots: of a smooth curve, (k + 1,), from 0.
-        deviations: independent changes of θ at 95 %, (m, k).
+        deviations: θ with independent changes at 95 %, each both ways, (m, 2, k).
         centre, tilt, offset: position of the apex, slope and height there; each with its uncertainty at 95 %, 0 of
             what was given.
         reach: largest distance of a point from the apex.
@@ -295,15 +309,22 @@ class _Fit:
         reach = float(np.abs(self.x - start).max())
         if shape:
             solved = self.solve(named(shape, max(2.0 * float(square), 1e-6), reach), start)
-        elif length:
-            solved = self.solve(self.knotted(np.linspace(0.0, reach, 1 + max(1, round(reach / length)))), start)
         else:
-            solved = self.adapted(reach, start)
+            solved = self.smoothed(reach, start, length)
         return self.judged(solved)
 
-    @staticmethod
-    def knotted(knots: Array) -> Form:
-        return smooth(knots, knots[1:])
+    def smoothed(self, reach: float, start: float, length: float | None) -> _Solved:
+        """A smooth curve whose slope rises from the apex on, unless the scan shows that it falls somewhere."""
+
+        def curve(convex: bool) -> _Solved:
+            if length is None:
+                return self.adapted(reach, start, convex)
+            return self.solve(smooth(np.linspace(0.0, reach, 1 + max(1, round(reach / length))), convex), start)
+
+        one, other = curve(True), curve(False)
+        excess = float(np.sum(one.residual**2) - np.sum(other.residual**2))
+        noise = self.noise_of(other)
+        return other if excess > noise.price(len(self.x), len(other.form.start)) else one
 
     def design(self, form: Form, found: Array) -> tuple[Array, Array]:
         """The curve at the points, (n,), and its derivatives by all parameters: θ, z₀, then c and t if looked for."""
@@ -338,18 +359,17 @@ class _Fit:
         curve, columns = self.design(form, found)
         return _Solved(form, found, columns, self.z - curve)
 
-    def adapted(self, reach: float, centre: float) -> _Solved:
+    def adapted(self, reach: float, centre: float, convex: bool) -> _Solved:
         """A smooth curve with as many knots as the noise allows."""
         pitch = float(np.median(np.diff(self.x)))
         first = min(FIRST_KNOTS, max(2, round(reach / pitch / PER_KNOT)))
-        solved = self.solve(self.knotted(np.linspace(0.0, reach, first + 1)), centre)
+        solved = self.solve(smooth(np.linspace(0.0, reach, first + 1), convex), centre)
         noise = self.noise_of(solved)
-        for _ in range(2):
-            solved = self.solve(self.knotted(self.selected(solved, noise)), solved.centre)
-            if not is_two_sided(self.x - solved.centre):
-                break
-            noise = self.noise_of(solved)
-        return self.solve(self.knotted(self.selected(solved, noise)), solved.centre)
+        for _ in range(3):
+            solved = self.solve(smooth(self.selected(solved, noise), convex), solved.centre)
+            if is_two_sided(self.x - solved.centre):
+                noise = self.noise_of(solved)
+        return solved
 
     def noise_of(self, solved: _Solved) -> Noise:
         """The noise, by the difference of both sides; of one side by the residual in blocks, whose median counts."""
@@ -371,14 +391,10 @@ class _Fit:
         order = np.argsort(away)[: len(away) // group * group].reshape(-1, group)
         columns = solved.columns[:, len(solved.form.start) :]
         r, rest, z = away[order].mean(axis=1), columns[order].mean(axis=1), self.z[order].mean(axis=1)
-        worth = max(2.0, group * len(r) / noise.together)
-        knots = np.asarray([0.0, reach])
-
-        def price() -> float:
-            return noise.power / group * (math.log(worth) + 2.0 * math.log(len(knots)))
+        knots, convex = np.asarray([0.0, reach]), solved.form.convex
 
         def columns_of(knots: Array) -> Array:
-            return np.hstack([smooth(knots, knots[1:]).gradient(r, knots), rest])
+            return np.hstack([smooth(knots, convex).gradient(r, knots), rest])
 
         def squares_of(knots: Array) -> float:
             """Of the residual of a curve that rises."""
@@ -392,7 +408,7 @@ class _Fit:
             gain = (new.T @ z / np.linalg.norm(new, axis=0)) ** 2
             gain[np.diff(np.searchsorted(r, knots)) * group < 2 * PER_KNOT] = 0.0
             best = int(gain.argmax())
-            if gain[best] <= price():
+            if gain[best] <= noise.price(len(away), len(knots)) / group:
                 break
             knots = np.insert(knots, best + 1, 0.5 * (knots[best] + knots[best + 1]))
         own = squares_of(knots)
@@ -415,33 +431,29 @@ class _Fit:
                 "of it; give centre as a length, or a wider scan"
             )
         noise = noise_in(solved.residual)
-        size = np.linalg.norm(solved.columns, axis=0)
-        size[size == 0.0] = 1.0
-        _, singular, turned = np.linalg.svd(solved.columns / size, full_matrices=False)
-        if self.moves and self.tilts and abs(np.corrcoef(solved.columns[:, -2:].T)[0, 1]) > ALIKE:
+        if self.moves and self.tilts and np.abs(np.corrcoef(solved.columns[:, -2:].T)).min() > ALIKE:
             raise ScanError(
                 "its tilt and the position of its apex cannot be told apart, since a tilt of a parabola only moves the "
                 "apex; remove level = true"
             )
-        inverse = turned.T / np.maximum(singular, 1e-9 * singular[0]) ** 2 @ turned / np.outer(size, size)
-        free = max(1.0, points / noise.together - len(size))
-        power = noise.power * max(1.0, points / noise.together / free)
-        covariance, open_ = power * inverse, np.r_[np.ones(many + 1, dtype=bool), self.moves, self.tilts]
-        if np.any(found[:many] - form.least < NEAR_BOUND * np.sqrt(np.diag(covariance)[:many])):
-            covariance = _of_bounded(solved.columns, found[open_], form.least, math.sqrt(power))
+        free = max(1.0, points / noise.together - solved.columns.shape[1])
+        deviation = math.sqrt(noise.power * max(1.0, points / noise.together / free))
+        looked_for = np.r_[np.ones(many + 1, dtype=bool), self.moves, self.tilts]
+        off = _drawn(solved.columns, found[looked_for], form.least, deviation)
         reach, factor = float(np.abs(x).max()), float(student.ppf(0.5 + 0.5 * COVERAGE, free))
         spread = np.zeros(3)
-        spread[[True, self.moves, self.tilts]] = factor * np.sqrt(np.diag(covariance)[many:])
+        spread[looked_for[many:]] = factor * np.sqrt(np.mean(off[:, many:] ** 2, axis=0))
         theta, (offset, centre, tilt) = found[:many], found[many:].tolist()
         heights = self.z - offset - tilt * x
         touching = heights < heights.min() + ASPERITY * noise.deviation
         knots = np.zeros(0) if form.knots is None else form.knots
+        grid = np.linspace(0.0, reach, GRID)
+        changes = factor * independent(off[:, :many], form.gradient(grid, theta))
         return Taken(
             shape=form.name,
-            parameters=theta,
+            parameters=form.shown(theta),
             knots=knots,
-            deviations=factor
-            * independent(covariance[:many, :many], form.gradient(np.linspace(0.0, reach, GRID), theta)),
+            deviations=form.shown(theta + changes),
             centre=(centre, spread[1]),
             tilt=(tilt, spread[2]),
             offset=(offset, spread[0]),
@@ -479,15 +491,14 @@ def bounded(columns: Array, target: Array, least: Array) -> Array:
     return np.asarray(lsq_linear(upper, q.T @ target, (least * size, math.inf), method="bvls").x / size)
 
 
-def _of_bounded(columns: Array, found: Array, least: Array, deviation: float) -> Array:
-    """Mean square (k, k) about p, (k,), of what bounded least squares find where p is true, by DRAWS of the noise.
+def _drawn(columns: Array, found: Array, least: Array, deviation: float) -> Array:
+    """By how much bounded least squares are off, (DRAWS, k), where p, (k,), is true, and the noise is drawn.
 
-    The first parameters have the bounds. A land, whose slope is 0, is known better than the normal equations say.
+    The first parameters have the bounds: a land, whose slope is 0, is known better than the normal equations say.
     """
     _, upper = np.linalg.qr(columns)
     noise = deviation * np.random.default_rng(1).standard_normal((DRAWS, len(found)))
-    off = np.stack([bounded(upper, upper @ found + one, least) - found for one in noise])
-    return np.asarray(off.T @ off / DRAWS)
+    return np.stack([bounded(upper, upper @ found + one, least) - found for one in noise])
 
 
 def _bump(r: Array, first: float, last: float) -> Array:
@@ -497,15 +508,17 @@ def _bump(r: Array, first: float, last: float) -> Array:
     return half * np.where(share < 1.0, 0.5 * share**2, 1.0 - 0.5 * (2.0 - share) ** 2)
 
 
-def independent(covariance: Array, heights: Array) -> Array:
-    """Independent standard deviations of θ, (m, k), whose squares add up to the covariance (k, k).
+def independent(off: Array, heights: Array) -> Array:
+    """Independent standard deviations of θ, each both ways, (m, 2, k), of a sample (n, k).
 
-    Principal ones of the heights (n, k) by θ; those that move these by next to nothing are left out.
+    Principal ones of the heights by θ, (j, k): the means of those that are on either side of 0 along each, widened from
+    the mean to the standard deviation. They are in the bounds of the sample. What moves next to nothing is left out.
     """
-    values, vectors = np.linalg.eigh(covariance)
-    root = vectors * np.sqrt(np.maximum(values, 0.0))
-    _, sizes, turned = np.linalg.svd(heights @ root, full_matrices=False)
-    return np.asarray((root @ turned.T).T[sizes**2 > KEPT * np.sum(sizes**2)])
+    _, sizes, along = np.linalg.svd(heights @ off.T, full_matrices=False)
+    modes = along[sizes**2 > KEPT * np.sum(sizes**2)]
+    wider = np.sqrt(np.mean(modes**2, axis=1)) / np.mean(np.abs(modes), axis=1)
+    ways = [[off[side * one > 0.0].mean(axis=0) for side in (1.0, -1.0)] for one in modes]
+    return np.asarray(wider[:, None, None] * np.reshape(ways, (len(modes), 2, off.shape[1])))
 
 
 def autocovariance(residual: Array) -> Array:

@@ -100,7 +100,7 @@ class Case:
 def cases(full: bool) -> Iterator[Case]:
     """The parabola by its fit and by a smooth curve; the worn ball from one side and from both."""
     both, centred = (-400.0, 400.0), {"centre": "auto"}
-    ways = {"fit": {"fit": "parabola"}, "smooth": {"smooth": "auto"}}
+    ways: dict[str, dict[str, Any]] = {"fit": {"fit": "parabola"}, "smooth": {"smooth": "auto"}}
     for name, how in ways.items():
         for noise in (0.1, 1.0, 3.0) if full else (1.0,):
             for memory in (0.0, 5.0):
@@ -143,7 +143,7 @@ def judged(case: Case, name: str, found: list[Quantity], exact: float) -> list[R
 SCANS = Study(
     NAME,
     "Noisy scans of known bodies",
-    "A scan has an offset, a tilt and noise. Are radii and forces of what is taken of it within their uncertainties, and "
-    "are these no wider than the noise is?",
+    "A scan has an offset, a tilt and noise. Are radii and forces of what is taken of it within their uncertainties, "
+    "and are these no wider than the noise asks for?",
     measure,
 )

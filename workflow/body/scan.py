@@ -49,7 +49,7 @@ CURVED = ("parabola", "circle")
 def _radius(taken: Taken) -> tuple[float, float]:
     """R and its uncertainty: θ is 1/R."""
     curvature = float(taken.parameters[0])
-    return 1.0 / curvature, float(abs(taken.deviations[0, 0])) / curvature**2
+    return 1.0 / curvature, float(abs(taken.deviations[0, 0, 0] - curvature)) / curvature**2
 
 
 def in_words(taken: Taken) -> str:

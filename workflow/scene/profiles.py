@@ -810,8 +810,7 @@ class Measured(Shape):
         """What the noise of the scan leaves open of the curve."""
         if not self.is_curve or (taken := self.taken) is None:
             return ()
-        both = ((taken.parameters + one, taken.parameters - one) for one in taken.deviations)
-        return tuple((_shape_of(taken, more), _shape_of(taken, less)) for more, less in both)
+        return tuple((_shape_of(taken, more), _shape_of(taken, less)) for more, less in taken.deviations)
 
 
 @lru_cache(maxsize=8)
@@ -825,14 +824,13 @@ def _take(along: tuple[float, ...], z: tuple[float, ...], *how: Any) -> Taken:
 
 
 def _shape_of(taken: Taken, parameters: Array) -> Shape:
-    """The body with these parameters, within their bounds."""
+    """The body with these parameters."""
     first, *more = parameters.tolist()
     if taken.shape == "smooth":
-        slopes = (0.0, *(max(slope, 0.0) for slope in (first, *more)))
-        return Smoothed.model_construct(knots=tuple(taken.knots.tolist()), slopes=slopes)
+        return Smoothed.model_construct(knots=tuple(taken.knots.tolist()), slopes=(0.0, first, *more))
     inner: Shape
     if taken.shape == "power":
-        inner = Power.model_construct(exponent=max(more[0], 1.0), radius=taken.reach, height_there=first)
+        inner = Power.model_construct(exponent=more[0], radius=taken.reach, height_there=first)
     else:
         inner = (Circle if taken.shape == "circle" else Parabola).model_construct(radius=1.0 / first)
     return Fitted.model_construct(inner=inner, end=taken.reach)
