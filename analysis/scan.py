@@ -175,7 +175,8 @@ class Taken:
         shape: "smooth", or the name of what was fitted.
         parameters: θ, (k,): 1/R; h and n of h (r/reach)ⁿ; the slopes at the knots.
         knots: of a smooth curve, (k + 1,), from 0.
-        deviations: θ with independent changes at 95 %, each both ways, (m, 2, k).
+        deviations: pairs of θ, (m, 2, k): half of the difference of what follows from the two of each is independent of
+            the others, at 95 %.
         centre, tilt, offset: position of the apex, slope and height there; each with its uncertainty at 95 %, 0 of
             what was given.
         reach: largest distance of a point from the apex.
@@ -448,7 +449,9 @@ class _Fit:
         touching = heights < heights.min() + ASPERITY * noise.deviation
         knots = np.zeros(0) if form.knots is None else form.knots
         grid = np.linspace(0.0, reach, GRID)
-        changes = factor * independent(off[:, :many], form.gradient(grid, theta))
+        # Bounds make the mean of a sample other than what is true: a deviation, too, from 0 to twice of it.
+        bias = np.stack([np.zeros(many), 2.0 * off[:, :many].mean(axis=0)])
+        changes = np.concatenate([[bias], factor * independent(off[:, :many], form.gradient(grid, theta))])
         return Taken(
             shape=form.name,
             parameters=form.shown(theta),
@@ -509,10 +512,11 @@ def _bump(r: Array, first: float, last: float) -> Array:
 
 
 def independent(off: Array, heights: Array) -> Array:
-    """Independent standard deviations of θ, each both ways, (m, 2, k), of a sample (n, k).
+    """Pairs (m, 2, k) of a sample (n, k) whose halved differences are its independent standard deviations.
 
     Principal ones of the heights by θ, (j, k): the means of those that are on either side of 0 along each, widened from
-    the mean to the standard deviation. They are in the bounds of the sample. What moves next to nothing is left out.
+    the mean to the standard deviation, so that they are within the bounds of the sample. What moves next to nothing is
+    left out.
     """
     _, sizes, along = np.linalg.svd(heights @ off.T, full_matrices=False)
     modes = along[sizes**2 > KEPT * np.sum(sizes**2)]

@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from contact1d.analysis.scan import ASPERITY, Taken
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import LENGTH, Scales
@@ -49,7 +51,7 @@ CURVED = ("parabola", "circle")
 def _radius(taken: Taken) -> tuple[float, float]:
     """R and its uncertainty: θ is 1/R."""
     curvature = float(taken.parameters[0])
-    return 1.0 / curvature, float(abs(taken.deviations[0, 0, 0] - curvature)) / curvature**2
+    return 1.0 / curvature, 0.5 * float(abs(np.diff(taken.deviations[1, :, 0])[0])) / curvature**2
 
 
 def in_words(taken: Taken) -> str:

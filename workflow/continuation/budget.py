@@ -125,16 +125,18 @@ class Reduction:
     def inputs(self) -> Values:
         """By name of a result, by how much the bodies that the scene may mean differ from the one that runs, in sum.
 
-        Independent deviations of the body, the larger one of both ways of each, are added in squares.
+        Independent deviations of the body, half of the difference of each pair, are added in squares.
         """
         profile = self.scene.bodies.profile
         others = [model for shape in profile.alternatives if (model := self._of_shape(shape))]
         if len(others) < len(profile.alternatives):
             others += [model for shape in profile.coarser if (model := self._of_shape(shape))]
         each = [self._apart([other]) for other in others]
-        pairs = [[model for shape in both if (model := self._of_shape(shape))] for both in profile.deviations]
-        moved = [self._apart(both) for both in pairs]
-        squares = {name: sum(one[name] ** 2 for one in moved) ** 0.5 for name in self.own}
+        pairs = [
+            [self.values(model) for shape in both if (model := self._of_shape(shape))] for both in profile.deviations
+        ]
+        moved = [_half_apart(*both) for both in pairs if len(both) > 1]
+        squares = {name: sum(one.get(name, 0.0) ** 2 for one in moved) ** 0.5 for name in self.own}
         return {name: sum(one[name] for one in each) + squares[name] for name in self.own}
 
     def _of_shape(self, shape: Shape) -> Reduced | None:
@@ -150,6 +152,11 @@ class Reduction:
         others = [self.values(model) for model in models]
         own = self.own.items()
         return {name: max((abs(one.get(name, 0.0) - value) for one in others), default=0.0) for name, value in own}
+
+
+def _half_apart(one: Values, other: Values) -> Values:
+    """Half of the differences of two models."""
+    return {name: 0.5 * abs(value - other.get(name, 0.0)) for name, value in one.items()}
 
 
 def _extrapolated(coarse: float, fine: float, finest: float) -> float:

@@ -90,7 +90,7 @@ class Shape(Table):
 
     @property
     def deviations(self) -> tuple[tuple[Shape, Shape], ...]:
-        """Independent changes of the body at 95 %, each both ways; a formula has none."""
+        """Pairs of bodies: half of the difference of each is an independent uncertainty at 95 %; a formula has none."""
         return ()
 
     @property
