@@ -48,7 +48,7 @@ BLOCKS = 12
 """Parts of a residual of one side, whose median autocovariance a kink in one of them leaves as it is."""
 LARGEST_SELECTED = 4000
 """Points from which the knots are chosen: of more, means of neighbours."""
-NEEDLESS = 4.0
+NEEDLESS = 3.0
 """Increase of the squares of the residual by all removed knots together, over σ²τ, at most."""
 DRAWS = 300
 """Of the noise: a standard deviation is then known to 4 %."""

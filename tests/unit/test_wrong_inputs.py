@@ -172,7 +172,7 @@ FILES = {
                                "-3,9\n-2,4\n-1,1\n0,0\n1,1\n2,4\n3,9\n"),
     "upside down": ("0,0\n1,-1\n2,-4\n3,-9\n", "heights are measured from the plane; change the sign",
                     "0,0\n1,1\n2,4\n3,9\n"),
-    "decimal commas": ("r;z\n0;0\n0,5;0,25\n1;1\n2;4\n", "line 3: r is not a number; write it with a decimal point",
+    "decimal commas beside points": ("r;z\n0;0\n0,5;0.25\n1;1\n2;4\n", "line 3: r is not a number; write it with a decimal point",
                        "r;z\n0;0\n0.5;0.25\n1;1\n2;4\n"),
     "an empty cell": ("0,0\n1,\n2,4\n3,9\n4,16\n", "line 2: z is empty; leave out a line that has no value",
                       "0,0\n2,4\n3,9\n4,16\n"),
