@@ -24,7 +24,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
-from scipy.optimize import lsq_linear
+from scipy.optimize import nnls
 from scipy.stats import t as student
 
 Array = NDArray[np.float64]
@@ -48,6 +48,10 @@ BLOCKS = 12
 """Parts of a residual of one side, whose median autocovariance a kink in one of them leaves as it is."""
 LARGEST_SELECTED = 4000
 """Points from which the knots are chosen: of more, means of neighbours."""
+MOST_KNOTS = 40
+"""Of a curve that is as detailed as the noise allows: of a scan without noise."""
+PATIENCE = 100
+"""Steps of a search for the active bounds, over their number, at most."""
 NEEDLESS = 3.0
 """Increase of the squares of the residual by all removed knots together, over σ²τ, at most."""
 DRAWS = 300
@@ -100,15 +104,15 @@ class Form:
         return np.cumsum(theta, axis=-1) if self.convex else theta
 
 
-def named(shape: Named, curvature: float, reach: float) -> Form:
-    """A named shape: θ = (1/R), or (h, n) of h (r/reach)ⁿ."""
+def named(shape: Named, curvature: float) -> Form:
+    """A named shape: θ = (1/R), or (h, n) of h rⁿ."""
     if shape == "power":
         return Form(
             shape,
-            lambda r, p: p[0] * (r / reach) ** p[1],
-            lambda r, p: p[0] * p[1] / reach * (r / reach) ** (p[1] - 1.0),
-            lambda r, p: np.stack([(s := (r / reach) ** p[1]), p[0] * s * np.log(np.maximum(r / reach, TINY))], 1),
-            np.asarray([0.5 * curvature * reach**2, 2.0]),
+            lambda r, p: p[0] * r ** p[1],
+            lambda r, p: p[0] * p[1] * r ** (p[1] - 1.0),
+            lambda r, p: np.stack([r ** p[1], p[0] * r ** p[1] * np.log(np.maximum(r, TINY))], axis=1),
+            np.asarray([0.5 * curvature, 2.0]),
             np.asarray([0.0, 1.0]),
         )
     bend = 0.0 if shape == "parabola" else 1.0
@@ -127,10 +131,15 @@ def named(shape: Named, curvature: float, reach: float) -> Form:
     )
 
 
+def _slopes_of(many: int, convex: bool) -> Array:
+    """The slopes at knots by θ, (k, k)."""
+    return np.tril(np.ones((many, many))) if convex else np.eye(many)
+
+
 def smooth(knots: Array, convex: bool) -> Form:
     """A smooth curve: θ are the slopes at the knots but that on the axis, where it is 0, or their increments."""
     many = len(knots) - 1
-    slopes = np.tril(np.ones((many, many))) if convex else np.eye(many)
+    slopes = _slopes_of(many, convex)
 
     def gradient(r: Array, _: Array) -> Array:
         """∫ of each hat up to r."""
@@ -173,7 +182,7 @@ class Taken:
 
     Attributes:
         shape: "smooth", or the name of what was fitted.
-        parameters: θ, (k,): 1/R; h and n of h (r/reach)ⁿ; the slopes at the knots.
+        parameters: θ, (k,): 1/R; h and n of h (r/w)ⁿ, w the width of the scan; the slopes at the knots.
         knots: of a smooth curve, (k + 1,), from 0.
         deviations: pairs of θ, (m, 2, k): half of the difference of what follows from the two of each is independent of
             the others, at 95 %.
@@ -241,13 +250,15 @@ def is_two_sided(x: Array) -> bool:
 
 
 def _rising(x: Array, z: Array) -> tuple[Array, Array]:
-    order = np.argsort(x)
-    return x[order], z[order]
+    """The points by their positions; of several at one their mean."""
+    at, which, counts = np.unique(x, return_inverse=True, return_counts=True)
+    return at, np.bincount(which, z) / counts
 
 
 def one_pass(x: Array, z: Array) -> tuple[Array, Array]:
     """The points in rising x; a scan that goes forth and back as the mean of both, on the positions of the first."""
-    turns = np.flatnonzero(np.diff(np.sign(np.diff(x)))) + 1
+    steps = np.flatnonzero(np.diff(x))
+    turns = steps[np.flatnonzero(np.diff(np.sign(np.diff(x)[steps])))] + 1
     ends = [0, *turns.tolist(), len(x) - 1]
     passes = [_rising(x[first : last + 1], z[first : last + 1]) for first, last in pairwise(ends)]
     passes = [one for one in passes if len(one[0]) > 0.5 * max(len(one[0]) for one in passes)]
@@ -279,7 +290,7 @@ def take(
     """
     x, z = one_pass(x, z)
     if len(x) < FEWEST:
-        raise ScanError(f"has {len(x)} points, at least {FEWEST} are needed")
+        raise ScanError(f"has {len(x)} points in one direction, at least {FEWEST} are needed")
     wide, base = float(np.ptp(x)), float(z.min())
     if float(z.max()) == base:
         raise ScanError('is flat: write kind = "flat_punch"')
@@ -308,11 +319,22 @@ class _Fit:
             )
         start = min(max(start, float(self.x[0])), float(self.x[-1]))
         reach = float(np.abs(self.x - start).max())
+        if self.moves and self.tilts:
+            self.require_flat_part(reach, start)
         if shape:
-            solved = self.solve(named(shape, max(2.0 * float(square), 1e-6), reach), start)
+            solved = self.solve(named(shape, max(2.0 * float(square), 1e-6)), start)
         else:
             solved = self.smoothed(reach, start, length)
         return self.judged(solved)
+
+    def require_flat_part(self, reach: float, start: float) -> None:
+        """Refuse a tilt beside an unknown apex where both do the same to all heights."""
+        curve = replace(self, tilts=False).solve(smooth(np.linspace(0.0, reach, FIRST_KNOTS), True), start)
+        if abs(np.corrcoef(curve.columns[:, -1], self.x)[0, 1]) > ALIKE:
+            raise ScanError(
+                "its tilt and the position of its apex cannot be told apart, since a tilt of a parabola only moves the "
+                "apex; remove level = true"
+            )
 
     def smoothed(self, reach: float, start: float, length: float | None) -> _Solved:
         """A smooth curve whose slope rises from the apex on, unless the scan shows that it falls somewhere."""
@@ -397,12 +419,7 @@ class _Fit:
         def columns_of(knots: Array) -> Array:
             return np.hstack([smooth(knots, convex).gradient(r, knots), rest])
 
-        def squares_of(knots: Array) -> float:
-            """Of the residual of a curve that rises."""
-            one = columns_of(knots)
-            return float(np.sum((z - one @ bounded(one, z, np.zeros(len(knots) - 1))) ** 2))
-
-        while True:
+        while len(knots) < MOST_KNOTS:
             q, _ = np.linalg.qr(columns_of(knots))
             new = np.stack([_bump(r, *ends) for ends in pairwise(knots)], axis=1)
             new -= q @ (q.T @ new)
@@ -412,15 +429,24 @@ class _Fit:
             if gain[best] <= noise.price(len(away), len(knots)) / group:
                 break
             knots = np.insert(knots, best + 1, 0.5 * (knots[best] + knots[best + 1]))
-        own = squares_of(knots)
-        while len(knots) > 2:
-            fewer = [np.delete(knots, i) for i in range(1, len(knots) - 1)]
+        _, upper = np.linalg.qr(np.column_stack([columns_of(knots), z]))
+
+        def squares_of(fewer: Array) -> float:
+            """Of the residual of a curve that rises, which all knots have exactly."""
+            of_slopes = np.stack([np.interp(knots[1:], fewer, one) for one in np.eye(len(fewer))[1:]], axis=1)
+            to, own = _slopes_of(len(fewer) - 1, convex), np.linalg.inv(_slopes_of(len(knots) - 1, convex))
+            one = np.hstack([upper[:, : len(knots) - 1] @ own @ of_slopes @ to, upper[:, len(knots) - 1 : -1]])
+            return float(np.sum((upper[:, -1] - one @ bounded(one, upper[:, -1], np.zeros(len(fewer) - 1))) ** 2))
+
+        own, kept = squares_of(knots), knots
+        while len(kept) > 2:
+            fewer = [np.delete(kept, i) for i in range(1, len(kept) - 1)]
             squares = [squares_of(one) for one in fewer]
             best = int(np.argmin(squares))
             if squares[best] > own + NEEDLESS * noise.power / group:
                 break
-            knots = fewer[best]
-        return knots
+            kept = fewer[best]
+        return kept
 
     def judged(self, solved: _Solved) -> Taken:
         """What was found with its uncertainties, and the deviations of the shape."""
@@ -432,11 +458,6 @@ class _Fit:
                 "of it; give centre as a length, or a wider scan"
             )
         noise = noise_in(solved.residual)
-        if self.moves and self.tilts and np.abs(np.corrcoef(solved.columns[:, -2:].T)).min() > ALIKE:
-            raise ScanError(
-                "its tilt and the position of its apex cannot be told apart, since a tilt of a parabola only moves the "
-                "apex; remove level = true"
-            )
         free = max(1.0, points / noise.together - solved.columns.shape[1])
         deviation = math.sqrt(noise.power * max(1.0, points / noise.together / free))
         looked_for = np.r_[np.ones(many + 1, dtype=bool), self.moves, self.tilts]
@@ -487,11 +508,14 @@ class _Solved:
 
 def bounded(columns: Array, target: Array, least: Array) -> Array:
     """Least squares (n, k) p = (n,), the first ones of p ≥ `least`."""
-    least = np.append(least, np.full(columns.shape[1] - len(least), -math.inf))
     size = np.linalg.norm(columns, axis=0)
     size[size == 0.0] = 1.0
-    q, upper = np.linalg.qr(columns / size)
-    return np.asarray(lsq_linear(upper, q.T @ target, (least * size, math.inf), method="bvls").x / size)
+    first, free = np.split(columns / size, [len(least)], axis=1)
+    q, _ = np.linalg.qr(free)
+    target = target - columns[:, : len(least)] @ least
+    above, _ = nnls(first - q @ (q.T @ first), target - q @ (q.T @ target), maxiter=PATIENCE * len(least))
+    rest = np.linalg.lstsq(free, target - first @ above)[0]
+    return np.asarray(np.concatenate([least, 0.0 * rest]) + np.concatenate([above, rest]) / size)
 
 
 def _drawn(columns: Array, found: Array, least: Array, deviation: float) -> Array:

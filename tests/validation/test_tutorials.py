@@ -189,7 +189,7 @@ def test_profile(names: dict[str, Any]) -> None:
 
 @one_page("scan")
 def test_scan(names: dict[str, Any]) -> None:
-    """What was taken of the scan has the contact of the ball that it was made of, within its uncertainty; noise, too."""
+    """What was taken of the scan has the contact of the ball that it was made of, within its uncertainty."""
     results, a, R, b = names["run"].results, names["a"], names["R"], names["b"]
     exact = {"contact_radius": a, "displacement": a / R * math.sqrt(a**2 - b**2)}
     for name, value in exact.items():

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 ENDINGS = frozenset({
-    ".al3d", ".datx", ".di", ".gwy", ".h5", ".ibw", ".jpk", ".mat", ".mi", ".nc", ".nid", ".nms", ".opd", ".opdx",
-    ".os3d", ".plu", ".plux", ".spm", ".sur", ".top", ".vk3", ".vk4", ".vk6", ".x3p", ".zag", ".zon",
+    ".al3d", ".datx", ".frt", ".gwy", ".h5", ".ibw", ".jpk", ".mat", ".mi", ".nc", ".nid", ".nms", ".opd", ".opdx",
+    ".os3d", ".plu", ".plux", ".spm", ".sur", ".vk3", ".vk4", ".vk6", ".x3p", ".zon",
 })  # fmt: skip
 """Endings of files of instruments, which are no text."""
 

@@ -34,6 +34,8 @@ MOST_LINES = 100_000
 """Lines of a file: a scene with as many points takes ten seconds to run."""
 COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 """A number with a decimal comma."""
+STATED = re.compile(r":(\s|$)")
+"""What a line of an instrument has, as Date: 1.2.2026."""
 FORM = "name the radius r and the height z, with units if they have any (r [µm], z [µm])"
 PLACE_DIFFERENCE = 1e-3
 """Places left and right count as the same up to this share of the mean step."""
@@ -184,7 +186,8 @@ def _without_preamble(rows: list[Row]) -> None:
     """
     start = next((i for i, (_, cells) in enumerate(rows) if sum(_number(cell) is not None for cell in cells) > 1), 0)
     names = [i for i, (_, cells) in enumerate(rows[:start]) if {*_words(cells)} & {*HEIGHTS} and len(cells) > 1]
-    alike = [i for i, (_, cells) in enumerate(rows[:start]) if len(cells) == len(rows[start][1])]
+    width = len(rows[start][1]) if rows else 0
+    alike = [i for i, (_, cells) in enumerate(rows[:start]) if len(cells) == width and not STATED.search(cells[0])]
     del rows[: names[-1] if names else alike[0] if alike else start]
 
 

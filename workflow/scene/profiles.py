@@ -596,7 +596,7 @@ def fault_of(r: tuple[float, ...], z: tuple[float, ...]) -> str | None:
                 f"has a gap from r = {r[at]:.6g} to {r[at + 1]:.6g}: the median step is {middle:.4g}, and "
                 f"the largest gap allowed {GAP * middle:.4g}; add points there"
             )
-    if max(z) == z[0] > min(z):
+    if z[0] - min(z) > max(z) - z[0]:
         return "has heights that decrease from the axis: heights are measured from the plane; change the sign"
     lowest = z.index(min(z))
     if z[lowest] < z[0]:
@@ -830,7 +830,7 @@ def _shape_of(taken: Taken, parameters: Array) -> Shape:
         return Smoothed.model_construct(knots=tuple(taken.knots.tolist()), slopes=(0.0, first, *more))
     inner: Shape
     if taken.shape == "power":
-        inner = Power.model_construct(exponent=more[0], radius=taken.reach, height_there=first)
+        inner = Power.model_construct(exponent=more[0], radius=float(taken.x[-1] - taken.x[0]), height_there=first)
     else:
         inner = (Circle if taken.shape == "circle" else Parabola).model_construct(radius=1.0 / first)
     return Fitted.model_construct(inner=inner, end=taken.reach)
