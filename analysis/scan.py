@@ -57,7 +57,7 @@ NEEDLESS = 3.0
 DRAWS = 300
 """Of the noise: a standard deviation is then known to 4 %."""
 ALIKE = 0.9999
-"""Correlation of what a tilt and a moved apex do to heights from which on they cannot be told apart."""
+"""Correlation of what a tilt and a moved apex do to heights from which on they cannot be distinguished."""
 KEPT = 1e-4
 """Variance of a deviation over that of all below which it is left out."""
 FLATTEST = 1e-6
@@ -332,7 +332,7 @@ class _Fit:
         curve = replace(self, tilts=False).solve(smooth(np.linspace(0.0, reach, FIRST_KNOTS), True), start)
         if abs(np.corrcoef(curve.columns[:, -1], self.x)[0, 1]) > ALIKE:
             raise ScanError(
-                "its tilt and the position of its apex cannot be told apart, since a tilt of a parabola only moves the "
+                "its tilt and the position of its apex cannot be distinguished, since a tilt of a parabola only moves the "
                 "apex; remove level = true"
             )
 

@@ -63,13 +63,12 @@ def test_the_command_line_prints_it(file: Path, tmp_path: Path) -> None:
 
 
 def test_more_noise_is_a_larger_part_of_the_uncertainty(tmp_path: Path) -> None:
-    """The same draw ten times as large: ten times the source input, here the whole uncertainty but the lattice's."""
-    widths = []
-    for size in (10.0, 100.0):
-        (tmp_path / "scan.csv").write_text(text(z=X**2 / (2.0 * R) + size * (Z - X**2 / (2.0 * R) - 0.001 * X - 40.0)))
+    """The same draw ten times as large: the noise is then the whole uncertainty but a few percent."""
+    widths, noise = [], Z - X**2 / (2.0 * R) - 0.001 * X - 40.0
+    for size in (30.0, 300.0):
+        (tmp_path / "scan.csv").write_text(text(z=X**2 / (2.0 * R) + size * noise), encoding="utf-8")
         done = run(scene(tmp_path / "scan.csv", FIT, "bodies.spacing=1 µm"), figures=False)
-        assert done.outcome is not None
-        widths.append(done.outcome.quantities["displacement"].errors["input"])
+        widths.append(done.results.displacement.uncertainty)
     assert widths[1] / widths[0] == pytest.approx(10.0, rel=0.1)
 
 

@@ -807,7 +807,7 @@ class Measured(Shape):
 
     @property
     def deviations(self) -> tuple[tuple[Shape, Shape], ...]:
-        """What the noise of the scan leaves open of the curve."""
+        """Curves that the noise of the scan allows as well."""
         if not self.is_curve or (taken := self.taken) is None:
             return ()
         return tuple((_shape_of(taken, more), _shape_of(taken, less)) for more, less in taken.deviations)
