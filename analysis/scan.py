@@ -332,7 +332,7 @@ class _Fit:
         curve = replace(self, tilts=False).solve(smooth(np.linspace(0.0, reach, FIRST_KNOTS), True), start)
         if abs(np.corrcoef(curve.columns[:, -1], self.x)[0, 1]) > ALIKE:
             raise ScanError(
-                "its tilt and the position of its apex cannot be distinguished, since a tilt of a parabola only moves the "
+                "its tilt and the position of its apex cannot be distinguished: a tilt of a parabola only moves the "
                 "apex; remove level = true"
             )
 
