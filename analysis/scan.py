@@ -193,6 +193,7 @@ class Taken:
         x: positions of the points from the apex, rising, (n,).
         heights, residual: without tilt and offset, and without the curve, too, (n,).
         autocorrelation: ρ_k of the residual.
+        missed: RMS of what a fitted shape leaves beyond the noise; 0 of a smooth curve.
         patches: parts in which the measured points would touch a plane ASPERITY σ above the lowest one.
     """
 
@@ -211,11 +212,12 @@ class Taken:
     residual: Array
     autocorrelation: Array
     patches: int
+    missed: float = 0.0
 
     def scaled(self, size: float, origin: float, base: float) -> Taken:
         """The same with lengths `size` times as large, positions from `origin`, heights from `base`."""
         powers = np.asarray({"smooth": [0.0], "power": [1.0, 0.0]}.get(self.shape, [-1.0]))
-        lengths = ("knots", "reach", "noise", "correlation", "x", "heights", "residual")
+        lengths = ("knots", "reach", "noise", "correlation", "x", "heights", "residual", "missed")
         return replace(
             self,
             parameters=self.parameters * size**powers,
@@ -323,9 +325,15 @@ class _Fit:
             self.require_flat_part(reach, start)
         if shape:
             solved = self.solve(named(shape, max(2.0 * float(square), 1e-6)), start)
-        else:
-            solved = self.smoothed(reach, start, length)
-        return self.judged(solved)
+            free = self.smoothed(reach, start, None)
+            return replace(self.judged(solved), missed=self.excess(solved, free))
+        return self.judged(self.smoothed(reach, start, length))
+
+    def excess(self, one: _Solved, other: _Solved) -> float:
+        """RMS of the residual that a fit has more than another one has, 0 where that may be chance."""
+        more = float(np.sum(one.residual**2) - np.sum(other.residual**2))
+        price = self.noise_of(other).price(len(self.x), len(other.form.start))
+        return math.sqrt(more / len(self.x)) if more > price * len(other.form.start) else 0.0
 
     def require_flat_part(self, reach: float, start: float) -> None:
         """Refuse a tilt beside an unknown apex where both do the same to all heights."""

@@ -72,6 +72,12 @@ def test_more_noise_is_a_larger_part_of_the_uncertainty(tmp_path: Path) -> None:
     assert widths[1] / widths[0] == pytest.approx(10.0, rel=0.1)
 
 
+def test_a_scan_that_is_not_the_fitted_shape_is_a_warning(file: Path, tmp_path: Path) -> None:
+    (tmp_path / "worn.csv").write_text(text(z=np.maximum(Z, 40.0 + 0.001 * X + 0.5)), encoding="utf-8")
+    assert "is no parabola" in run(scene(tmp_path / "worn.csv"), figures=False).warnings["scan_fit"]
+    assert "scan_fit" not in run(scene(file), figures=False).warnings
+
+
 def test_units_of_columns_without_names(file: Path, tmp_path: Path) -> None:
     (tmp_path / "plain.csv").write_text(text(""), encoding="utf-8")
     found = scene(tmp_path / "plain.csv", f"{FIT}, units = ['µm', 'nm']").bodies.profile

@@ -44,6 +44,17 @@ def scan_entry(scene: Scene, scales: Scales) -> dict[str, Any]:
     return {"scan": found}
 
 
+def misfit(scene: Scene) -> dict[str, str]:
+    """The warning that a scan is not the shape that was fitted to it."""
+    taken = scene.bodies.profile.taken
+    if taken is None or not taken.missed:
+        return {}
+    return {
+        "scan_fit": f"the scan is no {taken.shape} within its noise: the fit misses its heights by {taken.missed:.3g} LU "
+        'in the mean, which no uncertainty has; use smooth = "auto" in place of fit'
+    }
+
+
 CURVED = ("parabola", "circle")
 """Fitted shapes that are known by their radius."""
 
