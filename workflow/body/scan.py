@@ -50,8 +50,8 @@ def misfit(scene: Scene) -> dict[str, str]:
     if taken is None or not taken.missed:
         return {}
     return {
-        "scan_fit": f"the scan is no {taken.shape} within its noise: the fit misses heights by {taken.missed:.3g} LU in "
-        'the mean, which no uncertainty has; use smooth = "auto" in place of fit'
+        "scan_fit": f"the scan is no {taken.shape} within its noise: the fit misses {taken.missed:.3g} LU in the mean, "
+        'which no uncertainty has; use smooth = "auto" in place of fit'
     }
 
 
