@@ -26,7 +26,7 @@ SEEDS, FULL_SEEDS = 10, 50
 OUTSIDE, WIDEST = 0.12, 5.0
 """Share of the seeds beyond the uncertainty, and the median uncertainty over the median error, at most."""
 SAME = 0.5
-"""Of LAMMPS and the reduced model. Measured: 0.497 with 0.1 nm of noise, where the lattice is all; 0.02 of worn balls."""
+"""Of LAMMPS and the reduced model. Measured: 0.497 with 0.1 nm of noise, where the lattice is all; worn balls 0.02."""
 RADIUS, LAND, UNIT = 1e4, 100.0, 1e-6
 """R and land of the worn ball [µm]; in m."""
 MODULUS, LOAD, WORK, PRELOAD = 1.0 / ((1.0 - 0.3**2) / 210e9 + (1.0 - 0.22**2) / 70e9), 10.0, 1.0, 0.5
