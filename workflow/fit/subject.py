@@ -1,0 +1,135 @@
+"""What is fitted: a scene whose numbers change, under a contact model and an instrument, as a problem of least squares."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.workflow.fit.curve import ForceCurve
+from contact1d.workflow.fit.forward import LAWS, Body, Branch, Law
+from contact1d.workflow.fit.search import Problem, Unknown
+from contact1d.workflow.scene import Scene
+
+Array = NDArray[np.float64]
+POINT, OFFSET, STIFFNESS = "contact_point", "force_offset", "instrument.stiffness"
+"""Unknowns that are of the measurement."""
+
+
+def changed(table: Any, path: Sequence[str], value: float) -> Any:
+    """A table of a scene with another number at a path; nothing is checked again."""
+    first, *rest = path
+    name = next((name for name, key in type(table).model_fields.items() if key.alias == first), first)
+    return table.model_copy(update={name: changed(getattr(table, name), rest, value) if rest else value})
+
+
+@dataclass
+class Subject:
+    """A scene on a rigid plane and an instrument, of which some numbers are unknown.
+
+    Attributes:
+        scene: with a number at each unknown's key.
+        law: the contact model.
+        curve: what was measured.
+        stiffness: k_c [FU/LU] where it is no unknown.
+        unknowns: of the scene, the instrument and the measurement.
+    """
+
+    scene: Scene
+    law: Law
+    curve: ForceCurve
+    stiffness: float
+    unknowns: tuple[Unknown, ...]
+    _bodies: dict[tuple[float, ...], Body] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Which points may be lost, and which hold."""
+        self.names = [one.name for one in self.unknowns]
+        self.shaping = [i for i, name in enumerate(self.names) if name.startswith("bodies.profile")]
+        n = self.curve.positions.size
+        self.held, self.open = np.zeros(n, dtype=bool), np.zeros(n, dtype=bool)
+        for one in self.curve.segments:
+            self.held[one.held] = True
+            if one.jump is None:
+                self.open[one.points] = True
+
+    @property
+    def problem(self) -> Problem:
+        """The least-squares problem."""
+        runs = tuple(one.compared for one in self.curve.segments)
+        return Problem(self.unknowns, self.forces, self.curve.forces, runs)
+
+    def scene_with(self, values: Sequence[float]) -> Scene:
+        """The scene with these values of its unknowns, unchecked."""
+        scene = self.scene
+        for name, value in zip(self.names, values, strict=True):
+            if name not in (POINT, OFFSET, STIFFNESS):
+                scene = changed(scene, name.split("."), value)
+        return scene
+
+    def branch(self, values: Sequence[float]) -> Branch:
+        """The contact's own curve."""
+        scene = self.scene_with(values)
+        shape = tuple(values[i] for i in self.shaping)
+        if shape not in self._bodies:
+            if len(self._bodies) > 200:
+                self._bodies.clear()
+            self._bodies[shape] = Body.of(scene.bodies.profile, self.curve.depth)
+        adhesion = scene.adhesion
+        return self.law(self._bodies[shape], modulus_of(scene), scene.work_of_adhesion, (adhesion and adhesion.range) or 0.0)
+
+    def value_of(self, name: str, values: Sequence[float], default: float) -> float:
+        """The value of an unknown; the default where it is none."""
+        return values[self.names.index(name)] if name in self.names else default
+
+    def forces(self, values: Sequence[float]) -> Array:
+        """F [FU] at every measured position."""
+        branch, k = self.branch(values), self.value_of(STIFFNESS, values, self.stiffness)
+        z = self.curve.positions - self.value_of(POINT, values, 0.0)
+        found = np.zeros_like(z)
+        found[self.held] = branch.at(z[self.held], k, held=True)
+        found[self.open] = branch.at(z[self.open], k, held=False)
+        return np.asarray(found + self.value_of(OFFSET, values, 0.0))
+
+    def completed(self, u: Array) -> Array:
+        """Unknowns with the contact point such that the largest force is where it was measured."""
+        u = u.copy()
+        units = {one.name: one.scale for one in self.unknowns}
+        u[self.names.index(OFFSET)] = self.curve.baseline / units[OFFSET]
+        if POINT in self.names:
+            values = self.problem.values(u)
+            branch, k = self.branch(values), self.value_of(STIFFNESS, values, self.stiffness)
+            z, F = branch.displacements + branch.forces / k, branch.forces
+            least = int(np.argmin(F))
+            top = int(np.argmax(self.curve.forces))
+            at = float(np.interp(self.curve.forces[top] - self.curve.baseline, F[least:], z[least:]))
+            u[self.names.index(POINT)] = (float(self.curve.positions[top]) - at) / units[POINT]
+        return u
+
+
+def modulus_of(scene: Scene) -> float:
+    """E* [FU/LU²] of a contact on a rigid plane."""
+    bodies, material = scene.bodies, scene.material
+    if bodies.bulk_stiffness != "auto":
+        return bodies.bulk_stiffness / bodies.spacing
+    assert material is not None
+    assert material.length_unit is not None
+    assert material.force_unit is not None
+    return material.layer_stiffness(bodies.reduction) * material.length_unit**2 / material.force_unit
+
+
+def measurement(curve: ForceCurve, free: bool = True) -> list[Unknown]:
+    """Contact point and offset of the force."""
+    offset = Unknown(OFFSET, float(np.ptp(curve.forces)), positive=False)
+    return [Unknown(POINT, curve.depth, positive=False), offset] if free else [offset]
+
+
+def law_named(name: str) -> Law:
+    """A contact model by its name."""
+    return LAWS[name]
+
+
+Known = Mapping[str, tuple[float, float]]
