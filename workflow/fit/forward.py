@@ -23,8 +23,10 @@ from numpy.typing import NDArray
 from contact1d.workflow.scene import Shape
 
 Array = NDArray[np.float64]
-EDGES = 1500
-"""Edges a between which a branch is straight, in geometric progression over SPAN: the error of F is below 1e-5 of it."""
+EDGES = 500
+"""Edges a between which a branch is cubic, in geometric progression over SPAN."""
+NEWTON = 2
+"""Steps to the place of a position between two of them: from a straight start the error is then below 1e-9 of the cell."""
 SPAN = 2e-3
 """The first of them over the last."""
 DEEPEST = 8.0
@@ -84,9 +86,9 @@ class Branch:
                 else it is lost there.
         """
         z = self.displacements + self.forces / stiffness
-        least = int(np.argmin(z))
-        z, F = np.maximum.accumulate(z[least:]), self.forces[least:]
-        found = np.interp(positions, z, F, left=0.0)
+        least = min(int(np.argmin(z)), z.size - 4)  # of an adhesion that is known to be too strong the rest matters not
+        a, z, F = self.radii[least:], np.maximum.accumulate(z[least:]), self.forces[least:]
+        found = np.where(positions < z[0], 0.0, _between(a, z, F, positions))
         below = positions < z[0]
         if held and below.any():
             at = np.searchsorted(F, F[0] + 0.25 * abs(F[0])) if F[0] < 0.0 else 1
@@ -100,6 +102,28 @@ class Branch:
         z = self.displacements + self.forces / stiffness
         least = int(np.argmin(z))
         return float(z[least]), float(self.forces[least])
+
+
+def _between(a: Array, z: Array, F: Array, positions: Array) -> Array:
+    """F at z, both cubic in a between its places: smooth, since differences of neighbours count under correlated noise."""
+    i = np.clip(np.searchsorted(z, positions) - 1, 0, a.size - 2)
+    width = np.diff(a)[i]
+    cubic = [_cubic(values[i], values[i + 1], slope[i] * width, slope[i + 1] * width)
+             for values, slope in ((z, np.gradient(z, a)), (F, np.gradient(F, a)))]  # fmt: skip
+    (z0, z1, z2, z3), (f0, f1, f2, f3) = cubic
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = np.clip((positions - z[i]) / (z[i + 1] - z[i]), 0.0, 1.0)
+        for _ in range(NEWTON):
+            slope = z1 + t * (2.0 * z2 + 3.0 * t * z3)
+            t = t - np.where(slope > 0.0, (z0 + t * (z1 + t * (z2 + t * z3)) - positions) / slope, 0.0)
+    t = np.nan_to_num(np.clip(t, 0.0, 1.0))
+    return np.asarray(f0 + t * (f1 + t * (f2 + t * f3)))
+
+
+def _cubic(start: Array, end: Array, leaving: Array, arriving: Array) -> tuple[Array, Array, Array, Array]:
+    """The coefficients of Hermite's cubic from 0 to 1."""
+    rise = end - start
+    return start, leaving, 3.0 * rise - 2.0 * leaving - arriving, leaving + arriving - 2.0 * rise
 
 
 Law = Callable[[Body, float, float, float], Branch]

@@ -175,7 +175,7 @@ class Uncertain:
 
 
 def uncertain(
-    runs: Sequence[Indices], residuals: Array, slopes: Array, prior: Array
+    runs: Sequence[Indices], residuals: Array, slopes: Array, prior: Array, looks: int = 2
 ) -> Uncertain:
     """All noises with their weights: a first look over s and τ, and a finer one where it is likely.
 
@@ -184,11 +184,12 @@ def uncertain(
         residuals: (n,) of all runs.
         slopes: (n, p), −∂residuals/∂parameters.
         prior: (q, p + 1), see `_judge`.
+        looks: 1 where the most likely noise is enough.
     """
     longest = max(4.0, LONGEST_SHARE * max(run.size for run in runs))
     memories: Array = np.geomspace(SHORTEST, longest, MEMORIES)
     shares: Array = np.array(SHARES)
-    for _ in range(2):
+    for _ in range(looks):
         pairs = [(float(s), float(m)) for s in shares for m in (memories if s > 0.0 else memories[:1])]
         found = [_judge(noise, residuals, slopes, prior) for noise in noises(pairs, runs)]
         logs = np.array([log for _, log in found])

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import differential_evolution, least_squares
 
-from contact1d.workflow.fit.noise import Indices, Noise, Uncertain, uncertain
+from contact1d.workflow.fit.noise import Indices, Judged, Noise, Uncertain, uncertain
 
 Array = NDArray[np.float64]
 STEP = 1e-4
@@ -28,6 +28,8 @@ OUTLIER = 5.0
 LEVEL = 0.95
 TWO_SIDED = 1.959964
 """Standard deviations of a 95 % uncertainty."""
+MOST_ROUNDS, SETTLED = 12, 0.02
+"""Of fit, noise and outliers in turn; and change of the unknowns over their standard deviation that ends them."""
 FARTHEST = 4.0
 """Change of log p at which the end of an interval counts as open."""
 
@@ -143,7 +145,7 @@ class Problem:
 
         found = least_squares(
             rows, u[free], jacobian, method="trf", x_scale="jac", loss="soft_l1" if robust else "linear",
-            f_scale=2.0, xtol=1e-8, ftol=1e-9, gtol=1e-12, max_nfev=60,
+            f_scale=2.0, xtol=1e-6, ftol=1e-6, gtol=1e-12, max_nfev=60,
         )  # fmt: skip
         return whole(found.x), 2.0 * float(found.cost)
 
@@ -159,13 +161,15 @@ class Solution:
     Attributes:
         problem: with the points that were compared.
         u: the unknowns.
-        noise: the parameters under all noises that the residuals allow.
-        squares: the least sum of squares under the most likely noise, over its variance.
+        best: what the residuals say under the most likely noise, with which u is the least.
+        noise: the same under all noises that they allow.
+        squares: the least sum of squares under the most likely one, over its variance.
         outliers: indices of points that were taken out.
     """
 
     problem: Problem
     u: Array
+    best: Judged
     noise: Uncertain
     squares: float
     outliers: Indices
@@ -212,29 +216,27 @@ def solved(problem: Problem, starts: Sequence[Array]) -> Solution:
         tries.append((float(np.abs(problem.residuals(u)).sum()), deviation, u))
     _, deviation, u = min(tries, key=lambda one: one[0])
     outliers: list[int] = []
-    settled = None
-    for _ in range(8):
-        found = _noise_at(problem, u)
-        best = found.best
-        fresh = _outliers(problem, u, best.noise, best.deviation)
-        if fresh.size:
-            outliers += fresh.tolist()
-            problem = problem.without(fresh)
-            continue
-        u, squares = problem.least(u, best.noise, best.deviation)
-        if settled == (best.noise.share, best.noise.memory):
-            break
-        settled = best.noise.share, best.noise.memory
-    return Solution(problem, u, _noise_at(problem, u), squares, np.array(sorted(outliers), dtype=np.intp))
+    for _ in range(MOST_ROUNDS):
+        best = _noise_at(problem, u, looks=1).best
+        fresh = _outliers(problem, u, best)
+        if not fresh.size:
+            before, (u, _) = u, problem.least(u, best.noise, best.deviation)
+            if (np.abs(u - before) < SETTLED * np.sqrt(np.diag(best.covariance))).all():
+                break
+        outliers += fresh.tolist()
+        problem = problem.without(fresh)
+    best = _noise_at(problem, u).best
+    u, squares = problem.least(u, best.noise, best.deviation)
+    return Solution(problem, u, best, _noise_at(problem, u), squares, np.array(sorted(outliers), dtype=np.intp))
 
 
-def _noise_at(problem: Problem, u: Array) -> Uncertain:
-    return uncertain(problem.runs, problem.residuals(u), problem.slopes(u), problem.prior(u))
+def _noise_at(problem: Problem, u: Array, looks: int = 2) -> Uncertain:
+    return uncertain(problem.runs, problem.residuals(u), problem.slopes(u), problem.prior(u), looks)
 
 
-def _outliers(problem: Problem, u: Array, noise: Noise, deviation: float) -> Indices:
+def _outliers(problem: Problem, u: Array, judged: Judged) -> Indices:
     """Points far outside the noise, the largest of neighbours only."""
-    white = np.abs(noise.whitened(problem.residuals(u)[:, None])[:, 0]) / deviation
+    white = np.abs(judged.noise.whitened(problem.residuals(u)[:, None])[:, 0]) / judged.deviation
     kept = problem.kept
     far = np.flatnonzero(white > OUTLIER)
     return np.array([kept[i] for i in far if white[i] >= white[max(0, i - 2) : i + 3].max()], dtype=np.intp)
@@ -245,8 +247,9 @@ def interval(solution: Solution, index: int) -> tuple[float, float]:
 
     Everything else is fitted again at each value. An end is infinite where the likelihood does not fall far enough.
     """
-    problem, best = solution.problem, solution.noise.best
+    problem, best = solution.problem, solution.best
     spread = math.sqrt(best.covariance[index, index])
+    along = best.covariance[index] / best.covariance[index, index]  # how the others follow
     ends = []
     for side in (-1.0, 1.0):
         quantile = abs(solution.noise.quantile(index, 0.5 * (1.0 + side * LEVEL)))
@@ -254,8 +257,7 @@ def interval(solution: Solution, index: int) -> tuple[float, float]:
         u, low, high = solution.u.copy(), (0.0, 0.0), None
         change = quantile
         for _ in range(12):
-            start = u.copy()
-            start[index] = solution.u[index] + side * change
+            start = u + (side * change - (u[index] - solution.u[index])) * along
             u, squares = problem.least(start, best.noise, best.deviation, fixed=index)
             reached = math.sqrt(max(0.0, squares - solution.squares))
             if abs(reached - wanted) < 0.01 * wanted:

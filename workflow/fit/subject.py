@@ -19,11 +19,20 @@ POINT, OFFSET, STIFFNESS = "contact_point", "force_offset", "instrument.stiffnes
 """Unknowns that are of the measurement."""
 
 
-def changed(table: Any, path: Sequence[str], value: float) -> Any:
-    """A table of a scene with another number at a path; nothing is checked again."""
-    first, *rest = path
-    name = next((name for name, key in type(table).model_fields.items() if key.alias == first), first)
-    return table.model_copy(update={name: changed(getattr(table, name), rest, value) if rest else value})
+def fields(value: Any, key: str) -> list[str]:
+    """The names in Python of a dotted key's parts, in a table."""
+    names = []
+    for part in key.split("."):
+        name = next((name for name, field in type(value).model_fields.items() if field.alias == part), part)
+        value = getattr(value, name)
+        names.append(name)
+    return names
+
+
+def changed(table: Any, names: Sequence[str], value: float) -> Any:
+    """A table of a scene with another number at a path of fields; nothing is checked again."""
+    first, *rest = names
+    return table.model_copy(update={first: changed(getattr(table, first), rest, value) if rest else value})
 
 
 @dataclass
@@ -48,6 +57,7 @@ class Subject:
     def __post_init__(self) -> None:
         """Which points may be lost, and which hold."""
         self.names = [one.name for one in self.unknowns]
+        self.paths = [[] if name in (POINT, OFFSET, STIFFNESS) else fields(self.scene, name) for name in self.names]
         self.shaping = [i for i, name in enumerate(self.names) if name.startswith("bodies.profile")]
         n = self.curve.positions.size
         self.held, self.open = np.zeros(n, dtype=bool), np.zeros(n, dtype=bool)
@@ -65,9 +75,9 @@ class Subject:
     def scene_with(self, values: Sequence[float]) -> Scene:
         """The scene with these values of its unknowns, unchecked."""
         scene = self.scene
-        for name, value in zip(self.names, values, strict=True):
-            if name not in (POINT, OFFSET, STIFFNESS):
-                scene = changed(scene, name.split("."), value)
+        for path, value in zip(self.paths, values, strict=True):
+            if path:
+                scene = changed(scene, path, value)
         return scene
 
     def branch(self, values: Sequence[float]) -> Branch:
