@@ -43,7 +43,7 @@ SAMPLE_TABLE = "samples"
 """Name of the table, and of the figure, of a contact with noise."""
 HEADER = re.compile(r"(.+) \[(.+)\]")
 """Of a column with a unit: `force [N]`."""
-WORDS = ("branch", "state")
+WORDS = ("branch", "state", "input")
 """Columns that are no numbers."""
 FIRST = "=+@\t\r\n\uff1d\uff0b\uff0d\uff20-"
 """With which a text begins that a spreadsheet takes for a formula; four are the wide ones of an Asian font."""

@@ -28,7 +28,7 @@ from contact1d.potentials import DoubleExponential
 from contact1d.workflow.body.reading import product
 from contact1d.workflow.body.theory import Case
 from contact1d.workflow.body.traction import BodyPressure, body_pressures, is_of_a_body
-from contact1d.workflow.continuation.outcome import MODEL, Outcome, Result
+from contact1d.workflow.continuation.outcome import MODEL, Made, Outcome, Result
 from contact1d.workflow.model.pairs import row_force
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
@@ -63,10 +63,11 @@ def first_of(found: Mapping[str, Quantity], *names: str) -> Quantity | None:
 
 def with_implied(scene: Scene, settings: Settings, outcome: Outcome) -> Outcome:
     """The outcome of a run with the results that its interaction implies."""
-    return _with(outcome, implied(scene, settings, outcome.quantities))
+    made = implied(scene, settings, outcome.quantities)
+    return _with(outcome, {name: (one, 0.0) for name, one in made.items()})
 
 
-def _with(outcome: Outcome, made: Mapping[str, Quantity]) -> Outcome:
+def _with(outcome: Outcome, made: Made) -> Outcome:
     """The outcome with what was made of its results; W is two readings of one quantity.
 
     A pressure that may be 0, as under a punch that carries nothing, is compared with the largest force over a².
@@ -75,10 +76,10 @@ def _with(outcome: Outcome, made: Mapping[str, Quantity]) -> Outcome:
     radius = max((one.value for name, one in outcome.quantities.items() if name.endswith("radius")), default=0.0)
     pressure = max(abs(state.force) for state in outcome.states) / radius**2 if radius > 0.0 else None
     results = {}
-    for name, one in made.items():
+    for name, (one, given) in made.items():
         is_zero = one.unit == MEAN_PRESSURE and abs(one.value) <= one.uncertainty
-        errors = {sources.get(name, "input"): one.uncertainty}
-        results[name] = Result(one.value, one.unit, errors, pressure if is_zero else None)
+        errors = {sources.get(name, "input"): one.uncertainty + given}
+        results[name] = Result(one.value, one.unit, errors, pressure if is_zero else None, given=given)
     return replace(outcome, results={**outcome.results, **results})
 
 
@@ -137,10 +138,25 @@ def _work(law: DoubleExponential, spacing: float) -> Quantity:
 
 def pressures_of(scene: Scene, outcome: Outcome) -> dict[str, BodyPressure]:
     """p(r) of the reported states of the body, as uncertain as the results of which it is a function."""
-    found = outcome.quantities
+    found = outcome.exact
     shares = {name: one.uncertainty / abs(one.value) for name in ERRORS if (one := found.get(name)) and one.value}
     radius = next((shares[name] for name in RADII if name in shares), 0.0)
-    return body_pressures(scene, outcome.profiles, radius, sum(shares.values()))
+    return body_pressures(scene, outcome.profiles, radius, sum(shares.values()), _pressure_share(scene, outcome))
+
+
+def _pressure_share(scene: Scene, outcome: Outcome) -> float:
+    """What uncertain numbers of the scene change pressures by, relatively."""
+    return sum(given / size.value for size, given in outcome.made(scene, _pressure_size).values())
+
+
+def _pressure_size(scene: Scene, found: Mapping[str, Quantity]) -> dict[str, Quantity]:
+    """E* g(a)/a [FU/LU²], as which pressures go where inputs change: exact of a power, at F = 0 with adhesion too."""
+    radius = first_of(found, *RADII)
+    if radius is None or not radius.value > 0.0 or scene.bodies.profile.has_edge:
+        return {}
+    height = float(scene.bodies.height(np.asarray([radius.value]))[0])
+    layer = scene.bulk_stiffness / (scene.chains * scene.bodies.spacing)
+    return {"pressure": Quantity(layer * height / radius.value, 0.0, MEAN_PRESSURE)} if height > 0.0 else {}
 
 
 def with_body(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressure]) -> Outcome:
@@ -150,15 +166,18 @@ def with_body(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressu
     """
     if not is_of_a_body(scene):
         return outcome
-    found, of_pressure = outcome.quantities, {}
+    of_pressure: Made = {}
+    share = _pressure_share(scene, outcome)
     for name in reported_state(outcome):
         if pressure := pressures.get(name):
             # What is not quite 0 at F = 0 is spread over the contact.
             left = abs(outcome.marked[name].force) / pressure.contact_radius**2 if name == "zero_load" else 0.0
+            given = {key: share * abs(one.value) for key, one in pressure.results.items()}
             of_pressure = {
-                key: replace(one, uncertainty=one.uncertainty + left) for key, one in pressure.results.items()
+                key: (replace(one, uncertainty=one.uncertainty - given[key] + left), given[key])
+                for key, one in pressure.results.items()
             }
-    return _with(outcome, of_pressure | _of_the_contact(scene, found) | _adhesion_energy(scene, found))
+    return _with(outcome, of_pressure | outcome.made(scene, _of_the_contact) | outcome.made(scene, _adhesion_energy))
 
 
 def reported_state(outcome: Outcome) -> list[str]:

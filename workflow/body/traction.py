@@ -101,7 +101,7 @@ def is_of_a_body(scene: Scene) -> bool:
 
 
 def body_pressures(
-    scene: Scene, profiles: Mapping[str, Profile], of_radius: float = 0.0, of_all: float = 0.0
+    scene: Scene, profiles: Mapping[str, Profile], of_radius: float = 0.0, of_all: float = 0.0, given: float = 0.0
 ) -> dict[str, BodyPressure]:
     """p(r) of the reported states in which the bodies touch over a width; none where there is no body for them.
 
@@ -110,6 +110,7 @@ def body_pressures(
         profiles: of the reported states.
         of_radius: relative uncertainty of the contact radius, of which the pressure under springs is a function.
         of_all: the sum of those of all results, for the pressure under others.
+        given: of pressures, by the numbers of the scene that are uncertain.
     """
     if not is_of_a_body(scene):
         return {}
@@ -121,14 +122,17 @@ def body_pressures(
         for name, profile in profiles.items()
         if (radius := rule.of(profile))
         and radius.value > 0.0
-        and (one := _pressure(scene, profile, radius, alone, share))
+        and (one := _pressure(scene, profile, radius, alone, share, given))
     }
 
 
-def _pressure(scene: Scene, profile: Profile, radius: ContactRadius, alone: bool, share: float) -> BodyPressure | None:
+def _pressure(
+    scene: Scene, profile: Profile, radius: ContactRadius, alone: bool, share: float, given: float
+) -> BodyPressure | None:
     """p(r) of a state; None where too few particles carry it, or they are not alike on both sides.
 
-    `alone`: springs are all that carries, on a plane; `share`: by how much results are off, relative to `_moves`.
+    `alone`: springs are all that carries, on a plane; `share`: by how much results are off, relative to `_moves`;
+    `given`: relative to p.
     """
     wider = WIDER_THAN_SPHERES if stands_for_spheres(scene) else 1.0
     held = scene.adhesion is not None and scene.adheres
@@ -159,7 +163,7 @@ def _pressure(scene: Scene, profile: Profile, radius: ContactRadius, alone: bool
     p, *coarser = (one.pressure(r) for one in levels)
     # Where g is flat up to an edge that lies between two particles, p is that of a punch, ∝ 1/a.
     moves = np.maximum(np.abs(p), _moves(fine, heights, r) if alone else 0.0)
-    spread = radius.uncertainty / radius.value * moves
+    spread = radius.uncertainty / radius.value * moves + given * np.abs(p)
     # Of a known shape nothing lies between the particles: where they are too few to show it, its edge alone is open.
     if coarser or body is None:
         spread += _spread(p, *coarser)

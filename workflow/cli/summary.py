@@ -11,6 +11,7 @@ import numpy as np
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import moved_centre
 from contact1d.workflow.body.theory import in_words
+from contact1d.workflow.runs import inputs
 from contact1d.workflow.units import LENGTH, LINE_PRESSURE, UNKNOWN, Quantity, Scales, prefixed
 
 if TYPE_CHECKING:
@@ -52,7 +53,8 @@ def quantities(results: Mapping[str, Any]) -> list[str]:
             number = "not reported" if entry["value"] is None else str(Quantity.of(entry))
             lines.append(f"  {label:<31} {number:<32} {', '.join(in_words(results, name))}".rstrip())
     units = {unit: Quantity(**entry) for unit, entry in results.get("units", {}).items()}
-    return lines + [f"  {'1 ' + unit:<31} {one}" for unit, one in units.items() if one.value != 1.0]
+    lines += [f"  {'1 ' + unit:<31} {one}" for unit, one in units.items() if one.value != 1.0]
+    return lines + inputs.in_words(results)
 
 
 def _whose(results: Mapping[str, Any]) -> str:

@@ -8,6 +8,8 @@
                      radii changed by the error of interpolation between particles
     time             of a motion: the reader on the same in longer timesteps, with larger masses where none are given
     instability      premature detachment of particles, and other maxima of the force (the reader's own)
+    input            the reader on the model of each scene that this one may mean: numbers with ± and deviations of a
+                     measured profile both ways, independent ones added in squares; other curves through its points
 
 Nothing here depends on the experiment: whatever a script passes and a reader reads has all of these.
 """
@@ -22,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.workflow.continuation.model_branch import MOST_NUMBERS, ModelBranch
-from contact1d.workflow.continuation.outcome import LATTICE, Reading, Result
+from contact1d.workflow.continuation.outcome import LATTICE, Move, Reading, Result, in_squares
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.model.reduced import Reduced, reduced
@@ -50,6 +52,10 @@ SLOWEST = 0.9
 """Ratio of two differences of three spacings above which they do not shrink."""
 
 
+WAYS = (-1.0, 1.0)
+"""Both ways."""
+
+
 Script = Callable[[ModelBranch], object]
 Reader = Callable[[Trace], Mapping[str, Reading]]
 Values = dict[str, float]
@@ -57,12 +63,13 @@ Values = dict[str, float]
 
 @dataclass(frozen=True)
 class Reduction:
-    """How a scene's results go with the lattice of the model: script and reader of its experiment."""
+    """How results go with the lattice of the model: script and reader of a scene's experiment; `of` another scene."""
 
     scene: Scene
     settings: Settings
     script: Script
     read: Reader
+    of: Callable[[Scene, Settings], Reduction]
 
     def values(self, model: Reduced, dense: int = 1, shift: float = 0.0) -> Values:
         """The results of the model; `shift` of the displacements that the scene gives [LU]."""
@@ -73,6 +80,12 @@ class Reduction:
         branch = ModelBranch(self.scene, self.settings, model, dense, shift)
         self.script(branch)
         return branch.trace()
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the scene leaves anything open."""
+        profile = self.scene.bodies.profile
+        return bool(self.scene.shares or profile.deviations or profile.alternatives)
 
     @property
     def on_lattice(self) -> bool:
@@ -122,18 +135,33 @@ class Reduction:
         return {name: MARGIN * error for name, error in found.items()}
 
     @cached_property
+    def moves(self) -> tuple[Move, ...]:
+        """What the scene leaves open: each number with ± and each deviation of the profile moved both ways."""
+        scene, profile = self.scene, self.scene.bodies.profile
+        others = [(key, scene.moved(key, 1.0 + way * share)) for key, share in scene.shares.items() for way in WAYS]
+        for number, pair in enumerate(profile.deviations, 1):
+            others += [(f"bodies.profile: deviation {number}", scene.with_profile(shape)) for shape in pair]
+        moves = []
+        for key, other in others:
+            case = self.of(other, settings_for(other, self.settings.tolerance))
+            values = case.values(case.model)
+            changes = {name: values[name] - value for name, value in self.own.items() if name in values}
+            moves.append(Move(key, other, changes))
+        return tuple(moves)
+
+    @cached_property
     def inputs(self) -> Values:
-        """By name of a result, by how much the bodies that the scene may mean differ from the one that runs, in sum."""
+        """By name of a result, what the scene leaves open: independent changes in squares, and other bodies in sum."""
         profile = self.scene.bodies.profile
         others = [model for shape in profile.alternatives if (model := self._of_shape(shape))]
         if len(others) < len(profile.alternatives):
             others += [model for shape in profile.coarser if (model := self._of_shape(shape))]
         each = [self._apart([other]) for other in others]
-        return {name: sum(one[name] for one in each) for name in self.own}
+        return {name: sum(one[name] for one in each) + in_squares(self.moves, name) for name in self.own}
 
     def _of_shape(self, shape: Shape) -> Reduced | None:
         """The model of another body; None of one that is no contact, as where its edge would jump at a corner."""
-        scene = self.scene.model_copy(update={"bodies": self.scene.bodies.model_copy(update={"profile": shape})})
+        scene = self.scene.with_profile(shape)
         try:
             return reduced(scene, replace(self.settings, estimate=settings_for(scene).estimate))
         except SettingsError:
@@ -249,7 +277,7 @@ def budgeted(
         for source, others in repeated.items()
     }
     lattice = case.followed(values) if "time" in repeated else case.lattice
-    inputs = case.inputs if case.scene.bodies.profile.alternatives else {}
+    inputs = case.inputs if case.is_open else {}
     found = {}
     for name, one in readings.items():
         errors = {"solver": solver[name], LATTICE: lattice.get(name, 0.0) + read[name]}
@@ -260,7 +288,8 @@ def budgeted(
             errors["input"] = errors.get("input", 0.0) + inputs[name]
         if name in between:
             errors["sampling"] = max(errors.get("sampling", 0.0), between[name])
-        found[name] = Result(one.value, one.unit, errors, one.scale, one.prescribed, read[name])
+        given = in_squares(case.moves, name)
+        found[name] = Result(one.value, one.unit, errors, one.scale, one.prescribed, read[name], given)
     return found
 
 

@@ -24,6 +24,8 @@ SEPARATED = 0.02
 NODES, MODEL_DIGITS = 128, 1e-6
 """Of the quadrature of a work; half of them, and of the states, say how well it is known; error of the
 model's own tables, relative."""
+HIDDEN = 200
+"""Positions of the model between the load steps around a jump."""
 TINY = float(np.finfo(np.float64).tiny)
 PLACE_FACTOR = 2.0
 """Error of the position of the force maximum over the distance between those of two polynomials."""
@@ -128,13 +130,20 @@ def early_loss(branch: Trace, peak: Peak, settings: Settings) -> float:
 
 
 def cut_short(branch: Trace, peak: Peak, settings: Settings) -> float:
-    """Tension [FU] that is missed by that: it would have gone on to rise as it did."""
+    """Tension [FU] that is missed by that: it would have gone on to rise as it did.
+
+    Also where the model has its maximum between the load steps around the last one that is held: just before a pair
+    separates its force may have passed its own.
+    """
     d, force, i = branch.displacement, branch.force, peak.index
     if not 0 < i < len(d) - 1:
         return 0.0
-    return max(0.0, float(force[i - 1] - force[i]) / max(float(d[i - 1] - d[i]), TINY)) * early_loss(
-        branch, peak, settings
-    )
+    rise = max(0.0, float(force[i - 1] - force[i]) / max(float(d[i - 1] - d[i]), TINY))
+    hidden = 0.0
+    if settings.snaps and peak.position == d[i]:
+        held = branch.model.held(np.append(d[i - 1 : i + 1], np.linspace(d[i - 1], d[i + 1], HIDDEN)))
+        hidden = float(held[:2].min() - held.min())
+    return max(rise * early_loss(branch, peak, settings), hidden)
 
 
 def _distance_from_limit(branch: Trace) -> float:

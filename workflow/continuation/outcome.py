@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
-from math import inf, nan
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from math import hypot, inf, nan
 
 from contact1d.analysis.pressure import Profile
 from contact1d.digits import digits_apart
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.deck.steps import Phase
+from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import Quantity
 
 SOURCES = ("solver", "sampling", "discretisation", "time", "instability", "statistics", "input", "model")
-"""What an error may come from. "input": results that a number is made of; "model": two readings of one quantity."""
+"""What an error may come from. "input": what the scene leaves open, and results that a number is made of; "model": two
+readings of one quantity."""
 LATTICE = "discretisation"
 LOSSES = ("dissipated_energy", "instability_energy")
 """Results that begin so are energies that may be 0, and are compared with themselves alone."""
 MODEL = "model"
+Made = dict[str, tuple[Quantity, float]]
+"""Results that are made of others, by name: as uncertain as these, and what uncertain numbers of the scene add."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +54,7 @@ class Result:
         scale: what the uncertainty is compared with, where the value may be 0.
         prescribed: whether the scene prescribes it, or it closes a balance: no tolerance is asked of it.
         read: part of the discretisation error that is left by reading between particles, whatever the settings.
+        given: part of "input" by numbers with ± and a noisy profile: what the scene says, and no error of the program.
     """
 
     value: float
@@ -58,6 +63,7 @@ class Result:
     scale: float | None = None
     prescribed: bool = False
     read: float = 0.0
+    given: float = 0.0
 
     def __post_init__(self) -> None:
         """Refuse a number without a budget."""
@@ -78,6 +84,29 @@ class Result:
     def share(self) -> float:
         """Uncertainty over the size; infinite for a length that may be 0."""
         return self.uncertainty / self.size if self.size else inf
+
+
+@dataclass(frozen=True)
+class Move:
+    """An input of a scene at an end of what it may be.
+
+    Attributes:
+        key: the dotted key of a number, or what else is moved.
+        scene: with it there.
+        changes: of the results, by name, on the reduced model, in their units.
+    """
+
+    key: str
+    scene: Scene
+    changes: Mapping[str, float]
+
+
+def in_squares(moves: Iterable[Move], name: str) -> float:
+    """√(Σ change²) of a result over independent inputs, of each the larger change of the two ways."""
+    found = dict[str, float]()
+    for move in moves:
+        found[move.key] = max(found.get(move.key, 0.0), abs(move.changes.get(name, 0.0)))
+    return hypot(*found.values())
 
 
 @dataclass(frozen=True)
@@ -102,6 +131,7 @@ class Outcome:
         columns: further columns of curve.csv.
         tables: columns of further files, by the names of these.
         refinement: None where the settings were given, or are not refined.
+        moves: what the scene leaves open.
     """
 
     results: Mapping[str, Result]
@@ -112,11 +142,28 @@ class Outcome:
     columns: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     tables: Mapping[str, Mapping[str, tuple[float, ...]]] = field(default_factory=dict)
     refinement: Refinement | None = None
+    moves: tuple[Move, ...] = ()
 
     @property
     def quantities(self) -> dict[str, Quantity]:
         """Results, each with its uncertainty and unit."""
         return {name: Quantity(one.value, one.uncertainty, one.unit) for name, one in self.results.items()}
+
+    @property
+    def exact(self) -> dict[str, Quantity]:
+        """The same, as if the scene were known exactly."""
+        own = self.results
+        return {n: replace(one, uncertainty=one.uncertainty - own[n].given) for n, one in self.quantities.items()}
+
+    def made(self, scene: Scene, make: Callable[[Scene, Mapping[str, Quantity]], dict[str, Quantity]]) -> Made:
+        """What is made of a scene and its results, by name, and how inputs change it: made anew at their ends."""
+        made, moves = make(scene, self.exact), []
+        for move in self.moves:
+            at = {n: replace(one, value=one.value + move.changes.get(n, 0.0)) for n, one in self.exact.items()}
+            there = make(move.scene, at)
+            changes = {name: there[name].value - one.value for name, one in made.items() if name in there}
+            moves.append(replace(move, changes=changes))
+        return {name: (one, in_squares(moves, name)) for name, one in made.items()}
 
     @property
     def profiles(self) -> dict[str, Profile]:
@@ -135,7 +182,7 @@ def in_words(shares: Mapping[str, float], tolerance: float) -> str:
 
 
 def unmet(results: Mapping[str, Result], tolerance: float, without: Iterable[str] = ()) -> dict[str, float]:
-    """Relative uncertainties of the results that exceed the tolerance, by name.
+    """Relative uncertainties of the results that exceed the tolerance, by name; what the scene leaves open is none.
 
     Args:
         results: without those that the scene prescribes.
@@ -144,7 +191,7 @@ def unmet(results: Mapping[str, Result], tolerance: float, without: Iterable[str
     """
     found = {}
     for name, one in results.items():
-        kept = sum(error for source, error in one.errors.items() if source not in without)
+        kept = sum(error for source, error in one.errors.items() if source not in without) - one.given
         if LATTICE in without:
             kept += one.read
         if not one.prescribed and (one.size or name.endswith("radius")) and kept > tolerance * one.size:

@@ -117,7 +117,8 @@ class Scripted(Experiment[K]):
         results = budgeted(case, trace, errors, length=0.5 * settings.forces.range, repeated=slower)
         warnings = doubts(scene, settings, tuple(branch.states))
         tables = self.tables(trace, scene, settings)
-        outcome = Outcome(results, tuple(branch.states), branch.marked, branch.phases, warnings, tables=tables)
+        states, moves = tuple(branch.states), case.moves
+        outcome = Outcome(results, states, branch.marked, branch.phases, warnings, tables=tables, moves=moves)
         return self.finish(outcome, scene, settings)
 
     def _driven(self, context: RunContext, case: Reduction) -> tuple[ContactBranch, Trace]:
@@ -140,9 +141,8 @@ class Scripted(Experiment[K]):
 
     def reduction(self, scene: Scene, settings: Settings) -> Reduction:
         """Script and reader on the reduced model of a scene."""
-        return Reduction(
-            scene, settings, partial(self.script, scene=scene), partial(self.read, scene=scene, settings=settings)
-        )
+        script, read = partial(self.script, scene=scene), partial(self.read, scene=scene, settings=settings)
+        return Reduction(scene, settings, script, read, self.reduction)
 
 
 def branch_of(context: RunContext, meanwhile: Callable[[], object]) -> Branch | LoadBranch:

@@ -66,7 +66,7 @@ class PathExperiment(Scripted[Path]):
         results = budgeted(case, trace, errors, sampled=not self.is_statistical, repeated=repeated)
         warnings = self._missing(results, case, phases) | doubts(scene, settings, tuple(reported))
         warnings |= _buckling(trace, other, settings)
-        return Outcome(results, tuple(reported), ends, phases, warnings)
+        return Outcome(results, tuple(reported), ends, phases, warnings, moves=case.moves)
 
     def states(self, contact: Contact, positions: Positions) -> list[State]:
         """A state at each of the positions; in time when particles are at rest."""

@@ -90,7 +90,7 @@ class PullOffExperiment(Scripted[PullOff]):
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
         """Refuse results that contradict the curve of the run; of cycles the number of each state."""
         found = outcome.results["adhesion_force"]
-        require_no_contradiction(settings, found.value, found.uncertainty, outcome.states)
+        require_no_contradiction(settings, found.value, found.uncertainty - found.given, outcome.states)
         if self.given(scene).cycles is None:
             return outcome
         numbers = tuple(float(state.phase.partition("_")[2] or 1) for state in outcome.states)

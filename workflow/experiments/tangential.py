@@ -74,7 +74,7 @@ class TangentialExperiment(Scripted[Tangential]):
         warnings = doubts(scene, settings, tuple(reported))
         farthest = int(np.argmax([abs(row.position) for row in kept]))
         marked = {"farthest": reported[farthest], "final": reported[-1]}
-        return Outcome(results, tuple(reported), marked, phases, warnings, columns=_columns(kept))
+        return Outcome(results, tuple(reported), marked, phases, warnings, columns=_columns(kept), moves=case.moves)
 
     def script(self, branch: Driver, scene: Scene) -> None:
         """The stops of the model's particles, those that change nothing left out."""

@@ -20,7 +20,6 @@ from contact1d.workflow.identify.theories import (
 from contact1d.workflow.runs import advised
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import Scene, scene_from_dict
-from contact1d.workflow.scene.read import plain_data
 
 PRELOAD_SHARE = 0.7
 """Preload of a pull-off over JKR's F_A, where no load is given."""
@@ -88,7 +87,7 @@ def usual_preload(contact: AskedContact) -> float:
 
 def on_plane(contact: AskedContact, experiment: Any, **tables: Any) -> Scene:
     """The contact's scene with an experiment and further tables, on a rigid plane. Raises SceneError."""
-    data: dict[str, Any] = plain_data(contact.scene)
+    data = contact.scene.given
     if contact.is_rigid:
         data["material"] = {"contact_modulus": contact.contact_modulus, "length_unit": 1.0, "force_unit": 1.0}
     if not contact.work_of_adhesion:

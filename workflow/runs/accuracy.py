@@ -51,7 +51,8 @@ def unknown(scene: Scene, outcome: Outcome) -> dict[str, Result]:
 
     The scale of a force or a displacement is the largest of the run, that of another result the largest one of its
     unit: a number that is 0 beside it is known to be 0. An energy that is lost is compared with itself alone: whether
-    there is a loss at all is what is asked. Means are reported whatever their standard errors.
+    there is a loss at all is what is asked. Means are reported whatever their standard errors, and what follows from
+    numbers with ± whatever these are.
     """
     if kind_of(scene).is_statistical:
         return {}
@@ -65,7 +66,7 @@ def unknown(scene: Scene, outcome: Outcome) -> dict[str, Result]:
     tolerance = scene.accuracy.tolerance
     missing = {}
     for name, one in outcome.results.items():
-        error = one.uncertainty - one.errors.get("statistics", 0.0)
+        error = one.uncertainty - one.errors.get("statistics", 0.0) - one.given
         if not one.prescribed and error > max(UNKNOWN * abs(one.value), tolerance * scales[_kind(name, one)]):
             missing[name] = one
     return missing
@@ -118,9 +119,16 @@ def _advice(scene: Scene, outcome: Outcome, names: Iterable[str]) -> str:
     tolerance, results = scene.accuracy.tolerance, outcome.results
     if all(MODEL in results[name].errors for name in names):
         return "Two evaluations of this quantity differ by that much (`formulas` in results.json)"
+    if scene.bodies.profile.alternatives and all(_is_of_points(results[name]) for name in names):
+        return "They are limited by what lies between the points of the profile: give more of them, or more digits"
     if any(results[name].read > tolerance * results[name].size for name in names):
         return f"The uncertainty of a radius is limited by the spacing: use {FINER_SPACING}"
     return kind_of(scene).advice(scene)
+
+
+def _is_of_points(one: Result) -> bool:
+    """Whether the largest error is that of a table."""
+    return one.errors.get("input", 0.0) - one.given > 0.5 * (one.uncertainty - one.given)
 
 
 def _by_lattice(results: Mapping[str, Result], tolerance: float) -> dict[str, float]:

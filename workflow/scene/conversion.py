@@ -32,7 +32,7 @@ def convert(scene: Place) -> bool:
 
     What is wrong with them is reported. Their places, and those whose numbers are unknown by that, are then doubted.
     """
-    texts = [place for place in numbers_in(scene) if place.is_text]
+    texts = [place for place in numbers_in(scene) if place.is_text and place.sound]
     read = {place: value for place in texts if (value := _si(place)) is not None}
     for place, value in read.items():
         if not place.unit.bases:  # these say what LU, FU and MU are
@@ -114,7 +114,7 @@ def _report_mixed(plain: list[Place], text: Place, chosen: frozenset[str], elast
     others = ", ".join(place.path for place in plain[1:LISTED])
     more = f" and {len(plain) - LISTED} more" if len(plain) > LISTED else ""
     unit = f'give it a unit as well, such as "{example(first.unit.texts[0])}"'
-    if first.source:
+    if first.source and first.source.key == "file":
         unit = 'name its columns with their units, r [µm], z [µm], or write scale = "1 µm"'
     first.report(
         f"is {'by default ' if first.absent else ''}in {first.unit.name}, while {text.path} = {text.given} has a unit, "

@@ -85,6 +85,11 @@ class Shape(Table):
         return ()
 
     @property
+    def deviations(self) -> tuple[tuple[Shape, Shape], ...]:
+        """Independent changes of the body at 95 %, each both ways: the noise of a measured one."""
+        return ()
+
+    @property
     def steepest(self) -> Self:
         """The steeper one of the two bodies, whose slope and size limit the theory: this one on a plane."""
         return self

@@ -10,17 +10,19 @@ from os import PathLike, fspath
 from pathlib import Path as FilePath
 from typing import Any
 
-from pydantic import ConfigDict, ValidationError
+from pydantic import ConfigDict, PrivateAttr, ValidationError
 
 from contact1d.files import UnreadableError, read_text
 from contact1d.workflow.scene.check import mend_words, report_faults
 from contact1d.workflow.scene.conversion import UNIT_KEYS, convert
-from contact1d.workflow.scene.problems import BARE, Problem, SceneError, shown, suggestion
+from contact1d.workflow.scene.problems import BARE, Problem, SceneError, shown, suggestion, tables_as_toml
 from contact1d.workflow.scene.profile_file import put_points, take_points
+from contact1d.workflow.scene.profiles import Shape
 from contact1d.workflow.scene.quantities import Place, Table, keys_of
 from contact1d.workflow.scene.rules import check_fit
 from contact1d.workflow.scene.si_text import MODEL_UNITS
 from contact1d.workflow.scene.tables import EFFECTS, WHOLE, Tables
+from contact1d.workflow.scene.uncertain import moved, take_shares, with_shares
 from contact1d.workflow.units import Scales
 
 DEEPEST = 100
@@ -58,6 +60,35 @@ class Scene(Tables):
     """A whole scene, whose tables fit together: `read_scene` and `scene_from_dict` make it."""
 
     model_config = ConfigDict(defer_build=False)  # with all its tables, once
+    _shares: dict[str, float] = PrivateAttr(default_factory=dict)
+
+    @property
+    def shares(self) -> Mapping[str, float]:
+        """The 95 % half-width over the value of each number that has ±, by dotted key."""
+        return self._shares
+
+    @property
+    def tables(self) -> dict[str, Any]:
+        """The tables of the scene file, with defaults and ±, which read back as an equal scene."""
+        return with_shares(self.model_dump(mode="json", by_alias=True, exclude_none=True), self._shares)
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """The same without what follows from the other keys, to be changed."""
+        return with_shares(plain_data(self), self._shares)
+
+    def __str__(self) -> str:
+        """The scene file."""
+        return tables_as_toml(self.tables)
+
+    def moved(self, key: str, factor: float) -> Scene:
+        """The scene with the number at a dotted key times a factor; a punch keeps its number of particles."""
+        scene, bodies = moved(self, key.split("."), factor), self.bodies
+        if key == "bodies.profile.radius" and bodies.profile.has_edge and bodies.given_spacing != "auto":
+            scene = moved(scene, ["bodies", "spacing"], factor)
+            if bodies.bulk_stiffness != "auto":
+                scene = moved(scene, ["bodies", "bulk_stiffness"], factor)
+        return scene
 
     def with_(self, changes: Mapping[str, Any] | None = None, *, without: Iterable[str] = (), **keywords: Any) -> Scene:
         """Return this scene with values changed, checked as a whole.
@@ -78,10 +109,14 @@ class Scene(Tables):
             form = 'write {"bodies.profile.radius": 2000.0}'
             raise SceneError([Problem("changes", "must be a mapping of dotted keys to values", shown(given), form)])
         named = {key.replace("__", "."): value for key, value in keywords.items()}
-        data: dict[str, Any] = plain_data(self)
+        data = self.given
         problems = set_values(data, {**given, **named})
         problems += remove_effects(data, _listed(without))
         return _checked(plain_data(data), problems, FilePath())
+
+    def with_profile(self, profile: Shape) -> Scene:
+        """The scene with another body, which is not checked."""
+        return self.model_copy(update={"bodies": self.bodies.model_copy(update={"profile": profile})})
 
 
 AnyScene = Scene | str | PathLike[str] | Mapping[str, Any]
@@ -140,7 +175,7 @@ def scene_from_dict(
     strings "table.key=value", applied in order, the value read as TOML or else as bare text; `without` has names of
     effects whose tables are then removed. Raises SceneError with every problem at once.
     """
-    plain = plain_data(data)
+    plain = data.given if isinstance(data, Scene) else plain_data(data)
     if not isinstance(plain, dict):
         raise SceneError([Problem("scene", "must be a table of tables")])
     problems = apply_overrides(plain, _listed(overrides)) + remove_effects(plain, _listed(without))
@@ -152,6 +187,7 @@ def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -
     tables = Place(plain, WHOLE)
     mend_words(tables)
     points = take_points(tables, folder)
+    shares = take_shares(tables)
     has_texts = convert(tables)
     put_points(tables, points)
     scene = None
@@ -160,6 +196,12 @@ def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -
     except ValidationError as error:
         report_faults(tables, error)
     check_fit(tables)
+    if scene is not None and shares:
+        scene._shares.update(shares)
+        if scene.noise or scene.experiment.motion_is_result:
+            path = next(iter(shares))
+            known = "a result over time has no uncertainty from its inputs: write the value alone"
+            tables.problems.append(Problem(path, known))
     problems += sorted(_in_si(tables, has_texts), key=_rank)
     if problems or scene is None:
         raise SceneError(problems)

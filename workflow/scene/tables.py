@@ -40,7 +40,6 @@ from contact1d.workflow.scene.effects import (
 )
 from contact1d.workflow.scene.experiments import Experiment, Method
 from contact1d.workflow.scene.materials import BY_NAME
-from contact1d.workflow.scene.problems import tables_as_toml
 from contact1d.workflow.scene.profiles import Flat, Parabola, Profile
 from contact1d.workflow.scene.quantities import (
     AllOr,
@@ -318,10 +317,6 @@ class Tables(Table):
         """One line: title, profile, effects and experiment; `print` shows the whole scene."""
         effects = f", {', '.join(self.effects)}" if self.effects else ""
         return f"<Scene {self.title!r}: {self.bodies.profile.kind}{effects}; {self.experiment.kind}>"
-
-    def __str__(self) -> str:
-        """The scene file: TOML with defaults written out, that reads back as an equal scene."""
-        return tables_as_toml(self.model_dump(by_alias=True, exclude_none=True))
 
     @property
     def effects(self) -> tuple[str, ...]:

@@ -261,7 +261,7 @@ def require_keys(plan: SweepPlan) -> None:
 
 def name_of(scene: Scene) -> str:
     """SHA-256 of everything in the scene that is more than a title, shortened."""
-    content: Mapping[str, Any] = scene.model_dump(mode="json", by_alias=True, exclude_none=True, exclude={"title"})
+    content = {name: table for name, table in scene.tables.items() if name != "title"}
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:NAME_LENGTH]
 
 

@@ -1,0 +1,145 @@
+"""Numbers with ±: what they change of each result is that of the closed forms, and draws from them are inside."""
+
+import math
+
+import numpy as np
+import pytest
+
+import contact1d
+from contact1d import SceneError
+
+RADIUS, MODULUS, WORK = 2e-3, 2e6 / 0.75, 80e-3
+SHARES = {"radius": 0.01, "modulus": 0.03, "work": 0.02}
+EXPONENTS = {
+    "adhesion_force": {"radius": 1, "work": 1},
+    "zero_load_radius": {"radius": 2 / 3, "work": 1 / 3, "modulus": -1 / 3},
+    "adhesion_energy": {"radius": 4 / 3, "work": 5 / 3, "modulus": -2 / 3},
+    "central_pressure": {"radius": -1 / 3, "work": 1 / 3, "modulus": 2 / 3},
+}
+"""JKR: F_A = 1.5πWR, a₀³ = 9πWR²/2E*, E = πa₀²W, p(0) ∝ E*a₀/R at F = 0."""
+NONLINEAR = 0.03
+"""Of a change, what the larger one of both ways is beyond the linear one: exponents of 2/3 at 3 %."""
+DRAWS, INSIDE = 200, (180, 198)
+
+
+def jkr(radius: object, modulus: object, work: object) -> contact1d.Run:
+    return contact1d.sphere(radius=radius, contact_modulus=modulus, work_of_adhesion=work).pull_off()
+
+
+@pytest.fixture(scope="module")
+def run() -> contact1d.Run:
+    return jkr("2 ± 0.02 mm", "2.6666666666666667 MPa ± 3 %", "80 mJ/m² ± 1.6 mJ/m²")
+
+
+@pytest.fixture(scope="module")
+def known() -> contact1d.Run:
+    return jkr("2 mm", "2.6666666666666667 MPa", "80 mJ/m²")
+
+
+def test_each_result_has_the_exponents_of_jkr(run: contact1d.Run) -> None:
+    for name, exponents in EXPONENTS.items():
+        expected = math.hypot(*(power * SHARES[key] for key, power in exponents.items()))
+        given = run.document[name]["errors"]["input"] / run.document[name]["value"]
+        assert given == pytest.approx(expected, rel=NONLINEAR)
+    force = run.document["adhesion_force"]
+    assert force["errors"]["input"] / force["value"] == pytest.approx(math.hypot(0.01, 0.02), rel=0.02)
+
+
+def test_a_result_adds_what_inputs_change_to_its_own_uncertainty(run: contact1d.Run, known: contact1d.Run) -> None:
+    for name in EXPONENTS:
+        own, exact = run.document[name], known.document[name]
+        assert own["value"] == exact["value"]
+        assert own["uncertainty"] - own["errors"]["input"] == pytest.approx(exact["uncertainty"], rel=1e-6)
+    assert "errors" not in known.document["adhesion_force"]
+    assert "inputs" not in known.document
+    assert run.warnings == known.warnings
+
+
+def test_the_deck_is_that_of_the_numbers_alone(run: contact1d.Run, known: contact1d.Run) -> None:
+    for name in ("in.lammps", "system.data", "adhesion.cells"):
+        assert (run.folder / name).read_text() == (known.folder / name).read_text()
+
+
+def test_draws_from_the_inputs_are_inside_at_95_percent(run: contact1d.Run) -> None:
+    draw = np.random.default_rng(20261125).normal
+    sigma = {key: share / 1.959964 for key, share in SHARES.items()}
+    radius, work, modulus = (
+        value * (1.0 + sigma[key] * draw(size=DRAWS))
+        for key, value in (("radius", RADIUS), ("work", WORK), ("modulus", MODULUS))
+    )
+    truth = {
+        "adhesion_force": 1.5 * math.pi * work * radius,
+        "zero_load_radius": np.cbrt(4.5 * math.pi * work * radius**2 / modulus),
+    }
+    for name, values in truth.items():
+        one = run.results[name]
+        inside = int(np.sum(np.abs(values - one.value) <= one.uncertainty))
+        assert INSIDE[0] <= inside <= INSIDE[1], (name, inside)
+
+
+def test_a_table_says_which_input_matters(run: contact1d.Run) -> None:
+    table = run.tables["inputs"]
+    rows = dict(
+        zip(table["input"].tolist(), zip(table["half_width"], table["adhesion_force"], strict=True), strict=True)
+    )
+    assert rows["bodies.profile.radius"] == pytest.approx((0.01, 0.01), rel=0.02)
+    assert rows["adhesion.work_of_adhesion"] == pytest.approx((0.02, 0.02), rel=0.02)
+    assert rows["material.contact_modulus"] == pytest.approx((0.03, 0.0), rel=0.02, abs=1e-5)
+    again = contact1d.load_run(run.folder)
+    assert again.scene.shares == run.scene.shares
+    assert again.tables["inputs"]["adhesion_force"] == pytest.approx(table["adhesion_force"], rel=1e-9, abs=1e-12)
+    assert contact1d.read_scene(run.folder / "scene.toml").shares == run.scene.shares
+    run.plot("inputs")
+
+
+def test_a_load_may_be_uncertain() -> None:
+    """Hertz: d ∝ F^(2/3) R^(−1/3) E*^(−2/3), dF/dd = 2E*a ∝ E*^(2/3) (FR)^(1/3)."""
+    ball = contact1d.sphere(radius=("10 mm", "1 %"), contact_modulus=("50 GPa", "1 GPa"))
+    run = ball.load("10 N ± 0.1 N")
+    for name, powers in {
+        "displacement": (2 / 3, -1 / 3, -2 / 3),
+        "contact_radius": (1 / 3, 1 / 3, -1 / 3),
+        "contact_stiffness": (1 / 3, 1 / 3, 2 / 3),
+        "peak_pressure": (1 / 3, -2 / 3, 2 / 3),
+        "mean_pressure": (1 / 3, -2 / 3, 2 / 3),
+    }.items():
+        expected = math.hypot(*(power * share for power, share in zip(powers, (0.01, 0.01, 0.02), strict=True)))
+        given = run.document[name]["errors"]["input"] / run.document[name]["value"]
+        assert given == pytest.approx(expected, rel=NONLINEAR), name
+
+
+def test_a_punch_of_uncertain_radius() -> None:
+    run = contact1d.punch(radius="1 ± 0.01 mm", contact_modulus="1 MPa").load("1 N")
+    one = run.document["displacement"]
+    assert one["errors"]["input"] / one["value"] == pytest.approx(0.01, rel=NONLINEAR)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("10 mm ± 0.1", "unit or % behind ±"),
+        ("10 mm ± 6 mm", "less than half of its value"),
+        ("10 mm ± 1 N", "1 N is a force"),
+        ("10 ± 0 mm", "greater than 0"),
+        ("10 mm ± x", "does not begin with a number"),
+        ("± 1 mm", "must be a length"),
+    ],
+)
+def test_what_is_no_uncertainty_is_refused_in_a_sentence(text: str, said: str) -> None:
+    with pytest.raises(SceneError, match=said) as error:
+        contact1d.sphere(radius=text, contact_modulus="1 MPa")
+    assert len(str(error.value).splitlines()) == 1
+
+
+def test_numbers_that_are_no_property_of_the_contact_have_none() -> None:
+    scene = contact1d.sphere(radius="1 mm", contact_modulus="1 MPa").scene("load", force="1 N")
+    for key, text in {"bodies.spacing": "1 ± 0.1 µm", "accuracy.tolerance": "1e-3 ± 1e-4"}.items():
+        with pytest.raises(SceneError, match="has no uncertainty"):
+            scene.with_({key: text})
+
+
+def test_a_scene_keeps_its_uncertainties_when_it_is_written_and_changed() -> None:
+    scene = contact1d.sphere(radius="10 ± 0.1 mm", contact_modulus="1 MPa ± 2 %").scene("load", force="1 N")
+    assert contact1d.read_scene(str(scene)).shares == scene.shares
+    assert scene.with_({"bodies.profile.radius": "20 mm"}).shares == {"material.contact_modulus": 0.02}
+    assert scene.with_({"experiment.force": "2 N"}).shares == scene.shares

@@ -1,0 +1,111 @@
+"""Numbers of a scene that are known to within something: "10 ± 0.1 mm", "70 GPa ± 5 %", at a coverage of 95 %.
+
+What follows ± is kept as a share of the value, which no change of units alters. The model is run with the value alone;
+the error budget then moves each such number both ways (`continuation.budget`).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from copy import copy
+from fractions import Fraction
+from typing import Any, TypeVar
+
+from contact1d.workflow.scene.quantities import Place, Table, keys_of, numbers_in
+from contact1d.workflow.scene.si_text import NUMBER, UnitTextError, quantity, si_value, split
+
+SIGN = re.compile(r"\s*(?:±|\+/?-)\s*")
+TOGETHER = re.compile(r"\((.*)\)(.*)")
+"""(10 ± 0.1) mm"""
+LARGEST = Fraction(1, 2)
+"""Of a value, from which on it may as well be another one."""
+EXACT = (
+    "accuracy.tolerance", "bodies.spacing", "bodies.upper_spacing", "bodies.upper_offset", "interaction.cutoff",
+    "material.length_unit", "material.force_unit", "material.mass_unit", "bodies.profile.scale",
+)  # fmt: skip
+"""Numbers that choose how a contact is calculated or written, and are no property of it."""
+
+T = TypeVar("T", bound=Table)
+
+
+def take_shares(scene: Place) -> dict[str, float]:
+    """The 95 % half-width of each number with ± over its value, by dotted key; the value stays in its place.
+
+    In Python a number may be a pair of value and half-width, each a text or a number. What is wrong is reported.
+    """
+    shares = {}
+    for place in numbers_in(scene):
+        parts = _parts(place.value)
+        if parts is None:
+            continue
+        place.source, path = copy(place), place.path
+        try:
+            value, share = _read(place, *parts)
+        except UnitTextError as error:
+            place.fault(str(error))
+            continue
+        place.put(value)
+        if isinstance(place.keys[-1], int) or path in EXACT:
+            place.fault("has no uncertainty", "write the value alone")
+        elif not 0 < share < LARGEST:
+            place.fault("must have an uncertainty greater than 0 and less than half of its value")
+        shares[path] = float(share)
+    return shares
+
+
+def _parts(value: object) -> tuple[Any, Any] | None:
+    """Value and half-width of a text or a pair; None of anything else."""
+    if isinstance(value, str) and len(halves := SIGN.split(value)) == 2 and halves[0]:
+        if found := TOGETHER.fullmatch(value.strip()):
+            halves = [f"{one}{found[2]}" for one in SIGN.split(found[1])]
+        return halves[0], halves[1]
+    return (value[0], value[1]) if isinstance(value, list) and len(value) == 2 else None
+
+
+def _read(place: Place, value: Any, spread: Any) -> tuple[Any, Fraction]:
+    """The value as a scene has it, and the half-width over it. Raises UnitTextError."""
+    number, units = _plain(value), place.unit.texts
+    half = _plain(spread)
+    if half is None and str(spread).strip().endswith("%"):
+        share = _plain(str(spread).strip()[:-1])
+        if share is None:
+            raise UnitTextError("must have a number before %")
+        return value if number is None else float(number), share / 100
+    if number is not None and half is not None:
+        return float(number), half / abs(number) if number else Fraction(0)
+    if number is not None:  # 10 ± 0.1 mm
+        value, number = f"{value} {split(str(spread))[1]}", None
+    if half is not None:
+        raise UnitTextError(f'must have a unit or % behind ± as well: write "{value} ± {spread} %"')
+    if quantity(str(spread))[1].zero:
+        raise UnitTextError("must have the uncertainty of a temperature in K, or in %")
+    size = si_value(str(value), *units)[0]
+    return value, si_value(str(spread), *units)[0] / abs(size) if size else Fraction(0)
+
+
+def _plain(value: Any) -> Fraction | None:
+    """The number, or that of a text that is one; None of anything else."""
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return Fraction(repr(value)) if value - value == 0 else None
+    plain = str(value).strip().replace("−", "-")
+    return Fraction(plain) if NUMBER.fullmatch(plain) else None
+
+
+def with_shares(tables: dict[str, Any], shares: Mapping[str, float]) -> dict[str, Any]:
+    """The tables of a scene with ± at these keys, in units of the model, as `take_shares` reads them; in place."""
+    for path, share in shares.items():
+        *above, key = path.split(".")
+        table: Any = tables
+        for one in above:
+            table = table.get(one, {})
+        if key in table:
+            table[key] = f"{table[key]!r} ± {100.0 * share!r} %"
+    return tables
+
+
+def moved(table: T, keys: list[str], factor: float) -> T:
+    """The table with the number at these keys times a factor."""
+    field = keys_of(type(table))[keys[0]].field
+    own = getattr(table, field)
+    return table.model_copy(update={field: moved(own, keys[1:], factor) if keys[1:] else factor * own})
