@@ -205,20 +205,24 @@ def first_look(problem: Problem, sought: Sequence[int], complete: Callable[[Arra
     return [whole(found.population[i]) for i in order]
 
 
-def solved(problem: Problem, starts: Sequence[Array]) -> Solution:
-    """The best of least-squares fits from several starts, under the noise that its residuals have."""
-    deviation = 1.0
+def solved(problem: Problem, starts: Sequence[Array], judges: bool = True) -> Solution:
+    """The best of least-squares fits from several starts, under the noise that its residuals have.
+
+    Args:
+        problem: what is solved.
+        starts: places.
+        judges: whether points far outside the noise are taken out.
+    """
     tries = []
     for start in starts:
         spread = float(np.median(np.abs(problem.residuals(start)))) or 1.0
         u, _ = problem.least(start, None, spread, robust=True)
-        deviation = 1.4826 * float(np.median(np.abs(problem.residuals(u)))) or spread
-        tries.append((float(np.abs(problem.residuals(u)).sum()), deviation, u))
-    _, deviation, u = min(tries, key=lambda one: one[0])
+        tries.append((float(np.abs(problem.residuals(u)).sum()), u))
+    _, u = min(tries, key=lambda one: one[0])
     outliers: list[int] = []
     for _ in range(MOST_ROUNDS):
         best = _noise_at(problem, u, looks=1).best
-        fresh = _outliers(problem, u, best)
+        fresh = _outliers(problem, u, best) if judges else problem.kept[:0]
         if not fresh.size:
             before, (u, _) = u, problem.least(u, best.noise, best.deviation)
             if (np.abs(u - before) < SETTLED * np.sqrt(np.diag(best.covariance))).all():

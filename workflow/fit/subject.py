@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.workflow.fit.curve import ForceCurve
-from contact1d.workflow.fit.forward import LAWS, Body, Branch, Law
+from contact1d.workflow.fit.forward import Body, Branch, Law
+from contact1d.workflow.fit.plan import STIFFNESS
 from contact1d.workflow.fit.search import Problem, Unknown
 from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
-POINT, OFFSET, STIFFNESS = "contact_point", "force_offset", "instrument.stiffness"
+POINT, OFFSET = "contact_point", "force_offset"
 """Unknowns that are of the measurement."""
 
 
@@ -45,6 +46,7 @@ class Subject:
         curve: what was measured.
         stiffness: k_c [FU/LU] where it is no unknown.
         unknowns: of the scene, the instrument and the measurement.
+        point: the contact point [LU] where it is no unknown.
     """
 
     scene: Scene
@@ -52,6 +54,7 @@ class Subject:
     curve: ForceCurve
     stiffness: float
     unknowns: tuple[Unknown, ...]
+    point: float = 0.0
     _bodies: dict[tuple[float, ...], Body] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -98,7 +101,7 @@ class Subject:
     def forces(self, values: Sequence[float]) -> Array:
         """F [FU] at every measured position."""
         branch, k = self.branch(values), self.value_of(STIFFNESS, values, self.stiffness)
-        z = self.curve.positions - self.value_of(POINT, values, 0.0)
+        z = self.curve.positions - self.value_of(POINT, values, self.point)
         found = np.zeros_like(z)
         found[self.held] = branch.at(z[self.held], k, held=True)
         found[self.open] = branch.at(z[self.open], k, held=False)
@@ -129,17 +132,3 @@ def modulus_of(scene: Scene) -> float:
     assert material.length_unit is not None
     assert material.force_unit is not None
     return material.layer_stiffness(bodies.reduction) * material.length_unit**2 / material.force_unit
-
-
-def measurement(curve: ForceCurve, free: bool = True) -> list[Unknown]:
-    """Contact point and offset of the force."""
-    offset = Unknown(OFFSET, float(np.ptp(curve.forces)), positive=False)
-    return [Unknown(POINT, curve.depth, positive=False), offset] if free else [offset]
-
-
-def law_named(name: str) -> Law:
-    """A contact model by its name."""
-    return LAWS[name]
-
-
-Known = Mapping[str, tuple[float, float]]

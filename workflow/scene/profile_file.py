@@ -117,7 +117,11 @@ def read_profile(path: Path) -> tuple[dict[str, list[float]], str | None]:
 
 def _rows(path: Path) -> list[Row]:
     """The lines that have content, each with its number, as cells."""
-    lines = read_text(path).splitlines()
+    return rows_in(read_text(path).splitlines())
+
+
+def rows_in(lines: list[str]) -> list[Row]:
+    """The same of lines of text."""
     if len(lines) > MOST_LINES:
         raise ProfileFileError(f"has {len(lines)} lines, at most {MOST_LINES} are allowed; use fewer points")
     full = [(i, line) for i, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]

@@ -1,0 +1,255 @@
+"""One curve and one plan: what the curve says of the parameters under a contact model, or why it says nothing."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.workflow.errors import Contact1dError
+from contact1d.workflow.fit.curve import ForceCurve
+from contact1d.workflow.fit.forward import LAWS
+from contact1d.workflow.fit.plan import STIFFNESS, FitPlan
+from contact1d.workflow.fit.search import TWO_SIDED, Solution, Unknown, first_look, interval, solved
+from contact1d.workflow.fit.subject import OFFSET, POINT, Subject, fields, modulus_of
+
+Array = NDArray[np.float64]
+SOFTEST = 0.4
+"""Stiffness of a cantilever over that of the contact, 2E*a, below which the curve is its own bending: at a fifth an
+interval of 95 % covers a third of the true moduli; at half of it the intervals hold."""
+FEWEST_HELD = 15
+"""Points in contact."""
+ALIKE = 1e-4
+"""Least eigenvalue of the scaled information matrix below which parameters trade off against each other."""
+WIDEST = 1.0
+"""Half-width of an interval, in log p, beyond which a parameter is not known: a factor of e."""
+
+
+class UndeterminedError(Contact1dError, RuntimeError):
+    """Data that do not tell what was asked for; the message says what would help."""
+
+    exit_code = 3
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """What a curve says.
+
+    Attributes:
+        plan, curve: of which.
+        model: the contact model.
+        subject: scene, instrument and unknowns.
+        solution: where the fit settled.
+        intervals: of 95 %, for each of the fitted parameters and the contact point.
+    """
+
+    plan: FitPlan
+    curve: ForceCurve
+    model: str
+    subject: Subject
+    solution: Solution
+    intervals: Mapping[str, tuple[float, float]]
+
+    @cached_property
+    def values(self) -> dict[str, float]:
+        """Of all unknowns, in units of the scene."""
+        return dict(zip(self.subject.names, self.solution.values, strict=True))
+
+    @cached_property
+    def forces(self) -> Array:
+        """Predicted at all points [FU]."""
+        return self.subject.forces(self.solution.values)
+
+    @property
+    def correlation(self) -> Array:
+        """Of all unknowns."""
+        covariance = self.solution.best.covariance
+        spread = np.sqrt(np.diag(covariance))
+        return np.asarray(covariance / np.outer(spread, spread))
+
+    @property
+    def contact_stiffness(self) -> float:
+        """2E*a [FU/LU] without load, or where nothing adheres under the largest one."""
+        return stiffness_of(self.subject, self.solution.values)
+
+    @property
+    def criterion(self) -> float:
+        """Bayes's information criterion: −2 log L + p log n; the lower the better."""
+        best, problem = self.solution.best, self.solution.problem
+        n = problem.kept.size
+        r = best.noise.whitened(problem.residuals(self.solution.u)[:, None])[:, 0]
+        misfit = problem.prior(self.solution.u)[:, -1]
+        log = -0.5 * n * math.log(float(r @ r) / n) - 0.5 * best.noise.log_determinant - 0.5 * float(misfit @ misfit)
+        return -2.0 * log + len(self.subject.names) * math.log(n)
+
+    @cached_property
+    def misfit(self) -> float:
+        """Mean square of the residuals in contact over that of bodies apart: reduced χ². 1 where either is missing."""
+        problem = self.solution.problem
+        r = problem.residuals(self.solution.u)
+        apart = np.concatenate([one.apart for one in self.curve.segments])
+        open_ = np.concatenate([one.points for one in self.curve.segments if one.jump is None] or [apart[:0]])
+        apart = np.concatenate([apart, open_[self.curve.positions[open_] < self._point]])
+        away = np.isin(problem.kept, apart)
+        return 1.0 if away.all() or not away.any() else float(np.mean(r[~away] ** 2) / np.mean(r[away] ** 2))
+
+    def spread(self) -> Array:
+        """95 % half-width of the predicted force at the compared points [FU]."""
+        J = self.solution.problem.slopes(self.solution.u)
+        return TWO_SIDED * np.sqrt(np.einsum("ij,jk,ik->i", J, self.solution.best.covariance, J))
+
+    @property
+    def _point(self) -> float:
+        return self.values.get(POINT, self.subject.point)
+
+
+def stiffness_of(subject: Subject, values: list[float]) -> float:
+    """See `Fitted.contact_stiffness`."""
+    branch = subject.branch(values)
+    F, least = branch.forces, int(np.argmin(branch.forces))
+    load = 0.0 if F[least] < 0.0 else float(subject.curve.forces.max() - subject.curve.baseline)
+    radius = float(np.interp(load, F[least:], branch.radii[least:]))
+    return 2.0 * modulus_of(subject.scene_with(values)) * radius
+
+
+def model_of(plan: FitPlan) -> str:
+    """The contact model that a base scene means."""
+    adhesion = plan.base.adhesion
+    if not plan.base.work_of_adhesion:
+        return "Hertz"
+    return "Maugis" if adhesion and adhesion.range and "Maugis" in LAWS else "JKR"
+
+
+def compared(found: Fitted, model: str) -> Fitted:
+    """Another contact model on the same points, without intervals."""
+    subject = _subject(found.plan, found.curve, model)
+    problem = subject.problem.without(found.solution.outliers)
+    sought = [i for i, one in enumerate(subject.unknowns) if one.fitted]
+    solution = solved(problem, first_look(problem, sought, subject.completed), judges=False)
+    return Fitted(found.plan, found.curve, model, subject, solution, {})
+
+
+def fitted(plan: FitPlan, curve: ForceCurve, model: str) -> Fitted:
+    """What a curve says of a plan's parameters under a contact model.
+
+    Raises:
+        UndeterminedError: it does not tell; what would help.
+    """
+    subject = _subject(plan, curve, model)
+    problem = subject.problem
+    sought = [i for i, one in enumerate(subject.unknowns) if one.fitted]
+    starts = first_look(problem, sought, subject.completed)
+    require_apart(subject, starts)
+    found = solved(problem, starts)
+    if found.outliers.size > plan.fit.outliers:
+        raise UndeterminedError(
+            f"{found.outliers.size} points are no part of the noise, more than outliers = {plan.fit.outliers}: either "
+            f"{model} does not describe the curve, or the noise is not one of the instrument; look at the residuals"
+        )
+    result = Fitted(plan, curve, model, subject, found, {})
+    _require_stiff(result)
+    _require_points(result)
+    ends = {}
+    for i, one in enumerate(subject.unknowns):
+        if one.fitted or one.name == POINT:
+            low, high = interval(found, i)
+            if one.fitted and not max(high - found.u[i], found.u[i] - low) < WIDEST:
+                raise UndeterminedError(_open(result, i, low, high))
+            ends[one.name] = one.value(low), one.value(high)
+    return Fitted(plan, curve, model, subject, found, ends)
+
+
+def _subject(plan: FitPlan, curve: ForceCurve, model: str) -> Subject:
+    """Scene, instrument and unknowns of a contact model: Hertz's has no work of adhesion."""
+    scene, scales = plan.base, plan.scales
+    if model == "Hertz" and scene.adhesion is not None:
+        scene = scene.model_copy(update={"adhesion": None})
+    stiffness = plan.stiffness * scales.length / scales.force
+    unknowns = []
+    for key in dict.fromkeys([*plan.fit.parameters, *plan.known]):
+        if key.startswith("adhesion.") and (scene.adhesion is None or (key.endswith("range") and model != "Maugis")):
+            continue
+        value = stiffness if key == STIFFNESS else _number(scene, key)
+        share = plan.known.get(key)
+        known = None if share is None else (value, share * value / TWO_SIDED)
+        unknowns.append(Unknown(key, value, known=known, fitted=key in plan.fit.parameters))
+    point, depth = plan.fit.contact_point, curve.depth
+    if point == "free":
+        unknowns.append(Unknown(POINT, depth, positive=False))
+    unknowns.append(Unknown(OFFSET, float(np.ptp(curve.forces)), positive=False))
+    given = 0.0 if point == "free" else point / scales.length
+    return Subject(scene, LAWS[model], curve, stiffness, tuple(unknowns), given)
+
+
+def _number(scene: object, key: str) -> float:
+    value = scene
+    for name in fields(scene, key):
+        value = getattr(value, name)
+    assert isinstance(value, float)
+    return value
+
+
+def require_apart(subject: Subject, starts: list[Array]) -> None:
+    """Refuse parameters of which one does what the others do.
+
+    Raises:
+        UndeterminedError: with their names.
+    """
+    problem = subject.problem
+    for u in starts[:1]:
+        J = problem.slopes(u)
+        size = np.linalg.norm(J, axis=0)
+        names = subject.names
+        if not (size > 0.0).all():
+            idle = [name for name, one in zip(names, size, strict=True) if not one > 0.0]
+            raise UndeterminedError(f"the curve does not depend on {' and '.join(idle)}: leave it out of parameters")
+        unit = J / size
+        information = unit.T @ unit
+        P = problem.prior(u)[:, :-1] / size * np.linalg.norm(problem.residuals(u))
+        values, vectors = np.linalg.eigh(information + P.T @ P)
+        if values[0] < ALIKE * 0.01:
+            heavy = [names[i] for i in np.argsort(-np.abs(vectors[:, 0])) if abs(vectors[i, 0]) > 0.2]
+            shown = [name for name in heavy if name not in (POINT, OFFSET)]
+            raise UndeterminedError(
+                f"{' and '.join(shown)} trade off: one does to the curve what the others undo. Give one of them in "
+                'the base scene with its ±, such as radius = "5 ± 0.1 µm", and leave it out of parameters'
+            )
+
+
+def _require_stiff(found: Fitted) -> None:
+    k, contact = found.values.get(STIFFNESS, found.subject.stiffness), found.contact_stiffness
+    if k < SOFTEST * contact:
+        unit = found.plan.scales.factor("FU/LU")
+        raise UndeterminedError(
+            f"the cantilever ({k * unit:.3g} N/m) is softer than {SOFTEST:g} of the contact ({contact * unit:.3g} N/m), "
+            f"so that the curve shows its own bending: take one of at least {0.5 * contact * unit:.2g} N/m, or a "
+            "sharper tip"
+        )
+
+
+def _require_points(found: Fitted) -> None:
+    curve = found.curve
+    held = sum(one.held.size for one in curve.segments)
+    if not held:
+        held = int((curve.positions > found.values.get(POINT, found.subject.point)).sum())
+    if held < FEWEST_HELD:
+        raise UndeterminedError(
+            f"only {held} points are in contact, and at least {FEWEST_HELD} are needed: sample faster, or push deeper"
+        )
+
+
+def _open(found: Fitted, index: int, low: float, high: float) -> str:
+    """Why an interval has no end, and what would help."""
+    name, correlation = found.subject.names[index], np.abs(found.correlation[index])
+    correlation[index] = 0.0
+    other = found.subject.names[int(np.argmax(correlation))]
+    ends = [found.subject.unknowns[index].value(end) / found.values[name] for end in (low, high)]
+    span = f"from {ends[0]:.2g} to {ends[1]:.2g} times its value" if math.isfinite(high - low) else "without an end"
+    return (
+        f"{name} is known {span} only; it is tied most to {other} (correlation {correlation.max():.2f}): give that with "
+        "a smaller ±, push deeper into the contact, or average more curves"
+    )
