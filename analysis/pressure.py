@@ -43,6 +43,17 @@ class Profile:
             raise ValueError("the arrays of a profile must be sorted by x")
 
 
+@dataclass(frozen=True, eq=False)
+class ZonedProfile(Profile):
+    """A profile of which it is known where the contact ends.
+
+    edge: contact radius a [LU]; reach: how far an attraction with a range goes beyond, c [LU].
+    """
+
+    edge: float
+    reach: float
+
+
 def pressure_profile(
     x_upper: ArrayLike,
     z_upper: ArrayLike,

@@ -1,15 +1,16 @@
 """Which theory of an adhesive sphere holds, and those of an attraction with a range: DMT, Maugis and Dugdale.
 
-The Tabor parameter mu = (R W^2/(E*^2 z_0^3))^(1/3) is the elastic stretch of the surfaces before they separate over the
-range z_0 of the attraction: JKR (`indenters`) holds for a large one, DMT for a small one, Maugis and Dugdale between
-the two. The map is that of K. L. Johnson, J. A. Greenwood, J. Colloid Interface Sci. 192 (1997) 326, after D. Tabor,
-ibid. 58 (1977) 2: the zones are theirs. Their figure was not at hand: each boundary is a criterion written out below,
-not read off it, and how small is negligible is a convention in all but one. The lines mu = 5 (JKR) and mu = 0.1 (DMT)
-are common usage and independent of the load, which the criteria behind them are not. What they cost, against Maugis and
-Dugdale: at mu = 5 JKR's contact radius is 0.7 % too large at F = 0 and its pull-off 0.3 % too small; at mu = 0.1 DMT's
-radius is 6 % too small at F = 0 (8 % at -pi W R, 2 % at 40 pi W R) and its pull-off 3 % too large. The rest is
-computed, with 5 % as negligible: the compression over z_0 for the rigid sphere, the load that attraction adds over F
-for Hertz. F positive in compression; a << R. Any consistent units.
+The Tabor parameter mu = (R W^2/(E*^2 h_0^3))^(1/3) is the elastic stretch of the surfaces before they separate over the
+range h_0 = W/sigma_0 of the attraction, which is 0.974 z_0 of a Lennard-Jones surface: JKR (`indenters`) holds for a
+large one, DMT for a small one, Maugis and Dugdale between the two. The map is that of K. L. Johnson, J. A. Greenwood,
+J. Colloid Interface Sci. 192 (1997) 326, after D. Tabor, ibid. 58 (1977) 2: the zones are theirs. Their figure was not
+at hand: each boundary is a criterion written out below, not read off it, and how small is negligible is a convention in
+all but one. The lines mu = 5 (JKR) and mu = 0.1 (DMT) are common usage and independent of the load, which the criteria
+behind them are not. What they cost, against Maugis and Dugdale: at mu = 5 JKR's contact radius is 0.7 % too large at
+F = 0 and its pull-off 0.3 % too small; at mu = 0.1 DMT's radius is 6 % too small at F = 0 (8 % at -pi W R, 2 % at
+40 pi W R) and its pull-off 3 % too large. The rest is computed, with 5 % as negligible: the compression over h_0 for
+the rigid sphere, the load that attraction adds over F for Hertz. F positive in compression; a << R. Any consistent
+units.
 """
 
 from __future__ import annotations
@@ -25,9 +26,9 @@ from contact1d.analysis.theory.indenters import Contact, PowerLaw, require_posit
 from contact1d.digits import apart
 
 LENNARD_JONES_STRESS = 16.0 / (9.0 * math.sqrt(3.0))
-"""1.026: the force maximum of the 9-3 surface law of Lennard-Jones over W/z_0; taken as sigma_0."""
-LAMBDA_OVER_TABOR = 2.0 * LENNARD_JONES_STRESS * math.cbrt(9.0 / (16.0 * math.pi))
-"""1.157: lambda over the Tabor parameter mu, for the sigma_0 of Lennard-Jones."""
+"""1.026: the force maximum of the 9-3 surface law of Lennard-Jones over W/z_0; taken as sigma_0, z_0 is 1.026 h_0."""
+LAMBDA_OVER_TABOR = 2.0 * math.cbrt(9.0 / (16.0 * math.pi))
+"""1.127: lambda over the Tabor parameter mu."""
 LARGEST_CRITICAL_RADIUS = 1.5
 """A above that of every pull-off: JKR's, the largest, is (3/2)^(1/3) = 1.145."""
 ROOT = 4.0 * np.finfo(np.float64).eps
@@ -35,12 +36,12 @@ ROOT = 4.0 * np.finfo(np.float64).eps
 FLAT_MINIMUM = 1e-9
 """Absolute, in A: how near the search for a lowest value comes; its error there is the square of this."""
 JKR_TABOR = 5.0
-"""JKR above: the edge is stretched by Delta_l = sqrt(2 pi a W/E*), 3.9 mu z_0 at F = 0, which is 20 z_0: the range is
+"""JKR above: the edge is stretched by Delta_l = sqrt(2 pi a W/E*), 3.9 mu h_0 at F = 0, which is 20 h_0: the range is
 negligible. A convention."""
 DMT_TABOR = 0.1
-"""DMT below: the same stretch, for DMT's a, is less than z_0/3 at F = 0: attraction deforms little. A convention."""
+"""DMT below: the same stretch, for DMT's a, is less than h_0/3 at F = 0: attraction deforms little. A convention."""
 RIGID_COMPRESSION = 0.05
-"""Rigid (Bradley) below: Hertz's compression under F + 2 pi W R over z_0. The 5 % is a convention."""
+"""Rigid (Bradley) below: Hertz's compression under F + 2 pi W R over h_0. The 5 % is a convention."""
 HERTZ_ADHESION_SHARE = 0.05
 """Hertz below: the load that attraction adds, (4 E* a^3/3R - F)/F. The 5 % is a convention. For DMT it means
 F/(pi W R) > 40, for JKR F/(pi W R) > 2520: its attraction grows with the contact. A radius is then 1.6 % off."""
@@ -100,15 +101,14 @@ class MaugisDugdale(Dmt):
         N = A^3 - lambda [A S + C^2 phi],     D = A^2 - (4/3) lambda S
 
     which is Maugis' form in m = C/A, written so that it also holds at A = 0. Limits: lambda -> 0 N = A^3 - 2, D = A^2
-    (DMT); lambda -> infinity N = A^3 - A sqrt(6A), D = A^2 - (2/3) sqrt(6A) (JKR). sigma_0 is that of a Lennard-Jones
-    surface, so that lambda = 1.157 mu. Valid for a << R, c << R, and from first touch on (states before touch are left
-    out; their tension is less). Source: D. Maugis, J. Colloid Interface Sci. 150 (1992) 243.
+    (DMT); lambda -> infinity N = A^3 - A sqrt(6A), D = A^2 - (2/3) sqrt(6A) (JKR); lambda = 1.127 mu. Valid for
+    a << R, c << R, and from first touch on (states before touch are left out; their tension is less). Source: D.
+    Maugis, J. Colloid Interface Sci. 150 (1992) 243.
 
     Args:
         radius, contact_modulus, work_of_adhesion: as of `Dmt`.
-        range_of_attraction: z_0, the force-free distance of two surfaces [length]; for another law than that of
-            Lennard-Jones a distance of the order of W over the force maximum, which moves mu by a factor near 1.
-            lambda was tried from 1e-6 to 1e4.
+        range_of_attraction: h_0 = W/sigma_0 [length]; of a Lennard-Jones surface 0.974 z_0, z_0 where two surfaces are
+            free of force. lambda was tried from 1e-6 to 1e4.
 
     Raises:
         ValueError: if one of them is not positive.
@@ -123,13 +123,13 @@ class MaugisDugdale(Dmt):
 
     @property
     def tabor(self) -> float:
-        """mu = (R W^2/(E*^2 z_0^3))^(1/3)."""
+        """mu = (R W^2/(E*^2 h_0^3))^(1/3)."""
         ratio = self.work_of_adhesion / self.contact_modulus
         return math.cbrt(self.radius * ratio**2 / self.range_of_attraction**3)
 
     @property
     def transition(self) -> float:
-        """lambda = 1.157 mu."""
+        """lambda = 1.127 mu."""
         return LAMBDA_OVER_TABOR * self.tabor
 
     @property
@@ -238,7 +238,7 @@ def of_tabor(tabor: float) -> Theory:
 def valid_theory(tabor: float, reduced_load: float) -> Verdict:
     """Return the simplest valid theory; tested in the order apart, rigid, Hertz, JKR, DMT, Maugis and Dugdale.
 
-    With N = F/(pi W R): rigid where Hertz's compression under F + 2 pi W R, mu [(3 pi/4)(N + 2)]^(2/3) z_0, is small;
+    With N = F/(pi W R): rigid where Hertz's compression under F + 2 pi W R, mu [(3 pi/4)(N + 2)]^(2/3) h_0, is small;
     Hertz where (A^3 - N)/N is, the load that attraction adds, by the theory that goes with mu.
 
     Args:
@@ -259,7 +259,7 @@ def valid_theory(tabor: float, reduced_load: float) -> Verdict:
     compression = tabor * math.cbrt(0.75 * math.pi * (reduced_load + 2.0)) ** 2
     if compression < RIGID_COMPRESSION:
         found, limit = apart(compression, RIGID_COMPRESSION, 2)
-        return Verdict(Theory.RIGID, f"the compression is {found} z₀, less than {limit}: F_A = 2πWR")
+        return Verdict(Theory.RIGID, f"the compression is {found} h₀, less than {limit}: F_A = 2πWR")
     if reduced_load > 0.0:
         share = (contacts[usual].contact_radius(reduced_load) ** 3 - reduced_load) / reduced_load
         if share < HERTZ_ADHESION_SHARE:

@@ -16,8 +16,8 @@ from scipy.optimize import brentq
 
 from validation.references.interaction import Floats
 
-LAMBDA_OVER_TABOR = 32.0 / (9.0 * math.sqrt(3.0)) * math.cbrt(9.0 / (16.0 * math.pi))
-"""For the largest stress of Lennard-Jones, 16 W/(9 sqrt3 z_0) (Maugis 1992)."""
+LAMBDA_OVER_TABOR = 2.0 * math.cbrt(9.0 / (16.0 * math.pi))
+"""For the stress W/h_0 (Maugis 1992)."""
 LEAST, MOST, POINTS = 1e-7, 1e4, 4_000
 """m - 1 of the curve: from a wide contact to one that is all cohesive zone."""
 

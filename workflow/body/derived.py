@@ -26,13 +26,13 @@ import numpy as np
 from contact1d.analysis.pressure import Array
 from contact1d.potentials import DoubleExponential
 from contact1d.workflow.body.reading import product
-from contact1d.workflow.body.theory import Case
+from contact1d.workflow.body.theory import Case, tabor
 from contact1d.workflow.body.traction import BodyPressure, body_pressures, is_of_a_body
 from contact1d.workflow.continuation.outcome import MODEL, Made, Outcome, Result
 from contact1d.workflow.model.pairs import row_force
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.units import ENERGY, FORCE, LINE_PRESSURE, MEAN_PRESSURE, Quantity
+from contact1d.workflow.units import ENERGY, FORCE, LINE_PRESSURE, MEAN_PRESSURE, NUMBER, Quantity
 
 REPORTED = ("deepest", "final", "zero_load")
 """States whose pressure is a result, the first that a run has."""
@@ -177,7 +177,9 @@ def with_body(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressu
                 key: (replace(one, uncertainty=one.uncertainty - given[key] + left), given[key])
                 for key, one in pressure.results.items()
             }
-    return _with(outcome, of_pressure | outcome.made(scene, _of_the_contact) | outcome.made(scene, _adhesion_energy))
+    makers = (_of_the_contact, _adhesion_energy, _tabor)
+    made = {name: one for make in makers for name, one in outcome.made(scene, make).items()}
+    return _with(outcome, of_pressure | made)
 
 
 def reported_state(outcome: Outcome) -> list[str]:
@@ -197,6 +199,12 @@ def _of_the_contact(scene: Scene, found: Mapping[str, Quantity]) -> dict[str, Qu
         stiffness = 2.0 * scene.bulk_stiffness / (scene.chains * scene.bodies.spacing)
         made["contact_stiffness"] = product(stiffness, LINE_PRESSURE, (radius, 1.0))
     return made
+
+
+def _tabor(scene: Scene, found: Mapping[str, Quantity]) -> dict[str, Quantity]:
+    """µ of a body with a radius of curvature, where the range of the attraction is given."""
+    mu = tabor(Case(scene, found)) if scene.adhesion and scene.adhesion.range else None
+    return {} if mu is None else {"tabor_parameter": Quantity(mu, 0.0, NUMBER)}
 
 
 def _adhesion_energy(scene: Scene, found: Mapping[str, Quantity]) -> dict[str, Quantity]:

@@ -18,7 +18,7 @@ from functools import cached_property
 from typing import Any
 
 from contact1d.analysis.pressure import Array
-from contact1d.analysis.theory.adhesion import Dmt, MaugisDugdale, Theory, of_tabor, valid_theory
+from contact1d.analysis.theory.adhesion import LENNARD_JONES_STRESS, Dmt, MaugisDugdale, Theory, of_tabor, valid_theory
 from contact1d.analysis.theory.indenters import Contact, Ellipsoid, FlatPunch, PowerLaw
 from contact1d.analysis.theory.mindlin import (
     mindlin_cycle_energy,
@@ -38,7 +38,7 @@ SHOWN = 6
 SAME_LOAD = 1e-12
 """Relative: up to that loads are one; round-off."""
 ASSUMED_RANGE = 0.3e-9
-"""z₀ [m] of an adhesion whose scene has none: a distance between atoms, and that of most solids."""
+"""h₀ [m] of an adhesion whose scene has none: a distance between atoms, and that of most solids."""
 
 
 @dataclass(frozen=True)
@@ -95,11 +95,11 @@ class Case:
 
     @property
     def range(self) -> float:
-        """z₀ [LU]: given or assumed, or the force-free distance of an interaction that attracts; 0 where none is."""
+        """h₀ [LU]: given or assumed, or of Lennard-Jones surfaces with an interaction's force-free distance; else 0."""
         if self.scene.adhesion is not None:
             return self.scene.adhesion.range or (ASSUMED_RANGE / self.scales.length if self.scales.known else 0.0)
         law = interaction_law(self.scene)
-        return 0.0 if law is None or law.attraction is None else law.force_free_distance()
+        return 0.0 if law is None or law.attraction is None else law.force_free_distance() / LENNARD_JONES_STRESS
 
     @property
     def is_elastic(self) -> bool:
@@ -311,7 +311,7 @@ def _adhesive_punch_values(case: Case) -> Values:
 
 
 def tabor(case: Case) -> float | None:
-    """µ = (R W²/E*² z₀³)^{1/3} of a sphere with a range; None for anything else."""
+    """µ = (R W²/E*² h₀³)^{1/3} of a sphere with a range; None for anything else."""
     return None if case.with_range is None else case.with_range.tabor
 
 

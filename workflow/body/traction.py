@@ -13,6 +13,7 @@ Under springs E* per length on a plane, of a shape g and with a jump J ∝ √a 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from operator import itemgetter
@@ -20,7 +21,7 @@ from operator import itemgetter
 import numpy as np
 
 from contact1d.analysis.abel import FEWEST, LineLoad, line_load
-from contact1d.analysis.pressure import Array, Profile
+from contact1d.analysis.pressure import Array, Profile, ZonedProfile
 from contact1d.analysis.radius import ContactRadius, whole_cells
 from contact1d.analysis.shear import kinks_of, shear_load
 from contact1d.workflow.body.reading import stands_for_spheres
@@ -135,11 +136,15 @@ def _pressure(
     `given`: relative to p.
     """
     wider = WIDER_THAN_SPHERES if stands_for_spheres(scene) else 1.0
-    held = scene.adhesion is not None and scene.adheres
+    zone = profile if isinstance(profile, ZonedProfile) else None
+    held = scene.adhesion is not None and scene.adheres and zone is None
     x, q = profile.x / wider, wider * (whole_cells(profile, radius) if held else profile.pressure)
     shape, layer = scene.bodies.profile, scene.bulk_stiffness / scene.bodies.spacing
     jumps = shape.has_edge or held
     edge = radius.value / wider if jumps or scene.interaction is None else None
+    pulled = _attraction(scene, zone)
+    if zone:  # of d and the jump at the edge, where the attraction goes on, no pressure depends
+        edge, q = zone.edge, layer * (scene.bodies.height(np.asarray([zone.edge])) - scene.bodies.height(x))
     own = -(-(x.size - x.size // 2) // MOST)
 
     def heights(x: Array, one: Shape = shape) -> Array:
@@ -160,7 +165,7 @@ def _pressure(
     fine, side = levels[0], x[x.size // 2 :][::own]
     inside = side[(side > 0.0) & (side < fine.edge * INSIDE)]
     r = inside if fine.has_apex else np.append(0.0, inside)
-    p, *coarser = (one.pressure(r) for one in levels)
+    p, *coarser = (one.pressure(r) - pulled(r) for one in levels)
     # Where g is flat up to an edge that lies between two particles, p is that of a punch, ∝ 1/a.
     moves = np.maximum(np.abs(p), _moves(fine, heights, r) if alone else 0.0)
     spread = radius.uncertainty / radius.value * moves + given * np.abs(p)
@@ -169,14 +174,15 @@ def _pressure(
         spread += _spread(p, *coarser)
     at = np.clip(x, -fine.edge, fine.edge)
     beside = [heights(at) - heights(at, one) for one in shape.coarser]
-    others = [one.pressure(r) for less in beside if (one := through(q + less - less[0], 1))]
+    others = [one.pressure(r) - pulled(r) for less in beside if (one := through(q + less - less[0], 1))]
     within = np.count_nonzero(side < radius.value / wider)
     told = [one for i, one in enumerate((p, *coarser)) if within >= FEWEST * 2**i]
     noise, top = NOISE * scene.accuracy.tolerance, int(p.argmax())
     # A jump at the edge is a pole, and where the slope jumps inside p is a logarithm.
     smooth = p[top] > 0.0 and not (shape.has_edge or any(kink < radius.value for kink in shape.kinks))
     smooth &= top == 0 or (len(told) == 3 and fine.at_edge <= noise * p[top] * fine.edge)
-    around = fine.pressure(np.linspace(r[max(0, top - 1)], r[min(top + 1, r.size - 1)], BETWEEN))
+    near = np.linspace(r[max(0, top - 1)], r[min(top + 1, r.size - 1)], BETWEEN)
+    around = fine.pressure(near) - pulled(near)
     hidden = any(kink < radius.value for one in shape.alternatives for kink in one.kinks)
     error, results = spread + share * moves + ROUND_OFF * layer, {}
     for name, place, read, value, is_open, may_have in (
@@ -189,6 +195,17 @@ def _pressure(
             off = error[place] + sum(abs(read(one) - read(p)) for one in others) if known else np.inf
             results[name] = Quantity(float(value), float(off), MEAN_PRESSURE)
     return BodyPressure(r, p, spread + sum(np.abs(one - p) for one in others), radius.value / wider, results)
+
+
+def _attraction(scene: Scene, zone: ZonedProfile | None) -> Callable[[Array], Array]:
+    """(2σ₀/π) arctan √((c² − a²)/(a² − r²)) [FU/LU²] inside a contact whose attraction has a range; else 0."""
+    if zone is None or scene.adhesion is None or not scene.adhesion.range:
+        return np.zeros_like
+    stress, ring = (
+        scene.adhesion.work / scene.adhesion.range,
+        math.sqrt((zone.reach - zone.edge) * (zone.reach + zone.edge)),
+    )
+    return lambda r: 2.0 / np.pi * stress * np.arctan2(ring, np.sqrt((zone.edge - r) * (zone.edge + r)))
 
 
 def _moves(load: LineLoad, body: Callable[[Array], Array], r: Array) -> Array:

@@ -119,7 +119,7 @@ def regime(found: MaterialRun) -> Iterator[str]:
     if contact.work_of_adhesion:
         said.append(f"work of adhesion W = {contact.work_of_adhesion:.4g} J/m²")
         assumed = " (assumed: no range was given)" if "range" not in contact.given else ""
-        said.append(f"range z_0 = {prefixed(contact.range, 'm')}{assumed}")
+        said.append(f"range h_0 = {prefixed(contact.range, 'm')}{assumed}")
     if contact.load is not None:
         said.append(f"load {prefixed(contact.load, 'N')}")
     yield f"  {', '.join(said)}"

@@ -9,13 +9,19 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.pressure import Profile, penetration_depth, pressure_profile, smallest_distance
+from contact1d.analysis.pressure import (
+    Profile,
+    ZonedProfile,
+    penetration_depth,
+    pressure_profile,
+    smallest_distance,
+)
 from contact1d.workflow.continuation.state import State, radius_rule
 from contact1d.workflow.continuation.trust import is_converged, require_trust
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.lattice import bodies, period
 from contact1d.workflow.deck.parts import PLANE_DEPTH
-from contact1d.workflow.deck.steps import Displace, Draw, Phase, Row
+from contact1d.workflow.deck.steps import Cohere, Displace, Draw, Phase, Row
 from contact1d.workflow.deck.system import PARTICLES
 from contact1d.workflow.engine.failure import NOT_FINITE
 from contact1d.workflow.engine.frames import last_frames
@@ -96,7 +102,8 @@ class Contact:
         found: list[State] = []
         size = BATCH
         if self.deck.stepped:
-            rows = [self.deck.as_listed(row) for row in rows]
+            last = next((phase.rows[-1] for phase in self._phases[::-1] if phase.rows), None)
+            rows = self.deck.completed([self.deck.as_listed(row) for row in rows], last)
             size = max(1, MOST_NUMBERS // len(self._x))
         before = self.session.lammps_seconds
         for start in range(0, len(rows), size):
@@ -174,6 +181,8 @@ class Contact:
             assert isinstance(row, Displace | Draw)
             force, closest = spacing * float(profile.pressure.sum()), float(profile.z_upper.min())
             along = row.place if isinstance(row, Draw) else 0.0
+            if isinstance(row, Cohere):
+                profile = self._zoned(profile, row)
             states.append(
                 State(phase, row.displacement, force, profile, self._rule, closest, 0.0, round_off, plate_x=along,
                       step=float(began + i + 1), number=first + i)
@@ -201,6 +210,15 @@ class Contact:
             return [Profile(self._x, none, z, p, none) for z, p in zip(surfaces, pressures, strict=True)]
         shears = units.from_deck(frames[:, :, 2], "FU") / spacing
         return [Profile(self._x, none, z, p, q) for z, p, q in zip(surfaces, pressures, shears, strict=True)]
+
+    def _zoned(self, profile: Profile, row: Cohere) -> Profile:
+        """With the edges of a load step; between them the body is drawn towards the plane."""
+        heights = self.scene.bodies.height(self._x) - row.displacement
+        surface = np.maximum(heights + profile.pressure * self.scene.bodies.spacing / self.scene.bulk_stiffness, 0.0)
+        return ZonedProfile(
+            profile.x, profile.z_lower, np.where(np.abs(self._x) < row.edge, 0.0, surface), profile.pressure,
+            profile.shear, row.edge, row.reach,
+        )  # fmt: skip
 
     def _look_back(self) -> None:
         """Work out the radii of the load steps before, which their states keep: LAMMPS is busy with the next ones."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,6 +49,8 @@ def unloading(branch: Trace, settings: Settings) -> dict[str, Reading]:
             found["critical_radius"] = _critical_radius(branch, peak, settings, sum(errors.values()))
     if (zero := _zero_load(branch)) is not None:
         found["zero_load_radius"] = zero
+        if (reach := _zero_load_reach(branch)) is not None:
+            found["cohesive_radius"] = reach
     if "adhesion_force" in found and zero is not None:
         found |= _separation(branch, peak)
     return found
@@ -123,6 +126,22 @@ def _zero_load(branch: Trace) -> Reading | None:
     return Reading(radius, LENGTH, {"sampling": abs(radius - line)})
 
 
+def _zero_load_reach(branch: Trace) -> Reading | None:
+    """c where the force crosses 0, likewise; None where the attraction has no range."""
+    d, force = branch.lists
+    index, place = crossing(d, force, 0.0)
+    near = (min(index + 1, len(d) - 1), index)
+    if branch.reach(index) is None:
+        return None
+
+    def reach(state: int) -> float:
+        return branch.reach(state) or 0.0
+
+    line = float(np.interp(place, [d[i] for i in near], [reach(i) for i in near]))
+    value = _through_nearest(branch, smooth_crossing(d, force, 0.0), reach)
+    return Reading(value, LENGTH, {"sampling": abs(value - line)})
+
+
 def early_loss(branch: Trace, peak: Peak, settings: Settings) -> float:
     """How far [LU] before its limit the force maximum may have been lost, in the move after it."""
     d = branch.displacement
@@ -174,12 +193,16 @@ def radius_rate(trace: Trace, state: int, least: float = 0.0) -> float:
 
 def radius_at(trace: Trace, position: float) -> float:
     """Contact radius [LU] at a displacement [LU] of a sorted trace, by a parabola through the three nearest states."""
+    return _through_nearest(trace, position, trace.radius_or_spot)
+
+
+def _through_nearest(trace: Trace, position: float, length: Callable[[int], float]) -> float:
     near = int(np.argmin(np.abs(trace.displacement - position)))
     first = min(max(near - 1, 0), max(len(trace) - 3, 0))
     at = range(first, min(first + 3, len(trace)))
     if position == trace.displacement[near] or len(at) < 2:
-        return trace.radius_or_spot(near)
-    radii = [trace.radius_or_spot(i) for i in at]
+        return length(near)
+    radii = [length(i) for i in at]
     if min(radii) == max(radii):  # a body that ends at an edge
         return radii[0]
     d = trace.displacement[list(at)]

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import ClassVar
 
-from contact1d.analysis.pressure import Profile, end_pressure_share
+from contact1d.analysis.pressure import Profile, ZonedProfile, end_pressure_share
 from contact1d.analysis.radius import ContactRadius, compressive_radius, held_radius, tensile_radius
 from contact1d.workflow.model.settings import CALIBRATION
 from contact1d.workflow.scene import Bodies, Scene
@@ -65,6 +65,22 @@ class Held(RadiusRule):
         return held_radius(profile) if profile.pressure.any() else None
 
 
+class Zoned(RadiusRule):
+    """Up to the edge that a load step gives; where none is known, up to the largest tension beside the axis."""
+
+    def of(self, profile: Profile) -> ContactRadius | None:
+        """Exact; 0 of bodies that attract each other and do not touch."""
+        if not profile.pressure.any():
+            return None
+        if not isinstance(profile, ZonedProfile):
+            return tensile_radius(profile)
+        return ContactRadius(profile.edge, 0.0, -profile.edge, profile.edge, reaches_end=False)
+
+    def is_cut(self, profile: Profile) -> bool:
+        """Whether the attraction reaches the end of the chain."""
+        return bool(profile.pressure[-1] != 0.0)
+
+
 class InTension(RadiusRule):
     """Up to the force maximum of the tension about the contact."""
 
@@ -105,6 +121,8 @@ def radius_rule(scene: Scene, tolerance: float) -> RadiusRule:
         return ToTheEdge(scene.bodies, share, bool(scene.adhesion))
     if not scene.adheres:
         return Compressed(scene.bodies, share)
+    if scene.adhesion and scene.adhesion.range:
+        return Zoned(scene.bodies, share)
     return (Held if scene.adhesion else InTension)(scene.bodies, share)
 
 

@@ -18,6 +18,8 @@ CURVE_STEPS, CURVE_NUMBERS = 100, 200_000
 each. Of long chains there are so many that positions times load steps stay below the second."""
 PULLING_STEPS = 48
 """Load steps from F = 0 to the limit point, where it is known."""
+NEARLY = 1.0 + 1e-9
+"""Load steps that are even but for round-off are so."""
 LAST = 1e-9
 """How much of that is left before it."""
 BEYOND_LIMIT = 1.05
@@ -53,9 +55,11 @@ class SteppedBranch(Branch):
         """
         zero, last = self._last.displacement, self.model.apart
         end = zero + (1.0 - LAST) * (last - zero)
-        self._visit(np.linspace(zero, end, PULLING_STEPS + 1)[1:])
+        rows = self.model.unloading(zero, end, PULLING_STEPS)
+        self._visit(rows)
         before = self.peak
-        step = (zero - last) / PULLING_STEPS
+        beside = np.abs(np.append(zero, rows) - before.position)
+        step = min((zero - last) / PULLING_STEPS, NEARLY * float(np.sort(beside)[1]))
         self._visit(np.clip(before.position + step * np.asarray((0.5, -0.5, 0.25, -0.25)), end, zero))
         self._visit([min(max(self.peak.position, end), zero)])
         self._found(abs(self.peak.smooth - before.smooth))

@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.pressure import Profile
+from contact1d.analysis.pressure import Profile, ZonedProfile
 from contact1d.analysis.radius import ContactRadius
 from contact1d.workflow.continuation.state import RadiusRule, State
 from contact1d.workflow.model.reduced import Followed, Path, Reduced
@@ -116,6 +116,11 @@ class Trace:
         found = self.contact(state) or self.rule.or_spot(self.profile(state))
         return self._perturbed(found, state)
 
+    def reach(self, state: int) -> float | None:
+        """How far an attraction with a range goes, c [LU]; None of others."""
+        profile = self.profile(state)
+        return profile.reach if isinstance(profile, ZonedProfile) else None
+
     def _perturbed(self, found: ContactRadius, state: int) -> float:
         if found.uncertainty == 0.0:  # a body that ends at an edge
             return found.value
@@ -217,6 +222,9 @@ def of_model(
     def profile(state: int) -> Profile:
         pressure = np.pad(followed.force(state), BESIDE) / spacing
         shear = none if followed.shear is None else np.pad(followed.shear(state), BESIDE) / spacing
+        if followed.zone:
+            edge, reach = (float(one[state]) for one in followed.zone)
+            return ZonedProfile(x, none, none, pressure, shear, edge, reach)
         return Profile(x, none, none, pressure, shear)
 
     return Trace(

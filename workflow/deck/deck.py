@@ -12,11 +12,26 @@ from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import TypeVar
 
+import numpy as np
+
 from contact1d.workflow.deck.effects import Contribution, contributions
 from contact1d.workflow.deck.fragments import DeckError, Fragment, block, commands, deleted, fragment, indexed, listed
 from contact1d.workflow.deck.parts import bins, moving, own_units, standing
-from contact1d.workflow.deck.steps import APPENDED, NEW, STEPS, UNITS, Displace, Hold, Phase, Row, appended, skipped
+from contact1d.workflow.deck.steps import (
+    APPENDED,
+    NEW,
+    STEPS,
+    UNITS,
+    Cohere,
+    Displace,
+    Hold,
+    Phase,
+    Row,
+    appended,
+    skipped,
+)
 from contact1d.workflow.deck.units import DeckUnits, units_for
+from contact1d.workflow.model.cohesive import APART, CohesiveEstimate
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 
@@ -97,6 +112,18 @@ class Deck:
         }
         return replace(row, **read)
 
+    def completed(self, rows: Sequence[Row], before: Row | None = None) -> list[Row]:
+        """Load steps with the edges of a contact whose attraction has a range, after a state of it or from apart on."""
+        estimate = self.settings.estimate
+        if not (isinstance(estimate, CohesiveEstimate) and rows and type(rows[0]) is Displace):
+            return list(rows)
+        d = np.asarray([row.displacement for row in rows if isinstance(row, Displace)])
+        start = estimate.place_of(before.edge, before.reach) if isinstance(before, Cohere) else APART
+        zone = estimate.solved(d, estimate.places(d, start))
+        height = np.divide(estimate.area(zone.edge), zone.edge, out=np.zeros_like(d), where=zone.edge > 0.0)
+        columns = (column.tolist() for column in (d, zone.edge, zone.reach, height))
+        return [self.as_listed(Cohere(*numbers)) for numbers in zip(*columns, strict=True)]
+
     def in_one_run(self, rows: Sequence[Row], skips: Sequence[int] = ()) -> str:
         """All rows, each a position of the plate, in one run; `skips`: those whose state is not written, else none."""
         columns = zip(*(row.texts(self.units.to_deck) for row in rows), strict=True)
@@ -130,7 +157,7 @@ class Deck:
         Raises:
             DeckError: if fragments and variables do not fit together, in the head or in a phase.
         """
-        passed = [phase for phase in phases if phase.rows]
+        passed = self._completed([phase for phase in phases if phase.rows])
         self._check_schedule(passed)
         blocks = [self.head]
         first = True
@@ -140,6 +167,13 @@ class Deck:
             blocks.append(loop + (self.state(first) if phase.state else ""))
             first = first and not phase.state
         return "\n".join(blocks)
+
+    def _completed(self, phases: Sequence[Phase]) -> list[Phase]:
+        found: list[Phase] = []
+        for phase in phases:
+            before = found[-1].rows[-1] if found else None
+            found.append(replace(phase, rows=tuple(self.completed(phase.rows, before))))
+        return found
 
     @property
     def keeps(self) -> bool:

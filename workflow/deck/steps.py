@@ -20,7 +20,7 @@ from contact1d.files import whole
 from contact1d.workflow.deck.effects import number
 
 UNITS = (
-    dict.fromkeys(("displacement", "place", "parted", "through", "end"), "LU")
+    dict.fromkeys(("displacement", "place", "parted", "through", "end", "edge", "reach", "height"), "LU")
     | dict.fromkeys(("load", "rest"), "FU")
     | dict.fromkeys(("damping", "drag"), "FU·TU/LU")
     | {"spring": "FU/LU"}
@@ -52,6 +52,21 @@ class Displace(Row):
 
     step: ClassVar[str] = "displace"
     displacement: float
+
+
+@dataclass(frozen=True)
+class Cohere(Displace):
+    """The same where an attraction has a range.
+
+    Attributes:
+        edge, reach: up to where the bodies touch, and attract each other [LU].
+        height: mean of g(x) over the contact [LU].
+    """
+
+    step: ClassVar[str] = "sweep_cohesive"
+    edge: float
+    reach: float
+    height: float
 
 
 @dataclass(frozen=True)
@@ -116,7 +131,7 @@ class Hold(Row):
     steps: int
 
 
-STEPS: tuple[type[Row], ...] = (Displace, Draw, DisplaceInTime, UnderLoad, DrawnOff, Hold)
+STEPS: tuple[type[Row], ...] = (Displace, Cohere, Draw, DisplaceInTime, UnderLoad, DrawnOff, Hold)
 
 
 @dataclass(frozen=True)

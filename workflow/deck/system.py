@@ -24,6 +24,7 @@ from contact1d.workflow.deck.effects import number, sphere_radius
 from contact1d.workflow.deck.lattice import Body, bodies, period
 from contact1d.workflow.deck.parts import margins
 from contact1d.workflow.model.adhesion import cells_of
+from contact1d.workflow.model.cohesive import CohesiveEstimate
 from contact1d.workflow.model.motion import inertia
 
 CELLS = "adhesion.cells"
@@ -180,12 +181,18 @@ def write_system(deck: Deck, folder: Path) -> None:
 
 
 def _write_cells(deck: Deck, path: Path) -> None:
-    """The columns of `workflow.model.adhesion.Cells` below each other, as `variable atomfile` reads them."""
-    x = bodies(deck.scene, deck.settings)[0].particles[:, 0]
-    cells = cells_of(deck.scene, deck.settings.estimate, x)
-    lengths = {name: deck.units.to_deck(1.0, "LU") * getattr(cells, name) for name in ("hold", "width", "fall")}
+    """The columns of `Cells` of `model.adhesion` or `model.cohesive` below each other, for `variable atomfile`."""
+    x, estimate = bodies(deck.scene, deck.settings)[0].particles[:, 0], deck.settings.estimate
+    unit = deck.units.to_deck(1.0, "LU")
+    if isinstance(estimate, CohesiveEstimate):
+        zones = estimate.zones(x)
+        powers = {"inner": 1, "outer": 1, "below": 2, "above": 2, "sides": 0}
+        columns = {name: unit**power * getattr(zones, name) for name, power in powers.items()}
+    else:
+        cells = cells_of(deck.scene, estimate, x)
+        columns = {name: unit * getattr(cells, name) for name in ("hold", "width", "fall")} | {"bend": cells.bend}
     blocks = []
-    for name, column in (lengths | {"bend": cells.bend}).items():
+    for name, column in columns.items():
         rows = "".join(f"{i} {number(value)}\n" for i, value in enumerate(column, 1))
         blocks.append(f"# {name}\n{len(x)}\n{rows}")
     write_whole(path, "\n".join(blocks))

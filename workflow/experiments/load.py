@@ -20,6 +20,7 @@ from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.deck.steps import Phase, displacements
 from contact1d.workflow.experiments.experiment import Scripted
 from contact1d.workflow.experiments.thermal import planned_samples, thermal_load
+from contact1d.workflow.model.cohesive import CohesiveEstimate
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Load, Scene
 from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE
@@ -72,6 +73,9 @@ class LoadExperiment(Scripted[Load]):
             rate = radius_rate(trace, last, BRANCH_DISTANCE) or settings.estimate.radius_rate(own)
             radius = trace.radius_or_spot(last) + rate * (displacement - own)
             found["contact_radius"] = Reading(radius, LENGTH, {"solver": abs(rate) * missed})
+            if (reach := trace.reach(last)) is not None and isinstance(settings.estimate, CohesiveEstimate):
+                there, here = settings.estimate.reaches(np.asarray([displacement, own])).tolist()
+                found["cohesive_radius"] = Reading(reach + there - here, LENGTH, {"solver": abs(there - here)})
             if radius > 0.0:
                 area = math.pi * radius**2
                 errors = {"solver": abs(carried - force) / area}

@@ -83,7 +83,7 @@ class AskedContact:
 
     @property
     def range(self) -> float:
-        """z₀ of the attraction [m]."""
+        """h₀ of the attraction [m]."""
         adhesion = self.scene.adhesion
         return ASSUMED_RANGE if adhesion is None or adhesion.range is None else adhesion.range
 

@@ -32,7 +32,7 @@ class Theories:
         radius: effective R [m].
         contact_modulus: E* [Pa].
         work_of_adhesion: W > 0 [J/m²].
-        range_of_attraction: z₀ [m].
+        range_of_attraction: h₀ [m].
         load: F [N], positive in compression; None: 0.
     """
 
@@ -44,7 +44,7 @@ class Theories:
 
     @cached_property
     def tabor(self) -> float:
-        """μ = (R W²/(E*² z₀³))^(1/3)."""
+        """μ = (R W²/(E*² h₀³))^(1/3)."""
         return self.sphere.tabor
 
     @property
@@ -110,7 +110,7 @@ def judged(contact: AskedContact, theories: Theories) -> dict[str, str]:
         )
     if roughness > ROUGH_SHARE * stretch:
         doubts["roughness"] = f"{beside} at pull-off: the pull-off force is below that of a smooth sphere"
-    if words := beyond_jkr(theories.sphere, "range" not in contact.given):
+    if "range" not in contact.given and (words := beyond_jkr(theories.sphere)):
         doubts["tabor"] = words
     return doubts
 

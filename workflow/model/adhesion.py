@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.workflow.model.chain import FARTHEST_RATIO, SettingsError
-from contact1d.workflow.model.pairs import ContactEstimate, Profile, beside_kinks, plane_estimate
+from contact1d.workflow.model.pairs import ContactEstimate, Profile, beside_kinks
 from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
@@ -249,36 +249,6 @@ class AdhesiveEstimate(ContactEstimate):
     def tooth(self, particles: int) -> float:
         """Infinite: with a range of zero and fractions of cells the force has one maximum."""
         return math.inf
-
-
-def estimate_on_plane(scene: Scene, profile: Profile) -> ContactEstimate:
-    """The predictor of a scene on a rigid plane; that of one with [adhesion] is known as far as its experiment needs.
-
-    Raises:
-        SettingsError: the contact would be as wide as the body, or its edge would jump.
-    """
-    bodies, stiffness = scene.bodies, scene.bulk_stiffness
-    springs = plane_estimate(profile, bodies.spacing, stiffness)
-    if not scene.adhesion:
-        return springs
-    wanted, load = max([0.0, *scene.experiment.places()]), scene.experiment.compression or 0.0
-    known, work, estimate = bodies.spacing, scene.adhesion.work, None
-    while estimate is None or not (estimate.known == profile.reach or estimate.is_beyond(wanted, load)):
-        estimate = AdhesiveEstimate(
-            springs.gap, springs.force, springs.rest, profile, bodies.spacing, stiffness,
-            work=work, known=min(known, profile.reach),
-        )  # fmt: skip
-        known *= 2.0
-    if bodies.own_count is None:
-        widest = float(estimate.radii(np.asarray([max(wanted, estimate.displacement_at(load))]))[0])
-        limit = min(profile.reach, bodies.profile.steepest.curvature_radius or math.inf)
-        if widest > SPANNED * limit:
-            raise SettingsError(
-                f"the adhesive contact would cover the body, which ends at {limit:.6g} LU: JKR's theory is for a "
-                "contact much smaller than the body. Lower adhesion.work_of_adhesion, the load or the displacement"
-            )
-    estimate.require_one_edge()
-    return estimate
 
 
 def cells_of(scene: Scene, estimate: ContactEstimate, x: Array) -> Cells:

@@ -26,8 +26,8 @@ Array = NDArray[np.float64]
 NEAREST, WIDEST, BESIDE, MOST_KINKS = 1e-9, 0.1, 60, 100
 """Distances from a kink over its own position between which positions are added in geometric progression, how many on
 each side, and at how many kinks."""
-PLACES, NEAR = 1000, 0.01
-"""Positions at which a profile is tabulated, and the first one beyond its apex over the spacing."""
+PLACES, EXACT_PLACES, NEAR = 1000, 10_000, 0.01
+"""Positions at which a profile is tabulated for a predictor, and for a deck, and the first one over the spacing."""
 
 
 def places_within(reach: float, spacing: float, phase: float) -> Array:
@@ -75,12 +75,13 @@ class Tabulated:
         return float(self.places[-1])
 
 
-def tabulated(profile: Profile, spacing: float) -> Tabulated:
+def tabulated(profile: Profile, spacing: float, count: int = PLACES) -> Tabulated:
     """The profile, which must be finite, at positions in geometric series: those of a parabola to 1e-4 of its height.
 
-    That holds for a reach of 0.1 to 1e10 spacings [LU]; closer to the apex than NEAR spacings it is a line.
+    That holds for a reach of 0.1 to 1e10 spacings [LU] and PLACES of them, and goes with the square of their `count`;
+    closer to the apex than NEAR spacings it is a line.
     """
-    places = beside_kinks(np.concatenate([[0.0], np.geomspace(NEAR * spacing, profile.reach, PLACES)]), profile)
+    places = beside_kinks(np.concatenate([[0.0], np.geomspace(NEAR * spacing, profile.reach, count)]), profile)
     return Tabulated(places, profile.height(places), profile.kinks)
 
 

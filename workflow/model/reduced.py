@@ -3,6 +3,7 @@
     springs on a rigid plane    f = k max(0, d − h(x))
     pairs of opposite chains    f = f(r),  G(r) = r₀ + h(x) − d, on the branch that a pair came by
     cells that adhere           f = k φ [d − g(x) + c (1 − φ)], while the contact is held (`adhesion`)
+    cells with an attraction    f = ∫ q dx over the cell, where the contact is on its curve (`cohesive`)
     springs with a slider       s ← clip(s + k_t Δu, ±μ f)
 
 It follows any path of displacements with the memory that its particles have, all positions at once. No result
@@ -22,6 +23,7 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.shear import slip
 from contact1d.workflow.model.adhesion import AdhesiveEstimate, Cells
+from contact1d.workflow.model.cohesive import CohesiveEstimate
 from contact1d.workflow.model.friction import Sliders, sliders_of
 from contact1d.workflow.model.motion import inertia
 from contact1d.workflow.model.pairs import ContactEstimate, places_within
@@ -75,12 +77,14 @@ class Followed:
         total: force of all, (m,) [FU].
         force: of each at one of the displacements, by its number, (n,) [FU].
         shear: the same along x; None where nothing is prescribed there.
+        zone: a and c of an attraction with a range, (m,) [LU]; None of others.
     """
 
     x: Array
     total: Array
     force: Callable[[int], Array]
     shear: Callable[[int], Array] | None = None
+    zone: tuple[Array, Array] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,6 +123,10 @@ class Reduced(ABC):
     def jumps(self) -> tuple[float, ...]:
         """Displacements [LU] at which the force jumps, on the way in or out."""
         return self.limits
+
+    def unloading(self, start: float, end: float, count: int) -> Array:
+        """Displacements [LU] of load steps of a contact that is unloaded, after the first one."""
+        return np.linspace(start, end, count + 1)[1:]
 
     def shifted(self, phase: float) -> Reduced:
         """The same with the apex `phase` spacings off a particle."""
@@ -275,6 +283,51 @@ class AdheringCells(Reduced):
 
 
 @dataclass(frozen=True, eq=False)
+class CohesiveCells(Reduced):
+    """The cells of a chain on a rigid plane that attracts over a range."""
+
+    estimate: CohesiveEstimate
+
+    @property
+    def apart(self) -> float:
+        """Where a contact that is unloaded feels nothing any more [LU]."""
+        return float(self.estimate.held.displacement[0])
+
+    def held(self, displacements: Array) -> Array:
+        """F [FU] of a contact that is unloaded."""
+        return self.estimate.contact_forces(displacements)
+
+    @property
+    def limits(self) -> tuple[float, ...]:
+        """Where it jumps [LU]."""
+        return self.estimate.limits
+
+    def unloading(self, start: float, end: float, count: int) -> Array:
+        """Evenly in the radius, since a stiff contact is lost on a small part of the way, and beyond it in d."""
+        own = self.estimate.held
+        touching = own.edge > 0.0
+        a, d = own.edge[touching], own.displacement[touching]
+        rows = np.interp(np.linspace(float(np.interp(start, d, a)), float(a[0]), count + 1)[1:], a, d)
+        beyond = np.linspace(float(d[0]), end, count // 2 + 1)[1:] if d[0] > end else np.asarray([])
+        return np.append(rows[(rows < start) & (rows > end)], np.append(beyond, [] if beyond.size else [end]))
+
+    @property
+    def jumps(self) -> tuple[float, ...]:
+        """There, and where the attraction begins."""
+        return (*self.limits, -self.estimate.range)
+
+    def follow(self, path: Path) -> Followed:
+        """From limit point to limit point of the curve; see `Reduced.follow`."""
+        estimate = self.estimate
+        zone = estimate.at(estimate.places(path.displacement))
+        zone = replace(zone, displacement=path.displacement)
+        cells = estimate.zones(self.x)
+        return Followed(
+            self.x, zone.force, lambda state: estimate.loads(cells, zone, state), zone=(zone.edge, zone.reach)
+        )
+
+
+@dataclass(frozen=True, eq=False)
 class Sliding(Springs):
     """Springs with a slider each, on a rigid plane; a path is of displacements and positions along x."""
 
@@ -318,6 +371,8 @@ def reduced(scene: Scene, settings: Settings) -> Reduced:
     deepest = settings.largest_displacement
     phase = 0.5 if settings.chains.upper % 2 == 0 else 0.0
     half = 0.5 * (settings.chains.upper - 1) * spacing
+    if isinstance(estimate, CohesiveEstimate):
+        return CohesiveCells(estimate, places_within(min(half, scene.bodies.reach), spacing, phase), deepest)
     if isinstance(estimate, AdhesiveEstimate) and estimate.attracts:
         reach = min(half, scene.bodies.reach)
         return AdheringCells(estimate, places_within(reach * (1.0 + 1e-12), spacing, phase), deepest)

@@ -29,7 +29,6 @@ from contact1d.analysis.pressure import Profile, left_out
 from contact1d.digits import apart
 from contact1d.potentials import DoubleExponential, Exponential
 from contact1d.potentials.table import FEWEST_POINTS, Table, table_for
-from contact1d.workflow.model.adhesion import estimate_on_plane
 from contact1d.workflow.model.chain import SettingsError as SettingsError
 from contact1d.workflow.model.chain import (
     chains_of,
@@ -43,8 +42,16 @@ from contact1d.workflow.model.chain import (
     require_rows,
     require_travel,
 )
+from contact1d.workflow.model.cohesive import estimate_on_plane
 from contact1d.workflow.model.dynamics import Motion, measured, motion_of, whole_steps
-from contact1d.workflow.model.pairs import ContactEstimate, NotCarriedError, particles_estimate, tabulated
+from contact1d.workflow.model.pairs import (
+    EXACT_PLACES,
+    PLACES,
+    ContactEstimate,
+    NotCarriedError,
+    particles_estimate,
+    tabulated,
+)
 from contact1d.workflow.model.pairs import Profile as Undeformed
 from contact1d.workflow.scene import Interaction, Measured, Scene
 from contact1d.workflow.scene.remedies import less_compression
@@ -87,7 +94,7 @@ CALIBRATION = calibration_of(json.loads(FILE.read_text(encoding="utf-8")))
 Array = NDArray[np.float64]
 REACH = 40.0
 """Reach of the sums, and of the longest cutoff, over the longest range."""
-PLACES, HEIGHTS = 33, 400
+ASIDE, HEIGHTS = 33, 400
 """Positions within half a spacing, and heights, that are examined."""
 LEFT_OUT = 0.1
 """Force of a pair at the cutoff over the largest force along x, per unit of tolerance: each pair that comes within
@@ -117,7 +124,7 @@ def largest_holding_force(law: DoubleExponential, spacing: float, load: float) -
     _, upward = _row_forces(law, 0.5 * spacing - row, heights)
     carried = np.flatnonzero(upward >= load)
     height = float(heights[carried[-1]] if carried.size else heights[0])
-    x: Array = np.linspace(0.0, 0.5 * spacing, PLACES)
+    x: Array = np.linspace(0.0, 0.5 * spacing, ASIDE)
     along = [float(_row_forces(law, place - row, np.asarray([height]))[0][0]) for place in x.tolist()]
     return float(np.max(np.abs(along)))
 
@@ -561,7 +568,10 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
 def _forces(scene: Scene, tolerance: float, calibration: Calibration) -> tuple[Forces, ContactEstimate]:
     """Springs, plane and interaction, without table and scales; the predictor of the contact that they make."""
     law, bodies, spring = interaction_law(scene), scene.bodies, scene.bulk_stiffness
-    shape: Undeformed = tabulated(bodies, bodies.spacing) if isinstance(bodies.profile, Measured) else bodies
+    shape: Undeformed = bodies
+    if isinstance(bodies.profile, Measured):  # with a range the predictor's shape is that of the deck
+        exact = scene.adhesion and scene.adhesion.range
+        shape = tabulated(bodies, bodies.spacing, EXACT_PLACES if exact else PLACES)
     if law is None:
         plane = plane_stiffness_of(scene, tolerance)
         bond = spring if scene.stands else _beside_plane(spring, plane)

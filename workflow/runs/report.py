@@ -29,6 +29,7 @@ from contact1d.workflow.body.theory import theory
 from contact1d.workflow.body.traction import BodyPressure, body_shears
 from contact1d.workflow.body.validity import checks
 from contact1d.workflow.continuation.outcome import Outcome
+from contact1d.workflow.continuation.state import Zoned
 from contact1d.workflow.errors import FolderError
 from contact1d.workflow.experiments import kind_of
 from contact1d.workflow.experiments.keeping import kept_states
@@ -212,7 +213,7 @@ COLUMN_UNITS = {
     "stick_radius_uncertainty": LENGTH, "dissipated_energy": ENERGY, "r": LENGTH,
     "shear_stress": MEAN_PRESSURE, "shear_stress_uncertainty": MEAN_PRESSURE, "cantilever_force": FORCE,
     "cantilever_work": ENERGY, "place": LENGTH, "size": LENGTH, "time": TIME, "load": FORCE,
-    "force_standard_error": FORCE, "adhesion_force": FORCE,
+    "force_standard_error": FORCE, "adhesion_force": FORCE, "cohesive_radius": LENGTH,
 }  # fmt: skip
 """Unit of each column of the CSV files that has one made of LU, FU and MU."""
 OF_A_BODY = {"pressure": MEAN_PRESSURE, "pressure_uncertainty": MEAN_PRESSURE}
@@ -236,6 +237,8 @@ def tables_of(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressu
         "branch": [kind_of(scene).branch(state.phase) for state in states],
         "contact_radius_uncertainty": uncertainty,
     }
+    if isinstance(states[-1].rule, Zoned):
+        curve["cohesive_radius"] = [getattr(state.profile, "reach", 0.0) for state in states]
     tables: dict[str, Mapping[str, Any]] = {
         "curve": curve | dict(outcome.columns),
         "profile": profile_columns(outcome.profiles),

@@ -1,6 +1,15 @@
 """The typed scene: TOML in, either a `Scene` whose tables fit together or every problem at once."""
 
-from contact1d.workflow.scene.effects import Cantilever, Damping, Friction, Interaction, Neighbours, Noise, Plate
+from contact1d.workflow.scene.effects import (
+    Adhesion,
+    Cantilever,
+    Damping,
+    Friction,
+    Interaction,
+    Neighbours,
+    Noise,
+    Plate,
+)
 from contact1d.workflow.scene.experiments import Hold, Kind, Load, Path, PullOff, Slide, Span, Tangential
 from contact1d.workflow.scene.problems import Problem, SceneError
 from contact1d.workflow.scene.profiles import (
@@ -20,6 +29,7 @@ from contact1d.workflow.scene.tables import EFFECTS, Bodies, Elastic, Material, 
 
 __all__ = [
     "EFFECTS",
+    "Adhesion",
     "AnyScene",
     "Bodies",
     "Cantilever",

@@ -124,7 +124,7 @@ class Friction(Effect):
 
 
 class Adhesion(Effect):
-    """Effect: JKR adhesion on a rigid plane, with a range of zero. W or γ is given."""
+    """Effect: adhesion to a rigid plane, JKR's, or with a range that of Maugis and Dugdale. W or γ is given."""
 
     one_of = (
         (("work_of_adhesion", "surface_energy"), "give W, or with surface_energy γ of one side, half of it; not both"),
@@ -139,8 +139,8 @@ class Adhesion(Effect):
     surface_energy: LineEnergy | None = None
     """γ of one side, half the work of adhesion"""
     range: Length | None = None
-    """range z₀ of the attraction, if known: the simulation has a range of zero, and its results are compared with the
-    theory for z₀ by the Tabor parameter
+    """range h₀ = W/σ₀ of the attraction, 0.974 z₀ of a Lennard-Jones surface: the contact is that of Maugis and
+    Dugdale, from DMT to JKR; absent: a range of zero, JKR
     """
 
     @property

@@ -169,6 +169,12 @@ def _attraction(d: Draft) -> Rows:
     yield ("bodies.reduction", adheres and d["bodies.reduction"] == "geike_popov",
            'must be "mdr" with [adhesion], whose contact edge is that of a contact of three dimensions',
            'write reduction = "mdr"')
+    yield ("adhesion.range", adheres and "adhesion.range" in d and d.profile == "flat_punch",
+           "not with a flat punch, whose edge has no attraction beyond it", "remove it: a punch is Kendall's")
+    timed = [name for name in TIMED if name in d]
+    yield ("adhesion.range", adheres and "adhesion.range" in d and bool(timed or d["experiment.method"] == "dynamic"),
+           f"only of contacts at rest, not {f'with [{timed[0]}]' if timed else 'in time'}",
+           'remove it, or use method = "quasistatic" without [plate], [damping] and [noise]')
     yield ("damping", adheres and d.kind == "path",
            "not with [adhesion] in a path, which under displacement control has no dynamics",
            'remove it: method = "quasistatic" is the same without time')

@@ -1,8 +1,11 @@
-"""Effect [adhesion]: d = g(a) − √(2π a W/E*) at the edge a of the contact, the rule of Heß, which makes it JKR's."""
+"""Effect [adhesion]: d = g(a) − √(2π a W/E*) at the edge a of the contact, the rule of Heß, which makes it JKR's.
+
+With a range it is Maugis and Dugdale's: an attraction σ₀ = W/h₀ beyond the edge (`model.cohesive`).
+"""
 
 from contact1d.workflow.deck.effects import Contribution, Stage, number
 from contact1d.workflow.model.settings import Settings
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene import Adhesion, Scene
 
 TOUCH = 1e-9
 """Distance over the spacing at which bodies touch: round-off of a displacement of 0."""
@@ -10,9 +13,13 @@ TOUCH = 1e-9
 
 def adhesion(scene: Scene, settings: Settings) -> Contribution:
     """The cells of the particles are in a file of their own. The effect follows the plane."""
+    own, stiffness = scene.the(Adhesion), {"adhesion_stiffness": number(scene.bulk_stiffness)}
+    if own.range:
+        modulus, stress = scene.bulk_stiffness / scene.bodies.spacing, own.work / own.range
+        stiffness |= {"adhesion_modulus": number(modulus), "adhesion_stress": number(stress)}
+        return Contribution("adhesion", Stage.DRAG, ("cohesion",), stiffness)
     last = settings.estimate.parted(0.0) / settings.estimate.spacing
-    variables = {
-        "adhesion_stiffness": number(scene.bulk_stiffness),
+    variables = stiffness | {
         "adhesion_touch": number(-TOUCH * scene.bodies.spacing),
         "adhesion_last": number(last * scene.bodies.spacing),
     }

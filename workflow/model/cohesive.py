@@ -1,0 +1,427 @@
+"""Maugis and Dugdale's contact of any axisymmetric body on a rigid plane: an attraction σ₀ over a range h₀ = W/σ₀.
+
+With the transformed profile g(x), springs E* per length, contact up to a and attraction up to c ≥ a, s² = c² − a²,
+
+    q = E* (d − g)  for |x| < a,      q = −2σ₀ √(c² − x²)  for a < |x| < c
+    d = g(a) − (2σ₀/E*) s                                       no stress is singular at a
+    h₀ = f(c) − d + (2/π) [∫₀ᵃ (d − g)/√(c² − x²) dx − (2σ₀/E*)(c − a)]      the gap at c is the range
+    F = 2E* [a d − G(a)] − 4σ₀ ∫ₐᶜ √(c² − x²) dx,   G = ∫₀ g dx
+
+Before contact a = 0, and the gap alone decides: d = f(c) − (4σ₀/πE*) c − h₀. As c → a this is JKR's (`adhesion`).
+
+The states are one curve, from c = 0 over the touch of the apexes to wide contacts. Where d falls along it no state is
+stable: a contact that is loaded goes on to the next place of the curve with its d, one that is unloaded to the one
+before; there are any number of such limit points, or none but that of the attraction itself.
+
+A particle has the integral of q over its cell. Integrals of neighbours add up, so that F is exact at every spacing.
+Source: D. Maugis, J. Colloid Interface Sci. 150 (1992) 243, for a paraboloid; the equations are Abel transforms.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, fields
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.analysis.polynomial import gauss
+from contact1d.workflow.model.adhesion import SPANNED, AdhesiveEstimate
+from contact1d.workflow.model.chain import SettingsError
+from contact1d.workflow.model.pairs import ContactEstimate, Profile, beside_kinks, plane_estimate
+from contact1d.workflow.scene import Scene
+
+Array = NDArray[np.float64]
+POINTS, FIRST, NEAR = 400, 1e-3, 40
+"""Radii at which the equations are solved, the first of them over the last, and how many lie before that one."""
+BETWEEN = 10
+"""Points of the curve for each of them, by cubics: their error is some 1e-8 of F."""
+BEFORE = 1000
+"""Points of the curve before contact, where d(c) is explicit."""
+NODES, PANEL = 48, 8
+"""Of Gauss's quadrature from 0 or a kink to the edge, and of one between two positions of G."""
+PLACES = 2000
+"""Positions between which G is one quadrature each."""
+TINY = float(np.finfo(np.float64).tiny)
+APART = -1.0
+"""Place on the curve of bodies that do not feel each other."""
+SAME = 1e-9
+"""Fall of d over its range that is one: others are round-off."""
+DOUBLINGS = 200
+"""Most of a bracket."""
+
+
+@dataclass(frozen=True)
+class Zone:
+    """States of a contact; arrays (m,), or columns of the curve.
+
+    Attributes:
+        edge, reach: a and c [LU], both 0 of bodies that do not feel each other.
+        displacement, force: [LU], [FU].
+    """
+
+    edge: Array
+    reach: Array
+    displacement: Array
+    force: Array
+
+
+@dataclass(frozen=True)
+class Cells:
+    """What the cell of each particle spans on one side of the axis; arrays (n,).
+
+    Attributes:
+        inner, outer: its ends [LU].
+        below, above: G there [LU²].
+        sides: 2 of a particle on the axis, which has a cell on either side; else 1.
+    """
+
+    inner: Array
+    outer: Array
+    below: Array
+    above: Array
+    sides: Array
+
+
+@dataclass(frozen=True, eq=False)
+class CohesiveEstimate(AdhesiveEstimate):
+    """The curve of a contact whose attraction has a range.
+
+    Attributes:
+        range: h₀ [LU].
+        surface: f, whose transform the profile is.
+    """
+
+    range: float = field(kw_only=True)
+    surface: Profile = field(kw_only=True)
+
+    @property
+    def stress(self) -> float:
+        """σ₀ = W/h₀ [FU/LU²]."""
+        return self.work / self.range
+
+    @property
+    def _ratio(self) -> float:
+        """2σ₀/E* [1]."""
+        return 2.0 * self.stress / self.modulus
+
+    # --- the equations
+
+    @cached_property
+    def _areas(self) -> tuple[Array, Array]:
+        """Positions [LU] from 0 on, dense beside kinks, and G there [LU²]."""
+        x = np.concatenate([[0.0], np.geomspace(FIRST**2 * self.known, self.known, PLACES)])
+        x = beside_kinks(x, self.profile)
+        return x, np.append(0.0, np.cumsum(self._integral(x[:-1], x[1:])))
+
+    def _integral(self, low: Array, high: Array) -> Array:
+        """∫ g dx between positions [LU²]."""
+        node, weight = gauss(PANEL)
+        half = 0.5 * (high - low)
+        return np.asarray(half * (self.profile.height(0.5 * (low + high)[:, None] + half[:, None] * node) @ weight))
+
+    def area(self, x: Array) -> Array:
+        """G(x) = ∫₀ˣ g [LU²] at positions ≥ 0 [LU], (n,), as far as the body is known."""
+        places, areas = self._areas
+        cell = np.clip(np.searchsorted(places, x, side="right") - 1, 0, places.size - 1)
+        return np.asarray(areas[cell] + self._integral(places[cell], x))
+
+    def _pressed(self, edge: Array, width: Array) -> Array:
+        """∫₀ᵃ g/√(c² − x²) dx [LU], c² = a² + s²; with x = c sin t, from 0 or a kink on in powers of √(t − t₀)."""
+        c = np.hypot(edge, width)
+        kinks = [np.minimum(kink, edge) for kink in self.profile.kinks if kink < self.known]
+        angles = [np.zeros_like(edge), *(np.arctan2(one, np.sqrt((c - one) * (c + one))) for one in kinks)]
+        angles.append(np.arctan2(edge, width))
+        node, weight = gauss(NODES)
+        share, total = 0.5 * (node + 1.0), np.zeros_like(edge)
+        for low, high in pairwise(angles):
+            angle = low[:, None] + (high - low)[:, None] * share**2
+            total += (high - low) * (self.profile.height(c[:, None] * np.sin(angle)) @ (share * weight))
+        return total
+
+    def gap_error(self, edge: Array, width: Array, displacement: Array) -> Array:
+        """Gap at c less the range [LU] at a, s and d [LU]; 0 of a state, for which d is that of the edge, too."""
+        c = np.hypot(edge, width)
+        angle = np.arctan2(edge, width)
+        # c − a without a difference of numbers that are nearly the same
+        ahead = width * width / np.maximum(c + edge, TINY)
+        elastic = displacement * angle - self._pressed(edge, width) - self._ratio * ahead
+        return np.asarray(self.surface.height(c) - displacement + 2.0 / math.pi * elastic - self.range)
+
+    def _states(self, edge: Array, width: Array) -> Zone:
+        """The states of contacts with these a and s [LU]."""
+        displacement = self.profile.height(edge) - self._ratio * width
+        return Zone(edge, np.hypot(edge, width), displacement, self.forces(edge, width, displacement))
+
+    def forces(self, edge: Array, width: Array, displacement: Array) -> Array:
+        """F [FU] at a, s and d [LU]."""
+        ring = 0.5 * ((edge**2 + width**2) * np.arctan2(width, edge) - edge * width)
+        return np.asarray(2.0 * self.modulus * (edge * displacement - self.area(edge)) - 4.0 * self.stress * ring)
+
+    def _widths(self, edge: Array) -> Array:
+        """s [LU] of contacts of radius a [LU]. Raises SettingsError where the attraction reaches past the body."""
+        from scipy.optimize import elementwise  # which takes longer to import than a small run
+
+        def error(width: Array, edge: Array) -> Array:
+            return self.gap_error(edge, width, self.profile.height(edge) - self._ratio * width)
+
+        high = np.full_like(edge, self.range / max(self._ratio, TINY) + math.sqrt(self.range * self.known))
+        for _ in range(DOUBLINGS):
+            short = error(high, edge) < 0.0
+            if not short.any():
+                break
+            if (np.hypot(edge, high)[short] > self.profile.reach).any():
+                raise _covered(self.profile.reach)
+            high[short] *= 2.0
+        found = elementwise.find_root(error, (np.zeros_like(edge), high), args=(edge,), maxiter=DOUBLINGS)
+        return np.asarray(found.x)
+
+    # --- the curve
+
+    @cached_property
+    def _nodes(self) -> Zone:
+        """Contacts at which the equations are solved, by rising a from 0 on, limit points among them."""
+        least = FIRST * self.known
+        edge = np.concatenate([np.linspace(0.0, least, NEAR, endpoint=False), np.geomspace(least, self.known, POINTS)])
+        edge = beside_kinks(edge, self.profile)
+        edge = np.unique(np.concatenate([edge, self._folds(edge)]))
+        return self._states(edge, self._widths(edge))
+
+    def _folds(self, edge: Array) -> Array:
+        """a [LU] where d has an extremum, between those of its neighbours on a grid."""
+        from scipy.optimize import elementwise
+
+        d = self._states(edge, self._widths(edge)).displacement
+        slope = np.sign(np.diff(d))
+        turns = np.flatnonzero(slope[1:] != slope[:-1]) + 1
+        if not turns.size:
+            return turns.astype(np.float64)
+        found = elementwise.find_minimum(
+            lambda a, sign: sign * self._states(a, self._widths(a)).displacement,
+            (edge[turns - 1], edge[turns], edge[turns + 1]),
+            args=(np.sign(slope[turns]),),
+        )
+        return np.asarray(found.x)
+
+    @cached_property
+    def curve(self) -> Zone:
+        """All states, from c = 0 on: before contact, and by cubics between contacts."""
+        from scipy.interpolate import CubicSpline
+
+        nodes = self._nodes
+        reach = nodes.reach[0] * np.linspace(0.0, 1.0, BEFORE, endpoint=False)
+        none = np.zeros_like(reach)
+        columns = [[none], [reach], [self._before(reach)], [-math.pi * self.stress * reach**2]]
+        # Each stretch between kinks has its own cubics: beyond a kink d rises as a root.
+        ends = [0, *(at for at in np.searchsorted(nodes.edge, self.profile.kinks) if 0 < at < nodes.edge.size - 1)]
+        for first, last in pairwise([*ends, nodes.edge.size - 1]):
+            own, number = slice(first, last + 1), np.arange(last - first + 1.0)
+            edge = np.interp(np.linspace(0.0, last - first, BETWEEN * (last - first) + 1), number, nodes.edge[own])
+            start = 0 if first == 0 else 1
+            columns[0].append(edge[start:])
+            for column, values in zip(columns[1:], list(vars(nodes).values())[1:], strict=True):
+                column.append(CubicSpline(nodes.edge[own], values[own])(edge[start:]))
+        return Zone(*map(np.concatenate, columns))
+
+    def _before(self, reach: Array) -> Array:
+        """d [LU] of bodies that attract each other up to c [LU] and do not touch."""
+        return np.asarray(self.surface.height(reach) - 2.0 / math.pi * self._ratio * reach - self.range)
+
+    def places(self, displacements: Array, place: float = APART) -> Array:
+        """Places on the curve of a contact that goes from one of them along displacements [LU]: indices, or APART."""
+        d, found = self.curve.displacement, np.empty(displacements.size)
+        first = float(d[0])
+        for i, wanted in enumerate(displacements.tolist()):
+            if place == APART:
+                place = APART if wanted < first else 0.0
+            if place != APART:
+                at = int(place)
+                if wanted > self._at(d, place):
+                    further = np.flatnonzero(d[at + 1 :] >= wanted)
+                    end = at + 1 + int(further[0]) if further.size else d.size - 1
+                    place = _between(d, end - 1, wanted)
+                else:
+                    back = np.flatnonzero(d[: at + 1] <= wanted)
+                    place = _between(d, int(back[-1]), wanted) if back.size else APART
+            found[i] = place
+        return found
+
+    @staticmethod
+    def _at(column: Array, place: float) -> float:
+        return float(np.interp(place, np.arange(column.size), column))
+
+    def at(self, places: Array) -> Zone:
+        """The states at places of the curve; bodies apart feel nothing, at a displacement that is not known."""
+        number, held = np.arange(self.curve.edge.size, dtype=np.float64), places != APART
+        return Zone(*(np.where(held, np.interp(places, number, one), 0.0) for one in vars(self.curve).values()))
+
+    def place_of(self, edge: float, reach: float) -> float:
+        """The place of a state on the curve, by its a and c [LU]."""
+        if reach == 0.0:
+            return APART
+        column = self.curve.edge if edge > 0.0 else self.curve.reach[: BEFORE + 1]
+        start = BEFORE if edge > 0.0 else 0
+        return start + float(np.interp(edge or reach, column[start:], np.arange(column.size - start)))
+
+    def solved(self, displacements: Array, places: Array) -> Zone:
+        """The states at displacements [LU] near places of the curve, exactly."""
+        from scipy.optimize import elementwise
+
+        guess, nodes = self.at(places), self._nodes
+        edge, width = np.zeros_like(displacements), np.zeros_like(displacements)
+        touching, near = guess.edge > 0.0, (guess.edge == 0.0) & (places != APART)
+        if touching.any():
+            d = displacements[touching]
+            low = np.clip((places[touching] - BEFORE) // BETWEEN, 0, nodes.edge.size - 2).astype(np.intp)
+            low -= (nodes.displacement[low] > d) & (low > 0)
+            low += (nodes.displacement[low + 1] < d) & (low < nodes.edge.size - 2)
+
+            def error(edge: Array, d: Array) -> Array:
+                return self.gap_error(edge, np.maximum(self.profile.height(edge) - d, 0.0) / self._ratio, d)
+
+            ends = nodes.edge[low], nodes.edge[low + 1]
+            found = elementwise.find_root(error, ends, args=(d,), maxiter=DOUBLINGS)
+            nearer = np.where(np.abs(error(ends[0], d)) < np.abs(error(ends[1], d)), *ends)
+            edge[touching] = np.where(found.success, found.x, nearer)
+            width[touching] = np.maximum(self.profile.height(edge[touching]) - d, 0.0) / self._ratio
+        if near.any():
+            d = displacements[near]
+            low = np.clip(places[near].astype(np.intp), 0, BEFORE - 1)
+            ends = self.curve.reach[low], self.curve.reach[low + 1]
+            found = elementwise.find_root(lambda c, d: self._before(c) - d, ends, args=(d,), maxiter=DOUBLINGS)
+            width[near] = np.where(found.success, found.x, guess.reach[near])
+        force = np.where(places == APART, 0.0, self.forces(edge, width, displacements))
+        return Zone(edge, np.hypot(edge, width), displacements, force)
+
+    # --- what a predictor is asked
+
+    @cached_property
+    def _unloaded(self) -> tuple[list[float], list[float]]:
+        """Places on the curve that a contact passes which is unloaded from the widest, rising; d [LU] where it jumps.
+
+        At a jump they have both its ends.
+        """
+        d, least = self.curve.displacement, SAME * float(np.ptp(self.curve.displacement))
+        passed = np.flatnonzero(d <= np.append(np.minimum.accumulate(d[::-1])[::-1][1:], np.inf)).tolist()
+        places, jumps = [float(passed[0])], list[float]()
+        for before, after in pairwise(passed):
+            if after > before + 1 and d[before + 1 : after].max() > d[after] + least:
+                places.append(_between(d, before, float(d[after])))
+                jumps.append(float(d[after]))
+            places.append(float(after))
+        return places, jumps if passed[0] == 0 else [float(d[passed[0]]), *jumps]
+
+    @cached_property
+    def held(self) -> Zone:
+        """The states of a contact that is unloaded from the widest, by rising d."""
+        return self.at(np.asarray(self._unloaded[0]))
+
+    @cached_property
+    def _grid(self) -> tuple[Array, Array, Array, int]:
+        return self.held.edge, self.held.displacement, self.held.force, 0
+
+    @property
+    def limits(self) -> tuple[float, ...]:
+        """Displacements [LU] at which a contact that is unloaded jumps, rising; at the first it is lost."""
+        return tuple(self._unloaded[1])
+
+    def half_widths(self, displacements: Array, gap: float) -> Array:
+        """c(d) [LU] of a contact that is held, at least a spacing."""
+        return np.maximum(self.spacing, self.reaches(displacements))
+
+    def reaches(self, displacements: Array) -> Array:
+        """The same without regard to the spacing."""
+        return np.asarray(np.interp(displacements, self.held.displacement, self.held.reach))
+
+    def require_one_edge(self) -> None:
+        """Nothing: where the edge would jump, the curve has a limit point."""
+
+    def energy(self, displacement: float, radius: float) -> float | None:
+        """Not known."""
+        return None
+
+    def zones(self, x: Array) -> Cells:
+        """The cells of particles at positions x, (n,) [LU]."""
+        at, half = np.abs(x), 0.5 * self.spacing
+        inner, outer = np.maximum(at - half, 0.0), at + half
+        sides = np.where(at < 0.25 * self.spacing, 2.0, 1.0)
+        # Beyond the body nothing is known, and nothing carries.
+        below, above = (self.area(np.minimum(end, self.known)) for end in (inner, outer))
+        return Cells(inner, outer, below, above, sides)
+
+    def loads(self, cells: Cells, zone: Zone, state: int) -> Array:
+        """∫ q dx [FU] over each cell in a state."""
+        a, c, d = (float(column[state]) for column in (zone.edge, zone.reach, zone.displacement))
+        end = np.minimum(cells.outer, a)
+        area = np.where(cells.outer < a, cells.above, self.area(np.asarray([a]))[0])
+        pressed = self.modulus * np.where(cells.inner < a, d * (end - cells.inner) - (area - cells.below), 0.0)
+        low, high = (np.minimum(np.maximum(one, a), c) for one in (cells.inner, cells.outer))
+        return np.asarray(cells.sides * (pressed - 2.0 * self.stress * (_half_disc(high, c) - _half_disc(low, c))))
+
+
+def _half_disc(x: Array, radius: float) -> Array:
+    """∫₀ˣ √(c² − x²) dx [LU²]."""
+    return 0.5 * (x * np.sqrt((radius - x) * (radius + x)) + radius**2 * np.arcsin(x / max(radius, TINY)))
+
+
+def _between(column: Array, low: int, value: float) -> float:
+    """The place of a value in the cell of a column that begins at `low`."""
+    start, end = float(column[low]), float(column[min(low + 1, column.size - 1)])
+    return low + (min(max((value - start) / (end - start), 0.0), 1.0) if end > start else 0.0)
+
+
+def _covered(reach: float) -> SettingsError:
+    return SettingsError(
+        f"the attraction would reach beyond the body, which ends at {reach:.6g} LU: lower adhesion.range or "
+        "adhesion.work_of_adhesion, or give a wider profile"
+    )
+
+
+def estimate_on_plane(scene: Scene, profile: Profile) -> ContactEstimate:
+    """The predictor of a scene on a rigid plane; that of one with [adhesion] is known as far as its experiment needs.
+
+    Raises:
+        SettingsError: the contact would be as wide as the body, or its edge would jump.
+    """
+    bodies, stiffness = scene.bodies, scene.bulk_stiffness
+    springs = plane_estimate(profile, bodies.spacing, stiffness)
+    if not scene.adhesion:
+        return springs
+    wanted, load = max([0.0, *scene.experiment.places()]), scene.experiment.compression or 0.0
+    known, work, estimate, reach = bodies.spacing, scene.adhesion.work, None, scene.adhesion.range
+    common = springs.gap, springs.force, springs.rest, profile, bodies.spacing, stiffness
+    while estimate is None or not (estimate.known == profile.reach or estimate.is_beyond(wanted, load)):
+        widest = min(known, profile.reach)
+        estimate = AdhesiveEstimate(*common, work=work, known=widest)
+        known *= 2.0
+    if reach and work:
+        estimate = _with_range(estimate, reach, bodies.profile, wanted, load)
+    if bodies.own_count is None:
+        widest = float(estimate.radii(np.asarray([max(wanted, estimate.displacement_at(load))]))[0])
+        limit = min(profile.reach, bodies.profile.steepest.curvature_radius or math.inf)
+        if widest > SPANNED * limit:
+            raise SettingsError(
+                f"the adhesive contact would cover the body, which ends at {limit:.6g} LU: JKR's theory is for a "
+                "contact much smaller than the body. Lower adhesion.work_of_adhesion, the load or the displacement"
+            )
+    estimate.require_one_edge()
+    return estimate
+
+
+def _with_range(jkr: AdhesiveEstimate, reach: float, surface: Profile, wanted: float, load: float) -> CohesiveEstimate:
+    """The predictor of a contact whose attraction has a range [LU], known as far as an experiment needs.
+
+    Raises:
+        SettingsError: the attraction would reach past the body.
+    """
+    known = jkr.known
+    while True:
+        own = {one.name: getattr(jkr, one.name) for one in fields(jkr)} | {"known": known}
+        estimate = CohesiveEstimate(**own, range=reach, surface=surface)
+        if estimate.is_beyond(wanted, load):
+            return estimate
+        if 2.0 * known >= jkr.profile.reach:
+            raise _covered(jkr.profile.reach)
+        known *= 2.0
