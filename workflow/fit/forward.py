@@ -4,6 +4,7 @@ With the profile's transform g, its integral G(a) = ∫₀ᵃ g dx, and the cont
 
     Hertz   d = g(a),                    F = 2E*(a d − G)
     DMT     the same,                    F lower by 2πWR
+    Maugis  d = g(a) − (2σ₀/E*) √(c² − a²),  F lower by that of the cohesive zone up to c
     JKR     d = g(a) − √(2πaW/E*),       F = 2E*(a d − G)
 
 An instrument of stiffness k_c has its contact point at z = d + F/k_c. A measured position z is prescribed, and F follows
@@ -16,15 +17,21 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+from scipy.optimize import elementwise
 
 from contact1d.workflow.scene import Shape
 
 Array = NDArray[np.float64]
 EDGES = 500
 """Edges a between which a branch is cubic, in geometric progression over SPAN."""
+THINNED, NODES, BEFORE = 5, 20, 40
+"""Of Maugis's equations: every how many edges has a root, nodes of a quadrature, and places before contact."""
 NEWTON = 2
 """Steps to the place of a position between two of them: from a straight start the error is then below 1e-9 of the cell."""
 SPAN = 2e-3
@@ -38,11 +45,12 @@ so that a point there pulls the parameters back."""
 
 @dataclass(frozen=True)
 class Body:
-    """A profile's transform at EDGES: a, g and G [LU, LU, LU²]; and the radius of curvature at its apex [LU]."""
+    """A profile's transform at EDGES: a, g and G [LU, LU, LU²], the profile f [LU], the radius at its apex [LU]."""
 
     edges: Array
     heights: Array
     areas: Array
+    surface: Array
     radius: float | None
 
     @classmethod
@@ -62,14 +70,24 @@ class Body:
         first = a[0] * g[0] / (1.0 + n[0])
         areas = first + np.concatenate([[0.0], np.cumsum(np.where(np.isfinite(n), steps, 0.5 * (g[1:] + g[:-1]) * np.diff(a)))])
         zero = np.zeros(1)
-        return cls(*(np.concatenate([zero, one]) for one in (a, g, areas)), shape.curvature_radius)
+        columns = a, g, areas, shape.height(a)
+        return cls(*(np.concatenate([zero, one]) for one in columns), shape.curvature_radius)
+
+    @cached_property
+    def height(self) -> CubicSpline:
+        """g of places x [LU]."""
+        return CubicSpline(self.edges, self.heights)
+
+    @cached_property
+    def drawn(self) -> CubicSpline:
+        """f of places x [LU]."""
+        return CubicSpline(self.edges, self.surface)
 
 
 @dataclass(frozen=True)
 class Branch:
-    """Displacements and forces [LU, FU] of a contact by increasing displacement, and its radii a [LU].
-
-    `snaps`: whether the force at the first of them vanishes at once.
+    """Displacements and forces [LU, FU] along a path of states, and a length that grows along it [LU]: a, where bodies
+    touch at once.
     """
 
     radii: Array
@@ -149,4 +167,38 @@ def jkr(body: Body, modulus: float, work: float, reach: float) -> Branch:
     return Branch(a, d, 2.0 * modulus * (a * d - body.areas))
 
 
-LAWS: Mapping[str, Law] = {"Hertz": hertz, "DMT": dmt, "JKR": jkr}
+def maugis(body: Body, modulus: float, work: float, reach: float) -> Branch:
+    """Dugdale's stress σ₀ = W/h₀ over the range h₀ around the contact (equations: `model.cohesive`), by a rising path.
+
+    Its states before contact, a = 0, are explicit in c; of a contact s = √(c² − a²) is a root for each a.
+    """
+    ratio, a = 2.0 * work / reach / modulus, np.concatenate([[0.0], body.edges[1::THINNED]])
+    g = body.height(a)
+    node, weight = leggauss(NODES)
+
+    def gap(s: Array, a: Array, g: Array) -> Array:
+        """Gap at c less h₀."""
+        c, angle = np.hypot(a, s), np.arctan2(a, s)
+        pressed = 0.5 * angle * (body.height(c[:, None] * np.sin(0.5 * angle[:, None] * (node + 1.0))) @ weight)
+        d = g - ratio * s
+        # c − a without a difference of numbers that are nearly the same
+        ring = ratio * s * s / (c + a + 1e-300)
+        return np.asarray(body.drawn(c) - d + 2.0 / math.pi * (d * angle - pressed - ring) - reach)
+
+    high = np.full_like(a, reach / ratio + math.sqrt(reach * a[-1]))
+    for _ in range(60):
+        short = gap(high, a, g) < 0.0
+        if not short.any():
+            break
+        high[short] *= 2.0
+    s = elementwise.find_root(gap, (np.zeros_like(a), high), args=(a, g), tolerances={"xrtol": 1e-9}).x
+    d = g - ratio * s
+    ring = 0.5 * ((a * a + s * s) * np.arctan2(s, a) - a * s)
+    F = 2.0 * modulus * (a * d - np.interp(a, body.edges, body.areas)) - 2.0 * modulus * ratio * ring
+    c = s[0] * np.linspace(0.0, 1.0, BEFORE, endpoint=False)
+    before = body.drawn(c) - 2.0 / math.pi * ratio * c - reach
+    path = np.concatenate([c, s[0] + a])
+    return Branch(path, np.concatenate([before, d]), np.concatenate([-math.pi * work / reach * c * c, F]))
+
+
+LAWS: Mapping[str, Law] = {"Hertz": hertz, "DMT": dmt, "Maugis": maugis, "JKR": jkr}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -23,8 +23,10 @@ SOFTEST = 0.4
 interval of 95 % covers a third of the true moduli; at half of it the intervals hold."""
 FEWEST_HELD = 15
 """Points in contact."""
-ALIKE = 1e-4
+ALIKE = 1e-6
 """Least eigenvalue of the scaled information matrix below which parameters trade off against each other."""
+RANGE, LIMITS, RANGES, BEST = "adhesion.range", ("JKR", "DMT"), (-4.0, -2.5, -1.0, 0.5, 2.0, 3.5), 3
+"""Of Maugis's contact: its range, its two limits, ranges tried (log of the given one), and how many of them go on."""
 WIDEST = 1.0
 """Half-width of an interval, in log p, beyond which a parameter is not known: a factor of e."""
 
@@ -128,9 +130,25 @@ def compared(found: Fitted, model: str) -> Fitted:
     """Another contact model on the same points, without intervals."""
     subject = _subject(found.plan, found.curve, model)
     problem = subject.problem.without(found.solution.outliers)
-    sought = [i for i, one in enumerate(subject.unknowns) if one.fitted]
-    solution = solved(problem, first_look(problem, sought, subject.completed), judges=False)
+    solution = solved(problem, _starts(subject, found.solution.outliers), judges=False)
     return Fitted(found.plan, found.curve, model, subject, solution, {})
+
+
+def _starts(subject: Subject, outliers: Array) -> list[Array]:
+    """Starts of a fit: of Maugis's contact, which takes long, those of its two limits at several ranges."""
+    names, problem = subject.names, subject.problem.without(outliers)
+    sought = [i for i, one in enumerate(subject.unknowns) if one.fitted]
+    if subject.law is not LAWS["Maugis"]:
+        return first_look(problem, sought, subject.completed)
+    at = names.index(RANGE) if RANGE in names else None
+    starts = []
+    for name in LIMITS:
+        limit = replace(subject, law=LAWS[name])
+        others = [i for i in sought if i != at]
+        u = first_look(limit.problem.without(outliers), others, limit.completed)[0]
+        starts += [u + step * (np.arange(u.size) == at) for step in (RANGES if at is not None else (0.0,))]
+    starts.sort(key=lambda u: float(np.abs(problem.residuals(u)).sum()))
+    return starts[:BEST]
 
 
 def fitted(plan: FitPlan, curve: ForceCurve, model: str) -> Fitted:
@@ -140,11 +158,9 @@ def fitted(plan: FitPlan, curve: ForceCurve, model: str) -> Fitted:
         UndeterminedError: it does not tell; what would help.
     """
     subject = _subject(plan, curve, model)
-    problem = subject.problem
-    sought = [i for i, one in enumerate(subject.unknowns) if one.fitted]
-    starts = first_look(problem, sought, subject.completed)
-    require_apart(subject, starts)
-    found = solved(problem, starts)
+    starts = _starts(subject, np.zeros(0))
+    require_apart(subject, starts[0])
+    found = solved(subject.problem, starts)
     if found.outliers.size > plan.fit.outliers:
         raise UndeterminedError(
             f"{found.outliers.size} points are no part of the noise, more than outliers = {plan.fit.outliers}: either "
@@ -160,7 +176,7 @@ def fitted(plan: FitPlan, curve: ForceCurve, model: str) -> Fitted:
             if one.fitted and not max(high - found.u[i], found.u[i] - low) < WIDEST:
                 raise UndeterminedError(_open(result, i, low, high))
             ends[one.name] = one.value(low), one.value(high)
-    return Fitted(plan, curve, model, subject, found, ends)
+    return replace(result, intervals=ends)
 
 
 def _subject(plan: FitPlan, curve: ForceCurve, model: str) -> Subject:
@@ -193,31 +209,30 @@ def _number(scene: object, key: str) -> float:
     return value
 
 
-def require_apart(subject: Subject, starts: list[Array]) -> None:
+def require_apart(subject: Subject, u: Array) -> None:
     """Refuse parameters of which one does what the others do.
 
     Raises:
         UndeterminedError: with their names.
     """
     problem = subject.problem
-    for u in starts[:1]:
-        J = problem.slopes(u)
-        size = np.linalg.norm(J, axis=0)
-        names = subject.names
-        if not (size > 0.0).all():
-            idle = [name for name, one in zip(names, size, strict=True) if not one > 0.0]
-            raise UndeterminedError(f"the curve does not depend on {' and '.join(idle)}: leave it out of parameters")
-        unit = J / size
-        information = unit.T @ unit
-        P = problem.prior(u)[:, :-1] / size * np.linalg.norm(problem.residuals(u))
-        values, vectors = np.linalg.eigh(information + P.T @ P)
-        if values[0] < ALIKE * 0.01:
-            heavy = [names[i] for i in np.argsort(-np.abs(vectors[:, 0])) if abs(vectors[i, 0]) > 0.2]
-            shown = [name for name in heavy if name not in (POINT, OFFSET)]
-            raise UndeterminedError(
-                f"{' and '.join(shown)} trade off: one does to the curve what the others undo. Give one of them in "
-                'the base scene with its ±, such as radius = "5 ± 0.1 µm", and leave it out of parameters'
-            )
+    J = problem.slopes(u)
+    size = np.linalg.norm(J, axis=0)
+    names = subject.names
+    if not (size > 0.0).all():
+        idle = [name for name, one in zip(names, size, strict=True) if not one > 0.0]
+        raise UndeterminedError(f"the curve does not depend on {' and '.join(idle)}: leave it out of parameters")
+    unit = J / size
+    information = unit.T @ unit
+    P = problem.prior(u)[:, :-1] / size * np.linalg.norm(problem.residuals(u))
+    values, vectors = np.linalg.eigh(information + P.T @ P)
+    if values[0] < ALIKE:
+        heavy = [names[i] for i in np.argsort(-np.abs(vectors[:, 0])) if abs(vectors[i, 0]) > 0.2]
+        shown = [name for name in heavy if name not in (POINT, OFFSET)]
+        raise UndeterminedError(
+            f"{' and '.join(shown)} trade off: one does to the curve what the others undo. Give one of them in "
+            'the base scene with its ±, such as radius = "5 ± 0.1 µm", and leave it out of parameters'
+        )
 
 
 def _require_stiff(found: Fitted) -> None:

@@ -55,7 +55,7 @@ class Subject:
     stiffness: float
     unknowns: tuple[Unknown, ...]
     point: float = 0.0
-    _bodies: dict[tuple[float, ...], Body] = field(default_factory=dict)
+    _bodies: dict[tuple[float, ...], Body] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
         """Which points may be lost, and which hold."""
