@@ -149,5 +149,4 @@ def _draw(plan: FitPlan, key: str, name: str, rows: Sequence[dict[str, Any]], fo
         axes[1].set_aspect("equal")
         plots.describe(axes[1], "x", "y", zero=False)
         figure.colorbar(shown, ax=axes[1], label=label)
-    figure.tight_layout()
     plots.save_figure(figure, folder / f"{key.rpartition('.')[2]}.png")

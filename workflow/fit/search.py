@@ -28,6 +28,8 @@ OUTLIER = 5.0
 LEVEL = 0.95
 TWO_SIDED = 1.959964
 """Standard deviations of a 95 % uncertainty."""
+LIMIT, EDGE = DECADES * math.log(10.0), 1e-3
+"""Of u of a positive parameter in a fit, and how far inside a start must be."""
 MOST_ROUNDS, SETTLED = 12, 0.02
 """Of fit, noise and outliers in turn; and change of the unknowns over their standard deviation that ends them."""
 FARTHEST = 4.0
@@ -143,8 +145,9 @@ class Problem:
                 [self._white(noise, self.slopes(full, free)) / deviation, self.prior(full)[:, :-1][:, free]]
             )
 
+        ends = np.array([LIMIT if one.positive else math.inf for one in self.unknowns])[free]
         found = least_squares(
-            rows, u[free], jacobian, method="trf", x_scale="jac", loss="soft_l1" if robust else "linear",
+            rows, np.clip(u[free], -ends, ends), jacobian, bounds=(-ends - EDGE, ends + EDGE), method="trf", x_scale="jac", loss="soft_l1" if robust else "linear",
             f_scale=2.0, xtol=1e-6, ftol=1e-6, gtol=1e-12, max_nfev=60,
         )  # fmt: skip
         return whole(found.x), 2.0 * float(found.cost)

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import norm
 
 from contact1d.workflow.errors import Contact1dError
 from contact1d.workflow.fit.curve import ForceCurve
 from contact1d.workflow.fit.forward import LAWS
 from contact1d.workflow.fit.plan import STIFFNESS, FitPlan
-from contact1d.workflow.fit.search import TWO_SIDED, Solution, Unknown, first_look, interval, solved
+from contact1d.workflow.fit.search import STEP, TWO_SIDED, Solution, Unknown, first_look, interval, solved
 from contact1d.workflow.fit.subject import OFFSET, POINT, Subject, fields, modulus_of
 
 Array = NDArray[np.float64]
@@ -80,13 +81,39 @@ class Fitted:
 
     @property
     def criterion(self) -> float:
-        """Bayes's information criterion: −2 log L + p log n; the lower the better."""
+        """Bayes's information criterion, −2 log L + p log n: the lower the better.
+
+        The positions of both jumps count here, and in no least squares.
+        """
         best, problem = self.solution.best, self.solution.problem
         n = problem.kept.size
         r = best.noise.whitened(problem.residuals(self.solution.u)[:, None])[:, 0]
         misfit = problem.prior(self.solution.u)[:, -1]
         log = -0.5 * n * math.log(float(r @ r) / n) - 0.5 * best.noise.log_determinant - 0.5 * float(misfit @ misfit)
-        return -2.0 * log + len(self.subject.names) * math.log(n)
+        given = self.model == "Maugis" and RANGE not in self.subject.names  # it needs one number more than its limits
+        log += self._jumps()
+        return -2.0 * log + (len(self.subject.names) + given) * math.log(n)
+
+    def jumps_at(self, values: Sequence[float]) -> Array:
+        """Positions z [LU] at which contact begins and is lost, (2,)."""
+        subject = self.subject
+        branch, k = subject.branch(values), subject.value_of(STIFFNESS, values, subject.stiffness)
+        ends = np.array([branch.displacements[0], branch.snap_out(k)[0]])
+        return np.asarray(ends + subject.value_of(POINT, values, subject.point))
+
+    def _jumps(self) -> float:
+        """log L of the brackets of both jumps, where the parameters leave their positions a spread."""
+        problem, u = self.solution.problem, self.solution.u
+        ends = [[self.jumps_at(problem.values(u + side * STEP * one)) for side in (-1.0, 1.0)] for one in np.eye(u.size)]
+        slopes = np.array([high - low for low, high in ends]) / (2.0 * STEP)
+        variance = np.einsum("ik,ij,jk->k", slopes, self.solution.best.covariance, slopes)
+        total = 0.0
+        for segment, at, known in zip(self.curve.segments, self.jumps_at(self.solution.values), variance, strict=True):
+            if segment.jump is not None:
+                low, high = self.curve.positions[segment.points[list(segment.jump)]]
+                spread = math.sqrt(known + (high - low) ** 2 / 12.0)
+                total += float(norm.logpdf(0.5 * (low + high), at, spread)) + math.log(abs(high - low))
+        return total
 
     @cached_property
     def misfit(self) -> float:
