@@ -28,6 +28,8 @@ from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.experiments import planned
 from contact1d.workflow.experiments.spacing import with_spacing
 from contact1d.workflow.experiments.thermal import chunk_steps
+from contact1d.workflow.fit.fit import fit
+from contact1d.workflow.fit.many import fit_many
 from contact1d.workflow.identify import Target, estimated, identify, jkr_target, material_scene
 from contact1d.workflow.model.settings import CALIBRATION, Settings, SettingsError, settings_for
 from contact1d.workflow.runs import campaign

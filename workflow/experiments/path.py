@@ -171,8 +171,8 @@ class PathExperiment(Scripted[Path]):
         warnings: dict[str, str] = {}
         if _passes_jump(case) and not any(name.startswith(LOSSES) for name in results):
             warnings["no_energy"] = (
-                "the path has too few load steps to tell what is lost at snap-in or separation, so that there is neither "
-                "dissipated_energy nor instability_energy: use more steps in experiment.displacements"
+                "the path has too few load steps to tell what is lost at snap-in or separation, so there is neither a "
+                "dissipated_energy nor an instability_energy: use more steps in experiment.displacements"
             )
         marks = {"adhesion_force", "zero_load_radius"}
         if not any(phase.name.startswith("unloading") for phase in phases) and not marks & results.keys():

@@ -103,10 +103,16 @@ def _table(path: Path) -> tuple[dict[str, NDArray[np.generic]], dict[str, str]]:
         raise DataError(f"{path}: {'is empty' if not rows else 'has no line of names'}; {FORM}")
     line, names = found
     known = _known(names)
-    units = {name: match[2].strip() for name, i in known.items() if (match := NAME.match(names[i].strip('" '))) and match[2]}
+    units = {
+        name: match[2].strip() for name, i in known.items() if (match := NAME.match(names[i].strip('" '))) and match[2]
+    }
     below = next((cells for number, cells in rows if number > line), [])
     skip = line
-    if not units and len(below) == len(names) and all(cell.strip() and not any(map(str.isdigit, cell)) for cell in below):
+    if (
+        not units
+        and len(below) == len(names)
+        and all(cell.strip() and not any(map(str.isdigit, cell)) for cell in below)
+    ):
         units = {name: below[i].strip('[]()" ') for name, i in known.items()}
         skip += 1
     text = head[line - 1]
@@ -126,7 +132,9 @@ def _table(path: Path) -> tuple[dict[str, NDArray[np.generic]], dict[str, str]]:
             bad = np.flatnonzero(~np.isfinite(numbers))
             if bad.size and name not in ("x", "y"):
                 at = lines[~blank][bad[0]]
-                raise DataError(f"{path}: line {at}: {name} is empty or no number; leave such lines out ({bad.size} in all)")
+                raise DataError(
+                    f"{path}: line {at}: {name} is empty or no number; leave such lines out ({bad.size} in all)"
+                )
             table[name] = numbers
         else:
             table[name] = column.astype(str).str.strip().str.lower().to_numpy()
@@ -199,7 +207,10 @@ def _turn(z: Array, segment: NDArray[np.generic] | None) -> int:
 def _require_signs(curve: ForceCurve) -> None:
     """Refuse what would be a contact with other signs only."""
     z, F = curve.positions, curve.forces
-    low, high = (F[np.argsort(z[: curve.turn])[part]].mean() for part in (slice(0, curve.turn // 10 + 1), slice(-(curve.turn // 10 + 1), None)))
+    low, high = (
+        F[np.argsort(z[: curve.turn])[part]].mean()
+        for part in (slice(0, curve.turn // 10 + 1), slice(-(curve.turn // 10 + 1), None))
+    )
     span = float(np.ptp(F))
     if high - low < -0.2 * span:
         raise DataError('the force falls towards the sample: tension is positive here; write reverse = ["F"]')
@@ -225,4 +236,6 @@ def _require_whole(curve: ForceCurve, along: str) -> None:
         at = int(np.argmax(steps))
         if steps[at] > GAP * usual and steps[at] > 0.1 * curve.depth:
             line = curve.lines[points][at]
-            raise DataError(f"has a gap in {along} after line {line}: give the points between, or the curve up to there")
+            raise DataError(
+                f"has a gap in {along} after line {line}: give the points between, or the curve up to there"
+            )

@@ -1,7 +1,8 @@
-"""A fit from its file to its folder: the curve under its own contact model and beside others, and the scene on LAMMPS."""
+"""A fit from its file to its folder: the curve under its contact model and others, and the scene on LAMMPS."""
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -173,8 +174,10 @@ def _has(plan: FitPlan, model: str) -> bool:
         return not all(key.startswith("adhesion.") for key in plan.fit.parameters)
     adhesion = plan.base.adhesion
     round_ = plan.base.bodies.profile.curvature_radius is not None
-    return plan.base.work_of_adhesion > 0.0 and (model != "DMT" or round_) and (
-        model != "Maugis" or bool(adhesion and adhesion.range)
+    return (
+        plan.base.work_of_adhesion > 0.0
+        and (model != "DMT" or round_)
+        and (model != "Maugis" or bool(adhesion and adhesion.range))
     )
 
 
@@ -199,7 +202,9 @@ def _judge(found: Found) -> None:
         found.warnings["contact_point"] = "the contact point is outside the curve: the baseline is not in it"
     shared = [key for key in one.plan.fit.parameters if key in one.plan.known]
     if shared:
-        found.warnings["prior"] = f"{', '.join(shared)}: the ± in the base scene counts as a measurement beside the curve"
+        found.warnings["prior"] = (
+            f"{', '.join(shared)}: the ± in the base scene counts as a measurement beside the curve"
+        )
 
 
 MISFIT = 3.0
@@ -254,7 +259,7 @@ def checked(found: Found) -> Checked:
         curve, scales = done.curve, one.plan.scales
         at = np.asarray(curve["displacement"]) / scales.factor("LU")
         forces = np.asarray(curve["force"]) / scales.factor("FU")
-    predicted = np.interp(at, d[max(least, rigid) :], F[max(least, rigid) :])
+    predicted = branch.at(at, math.inf, held=True)
     return Checked(at, forces, predicted, float(one.spread().max()))
 
 

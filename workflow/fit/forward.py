@@ -28,9 +28,9 @@ from scipy.optimize import elementwise
 from contact1d.workflow.scene import Shape
 
 Array = NDArray[np.float64]
-EDGES = 500
+EDGES = 300
 """Edges a between which a branch is cubic, in geometric progression over SPAN."""
-THINNED, NODES, BEFORE = 5, 20, 40
+THINNED, NODES, BEFORE = 3, 20, 40
 """Of Maugis's equations: every how many edges has a root, nodes of a quadrature, and places before contact."""
 NEWTON = 2
 """Steps to the place of a position between two of them: from a straight start the error is then below 1e-9 of the cell."""
@@ -68,10 +68,13 @@ class Body:
             n = np.where(g[:-1] > 0.0, np.log(g[1:] / g[:-1]) / np.log(a[1] / a[0]), math.inf)
         steps = (g[1:] * a[1:] - g[:-1] * a[:-1]) / (1.0 + n)
         first = a[0] * g[0] / (1.0 + n[0])
-        areas = first + np.concatenate([[0.0], np.cumsum(np.where(np.isfinite(n), steps, 0.5 * (g[1:] + g[:-1]) * np.diff(a)))])
+        areas = first + np.concatenate(
+            [[0.0], np.cumsum(np.where(np.isfinite(n), steps, 0.5 * (g[1:] + g[:-1]) * np.diff(a)))]
+        )
         zero = np.zeros(1)
         columns = a, g, areas, shape.height(a)
-        return cls(*(np.concatenate([zero, one]) for one in columns), shape.curvature_radius)
+        a, g, areas, f = (np.concatenate([zero, one]) for one in columns)
+        return cls(a, g, areas, f, shape.curvature_radius)
 
     @cached_property
     def height(self) -> CubicSpline:

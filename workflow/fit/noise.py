@@ -26,9 +26,9 @@ from scipy.stats import t as student
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
-SHARES = (0.0, 0.03, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.97, 1.0)
+SHARES = (0.0, 0.05, 0.15, 0.35, 0.6, 0.8, 0.93, 1.0)
 """Shares s of a first look; `finer` goes between them."""
-SHORTEST, MEMORIES = 0.7, 18
+SHORTEST, MEMORIES = 0.7, 12
 """Shortest memory [points] that is told from white noise, and how many lengths a first look has."""
 LONGEST_SHARE = 0.25
 """Longest memory over the points of the longest run: of a longer one no curve knows its size."""
@@ -159,12 +159,12 @@ class Uncertain:
         return float(sum(one.weight * value for one, value in zip(self.judged, values, strict=True)))
 
     def quantile(self, index: int, level: float) -> float:
-        """By how much a parameter exceeds its present value at most, with a probability of `level`.
+        """By how much a parameter exceeds at most what it is under the most likely noise, with a probability of `level`.
 
         Student's t under each noise, averaged: no noise is taken for known.
         """
         weights = np.array([one.weight for one in self.judged])
-        centres = np.array([one.step[index] for one in self.judged])
+        centres = np.array([one.step[index] for one in self.judged]) - self.best.step[index]
         scales = np.sqrt([one.covariance[index, index] for one in self.judged])
 
         def excess(value: float) -> float:
@@ -174,9 +174,7 @@ class Uncertain:
         return float(brentq(excess, -reach, reach, rtol=1e-6, xtol=1e-9 * reach))
 
 
-def uncertain(
-    runs: Sequence[Indices], residuals: Array, slopes: Array, prior: Array, looks: int = 2
-) -> Uncertain:
+def uncertain(runs: Sequence[Indices], residuals: Array, slopes: Array, prior: Array, looks: int = 2) -> Uncertain:
     """All noises with their weights: a first look over s and τ, and a finer one where it is likely.
 
     Args:
@@ -196,11 +194,16 @@ def uncertain(
         # White noise stands once for all memories.
         weights = np.exp(logs - logs.max()) * [1.0 if s > 0.0 else memories.size for s, _ in pairs]
         likely = [pair for pair, weight in zip(pairs, weights, strict=True) if weight > UNLIKELY * weights.max()]
-        shares, memories = (_between(np.array(values), grid) for values, grid in zip(
-            zip(*likely, strict=True), (shares, memories), strict=True))
+        shares, memories = (
+            _between(np.array(values), grid)
+            for values, grid in zip(zip(*likely, strict=True), (shares, memories), strict=True)
+        )
     weights /= weights.sum()
     freedom = max(1.0, residuals.size - float(slopes.shape[1] - prior.shape[0]))
-    judged = (Judged(one.noise, one.deviation, one.step, one.covariance, float(w)) for (one, _), w in zip(found, weights, strict=True))
+    judged = (
+        Judged(one.noise, one.deviation, one.step, one.covariance, float(w))
+        for (one, _), w in zip(found, weights, strict=True)
+    )
     return Uncertain(tuple(judged), freedom)
 
 
@@ -211,4 +214,8 @@ def _between(likely: Array, grid: Array) -> Array:
     if high - low >= grid.size - 2:
         return grid
     ends = grid[low], grid[high]
-    return np.linspace(*ends, grid.size) if ends[0] == 0.0 or ends[1] == 1.0 or grid[-1] == 1.0 else np.geomspace(*ends, grid.size)
+    return (
+        np.linspace(*ends, grid.size)
+        if ends[0] == 0.0 or ends[1] == 1.0 or grid[-1] == 1.0
+        else np.geomspace(*ends, grid.size)
+    )

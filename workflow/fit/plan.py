@@ -157,7 +157,9 @@ def _of_parameters(plan: FitPlan) -> list[Problem]:
         must = "is named twice" if name in names[:i] else must
         if must:
             known = [key for key in plan.units if key.split(".")[0] in ("bodies", "material", "adhesion")]
-            left = [key for key in known if key not in ("bodies.spacing", "material.length_unit", "material.force_unit")]
+            left = [
+                key for key in known if key not in ("bodies.spacing", "material.length_unit", "material.force_unit")
+            ]
             hint = f"give it there, as a first guess; numbers of the scene are {', '.join(left)}"
             problems.append(Problem(f"parameters[{i}]", must, shown(name), hint))
     return problems

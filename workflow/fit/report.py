@@ -39,7 +39,9 @@ def document(found: Found) -> dict[str, Any]:
     plan, scales, curve = one.plan, one.plan.scales, one.curve
     length, force = scales.factor("LU"), scales.factor("FU")
     best, n = one.solution.best, one.solution.problem.kept.size
-    nuisances = [name for name in one.subject.names if name not in (*plan.fit.parameters, "contact_point", "force_offset")]
+    nuisances = [
+        name for name in one.subject.names if name not in (*plan.fit.parameters, "contact_point", "force_offset")
+    ]
     z, F = curve.positions * length, curve.forces * force
     bracket, (snap, snap_force) = snap_bracket(one), snap_out(one)
     kept = one.solution.problem.kept
@@ -125,6 +127,7 @@ def _fitted_words(one: Fitted) -> str:
 
 def _modulus(one: Fitted) -> dict[str, Any]:
     """E*, and its interval where one modulus is fitted."""
+
     def modulus(values: list[float]) -> float:
         material = one.subject.scene_with(values).material
         assert material is not None
@@ -134,7 +137,9 @@ def _modulus(one: Fitted) -> dict[str, Any]:
     keys = [key for key in one.intervals if key.startswith("material.")]
     if len(keys) == 1:
         at = one.subject.names.index(keys[0])
-        ends = [[end if i == at else value for i, value in enumerate(one.solution.values)] for end in one.intervals[keys[0]]]
+        ends = [
+            [end if i == at else value for i, value in enumerate(one.solution.values)] for end in one.intervals[keys[0]]
+        ]
         found["interval"] = sorted(map(modulus, ends))
     return found | {"unit": "Pa"}
 
@@ -168,7 +173,9 @@ def _write_table(one: Fitted, path: Path) -> None:
     for i, line in enumerate(one.curve.lines):
         numbers = one.curve.positions[i] * length, one.curve.forces[i] * force, one.forces[i] * force
         segment = "approach" if i < one.curve.turn else "retract"
-        lines.append(",".join([str(line), segment, *(f"{number:.9g}" for number in numbers), "yes" if kept[i] else "no"]))
+        lines.append(
+            ",".join([str(line), segment, *(f"{number:.9g}" for number in numbers), "yes" if kept[i] else "no"])
+        )
     with whole(path) as part:
         part.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
@@ -190,7 +197,9 @@ def chart(found: Found) -> Chart:
     residual = np.where(kept, measured - predicted, np.nan)
     below = [Series(z[part], residual[part], "", colour, ".", opacity=0.6)
              for part, colour in ((approach, COMPRESSION), (retract, TENSION))]  # fmt: skip
-    note = ", ".join(f"{key.rpartition('.')[2].replace('_', ' ')} = {quantity(one, key)}" for key in one.plan.fit.parameters)
+    note = ", ".join(
+        f"{key.rpartition('.')[2].replace('_', ' ')} = {quantity(one, key)}" for key in one.plan.fit.parameters
+    )
     return Chart(
         Axis("position of the piezo from the contact point", "m"),
         [Panel(Axis("force", "N", zero=True), [*dots, *lines, *crosses], note=note, height=3.4),
@@ -214,7 +223,10 @@ def lines(found: Found) -> list[str]:
     memory = f"memory {best.noise.memory:.0f} points" if best.noise.share else "white"
     noise = f"{best.deviation * one.plan.scales.factor('FU') * scale:.3g} {unit}, {memory}"
     shown.append(f"  noise {noise}; reduced χ² {one.misfit:.2f}; {one.solution.outliers.size} outliers")
-    ranked = ", ".join(f"{name} +{other.criterion - next(iter(found.models.values())).criterion:.0f}" for name, other in found.models.items())
+    ranked = ", ".join(
+        f"{name} +{other.criterion - next(iter(found.models.values())).criterion:.0f}"
+        for name, other in found.models.items()
+    )
     shown.append(f"  contact models by criterion (BIC): {ranked}")
     return shown
 

@@ -232,9 +232,9 @@ def solved(problem: Problem, starts: Sequence[Array], judges: bool = True) -> So
                 break
         outliers += fresh.tolist()
         problem = problem.without(fresh)
-    best = _noise_at(problem, u).best
-    u, squares = problem.least(u, best.noise, best.deviation)
-    return Solution(problem, u, best, _noise_at(problem, u), squares, np.array(sorted(outliers), dtype=np.intp))
+    noise = _noise_at(problem, u)
+    u, squares = problem.least(u, noise.best.noise, noise.best.deviation)
+    return Solution(problem, u, noise.best, noise, squares, np.array(sorted(outliers), dtype=np.intp))
 
 
 def _noise_at(problem: Problem, u: Array, looks: int = 2) -> Uncertain:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.stats import norm
 
 from contact1d.workflow.errors import Contact1dError
-from contact1d.workflow.fit.curve import ForceCurve
+from contact1d.workflow.fit.curve import ForceCurve, Indices
 from contact1d.workflow.fit.forward import LAWS
 from contact1d.workflow.fit.plan import STIFFNESS, FitPlan
 from contact1d.workflow.fit.search import STEP, TWO_SIDED, Solution, Unknown, first_look, interval, solved
@@ -99,12 +99,14 @@ class Fitted:
         subject = self.subject
         branch, k = subject.branch(values), subject.value_of(STIFFNESS, values, subject.stiffness)
         ends = np.array([branch.displacements[0], branch.snap_out(k)[0]])
-        return np.asarray(ends + subject.value_of(POINT, values, subject.point))
+        return np.asarray(ends + subject.value_of(POINT, values, subject.point), dtype=np.float64)
 
     def _jumps(self) -> float:
         """log L of the brackets of both jumps, where the parameters leave their positions a spread."""
         problem, u = self.solution.problem, self.solution.u
-        ends = [[self.jumps_at(problem.values(u + side * STEP * one)) for side in (-1.0, 1.0)] for one in np.eye(u.size)]
+        ends = [
+            [self.jumps_at(problem.values(u + side * STEP * one)) for side in (-1.0, 1.0)] for one in np.eye(u.size)
+        ]
         slopes = np.array([high - low for low, high in ends]) / (2.0 * STEP)
         variance = np.einsum("ik,ij,jk->k", slopes, self.solution.best.covariance, slopes)
         total = 0.0
@@ -161,7 +163,7 @@ def compared(found: Fitted, model: str) -> Fitted:
     return Fitted(found.plan, found.curve, model, subject, solution, {})
 
 
-def _starts(subject: Subject, outliers: Array) -> list[Array]:
+def _starts(subject: Subject, outliers: Indices) -> list[Array]:
     """Starts of a fit: of Maugis's contact, which takes long, those of its two limits at several ranges."""
     names, problem = subject.names, subject.problem.without(outliers)
     sought = [i for i, one in enumerate(subject.unknowns) if one.fitted]
@@ -185,7 +187,7 @@ def fitted(plan: FitPlan, curve: ForceCurve, model: str) -> Fitted:
         UndeterminedError: it does not tell; what would help.
     """
     subject = _subject(plan, curve, model)
-    starts = _starts(subject, np.zeros(0))
+    starts = _starts(subject, np.zeros(0, dtype=np.intp))
     require_apart(subject, starts[0])
     found = solved(subject.problem, starts)
     if found.outliers.size > plan.fit.outliers:
@@ -267,8 +269,8 @@ def _require_stiff(found: Fitted) -> None:
     if k < SOFTEST * contact:
         unit = found.plan.scales.factor("FU/LU")
         raise UndeterminedError(
-            f"the cantilever ({k * unit:.3g} N/m) is softer than {SOFTEST:g} of the contact ({contact * unit:.3g} N/m), "
-            f"so that the curve shows its own bending: take one of at least {0.5 * contact * unit:.2g} N/m, or a "
+            f"the cantilever ({k * unit:.3g} N/m) is softer than {SOFTEST:g} of the contact ({contact * unit:.3g} N/m): "
+            f" the curve shows its own bending: take one of at least {0.5 * contact * unit:.2g} N/m, or a "
             "sharper tip"
         )
 
@@ -287,11 +289,13 @@ def _require_points(found: Fitted) -> None:
 def _open(found: Fitted, index: int, low: float, high: float) -> str:
     """Why an interval has no end, and what would help."""
     name, correlation = found.subject.names[index], np.abs(found.correlation[index])
+    if name.startswith("adhesion.") and not math.isfinite(low):
+        return f"no {name} is seen in the curve: leave [base.adhesion] and its parameters out, so that Hertz's contact is fitted"
     correlation[index] = 0.0
     other = found.subject.names[int(np.argmax(correlation))]
     ends = [found.subject.unknowns[index].value(end) / found.values[name] for end in (low, high)]
     span = f"from {ends[0]:.2g} to {ends[1]:.2g} times its value" if math.isfinite(high - low) else "without an end"
     return (
-        f"{name} is known {span} only; it is tied most to {other} (correlation {correlation.max():.2f}): give that with "
-        "a smaller ±, push deeper into the contact, or average more curves"
+        f"{name} is known {span} only; it is tied most to {other} (correlation {correlation.max():.2f}): give that "
+        "with a smaller ±, push deeper into the contact, or average more curves"
     )

@@ -1,4 +1,4 @@
-"""What is fitted: a scene whose numbers change, under a contact model and an instrument, as a problem of least squares."""
+"""What is fitted: a scene whose numbers change, under a contact model and an instrument."""
 
 from __future__ import annotations
 
@@ -92,7 +92,9 @@ class Subject:
                 self._bodies.clear()
             self._bodies[shape] = Body.of(scene.bodies.profile, self.curve.depth)
         adhesion = scene.adhesion
-        return self.law(self._bodies[shape], modulus_of(scene), scene.work_of_adhesion, (adhesion and adhesion.range) or 0.0)
+        return self.law(
+            self._bodies[shape], modulus_of(scene), scene.work_of_adhesion, (adhesion and adhesion.range) or 0.0
+        )
 
     def value_of(self, name: str, values: Sequence[float], default: float) -> float:
         """The value of an unknown; the default where it is none."""
@@ -103,8 +105,9 @@ class Subject:
         branch, k = self.branch(values), self.value_of(STIFFNESS, values, self.stiffness)
         z = self.curve.positions - self.value_of(POINT, values, self.point)
         found = np.zeros_like(z)
-        found[self.held] = branch.at(z[self.held], k, held=True)
-        found[self.open] = branch.at(z[self.open], k, held=False)
+        for points, held in ((self.held, True), (self.open, False)):
+            if points.any():
+                found[points] = branch.at(z[points], k, held)
         return np.asarray(found + self.value_of(OFFSET, values, 0.0))
 
     def completed(self, u: Array) -> Array:
