@@ -270,7 +270,7 @@ def _require_stiff(found: Fitted) -> None:
         unit = found.plan.scales.factor("FU/LU")
         raise UndeterminedError(
             f"the cantilever ({k * unit:.3g} N/m) is softer than {SOFTEST:g} of the contact ({contact * unit:.3g} N/m): "
-            f" the curve shows its own bending: take one of at least {0.5 * contact * unit:.2g} N/m, or a "
+            f"the curve shows its own bending: take one of at least {0.5 * contact * unit:.2g} N/m, or a "
             "sharper tip"
         )
 
