@@ -43,6 +43,8 @@ FLAT_PART = 1e-4
 """Range of a force over the largest within which it counts as equal."""
 APART = 0.05
 """Distance of an end of the force from that of bodies apart over its range, from which on it may be saturated."""
+BLOCKS, RISE = 20, 2.0
+"""Parts of a curve whose mean forces differ by so many times its noise, if it has a contact."""
 GAP = 8.0
 """Distance of neighbouring positions over the usual one that is a gap."""
 
@@ -192,11 +194,9 @@ def _turn(z: Array, segment: NDArray[np.generic] | None) -> int:
         if not approaches[:turn].all():
             raise DataError("column segment: the approach must come before the retraction")
     else:
-        turn = int(np.argmax(z)) + 1
-        if turn < FEWEST // 4 and z[0] - z[-1] > 0.0 and np.ptp(z[:turn]) < 0.1 * np.ptp(z):
-            low = int(np.argmin(z)) + 1
-            if FEWEST // 4 < low < z.size - FEWEST // 4:
-                raise DataError('z is reversed, since the approach lowers it: write reverse = ["z"]')
+        turn, low = (int(extreme(z)) + 1 for extreme in (np.argmax, np.argmin))
+        if not FEWEST // 4 <= turn <= z.size - FEWEST // 4 and FEWEST // 4 <= low <= z.size - FEWEST // 4:
+            raise DataError('z is reversed, since the approach lowers it: write reverse = ["z"]')
     if not FEWEST // 4 <= turn <= z.size - FEWEST // 4:
         raise DataError(
             f"has one segment only ({turn} points approach, {z.size - turn} retract): give both, the approach first"
@@ -216,8 +216,9 @@ def _require_signs(curve: ForceCurve) -> None:
         raise DataError('the force falls towards the sample: tension is positive here; write reverse = ["F"]')
     if z[curve.turn - 1] < z[0]:
         raise DataError('z falls on the approach: it must grow towards the sample; write reverse = ["z"]')
-    if abs(high - low) <= 0.02 * span:
-        raise DataError("the force does not rise on the approach: no contact is in the curve, or z and F are swapped")
+    blocks = [float(part.mean()) for part in np.array_split(F, BLOCKS)]
+    if np.ptp(blocks) < RISE * float(np.std(np.diff(F))):
+        raise DataError("the force does not leave its noise: no contact is in the curve, or z and F are swapped")
 
 
 def _require_whole(curve: ForceCurve, along: str) -> None:

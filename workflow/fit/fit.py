@@ -267,7 +267,7 @@ def own_folder(folder: Path) -> Path:
     """Make the folder, or see that it is that of a fit. Raises FolderError."""
     if folder.is_file():
         raise FolderError(f"{folder} is a file; a fit needs a folder")
-    known = ("fit.json", "fits.csv", "fit.toml")
+    known = ("fit.json", "fits.csv")
     if folder.is_dir() and any(folder.iterdir()) and not any((folder / name).exists() for name in known):
         raise FolderError(f"{folder} has files that do not belong to a fit; choose another folder")
     folder.mkdir(parents=True, exist_ok=True)

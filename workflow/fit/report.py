@@ -189,21 +189,21 @@ def chart(found: Found) -> Chart:
     measured, predicted = (one.curve.forces - offset) * force, (one.forces - offset) * force
     approach, retract = slice(0, one.curve.turn), slice(one.curve.turn, None)
     kept = np.isin(np.arange(z.size), one.solution.problem.kept)
-    dots = [Series(z[part], measured[part], name, colour, ".", opacity=0.6)
+    dots = [Series(z[part], measured[part], name, colour, ".")
             for part, name, colour in ((approach, "approach", COMPRESSION), (retract, "retraction", TENSION))]  # fmt: skip
     lines = [Series(z[part], predicted[part], one.model, "#000000", width=1.2) for part in (approach, retract)]
     far = one.solution.outliers
     crosses = [Series(z[far], measured[far], "outlier", "#CC79A7", "x")] if far.size else []
     residual = np.where(kept, measured - predicted, np.nan)
-    below = [Series(z[part], residual[part], "", colour, ".", opacity=0.6)
+    below = [Series(z[part], residual[part], "", colour, ".")
              for part, colour in ((approach, COMPRESSION), (retract, TENSION))]  # fmt: skip
     note = ", ".join(
         f"{key.rpartition('.')[2].replace('_', ' ')} = {quantity(one, key)}" for key in one.plan.fit.parameters
     )
     return Chart(
         Axis("position of the piezo from the contact point", "m"),
-        [Panel(Axis("force", "N", zero=True), [*dots, *lines, *crosses], note=note, height=3.4),
-         Panel(Axis("residual", "N", zero=True), [*below, Series(z, 0.0 * z, "", THEORY, "--")], height=1.5)],
+        [Panel(Axis("force", "N", zero=True), [*dots, *lines, *crosses], note=note, height=2.7),
+         Panel(Axis("residual", "N", zero=True), [*below, Series(z, 0.0 * z, "", THEORY, "--")], height=1.2)],
         one.plan.fit.title,
     )  # fmt: skip
 

@@ -172,7 +172,7 @@ def _starts(subject: Subject, outliers: Indices) -> list[Array]:
     at = names.index(RANGE) if RANGE in names else None
     starts = []
     for name in LIMITS:
-        limit = replace(subject, law=LAWS[name])
+        limit = replace(subject, law=LAWS[name], _branches={})
         others = [i for i in sought if i != at]
         u = first_look(limit.problem.without(outliers), others, limit.completed)[0]
         starts += [u + step * (np.arange(u.size) == at) for step in (RANGES if at is not None else (0.0,))]

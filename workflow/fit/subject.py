@@ -18,6 +18,8 @@ from contact1d.workflow.scene import Scene
 Array = NDArray[np.float64]
 POINT, OFFSET = "contact_point", "force_offset"
 """Unknowns that are of the measurement."""
+KEPT = 50
+"""Bodies and branches that are remembered."""
 
 
 def fields(value: Any, key: str) -> list[str]:
@@ -56,6 +58,7 @@ class Subject:
     unknowns: tuple[Unknown, ...]
     point: float = 0.0
     _bodies: dict[tuple[float, ...], Body] = field(default_factory=dict, repr=False)
+    _branches: dict[tuple[float, ...], Branch] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
         """Which points may be lost, and which hold."""
@@ -84,17 +87,22 @@ class Subject:
         return scene
 
     def branch(self, values: Sequence[float]) -> Branch:
-        """The contact's own curve."""
-        scene = self.scene_with(values)
-        shape = tuple(values[i] for i in self.shaping)
+        """The contact's own curve; kept for the values that only the measurement changes."""
+        key = tuple(value for path, value in zip(self.paths, values, strict=True) if path)
+        if key not in self._branches:
+            if len(self._branches) > KEPT:
+                self._branches.clear()
+            self._branches[key] = self._branch(values)
+        return self._branches[key]
+
+    def _branch(self, values: Sequence[float]) -> Branch:
+        scene, shape = self.scene_with(values), tuple(values[i] for i in self.shaping)
         if shape not in self._bodies:
-            if len(self._bodies) > 200:
+            if len(self._bodies) > KEPT:
                 self._bodies.clear()
             self._bodies[shape] = Body.of(scene.bodies.profile, self.curve.depth)
-        adhesion = scene.adhesion
-        return self.law(
-            self._bodies[shape], modulus_of(scene), scene.work_of_adhesion, (adhesion and adhesion.range) or 0.0
-        )
+        reach = scene.adhesion.range if scene.adhesion else None
+        return self.law(self._bodies[shape], modulus_of(scene), scene.work_of_adhesion, reach or 0.0)
 
     def value_of(self, name: str, values: Sequence[float], default: float) -> float:
         """The value of an unknown; the default where it is none."""
