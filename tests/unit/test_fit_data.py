@@ -45,7 +45,9 @@ def curve(kind: str = "JKR", stiffness: float = STIFFNESS, count: int = 400, dee
 
 
 def written(path: Path, rows: np.ndarray[Any, Any], names: str = "z [nm],F [nN]") -> Path:
-    path.write_text(names + "\n" + "\n".join(",".join(f"{x:.5f}" for x in row) for row in rows) + "\n", encoding="utf-8")
+    path.write_text(
+        names + "\n" + "\n".join(",".join(f"{x:.5f}" for x in row) for row in rows) + "\n", encoding="utf-8"
+    )
     return path
 
 
@@ -98,7 +100,7 @@ def test_a_curve_that_is_none(good: np.ndarray[Any, Any], tmp_path: Path, change
 def test_a_file_that_is_none(tmp_path: Path, text: str, words: str) -> None:
     path = tmp_path / "curve.csv"
     path.write_text(text, encoding="utf-8")
-    with pytest.raises(Contact1dError, match="(?s).*") as error:
+    with pytest.raises(Contact1dError) as error:
         fit(plan(path))
     assert words in str(error.value)
     assert "\n" not in str(error.value)
@@ -156,7 +158,9 @@ def test_other_forms_of_one_curve_are_the_same(good: np.ndarray[Any, Any], tmp_p
 
 
 def test_a_map_has_a_line_for_each_curve(good: np.ndarray[Any, Any], tmp_path: Path) -> None:
-    rows = [np.column_stack([np.full(len(good), i), np.full(len(good), i), np.zeros(len(good)), good]) for i in range(3)]
+    rows = [
+        np.column_stack([np.full(len(good), i), np.full(len(good), i), np.zeros(len(good)), good]) for i in range(3)
+    ]
     rows[1] = rows[1][:200]
     path = written(tmp_path / "map.csv", np.vstack(rows), "curve,x [µm],y [µm],z [nm],F [nN]")
     done = fit_many(plan(path), tmp_path / "fits", workers=1)
@@ -165,7 +169,11 @@ def test_a_map_has_a_line_for_each_curve(good: np.ndarray[Any, Any], tmp_path: P
         table = list(csv.DictReader(file))
     assert [row["status"] for row in table] == ["done", "refused", "done"]
     assert "one segment" in table[1]["reason"]
-    assert float(table[0]["material.contact_modulus_low [Pa]"]) < MODULUS < float(table[0]["material.contact_modulus_high [Pa]"])
+    assert (
+        float(table[0]["material.contact_modulus_low [Pa]"])
+        < MODULUS
+        < float(table[0]["material.contact_modulus_high [Pa]"])
+    )
     assert (done.folder / "contact_modulus.png").is_file()
 
 

@@ -32,5 +32,6 @@ STUDIES: tuple[Study, ...] = (
     stiffness.STIFFNESS, sharp.SHARP, random_scenes.RANDOM, loads.LOADS, settling.SETTLING, loops.LOOPS,
     friction.FRICTION, similarity.SIMILARITY, forces.FORCES, motion.MOTION, modes.EQUIPARTITION, *thermal.CLASSES,
     extremes.EXTREMES, *pressed.CLASSES, plane_adhesive.ADHESIVE, slides.SLIDES, faults.FAULTS, fuzz.FUZZ,
-    random_plane.RANDOM_PLANE, *kinks.CLASSES, coarse_paths.COARSE_PATHS, lateral.LATERAL, transient.TRANSIENT, fits.FITS,
+    random_plane.RANDOM_PLANE, *kinks.CLASSES, coarse_paths.COARSE_PATHS, lateral.LATERAL, transient.TRANSIENT,
+    fits.FITS,
 )  # fmt: skip

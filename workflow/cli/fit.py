@@ -21,8 +21,8 @@ def fit(
     """Fit parameters of a scene, such as E and W, to a measured force curve, or to each of many.
 
     The file names the data (CSV with columns z or d, and F, with units), parameters, the instrument and a base scene.
-    Leaves fit.json, curve.csv and fit.png; of several curves fits.csv, histograms and maps. Exit code 3: the data do not
-    tell what was asked for, and the message says what would help.
+    Leaves fit.json, curve.csv and fit.png; of several curves fits.csv, histograms and maps. Exit code 3: the data do
+    not tell what was asked for, and the message says what would help.
     """
     folder = out if out is not None else Path("fits") / file.stem
     with command("the fit", folder, "what is known was written", quiet) as progress:

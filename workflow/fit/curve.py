@@ -98,7 +98,7 @@ class ForceCurve:
 
     @cached_property
     def baseline(self) -> float:
-        """The force [FU] of bodies apart: of the points that are known to be, else of the first fifth of the approach."""
+        """The force [FU] of bodies apart: of points that are known to be, else of the first fifth of the approach."""
         apart = np.concatenate([one.apart for one in self.segments])
         if apart.size < 10:
             apart = np.arange(max(3, self.turn // 5))

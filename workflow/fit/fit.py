@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -58,6 +59,7 @@ class Found:
         checked: the run; None where it was left out.
         warnings: by name.
         seconds: that it took.
+        finished: whether all was done.
     """
 
     file: Path
@@ -66,6 +68,7 @@ class Found:
     checked: Checked | None = None
     warnings: dict[str, str] = field(default_factory=dict)
     seconds: float = 0.0
+    finished: bool = False
 
     @property
     def models(self) -> dict[str, Fitted]:
@@ -153,18 +156,25 @@ def _steps(plan: FitPlan, file: Path, curve: ForceCurve, progress: Progress) -> 
     yield found
     for name in LAWS:
         if name != own and _has(plan, name):
-            found.others[name] = compared(found.fit, name)
+            with suppress(
+                Contact1dError, ArithmeticError, np.linalg.LinAlgError
+            ):  # it can't describe this curve at all
+                found.others[name] = compared(found.fit, name)
         progress.advance(1)
     _judge_models(found)
     yield found
     progress.phase("run of the found scene")
-    found.checked = checked(found)
-    if found.checked.difference > found.checked.allowed:
+    try:
+        found.checked = checked(found)
+    except Contact1dError as error:
+        found.warnings["run"] = f"the found scene does not run on LAMMPS: {error}"
+    if found.checked and found.checked.difference > found.checked.allowed:
         unit = plan.scales.factor("FU")
         found.warnings["run"] = (
-            f"LAMMPS differs from the fit's model by up to {found.checked.difference * unit:.3g} N, more than the fit's "
-            f"own uncertainty, {found.checked.allowed * unit:.3g} N: lower accuracy.tolerance in [base]"
+            f"LAMMPS differs from the fit's model by up to {found.checked.difference * unit:.3g} N, more than the "
+            f"fit's own uncertainty, {found.checked.allowed * unit:.3g} N: lower accuracy.tolerance in [base]"
         )
+    found.finished = True
     yield found
 
 
@@ -272,6 +282,3 @@ def own_folder(folder: Path) -> Path:
         raise FolderError(f"{folder} has files that do not belong to a fit; choose another folder")
     folder.mkdir(parents=True, exist_ok=True)
     return folder
-
-
-__all__ = ["Contact1dError", "Found", "fit"]

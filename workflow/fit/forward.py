@@ -7,9 +7,9 @@ With the profile's transform g, its integral G(a) = ∫₀ᵃ g dx, and the cont
     Maugis  d = g(a) − (2σ₀/E*) √(c² − a²),  F lower by that of the cohesive zone up to c
     JKR     d = g(a) − √(2πaW/E*),       F = 2E*(a d − G)
 
-An instrument of stiffness k_c has its contact point at z = d + F/k_c. A measured position z is prescribed, and F follows
-from it on the branch that is held: down to the least z, where dF/dd = −k_c and the contact snaps out. The noise of the
-force is in no displacement.
+An instrument of stiffness k_c has its contact point at z = d + F/k_c. A measured position z is prescribed, and F
+follows from it on the branch that is held: down to the least z, where dF/dd = −k_c and the contact snaps out. The
+noise of the force is in no displacement.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ EDGES = 300
 THINNED, NODES, BEFORE = 3, 20, 40
 """Of Maugis's equations: every how many edges has a root, nodes of a quadrature, and places before contact."""
 NEWTON = 2
-"""Steps to the place of a position between two of them: from a straight start the error is then below 1e-9 of the cell."""
+"""Steps to the place of a position between two of them: from a straight start the error is below 1e-9 of the cell."""
 SPAN = 2e-3
 """The first of them over the last."""
 DEEPEST = 8.0
@@ -126,7 +126,7 @@ class Branch:
 
 
 def _between(a: Array, z: Array, F: Array, positions: Array) -> Array:
-    """F at z, both cubic in a between its places: smooth, since differences of neighbours count under correlated noise."""
+    """F at z, both cubic in a between its places: under correlated noise the differences of neighbours count."""
     i = np.clip(np.searchsorted(z, positions) - 1, 0, a.size - 2)
     width = np.diff(a)[i]
     cubic = [_cubic(values[i], values[i + 1], slope[i] * width, slope[i + 1] * width)

@@ -159,7 +159,7 @@ class Uncertain:
         return float(sum(one.weight * value for one, value in zip(self.judged, values, strict=True)))
 
     def quantile(self, index: int, level: float) -> float:
-        """By how much a parameter exceeds at most what it is under the most likely noise, with a probability of `level`.
+        """Above its value under the most likely noise a parameter is by at most this much, with a probability `level`.
 
         Student's t under each noise, averaged: no noise is taken for known.
         """

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -48,7 +47,7 @@ def document(found: Found) -> dict[str, Any]:
     point = one.values.get("contact_point", one.subject.point)
     return {
         "title": plan.fit.title,
-        "status": "done" if found.checked else "interrupted",
+        "status": "done" if found.finished else "interrupted",
         "data": str(found.file),
         "model": one.model,
         "parameters": {key: entry(one, key) for key in plan.fit.parameters if key in one.values},
@@ -120,7 +119,7 @@ def _fitted_words(one: Fitted) -> str:
         return "E* is fitted: no Poisson's ratio is assumed"
     body = getattr(one.subject.scene.material, keys[0].split(".")[1])
     return (
-        f"E is fitted with ν = {body.poisson_ratio:g} assumed; the curve knows E* alone, so that another ν changes E as "
+        f"E is fitted with ν = {body.poisson_ratio:g} assumed; the curve knows E* alone, and another ν changes E as "
         "1 − ν²"
     )
 
@@ -189,14 +188,13 @@ def chart(found: Found) -> Chart:
     measured, predicted = (one.curve.forces - offset) * force, (one.forces - offset) * force
     approach, retract = slice(0, one.curve.turn), slice(one.curve.turn, None)
     kept = np.isin(np.arange(z.size), one.solution.problem.kept)
-    dots = [Series(z[part], measured[part], name, colour, ".")
-            for part, name, colour in ((approach, "approach", COMPRESSION), (retract, "retraction", TENSION))]  # fmt: skip
+    ways = ((approach, "approach", COMPRESSION), (retract, "retraction", TENSION))
+    dots = [Series(z[part], measured[part], name, colour, ".") for part, name, colour in ways]
     lines = [Series(z[part], predicted[part], one.model, "#000000", width=1.2) for part in (approach, retract)]
     far = one.solution.outliers
     crosses = [Series(z[far], measured[far], "outlier", "#CC79A7", "x")] if far.size else []
     residual = np.where(kept, measured - predicted, np.nan)
-    below = [Series(z[part], residual[part], "", colour, ".")
-             for part, colour in ((approach, COMPRESSION), (retract, TENSION))]  # fmt: skip
+    below = [Series(z[part], residual[part], "", colour, ".") for part, _, colour in ways]
     note = ", ".join(
         f"{key.rpartition('.')[2].replace('_', ' ')} = {quantity(one, key)}" for key in one.plan.fit.parameters
     )
@@ -229,6 +227,3 @@ def lines(found: Found) -> list[str]:
     )
     shown.append(f"  contact models by criterion (BIC): {ranked}")
     return shown
-
-
-Document = Mapping[str, Any]

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +23,7 @@ STEP = 1e-4
 DECADES = 3.0
 """A parameter is sought so many decades to both sides of the value that the scene gives."""
 GENERATIONS, POPULATION, STARTS, SEED = 40, 16, 4, 1
-"""Of the first look, which takes some thousand curves; places of it that are starts of a fit; and its random numbers."""
+"""Of the first look, which takes some thousand curves; places of it that are starts of a fit; its random numbers."""
 OUTLIER = 5.0
 """Whitened residual over its standard deviation beyond which a point is no part of the noise: one in 1.7 million."""
 LEVEL = 0.95
@@ -65,10 +66,6 @@ class Unknown:
 
 Model = Callable[[Sequence[float]], Array]
 """From the values of all unknowns to the forces at all points (n,)."""
-
-
-class Failed(Exception):
-    """A fit that leads nowhere; the message says why."""
 
 
 @dataclass(frozen=True)
@@ -146,10 +143,11 @@ class Problem:
             )
 
         ends = np.array([LIMIT if one.positive else math.inf for one in self.unknowns])[free]
+        options: dict[str, Any] = {"xtol": 1e-6, "ftol": 1e-6, "gtol": 1e-12, "max_nfev": 60}
+        options |= {"loss": "soft_l1", "f_scale": 2.0} if robust else {}
         found = least_squares(
-            rows, np.clip(u[free], -ends, ends), jacobian, bounds=(-ends - EDGE, ends + EDGE), method="trf", x_scale="jac", loss="soft_l1" if robust else "linear",
-            f_scale=2.0, xtol=1e-6, ftol=1e-6, gtol=1e-12, max_nfev=60,
-        )  # fmt: skip
+            rows, np.clip(u[free], -ends, ends), jacobian, (-ends - EDGE, ends + EDGE), x_scale="jac", **options
+        )
         return whole(found.x), 2.0 * float(found.cost)
 
     @staticmethod

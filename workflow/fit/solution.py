@@ -131,7 +131,7 @@ class Fitted:
     def spread(self) -> Array:
         """95 % half-width of the predicted force at the compared points [FU]."""
         J = self.solution.problem.slopes(self.solution.u)
-        return TWO_SIDED * np.sqrt(np.einsum("ij,jk,ik->i", J, self.solution.best.covariance, J))
+        return np.asarray(TWO_SIDED * np.sqrt(np.einsum("ij,jk,ik->i", J, self.solution.best.covariance, J)))
 
     @property
     def _point(self) -> float:
@@ -269,8 +269,8 @@ def _require_stiff(found: Fitted) -> None:
     if k < SOFTEST * contact:
         unit = found.plan.scales.factor("FU/LU")
         raise UndeterminedError(
-            f"the cantilever ({k * unit:.3g} N/m) is softer than {SOFTEST:g} of the contact ({contact * unit:.3g} N/m): "
-            f"the curve shows its own bending: take one of at least {0.5 * contact * unit:.2g} N/m, or a "
+            f"the cantilever ({k * unit:.3g} N/m) is softer than {SOFTEST:g} of the contact ({contact * unit:.3g} N/m)"
+            f": the curve shows its own bending: take one of at least {0.5 * contact * unit:.2g} N/m, or a "
             "sharper tip"
         )
 
@@ -290,7 +290,7 @@ def _open(found: Fitted, index: int, low: float, high: float) -> str:
     """Why an interval has no end, and what would help."""
     name, correlation = found.subject.names[index], np.abs(found.correlation[index])
     if name.startswith("adhesion.") and not math.isfinite(low):
-        return f"no {name} is seen in the curve: leave [base.adhesion] and its parameters out, so that Hertz's contact is fitted"
+        return f"no {name} is seen in the curve: leave [base.adhesion] and its parameters out, as in Hertz's contact"
     correlation[index] = 0.0
     other = found.subject.names[int(np.argmax(correlation))]
     ends = [found.subject.unknowns[index].value(end) / found.values[name] for end in (low, high)]
