@@ -6,7 +6,7 @@ large one, DMT for a small one, Maugis and Dugdale between the two. The map is t
 J. Colloid Interface Sci. 192 (1997) 326, after D. Tabor, ibid. 58 (1977) 2: the zones are theirs. Their figure was not
 at hand: each boundary is a criterion written out below, not read off it, and how small is negligible is a convention in
 all but one. The lines mu = 5 (JKR) and mu = 0.1 (DMT) are common usage and independent of the load, which the criteria
-behind them are not. What they cost, against Maugis and Dugdale: at mu = 5 JKR's contact radius is 0.7 % too large at
+behind them are not. What they cost, against Maugis and Dugdale: at mu = 5 JKR's contact radius is 0.8 % too large at
 F = 0 and its pull-off 0.3 % too small; at mu = 0.1 DMT's radius is 6 % too small at F = 0 (8 % at -pi W R, 2 % at
 40 pi W R) and its pull-off 3 % too large. The rest is computed, with 5 % as negligible: the compression over h_0 for
 the rigid sphere, the load that attraction adds over F for Hertz. F positive in compression; a << R. Any consistent

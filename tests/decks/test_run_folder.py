@@ -66,6 +66,8 @@ SCENES: dict[str, dict[str, Any]] = {
     | {"noise": {"temperature": 1e-4, "seed": 7}, "experiment": {"kind": "load", "force": 0.5}},
     "path": STICKY
     | {"horizontal": {}, "experiment": {"kind": "path", "displacements": {"from": -0.6, "to": 0.3, "steps": 30}}},
+    "cohesive": STUCK
+    | {"adhesion": {"work_of_adhesion": 2e-3, "range": 0.02}, "experiment": {"kind": "pull_off", "preload": 0.5}},
     "path_dynamic": STICKY
     | {"damping": {"coefficient": "auto"}, "experiment": {"kind": "path", "displacements": [0.0, 0.2, -0.1, 0.1]}},
     "pull_off": STICKY | {"experiment": {"kind": "pull_off", "preload": 0.5}},

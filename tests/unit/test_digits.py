@@ -44,7 +44,7 @@ CONTACT: dict[str, Any] = {
     "bodies": {"particles": "auto", "spacing": "auto", "bulk_stiffness": "auto", "lower": "rigid_plane"},
     "material": {"contact_modulus": 1.0, "length_unit": 1.0, "force_unit": 1.0},
 }
-RADIUS, SLOPE, TABOR, WORK = 1.0, 0.10003, 4.998, 1e-6
+RADIUS, SLOPE, TABOR, ASSUMED = 1.0, 0.10003, 4.998, 0.3e-9
 
 
 def stated(name: str, **tables: Any) -> list[float]:
@@ -63,9 +63,9 @@ def test_a_slope_just_above_its_limit_is_stated_above_it() -> None:
 
 
 def test_a_tabor_parameter_just_below_its_limit_is_stated_below_it() -> None:
-    reach = (RADIUS * WORK**2) ** (1.0 / 3.0) / TABOR  # µ = (R W²/E*² z₀³)^(1/3)
-    adhesion = {"work_of_adhesion": WORK, "range": reach}
-    tabor, limit = stated("tabor", experiment={"kind": "pull_off", "preload": 1e-5}, adhesion=adhesion)[:2]
+    work = ((TABOR * ASSUMED) ** 3 / RADIUS) ** 0.5  # µ = (R W²/E*² h₀³)^(1/3)
+    pull = {"kind": "pull_off", "preload": work * RADIUS}
+    tabor, limit = stated("tabor", experiment=pull, adhesion={"work_of_adhesion": work})[:2]
     assert tabor == pytest.approx(TABOR, rel=1e-3)
     assert tabor < limit
 

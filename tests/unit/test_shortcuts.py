@@ -13,6 +13,7 @@ import pytest
 import contact1d
 from contact1d import Run, SceneError
 from contact1d.workflow.cli.summary import quantities
+from validation.references.maugis import LAMBDA_OVER_TABOR, marks
 
 RUBBER, GLASS = {"youngs_modulus": "3 MPa", "poisson_ratio": 0.5}, {"youngs_modulus": "70 GPa", "poisson_ratio": 0.22}
 PAIR = {"upper": RUBBER, "lower": GLASS, "tolerance": 1e-2}
@@ -75,10 +76,16 @@ def test_a_stiff_tip_has_one_answer_at_both_doors(tmp_path: Path) -> None:
     near(asked.run, "adhesion_force", 1.5 * math.pi * 20e-9 * 0.05, "N")
     assert asked.doubts["tabor"] == asked.run.warnings["tabor"] == run.warnings["tabor"]
     assert "where DMT holds" in run.warnings["tabor"]
+    with_range = contact1d.sphere(**tip, range="0.3 nm").pull_off()
+    other = contact1d.from_material(tip | {"range": "0.3 nm"}, tmp_path / "range").run
+    assert with_range.results.adhesion_force == other.results.adhesion_force
+    assert "tabor" not in with_range.warnings
+    expected = marks(LAMBDA_OVER_TABOR * 0.0723023)[1] * math.pi * 20e-9 * 0.05
+    assert with_range.results.adhesion_force.value == pytest.approx(expected, rel=1e-5)
     for text in (repr(run), "\n".join(quantities(asked.run.document))):
         (line,) = (line for line in text.splitlines() if "DMT 6.2832 nN (-25 %)" in line)
         assert "JKR 4.7124 nN" in line
-        assert "Maugis and Dugdale (μ = 0.0723) 6.1618 nN" in line
+        assert "Maugis and Dugdale (μ = 0.0723) 6.1662 nN" in line
 
 
 def test_a_sphere_in_a_cup_is_hertz_with_the_effective_radius() -> None:

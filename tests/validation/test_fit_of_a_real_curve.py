@@ -1,4 +1,4 @@
-"""A force curve of an instrument, from nanite's source archive (GPL-3, fetched and never shipped), beside nanite itself.
+"""A curve of an instrument, from nanite's source archive (GPL-3, fetched and never shipped), beside nanite itself.
 
 The archive's one CSV has approach and retraction side by side. Its force is 0.02 nN over 300 nm and what the instrument
 was is not in it, so that the stiffness and the radius here are assumed, the same in both programs.

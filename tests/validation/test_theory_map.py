@@ -23,10 +23,10 @@ from validation.references.mdr import edge_elongation
 
 ROUND_OFF = 1e-12
 RADIUS, MODULUS, ADHESION, RANGE = 3.0, 7.0, 0.2, 0.01
-JKR_RADIUS, JKR_PULL_OFF = 0.0075, 0.004
-"""Relative: what JKR misses at mu = 5 (measured 0.0072 at zero load, 0.0032)."""
+JKR_RADIUS, JKR_PULL_OFF = 0.0085, 0.004
+"""Relative: what JKR misses at mu = 5 (measured 0.0075 at zero load, 0.0033)."""
 DMT_RADIUS, DMT_PULL_OFF = 0.065, 0.032
-"""Relative: what DMT misses at mu = 0.1 (measured 0.064 at zero load, 0.031)."""
+"""Relative: what DMT misses at mu = 0.1 (measured 0.063 at zero load, 0.030)."""
 
 
 @pytest.mark.parametrize(

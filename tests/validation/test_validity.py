@@ -94,7 +94,7 @@ def draw(errors: Mapping[str, list[float]]) -> None:
 
 @pytest.mark.parametrize(("work", "reach"), [(1.0, None), (0.2, None), (0.08, 0.1e-9)])
 def test_jkr_is_held_against_maugis_and_dugdale(work: float, reach: float | None, tmp_path: Path) -> None:
-    """A sphere of 1 µm and E* = 50 GPa; without a range 0.3 nm are assumed, and said."""
+    """A sphere of 1 µm and E* = 50 GPa; without a range 0.3 nm are assumed, and said; with one F_A is Maugis's own."""
     tables = contact("parabola", {"kind": "pull_off", "preload": "1 pN"})
     tables["bodies"]["profile"]["radius"] = "1 µm"
     tables |= {"material": {"contact_modulus": "50 GPa"}, "adhesion": {"work_of_adhesion": f"{work} J/m²"}}
@@ -103,10 +103,14 @@ def test_jkr_is_held_against_maugis_and_dugdale(work: float, reach: float | None
     found = run(tables, tmp_path / "run", figures=False)
     tabor = (1e-6 * work**2 / (50e9**2 * (reach or 0.3e-9) ** 3)) ** (1.0 / 3.0)
     assert checks(found)["tabor"]["value"] == pytest.approx(tabor, rel=1e-9)
-    warned = found.warnings["tabor"]
-    error = 1.5 / marks(LAMBDA_OVER_TABOR * tabor)[1] - 1.0
-    assert f"{abs(error):.1%} smaller" in warned
-    assert ("assumed" in warned) == (reach is None)
+    force = marks(LAMBDA_OVER_TABOR * tabor)[1]
+    if reach:
+        assert "tabor" not in found.warnings
+        assert found.results.adhesion_force.value == pytest.approx(math.pi * work * 1e-6 * force, rel=1e-6)
+        assert found.results.tabor_parameter.value == pytest.approx(tabor, rel=1e-9)
+        return
+    assert f"{1.0 - 1.5 / force:.1%} smaller" in found.warnings["tabor"]
+    assert "assumed" in found.warnings["tabor"]
 
 
 @pytest.mark.parametrize(

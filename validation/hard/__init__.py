@@ -2,6 +2,7 @@
 
 from validation.hard import (
     coarse_paths,
+    cohesive,
     extremes,
     faults,
     fits,
@@ -33,5 +34,5 @@ STUDIES: tuple[Study, ...] = (
     friction.FRICTION, similarity.SIMILARITY, forces.FORCES, motion.MOTION, modes.EQUIPARTITION, *thermal.CLASSES,
     extremes.EXTREMES, *pressed.CLASSES, plane_adhesive.ADHESIVE, slides.SLIDES, faults.FAULTS, fuzz.FUZZ,
     random_plane.RANDOM_PLANE, *kinks.CLASSES, coarse_paths.COARSE_PATHS, lateral.LATERAL, transient.TRANSIENT,
-    fits.FITS,
+    cohesive.COHESIVE, fits.FITS,
 )  # fmt: skip

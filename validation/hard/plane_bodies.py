@@ -18,7 +18,7 @@ SMOOTH = ("parabola", "cone", "power", "circle", "flat_punch", "ellipsoid")
 KINKED = ("land_cone", "worn_ball", "two_slopes", "two_radii", "rounded_punch", "steps")
 WIDEST = 0.5
 """a/R of spheres, up to which they are searched."""
-LENGTHS = {"radius", "height", "spacing", "from", "to", "amplitude", "r", "z"}
+LENGTHS = {"radius", "height", "spacing", "from", "to", "amplitude", "r", "z", "range"}
 FORCES = {"force", "preload", "normal_force"}
 """Keys of the numbers that are given with units."""
 

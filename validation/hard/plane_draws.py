@@ -90,7 +90,7 @@ def drawn(rng: np.random.Generator) -> Drawn | None:
     words = f"{shape}, {'adhesive ' if adhesive else ''}{kind}"
     tolerance = float(10.0 ** rng.uniform(-4.0, -2.0))
     automatic, units = rng.random() < AUTOMATIC, rng.random() < WITH_UNITS
-    return _written(rng, group, words, table, spacing, automatic, units, tolerance, contact, experiment, exact, tables)
+    return written(rng, group, words, table, spacing, automatic, units, tolerance, contact, experiment, exact, tables)
 
 
 Made = tuple[str, Scene, dict[str, float], float, Scene] | None
@@ -281,7 +281,7 @@ def _tangential(rng: np.random.Generator, contact: Contact, radius: float, slope
     return f"tangential, {kind}", {"kind": "tangential", "normal_force": force} | along, exact, radius, tables
 
 
-def _written(
+def written(
     rng: np.random.Generator, group: str, words: str, table: Scene, spacing: float | None, automatic: bool,
     units: bool, tolerance: float, contact: Contact, experiment: Scene, exact: Mapping[str, float], tables: Scene,
 ) -> Drawn:  # fmt: skip
@@ -305,5 +305,6 @@ def _written(
         bodies["spacing"] = "auto" if automatic else spacing
         scene = with_units(scene, length, modulus)
         scene["material"] = {"contact_modulus": f"{modulus!r} Pa"} if ratio is None else elastic(modulus, ratio)
-    scales = {"L": length, "F": modulus * length**2, "P": modulus, "S": modulus * length, "E": modulus * length**3}
+    force = modulus * length**2
+    scales = {"L": length, "F": force, "P": modulus, "S": modulus * length, "E": force * length, "1": 1.0}
     return Drawn(group, words, scene, exact, scales, units)

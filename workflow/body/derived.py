@@ -210,6 +210,8 @@ def _tabor(scene: Scene, found: Mapping[str, Quantity]) -> dict[str, Quantity]:
 def _adhesion_energy(scene: Scene, found: Mapping[str, Quantity]) -> dict[str, Quantity]:
     """πa²W on a plane with adhesion; 2a w/s where an interaction holds the bodies."""
     a, line = first_of(found, "zero_load_radius", "contact_radius"), found.get("separation_energy")
+    if scene.adhesion is not None and scene.adhesion.range:
+        return {}  # the cohesive zone has most of it
     if a is not None and scene.adhesion is not None:
         return {"adhesion_energy": product(math.pi * scene.adhesion.work, ENERGY, (a, 2.0))}
     return {} if a is None or line is None else {"adhesion_energy": product(2.0, ENERGY, (a, 1.0), (line, 1.0))}

@@ -168,6 +168,8 @@ def _pressure(
     p, *coarser = (one.pressure(r) - pulled(r) for one in levels)
     # Where g is flat up to an edge that lies between two particles, p is that of a punch, ∝ 1/a.
     moves = np.maximum(np.abs(p), _moves(fine, heights, r) if alone else 0.0)
+    if zone:  # the attraction's edge goes with that of the contact
+        moves += np.abs(_attraction(scene, zone, STEP)(r) - pulled(r)) / STEP
     spread = radius.uncertainty / radius.value * moves + given * np.abs(p)
     # Of a known shape nothing lies between the particles: where they are too few to show it, its edge alone is open.
     if coarser or body is None:
@@ -197,15 +199,17 @@ def _pressure(
     return BodyPressure(r, p, spread + sum(np.abs(one - p) for one in others), radius.value / wider, results)
 
 
-def _attraction(scene: Scene, zone: ZonedProfile | None) -> Callable[[Array], Array]:
-    """(2σ₀/π) arctan √((c² − a²)/(a² − r²)) [FU/LU²] inside a contact whose attraction has a range; else 0."""
+def _attraction(scene: Scene, zone: ZonedProfile | None, wider: float = 0.0) -> Callable[[Array], Array]:
+    """(2σ₀/π) arctan √((c² − a²)/(a² − r²)) [FU/LU²] inside a contact whose attraction has a range; else 0.
+
+    `wider`: relative, by how much a is larger, and c with it.
+    """
     if zone is None or scene.adhesion is None or not scene.adhesion.range:
         return np.zeros_like
-    stress, ring = (
-        scene.adhesion.work / scene.adhesion.range,
-        math.sqrt((zone.reach - zone.edge) * (zone.reach + zone.edge)),
-    )
-    return lambda r: 2.0 / np.pi * stress * np.arctan2(ring, np.sqrt((zone.edge - r) * (zone.edge + r)))
+    stress, more = scene.adhesion.work / scene.adhesion.range, wider * zone.edge
+    edge, reach = zone.edge + more, zone.reach + more
+    ring = math.sqrt((reach - edge) * (reach + edge))
+    return lambda r: 2.0 / np.pi * stress * np.arctan2(ring, np.sqrt((edge - r) * (edge + r)))
 
 
 def _moves(load: LineLoad, body: Callable[[Array], Array], r: Array) -> Array:

@@ -113,25 +113,25 @@ def _half_width(case: Case, radius: float) -> Iterator[Check]:
     yield Check("body_size", "a/half-width", share, HALF_WIDTH, share <= HALF_WIDTH, message)
 
 
-def beyond_jkr(sphere: MaugisDugdale) -> str:
-    """What JKR misses of a sphere whose attraction has the range that is assumed; "" where JKR holds."""
+def beyond_jkr(sphere: MaugisDugdale, assumed: bool) -> str:
+    """What JKR misses of a sphere whose attraction has a range, given or `assumed`; "" where JKR holds."""
     held = of_tabor(sphere.tabor)
     if held is Theory.JKR:
         return ""
     error = sphere.theories[Theory.JKR].pull_off_force() / sphere.pull_off_force() - 1.0
     found, limit = apart(sphere.tabor, JKR_TABOR, 2)
-    where = f" with an assumed range of the attraction of {prefixed(ASSUMED_RANGE, 'm')}"
+    where = f" with an assumed range of the attraction of {prefixed(ASSUMED_RANGE, 'm')}" if assumed else ""
     return (
         f"the Tabor parameter is {found}{where}, where {held} holds, and JKR above {limit}: the "
         f"results are JKR's, whose pull-off force is {abs(error):.1%} {'larger' if error > 0.0 else 'smaller'} than "
-        "that of Maugis and Dugdale: give adhesion.range"
+        f"that of Maugis and Dugdale{': give adhesion.range' * assumed}"
     )
 
 
 def _tabor(case: Case) -> Iterator[Check]:
     adhesion, sphere = case.scene.adhesion, case.with_range
     if adhesion is not None and sphere is not None:
-        message = "" if adhesion.range else beyond_jkr(sphere)
+        message = "" if adhesion.range else beyond_jkr(sphere, True)
         yield Check("tabor", "Tabor parameter", sphere.tabor, JKR_TABOR, not message, message)
 
 

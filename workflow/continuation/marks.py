@@ -77,8 +77,11 @@ def _separation(branch: Trace, peak: Peak) -> dict[str, Reading]:
         u = 0.5 * (u + 1.0)
         places = end + (start - end) * u**2
         others = [*range(0, len(at) - 1, every), len(at) - 1]
-        curve = model.held(places) + np.interp(places, at[others], off[others], left=0.0)
-        return -(start - end) * float(weights @ (u * curve))
+        curve = np.interp(places, at[others], off[others], left=0.0)
+        whole = model.work(start, every)
+        if whole is None:
+            curve += model.held(places)
+        return (whole or 0.0) - (start - end) * float(weights @ (u * curve))
 
     value = work(NODES, 1)
     missed = abs(value - work(NODES // 2, 2)) + MODEL_DIGITS * value
@@ -97,9 +100,16 @@ def _critical_radius(branch: Trace, peak: Peak, settings: Settings, missed: floa
         rate = abs(radius - branch.radius_or_spot(i - 1)) / max(float(d[i - 1] - d[i]), TINY)
         errors = {"sampling": rate * float(d[i] - d[i + 1])}
     else:
-        rate = abs(radius_rate(branch, int(np.argmin(np.abs(d - peak.position)))))
+        near = int(np.argmin(np.abs(d - peak.position)))
+        rate = abs(radius_rate(branch, near))
         radius = radius_at(branch, peak.position)
         errors = {"sampling": PLACE_FACTOR * rate * peak.misplaced}
+        by = PLACE_FACTOR * peak.misplaced
+        places = np.asarray([d[near], peak.position, peak.position - by, peak.position + by], dtype=np.float64)
+        if (known := branch.model.radii(places)) is not None:  # of a stiff contact it rises from 0 as a root
+            here, there, *ends = known.tolist()
+            radius = branch.radius_or_spot(near) + there - here
+            errors = {"sampling": max(abs(there - end) for end in ends) + MODEL_DIGITS * radius}
     if settings.snaps:
         teeth = rivals(*branch.lists, peak)
         others = [branch.radius_or_spot(i) for i, excess in teeth.items() if excess > -missed]

@@ -18,7 +18,7 @@ CURVE_STEPS, CURVE_NUMBERS = 100, 200_000
 each. Of long chains there are so many that positions times load steps stay below the second."""
 PULLING_STEPS = 48
 """Load steps from F = 0 to the limit point, where it is known."""
-NEARLY = 1.0 + 1e-9
+NEARLY = 1.0 + 1e-6
 """Load steps that are even but for round-off are so."""
 LAST = 1e-9
 """How much of that is left before it."""
@@ -58,8 +58,10 @@ class SteppedBranch(Branch):
         rows = self.model.unloading(zero, end, PULLING_STEPS)
         self._visit(rows)
         before = self.peak
-        beside = np.abs(np.append(zero, rows) - before.position)
-        step = min((zero - last) / PULLING_STEPS, NEARLY * float(np.sort(beside)[1]))
+        every = np.append(zero, rows)
+        near = int(np.argmin(np.abs(every - before.position)))
+        beside = -np.diff(every[max(near - 1, 0) : near + 2])
+        step = min((zero - last) / PULLING_STEPS, NEARLY * float(beside.min()))
         self._visit(np.clip(before.position + step * np.asarray((0.5, -0.5, 0.25, -0.25)), end, zero))
         self._visit([min(max(self.peak.position, end), zero)])
         self._found(abs(self.peak.smooth - before.smooth))

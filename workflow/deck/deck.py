@@ -120,7 +120,7 @@ class Deck:
         d = np.asarray([row.displacement for row in rows if isinstance(row, Displace)])
         start = estimate.place_of(before.edge, before.reach) if isinstance(before, Cohere) else APART
         zone = estimate.solved(d, estimate.places(d, start))
-        height = np.divide(estimate.area(zone.edge), zone.edge, out=np.zeros_like(d), where=zone.edge > 0.0)
+        height = np.divide(estimate.law.area(zone.edge), zone.edge, out=np.zeros_like(d), where=zone.edge > 0.0)
         columns = (column.tolist() for column in (d, zone.edge, zone.reach, height))
         return [self.as_listed(Cohere(*numbers)) for numbers in zip(*columns, strict=True)]
 

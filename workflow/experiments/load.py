@@ -9,6 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from contact1d.workflow.continuation.budget import MARGIN
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.holding import held_phase, stiffness_under
@@ -63,7 +64,7 @@ class LoadExperiment(Scripted[Load]):
         force, last = self.given(scene).force, len(trace) - 1
         own, stiffness = float(trace.displacement[last]), stiffness_under(settings, force)
         displacement = displacement_under(trace, last, trace.own_force(last), stiffness)
-        missed = abs(displacement_under(trace, last, force, stiffness) - displacement)
+        missed = MARGIN * abs(displacement_under(trace, last, force, stiffness) - displacement)
         carried = float(trace.force[last])
         found = {
             "displacement": Reading(displacement, LENGTH, {"solver": missed}),
@@ -74,11 +75,13 @@ class LoadExperiment(Scripted[Load]):
             radius = trace.radius_or_spot(last) + rate * (displacement - own)
             found["contact_radius"] = Reading(radius, LENGTH, {"solver": abs(rate) * missed})
             if (reach := trace.reach(last)) is not None and isinstance(settings.estimate, CohesiveEstimate):
-                there, here = settings.estimate.reaches(np.asarray([displacement, own])).tolist()
-                found["cohesive_radius"] = Reading(reach + there - here, LENGTH, {"solver": abs(there - here)})
+                places = np.asarray([own, displacement, displacement - missed, displacement + missed])
+                here, there, *ends = settings.estimate.reaches(places).tolist()
+                error = abs(there - here) + max(abs(end - there) for end in ends)
+                found["cohesive_radius"] = Reading(reach + there - here, LENGTH, {"solver": error})
             if radius > 0.0:
                 area = math.pi * radius**2
-                errors = {"solver": abs(carried - force) / area}
+                errors = {"solver": abs(carried - force) / area + 2.0 * abs(carried * rate) * missed / (area * radius)}
                 found["mean_pressure"] = Reading(carried / area, MEAN_PRESSURE, errors, prescribed=force == 0.0)
         return found
 

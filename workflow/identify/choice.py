@@ -97,6 +97,11 @@ def on_plane(contact: AskedContact, experiment: Any, **tables: Any) -> Scene:
 
 def _particles(contact: AskedContact, theories: Theories | None, doubts: dict[str, str]) -> Choice:
     """Two chains, whose interaction is to give JKR's F_A and a₀."""
+    if contact.scene.shares:
+        raise IdentifyError(
+            f'model = "particles" fits an interaction to values alone, and {", ".join(contact.scene.shares)} has ±: '
+            "leave one of the two out"
+        )
     if theories is None or contact.radius is None or contact.shape.kind != "parabola":
         raise IdentifyError(
             'model = "particles" is for an adhesive sphere, with a radius and a work_of_adhesion: leave it out, and a '

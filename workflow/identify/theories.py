@@ -92,14 +92,13 @@ def judged(contact: AskedContact, theories: Theories) -> dict[str, str]:
     Raises:
         IdentifyError: it cannot represent it.
     """
-    held = theories.values[theories.holding]
+    held, doubts = theories.values[theories.holding], {}
     if held["zero_load_radius"] < ATOM:
-        raise IdentifyError(
+        doubts["below_an_atom"] = (
             f"the contact is narrower than an atom: {theories.holding} has a zero-load radius of "
             f"{prefixed(held['zero_load_radius'], 'm')}, and an atom's diameter is {prefixed(ATOM, 'm')}. Continuum "
             "theory does not hold; use an atomistic model"
         )
-    doubts = {}
     stretch, roughness = -_let_go(contact), contact.roughness or 0.0
     beside = f"asperities of {prefixed(roughness, 'm')} against an elastic stretch of {prefixed(stretch, 'm')}"
     if roughness > TOO_ROUGH_SHARE * stretch:
@@ -110,7 +109,8 @@ def judged(contact: AskedContact, theories: Theories) -> dict[str, str]:
         )
     if roughness > ROUGH_SHARE * stretch:
         doubts["roughness"] = f"{beside} at pull-off: the pull-off force is below that of a smooth sphere"
-    if "range" not in contact.given and (words := beyond_jkr(theories.sphere)):
+    assumed = "range" not in contact.given
+    if (assumed or contact.model == "particles") and (words := beyond_jkr(theories.sphere, assumed)):
         doubts["tabor"] = words
     return doubts
 
@@ -129,11 +129,7 @@ def _down(value: float) -> str:
 
 
 def require_size(contact: AskedContact, radius: float) -> None:
-    """Refuse a contact narrower than an atom, and one that is not small compared with its sphere."""
-    if radius < ATOM:
-        raise IdentifyError(
-            f"the contact radius is {prefixed(radius, 'm')}, less than an atom's diameter: no theory holds"
-        )
+    """Refuse a contact that is not small compared with its sphere."""
     sphere = contact.radius and contact.shape.steepest.curvature_radius
     if sphere and radius > LARGEST_RADIUS_SHARE * sphere:
         share, most = apart(radius / sphere, LARGEST_RADIUS_SHARE, 2)

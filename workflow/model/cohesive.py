@@ -1,20 +1,10 @@
-"""Maugis and Dugdale's contact of any axisymmetric body on a rigid plane: an attraction σ₀ over a range h₀ = W/σ₀.
+"""The contact of a body whose attraction has a range (`dugdale`), before LAMMPS runs, and as the load of each cell.
 
-With the transformed profile g(x), springs E* per length, contact up to a and attraction up to c ≥ a, s² = c² − a²,
-
-    q = E* (d − g)  for |x| < a,      q = −2σ₀ √(c² − x²)  for a < |x| < c
-    d = g(a) − (2σ₀/E*) s                                       no stress is singular at a
-    h₀ = f(c) − d + (2/π) [∫₀ᵃ (d − g)/√(c² − x²) dx − (2σ₀/E*)(c − a)]      the gap at c is the range
-    F = 2E* [a d − G(a)] − 4σ₀ ∫ₐᶜ √(c² − x²) dx,   G = ∫₀ g dx
-
-Before contact a = 0, and the gap alone decides: d = f(c) − (4σ₀/πE*) c − h₀. As c → a this is JKR's (`adhesion`).
-
-The states are one curve, from c = 0 over the touch of the apexes to wide contacts. Where d falls along it no state is
+Its states are one curve, from c = 0 over the touch of the apexes to wide contacts. Where d falls along it no state is
 stable: a contact that is loaded goes on to the next place of the curve with its d, one that is unloaded to the one
 before; there are any number of such limit points, or none but that of the attraction itself.
 
 A particle has the integral of q over its cell. Integrals of neighbours add up, so that F is exact at every spacing.
-Source: D. Maugis, J. Colloid Interface Sci. 150 (1992) 243, for a paraboloid; the equations are Abel transforms.
 """
 
 from __future__ import annotations
@@ -27,9 +17,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.polynomial import gauss
 from contact1d.workflow.model.adhesion import SPANNED, AdhesiveEstimate
 from contact1d.workflow.model.chain import SettingsError
+from contact1d.workflow.model.dugdale import DOUBLINGS, TINY, Dugdale, Zone, covered
 from contact1d.workflow.model.pairs import ContactEstimate, Profile, beside_kinks, plane_estimate
 from contact1d.workflow.scene import Scene
 
@@ -40,32 +30,12 @@ BETWEEN = 10
 """Points of the curve for each of them, by cubics: their error is some 1e-8 of F."""
 BEFORE = 1000
 """Points of the curve before contact, where d(c) is explicit."""
-NODES, PANEL = 48, 8
-"""Of Gauss's quadrature from 0 or a kink to the edge, and of one between two positions of G."""
-PLACES = 2000
-"""Positions between which G is one quadrature each."""
-TINY = float(np.finfo(np.float64).tiny)
 APART = -1.0
 """Place on the curve of bodies that do not feel each other."""
+ENERGY_PLACES = 4000
+"""Positions of the two integrals of an energy."""
 SAME = 1e-9
 """Fall of d over its range that is one: others are round-off."""
-DOUBLINGS = 200
-"""Most of a bracket."""
-
-
-@dataclass(frozen=True)
-class Zone:
-    """States of a contact; arrays (m,), or columns of the curve.
-
-    Attributes:
-        edge, reach: a and c [LU], both 0 of bodies that do not feel each other.
-        displacement, force: [LU], [FU].
-    """
-
-    edge: Array
-    reach: Array
-    displacement: Array
-    force: Array
 
 
 @dataclass(frozen=True)
@@ -97,88 +67,10 @@ class CohesiveEstimate(AdhesiveEstimate):
     range: float = field(kw_only=True)
     surface: Profile = field(kw_only=True)
 
-    @property
-    def stress(self) -> float:
-        """σ₀ = W/h₀ [FU/LU²]."""
-        return self.work / self.range
-
-    @property
-    def _ratio(self) -> float:
-        """2σ₀/E* [1]."""
-        return 2.0 * self.stress / self.modulus
-
-    # --- the equations
-
     @cached_property
-    def _areas(self) -> tuple[Array, Array]:
-        """Positions [LU] from 0 on, dense beside kinks, and G there [LU²]."""
-        x = np.concatenate([[0.0], np.geomspace(FIRST**2 * self.known, self.known, PLACES)])
-        x = beside_kinks(x, self.profile)
-        return x, np.append(0.0, np.cumsum(self._integral(x[:-1], x[1:])))
-
-    def _integral(self, low: Array, high: Array) -> Array:
-        """∫ g dx between positions [LU²]."""
-        node, weight = gauss(PANEL)
-        half = 0.5 * (high - low)
-        return np.asarray(half * (self.profile.height(0.5 * (low + high)[:, None] + half[:, None] * node) @ weight))
-
-    def area(self, x: Array) -> Array:
-        """G(x) = ∫₀ˣ g [LU²] at positions ≥ 0 [LU], (n,), as far as the body is known."""
-        places, areas = self._areas
-        cell = np.clip(np.searchsorted(places, x, side="right") - 1, 0, places.size - 1)
-        return np.asarray(areas[cell] + self._integral(places[cell], x))
-
-    def _pressed(self, edge: Array, width: Array) -> Array:
-        """∫₀ᵃ g/√(c² − x²) dx [LU], c² = a² + s²; with x = c sin t, from 0 or a kink on in powers of √(t − t₀)."""
-        c = np.hypot(edge, width)
-        kinks = [np.minimum(kink, edge) for kink in self.profile.kinks if kink < self.known]
-        angles = [np.zeros_like(edge), *(np.arctan2(one, np.sqrt((c - one) * (c + one))) for one in kinks)]
-        angles.append(np.arctan2(edge, width))
-        node, weight = gauss(NODES)
-        share, total = 0.5 * (node + 1.0), np.zeros_like(edge)
-        for low, high in pairwise(angles):
-            angle = low[:, None] + (high - low)[:, None] * share**2
-            total += (high - low) * (self.profile.height(c[:, None] * np.sin(angle)) @ (share * weight))
-        return total
-
-    def gap_error(self, edge: Array, width: Array, displacement: Array) -> Array:
-        """Gap at c less the range [LU] at a, s and d [LU]; 0 of a state, for which d is that of the edge, too."""
-        c = np.hypot(edge, width)
-        angle = np.arctan2(edge, width)
-        # c − a without a difference of numbers that are nearly the same
-        ahead = width * width / np.maximum(c + edge, TINY)
-        elastic = displacement * angle - self._pressed(edge, width) - self._ratio * ahead
-        return np.asarray(self.surface.height(c) - displacement + 2.0 / math.pi * elastic - self.range)
-
-    def _states(self, edge: Array, width: Array) -> Zone:
-        """The states of contacts with these a and s [LU]."""
-        displacement = self.profile.height(edge) - self._ratio * width
-        return Zone(edge, np.hypot(edge, width), displacement, self.forces(edge, width, displacement))
-
-    def forces(self, edge: Array, width: Array, displacement: Array) -> Array:
-        """F [FU] at a, s and d [LU]."""
-        ring = 0.5 * ((edge**2 + width**2) * np.arctan2(width, edge) - edge * width)
-        return np.asarray(2.0 * self.modulus * (edge * displacement - self.area(edge)) - 4.0 * self.stress * ring)
-
-    def _widths(self, edge: Array) -> Array:
-        """s [LU] of contacts of radius a [LU]. Raises SettingsError where the attraction reaches past the body."""
-        from scipy.optimize import elementwise  # which takes longer to import than a small run
-
-        def error(width: Array, edge: Array) -> Array:
-            return self.gap_error(edge, width, self.profile.height(edge) - self._ratio * width)
-
-        high = np.full_like(edge, self.range / max(self._ratio, TINY) + math.sqrt(self.range * self.known))
-        for _ in range(DOUBLINGS):
-            short = error(high, edge) < 0.0
-            if not short.any():
-                break
-            if (np.hypot(edge, high)[short] > self.profile.reach).any():
-                raise _covered(self.profile.reach)
-            high[short] *= 2.0
-        found = elementwise.find_root(error, (np.zeros_like(edge), high), args=(edge,), maxiter=DOUBLINGS)
-        return np.asarray(found.x)
-
-    # --- the curve
+    def law(self) -> Dugdale:
+        """Its equations."""
+        return Dugdale(self.profile, self.surface, self.modulus, self.work / self.range, self.range, self.known)
 
     @cached_property
     def _nodes(self) -> Zone:
@@ -187,19 +79,19 @@ class CohesiveEstimate(AdhesiveEstimate):
         edge = np.concatenate([np.linspace(0.0, least, NEAR, endpoint=False), np.geomspace(least, self.known, POINTS)])
         edge = beside_kinks(edge, self.profile)
         edge = np.unique(np.concatenate([edge, self._folds(edge)]))
-        return self._states(edge, self._widths(edge))
+        return self.law.states(edge, self.law.widths(edge))
 
     def _folds(self, edge: Array) -> Array:
         """a [LU] where d has an extremum, between those of its neighbours on a grid."""
         from scipy.optimize import elementwise
 
-        d = self._states(edge, self._widths(edge)).displacement
+        d = self.law.states(edge, self.law.widths(edge)).displacement
         slope = np.sign(np.diff(d))
         turns = np.flatnonzero(slope[1:] != slope[:-1]) + 1
         if not turns.size:
             return turns.astype(np.float64)
         found = elementwise.find_minimum(
-            lambda a, sign: sign * self._states(a, self._widths(a)).displacement,
+            lambda a, sign: sign * self.law.states(a, self.law.widths(a)).displacement,
             (edge[turns - 1], edge[turns], edge[turns + 1]),
             args=(np.sign(slope[turns]),),
         )
@@ -213,7 +105,7 @@ class CohesiveEstimate(AdhesiveEstimate):
         nodes = self._nodes
         reach = nodes.reach[0] * np.linspace(0.0, 1.0, BEFORE, endpoint=False)
         none = np.zeros_like(reach)
-        columns = [[none], [reach], [self._before(reach)], [-math.pi * self.stress * reach**2]]
+        columns = [[none], [reach], [self.law.before(reach)], [-math.pi * self.law.stress * reach**2]]
         # Each stretch between kinks has its own cubics: beyond a kink d rises as a root.
         ends = [0, *(at for at in np.searchsorted(nodes.edge, self.profile.kinks) if 0 < at < nodes.edge.size - 1)]
         for first, last in pairwise([*ends, nodes.edge.size - 1]):
@@ -224,10 +116,6 @@ class CohesiveEstimate(AdhesiveEstimate):
             for column, values in zip(columns[1:], list(vars(nodes).values())[1:], strict=True):
                 column.append(CubicSpline(nodes.edge[own], values[own])(edge[start:]))
         return Zone(*map(np.concatenate, columns))
-
-    def _before(self, reach: Array) -> Array:
-        """d [LU] of bodies that attract each other up to c [LU] and do not touch."""
-        return np.asarray(self.surface.height(reach) - 2.0 / math.pi * self._ratio * reach - self.range)
 
     def places(self, displacements: Array, place: float = APART) -> Array:
         """Places on the curve of a contact that goes from one of them along displacements [LU]: indices, or APART."""
@@ -279,20 +167,20 @@ class CohesiveEstimate(AdhesiveEstimate):
             low += (nodes.displacement[low + 1] < d) & (low < nodes.edge.size - 2)
 
             def error(edge: Array, d: Array) -> Array:
-                return self.gap_error(edge, np.maximum(self.profile.height(edge) - d, 0.0) / self._ratio, d)
+                return self.law.gap_error(edge, np.maximum(self.profile.height(edge) - d, 0.0) / self.law.ratio, d)
 
             ends = nodes.edge[low], nodes.edge[low + 1]
             found = elementwise.find_root(error, ends, args=(d,), maxiter=DOUBLINGS)
             nearer = np.where(np.abs(error(ends[0], d)) < np.abs(error(ends[1], d)), *ends)
             edge[touching] = np.where(found.success, found.x, nearer)
-            width[touching] = np.maximum(self.profile.height(edge[touching]) - d, 0.0) / self._ratio
+            width[touching] = np.maximum(self.profile.height(edge[touching]) - d, 0.0) / self.law.ratio
         if near.any():
             d = displacements[near]
             low = np.clip(places[near].astype(np.intp), 0, BEFORE - 1)
             ends = self.curve.reach[low], self.curve.reach[low + 1]
-            found = elementwise.find_root(lambda c, d: self._before(c) - d, ends, args=(d,), maxiter=DOUBLINGS)
+            found = elementwise.find_root(lambda c, d: self.law.before(c) - d, ends, args=(d,), maxiter=DOUBLINGS)
             width[near] = np.where(found.success, found.x, guess.reach[near])
-        force = np.where(places == APART, 0.0, self.forces(edge, width, displacements))
+        force = np.where(places == APART, 0.0, self.law.forces(edge, width, displacements))
         return Zone(edge, np.hypot(edge, width), displacements, force)
 
     # --- what a predictor is asked
@@ -339,8 +227,21 @@ class CohesiveEstimate(AdhesiveEstimate):
         """Nothing: where the edge would jump, the curve has a limit point."""
 
     def energy(self, displacement: float, radius: float) -> float | None:
-        """Not known."""
-        return None
+        """E* ∫₀ᵃ (d−g)² dx − (4σ₀²/E*) ∫ₐᶜ (c²−x²) dx + 4σ₀ ∫ₐᶜ (g−d) √(c²−x²) dx − πc²W [FU·LU], 0 of bodies apart."""
+        law, d, a = self.law, displacement, radius
+        width = (float(self.profile.height(np.asarray([a]))[0]) - d) / law.ratio
+        c = math.hypot(a, width) if a > 0.0 else float(self.reaches(np.asarray([d]))[0])
+        if d < self.held.displacement[0]:
+            return 0.0
+        inner, outer = (
+            np.linspace(0.0, a, ENERGY_PLACES),
+            c * np.sin(np.linspace(math.asin(a / c), 0.5 * math.pi, ENERGY_PLACES)),
+        )
+        pressed = self.modulus * float(np.trapezoid((d - self.profile.height(inner)) ** 2, inner))
+        root = np.sqrt((c - outer) * (c + outer))
+        drawn = 4.0 * law.stress * float(np.trapezoid((self.profile.height(outer) - d) * root, outer))
+        disc = c * c * (c - a) - (c**3 - a**3) / 3.0
+        return pressed - 4.0 * law.stress**2 / self.modulus * disc + drawn - math.pi * c * c * self.work
 
     def zones(self, x: Array) -> Cells:
         """The cells of particles at positions x, (n,) [LU]."""
@@ -348,17 +249,17 @@ class CohesiveEstimate(AdhesiveEstimate):
         inner, outer = np.maximum(at - half, 0.0), at + half
         sides = np.where(at < 0.25 * self.spacing, 2.0, 1.0)
         # Beyond the body nothing is known, and nothing carries.
-        below, above = (self.area(np.minimum(end, self.known)) for end in (inner, outer))
+        below, above = (self.law.area(np.minimum(end, self.known)) for end in (inner, outer))
         return Cells(inner, outer, below, above, sides)
 
     def loads(self, cells: Cells, zone: Zone, state: int) -> Array:
         """∫ q dx [FU] over each cell in a state."""
         a, c, d = (float(column[state]) for column in (zone.edge, zone.reach, zone.displacement))
         end = np.minimum(cells.outer, a)
-        area = np.where(cells.outer < a, cells.above, self.area(np.asarray([a]))[0])
+        area = np.where(cells.outer < a, cells.above, self.law.area(np.asarray([a]))[0])
         pressed = self.modulus * np.where(cells.inner < a, d * (end - cells.inner) - (area - cells.below), 0.0)
         low, high = (np.minimum(np.maximum(one, a), c) for one in (cells.inner, cells.outer))
-        return np.asarray(cells.sides * (pressed - 2.0 * self.stress * (_half_disc(high, c) - _half_disc(low, c))))
+        return np.asarray(cells.sides * (pressed - 2.0 * self.law.stress * (_half_disc(high, c) - _half_disc(low, c))))
 
 
 def _half_disc(x: Array, radius: float) -> Array:
@@ -370,13 +271,6 @@ def _between(column: Array, low: int, value: float) -> float:
     """The place of a value in the cell of a column that begins at `low`."""
     start, end = float(column[low]), float(column[min(low + 1, column.size - 1)])
     return low + (min(max((value - start) / (end - start), 0.0), 1.0) if end > start else 0.0)
-
-
-def _covered(reach: float) -> SettingsError:
-    return SettingsError(
-        f"the attraction would reach beyond the body, which ends at {reach:.6g} LU: lower adhesion.range or "
-        "adhesion.work_of_adhesion, or give a wider profile"
-    )
 
 
 def estimate_on_plane(scene: Scene, profile: Profile) -> ContactEstimate:
@@ -416,12 +310,14 @@ def _with_range(jkr: AdhesiveEstimate, reach: float, surface: Profile, wanted: f
     Raises:
         SettingsError: the attraction would reach past the body.
     """
-    known = jkr.known
+    own = {one.name: getattr(jkr, one.name) for one in fields(jkr)} | {"range": reach, "surface": surface}
+    end = CohesiveEstimate(**own | {"known": jkr.profile.reach}).law.widest()
+    known = min(jkr.known, end)
     while True:
-        own = {one.name: getattr(jkr, one.name) for one in fields(jkr)} | {"known": known}
-        estimate = CohesiveEstimate(**own, range=reach, surface=surface)
-        if estimate.is_beyond(wanted, load):
+        estimate = CohesiveEstimate(**own | {"known": known})
+        _, displacement, force = estimate.end
+        if estimate.is_beyond(wanted, load) or (known == end and displacement >= wanted and force >= load):
             return estimate
-        if 2.0 * known >= jkr.profile.reach:
-            raise _covered(jkr.profile.reach)
-        known *= 2.0
+        if known == end:
+            raise covered(jkr.profile.reach)
+        known = min(2.0 * known, end)

@@ -14,6 +14,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import cache, cached_property, lru_cache
+from itertools import pairwise
 from typing import Any, Protocol
 
 import numpy as np
@@ -26,8 +27,8 @@ Array = NDArray[np.float64]
 NEAREST, WIDEST, BESIDE, MOST_KINKS = 1e-9, 0.1, 60, 100
 """Distances from a kink over its own position between which positions are added in geometric progression, how many on
 each side, and at how many kinks."""
-PLACES, EXACT_PLACES, NEAR = 1000, 10_000, 0.01
-"""Positions at which a profile is tabulated for a predictor, and for a deck, and the first one over the spacing."""
+PLACES, NEAR = 1000, 0.01
+"""Positions at which a profile is tabulated, and the first one beyond its apex over the spacing."""
 
 
 def places_within(reach: float, spacing: float, phase: float) -> Array:
@@ -75,14 +76,31 @@ class Tabulated:
         return float(self.places[-1])
 
 
-def tabulated(profile: Profile, spacing: float, count: int = PLACES) -> Tabulated:
+@dataclass(frozen=True, eq=False)
+class Splined(Tabulated):
+    """The same by cubics, each stretch between kinks by its own: of a parabola to 1e-12 of its height."""
+
+    @cached_property
+    def _curve(self) -> Any:
+        from scipy.interpolate import CubicSpline, PPoly
+
+        kinks = [int(at) for at in np.searchsorted(self.places, self.kinks) if 3 < at < self.places.size - 4]
+        parts = [slice(first, last + 1) for first, last in pairwise([0, *kinks, self.places.size - 1])]
+        cubics = [CubicSpline(self.places[part], self.heights[part]).c for part in parts]
+        return PPoly(np.concatenate(cubics, axis=1), self.places)
+
+    def height(self, x: Array) -> Array:
+        """Height [LU] at x [LU]."""
+        return np.asarray(self._curve(np.minimum(np.abs(x), self.reach)))
+
+
+def tabulated(profile: Profile, spacing: float, kind: type[Tabulated] = Tabulated) -> Tabulated:
     """The profile, which must be finite, at positions in geometric series: those of a parabola to 1e-4 of its height.
 
-    That holds for a reach of 0.1 to 1e10 spacings [LU] and PLACES of them, and goes with the square of their `count`;
-    closer to the apex than NEAR spacings it is a line.
+    That holds for a reach of 0.1 to 1e10 spacings [LU]; closer to the apex than NEAR spacings it is a line.
     """
-    places = beside_kinks(np.concatenate([[0.0], np.geomspace(NEAR * spacing, profile.reach, count)]), profile)
-    return Tabulated(places, profile.height(places), profile.kinks)
+    places = beside_kinks(np.concatenate([[0.0], np.geomspace(NEAR * spacing, profile.reach, PLACES)]), profile)
+    return kind(places, profile.height(places), profile.kinks)
 
 
 def beside_kinks(places: Array, profile: Profile) -> Array:

@@ -128,6 +128,17 @@ class Reduced(ABC):
         """Displacements [LU] of load steps of a contact that is unloaded, after the first one."""
         return np.linspace(start, end, count + 1)[1:]
 
+    def work(self, start: float, every: int) -> float | None:
+        """∫ −F dd [FU·LU] of a contact that is unloaded from a displacement [LU], where its curve is known.
+
+        Of every so manieth point of the curve alone.
+        """
+        return None
+
+    def radii(self, displacements: Array) -> Array | None:
+        """Contact radii [LU] of a contact that is unloaded, where particles need not tell them."""
+        return None
+
     def shifted(self, phase: float) -> Reduced:
         """The same with the apex `phase` spacings off a particle."""
         return replace(self, x=places_within(self._reach, self.estimate.spacing, phase))
@@ -310,6 +321,18 @@ class CohesiveCells(Reduced):
         rows = np.interp(np.linspace(float(np.interp(start, d, a)), float(a[0]), count + 1)[1:], a, d)
         beyond = np.linspace(float(d[0]), end, count // 2 + 1)[1:] if d[0] > end else np.asarray([])
         return np.append(rows[(rows < start) & (rows > end)], np.append(beyond, [] if beyond.size else [end]))
+
+    def work(self, start: float, every: int) -> float:
+        """By the points of the curve, which has kinks where the bodies touch and jumps."""
+        d, force = self.estimate.held.displacement, self.estimate.held.force
+        last = int(np.searchsorted(d, start))
+        at, own = np.append(d[:last], start), np.append(force[:last], np.interp(start, d, force))
+        chosen = np.unique([*range(0, at.size, every), at.size - 1])
+        return -float(np.trapezoid(own[chosen], at[chosen]))
+
+    def radii(self, displacements: Array) -> Array:
+        """See `Reduced.radii`."""
+        return self.estimate.radii(displacements)
 
     @property
     def jumps(self) -> tuple[float, ...]:

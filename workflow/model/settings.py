@@ -45,10 +45,10 @@ from contact1d.workflow.model.chain import (
 from contact1d.workflow.model.cohesive import estimate_on_plane
 from contact1d.workflow.model.dynamics import Motion, measured, motion_of, whole_steps
 from contact1d.workflow.model.pairs import (
-    EXACT_PLACES,
-    PLACES,
     ContactEstimate,
     NotCarriedError,
+    Splined,
+    Tabulated,
     particles_estimate,
     tabulated,
 )
@@ -571,7 +571,7 @@ def _forces(scene: Scene, tolerance: float, calibration: Calibration) -> tuple[F
     shape: Undeformed = bodies
     if isinstance(bodies.profile, Measured):  # with a range the predictor's shape is that of the deck
         exact = scene.adhesion and scene.adhesion.range
-        shape = tabulated(bodies, bodies.spacing, EXACT_PLACES if exact else PLACES)
+        shape = tabulated(bodies, bodies.spacing, Splined if exact else Tabulated)
     if law is None:
         plane = plane_stiffness_of(scene, tolerance)
         bond = spring if scene.stands else _beside_plane(spring, plane)

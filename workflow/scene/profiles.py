@@ -194,7 +194,9 @@ def _half_angle(text: object) -> object:
     """The text as it is, where it is a half angle. Raises PydanticCustomError."""
     problem = 'must be text with a unit, greater than 0° and less than 90°, from the axis to the flank: write "80°"'
     try:
-        if isinstance(text, str) and 0.0 < si_value(text, "rad")[0] < 0.5 * math.pi:
+        if isinstance(text, str) and "±" in text:
+            problem = 'has no uncertainty: give the slope, its cotangent, with one, slope = "0.18 ± 0.01"'
+        elif isinstance(text, str) and 0.0 < si_value(text, "rad")[0] < 0.5 * math.pi:
             return text
     except UnitTextError as error:
         problem = str(error)
