@@ -54,7 +54,7 @@ class DataError(Contact1dError, ValueError):
 
 
 def curves(path: Path, plan: FitPlan) -> Iterator[tuple[str, tuple[float, float] | None, ForceCurve | DataError]]:
-    """The curves of a file: name, place (x, y) of a map, and the curve in units of the scene, or why it is none.
+    """The curves of a file: name, place (x, y) of a map, and the curve, or why it is none.
 
     Raises:
         DataError: nothing in the file can be read.
@@ -156,7 +156,7 @@ def _known(cells: list[str]) -> dict[str, int]:
 
 
 def _curve(table: dict[str, NDArray[np.generic]], along: str, units: dict[str, str], plan: FitPlan) -> ForceCurve:
-    """One curve, in the units of the scene. Raises DataError."""
+    """One curve. Raises DataError."""
     reverse = plan.fit.reverse or ()
     columns = []
     for name in (along, "F"):
@@ -167,8 +167,7 @@ def _curve(table: dict[str, NDArray[np.generic]], along: str, units: dict[str, s
             what = "is in volts: multiply it by sensitivity and stiffness of the cantilever" if volts else f"{error}"
             raise DataError(f"column {name} {what}") from None
         sign = -1.0 if name in reverse else 1.0
-        scale = plan.scales.factor("LU" if name != "F" else "FU")
-        columns.append(sign * factor / scale * np.asarray(table[name], dtype=float))
+        columns.append(sign * factor * np.asarray(table[name], dtype=float))
     z, F = columns
     if z.size < FEWEST:
         raise DataError(f"has {z.size} points, and at least {FEWEST} are needed: approach and retraction at full rate")
@@ -176,7 +175,7 @@ def _curve(table: dict[str, NDArray[np.generic]], along: str, units: dict[str, s
         raise DataError(f"has {z.size} points, and at most {MOST_POINTS} are compared: average neighbouring points")
     turn = _turn(z, table.get("segment"))
     if math.isfinite(plan.stiffness) and along == "d":
-        z = z + F * plan.scales.factor("FU") / plan.scales.factor("LU") / plan.stiffness
+        z = z + F / plan.stiffness
     curve = ForceCurve(z, F, turn, np.asarray(table["line"], dtype=int))
     _require_signs(curve)
     _require_whole(curve, along)

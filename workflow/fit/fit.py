@@ -12,7 +12,6 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact1d.files import AnyPath
 from contact1d.workflow.engine.progress import Progress, Silent
@@ -20,32 +19,17 @@ from contact1d.workflow.errors import Contact1dError, FolderError
 from contact1d.workflow.fit.curve import ForceCurve
 from contact1d.workflow.fit.data import DataError, curves
 from contact1d.workflow.fit.forward import LAWS
-from contact1d.workflow.fit.plan import AnyFit, FitPlan, read_fit
+from contact1d.workflow.fit.plan import STIFFNESS, AnyFit, FitPlan, read_fit
 from contact1d.workflow.fit.solution import Fitted, compared, fitted, model_of
+from contact1d.workflow.fit.subject import OFFSET, POINT
 from contact1d.workflow.runs.advised import run
 from contact1d.workflow.scene import AnyScene, Scene
 from contact1d.workflow.scene.read import plain_data
 
-Array = NDArray[np.float64]
 LOAD_STEPS = 15
 """Of the run that the found scene is compared with."""
 PATTERN = "*.csv"
 """Curves in a folder."""
-
-
-@dataclass(frozen=True)
-class Checked:
-    """The found scene, run on LAMMPS, beside the model: displacements [LU], both forces [FU], and what may differ."""
-
-    displacements: Array
-    forces: Array
-    predicted: Array
-    allowed: float
-
-    @property
-    def difference(self) -> float:
-        """The largest one [FU]."""
-        return float(np.abs(self.forces - self.predicted).max())
 
 
 @dataclass
@@ -56,7 +40,7 @@ class Found:
         file: the data.
         fit: the curve under the contact model of the base scene.
         others: by name, other contact models on the same points.
-        checked: the run; None where it was left out.
+        difference, allowed: largest one of the forces on LAMMPS from the model's, and the fit's own uncertainty [N].
         warnings: by name.
         seconds: that it took.
         finished: whether all was done.
@@ -65,7 +49,8 @@ class Found:
     file: Path
     fit: Fitted
     others: dict[str, Fitted] = field(default_factory=dict)
-    checked: Checked | None = None
+    difference: float = math.nan
+    allowed: float = math.nan
     warnings: dict[str, str] = field(default_factory=dict)
     seconds: float = 0.0
     finished: bool = False
@@ -75,6 +60,15 @@ class Found:
         """All contact models, the most likely one first."""
         known = {self.fit.model: self.fit, **self.others}
         return dict(sorted(known.items(), key=lambda pair: pair[1].criterion))
+
+    @property
+    def bracket(self) -> tuple[float, float]:
+        """Positions z [m] between which the contact is lost; NaN where the force does not jump."""
+        segment = self.fit.curve.segments[1]
+        if segment.jump is None:
+            return math.nan, math.nan
+        low, high = sorted(float(self.fit.curve.positions[segment.points[i]]) for i in segment.jump)
+        return low, high
 
     @property
     def scene(self) -> Scene:
@@ -156,24 +150,16 @@ def _steps(plan: FitPlan, file: Path, curve: ForceCurve, progress: Progress) -> 
     yield found
     for name in LAWS:
         if name != own and _has(plan, name):
-            with suppress(
-                Contact1dError, ArithmeticError, np.linalg.LinAlgError
-            ):  # it can't describe this curve at all
+            with suppress(Contact1dError, ArithmeticError, np.linalg.LinAlgError):  # it does not describe the curve
                 found.others[name] = compared(found.fit, name)
         progress.advance(1)
     _judge_models(found)
     yield found
     progress.phase("run of the found scene")
     try:
-        found.checked = checked(found)
+        _run(found)
     except Contact1dError as error:
         found.warnings["run"] = f"the found scene does not run on LAMMPS: {error}"
-    if found.checked and found.checked.difference > found.checked.allowed:
-        unit = plan.scales.factor("FU")
-        found.warnings["run"] = (
-            f"LAMMPS differs from the fit's model by up to {found.checked.difference * unit:.3g} N, more than the "
-            f"fit's own uncertainty, {found.checked.allowed * unit:.3g} N: lower accuracy.tolerance in [base]"
-        )
     found.finished = True
     yield found
 
@@ -193,23 +179,22 @@ def _has(plan: FitPlan, model: str) -> bool:
 
 def _judge(found: Found) -> None:
     """Warn of what the fit itself shows."""
-    one, scales = found.fit, found.fit.plan.scales
-    length = scales.factor("LU")
-    bracket, (snap, _) = snap_bracket(one), snap_out(one)
-    slack = abs(bracket[1] - bracket[0]) if bracket else 0.0
-    if bracket and not min(bracket) - slack <= snap <= max(bracket) + slack:
-        found.warnings["snap_out"] = (
-            f"the contact is lost between z = {min(bracket) * length:.4g} and {max(bracket) * length:.4g} m, and "
-            f"{one.model} loses it at {snap * length:.4g} m: compare the contact models"
-        )
+    one = found.fit
+    segment, snap = one.curve.segments[1], float(one.jumps_at(one.solution.values)[1])
+    if segment.jump is not None:
+        low, high = found.bracket
+        if not 2.0 * low - high <= snap <= 2.0 * high - low:
+            found.warnings["snap_out"] = (
+                f"the contact is lost between z = {low:.4g} and {high:.4g} m, and {one.model} loses it at {snap:.4g} "
+                "m: compare the contact models"
+            )
     if one.misfit > MISFIT:
         found.warnings["misfit"] = (
             f"residuals in contact have {one.misfit:.2g} times the mean square of those apart: {one.model} or the "
             "profile does not describe the contact; compare the contact models and look at the residuals"
         )
-    point = one.values.get("contact_point", one.subject.point)
-    if one.plan.fit.contact_point == "free" and not one.curve.positions.min() < point < one.curve.positions.max():
-        found.warnings["contact_point"] = "the contact point is outside the curve: the baseline is not in it"
+    if not one.curve.positions.min() < one.values[POINT] < one.curve.positions.max():
+        found.warnings[POINT] = "the contact point is outside the curve: the baseline is not in it"
     shared = [key for key in one.plan.fit.parameters if key in one.plan.known]
     if shared:
         found.warnings["prior"] = (
@@ -233,44 +218,25 @@ def _judge_models(found: Found) -> None:
         )
 
 
-def snap_bracket(found: Fitted) -> tuple[float, float] | None:
-    """Positions z [LU] of the last point that is held and the first one after; None where the force does not jump."""
-    segment = found.curve.segments[1]
-    if segment.jump is None:
-        return None
-    before, after = (float(found.curve.positions[segment.points[i]]) for i in segment.jump)
-    return before, after
-
-
-def snap_out(found: Fitted) -> tuple[float, float]:
-    """Position z [LU] and force [FU] at which the model loses the contact."""
-    values = found.solution.values
-    k = found.values.get("instrument.stiffness", found.subject.stiffness)
-    z, F = found.subject.branch(values).snap_out(k)
-    return z + found.values.get("contact_point", found.subject.point), F
-
-
-def checked(found: Found) -> Checked:
+def _run(found: Found) -> None:
     """The found scene on LAMMPS along the displacements of the fit, beside the model."""
-    one = found.fit
-    values = one.solution.values
-    branch = one.subject.branch(values)
-    k = one.values.get("instrument.stiffness", one.subject.stiffness)
-    largest = float(one.forces.max()) - one.values["force_offset"]
-    z = branch.displacements + branch.forces / k
-    least, rigid = int(np.argmin(z)), int(np.argmin(branch.displacements))
+    one, values = found.fit, found.fit.solution.values
+    branch, k = one.subject.branch(values), one.subject.value_of(STIFFNESS, values)
     F, d = branch.forces, branch.displacements
-    top = float(np.interp(largest, F[least:], d[least:]))
-    low = float(d[max(least, rigid)])
-    places = np.linspace(top, low + (top - low) / LOAD_STEPS, LOAD_STEPS)
+    least = max(int(np.argmin(d + F / k)), int(np.argmin(d)))
+    top = float(np.interp(one.forces.max() - one.values[OFFSET], F[least:], d[least:]))
+    places = np.linspace(top, d[least] + (top - d[least]) / LOAD_STEPS, LOAD_STEPS)
     scene = found.scene.with_({"experiment": {"kind": "path", "displacements": places.tolist()}})
     with TemporaryDirectory(prefix="contact1d-fit-") as folder:
-        done = run(scene, Path(folder) / "run", figures=False)
-        curve, scales = done.curve, one.plan.scales
-        at = np.asarray(curve["displacement"]) / scales.factor("LU")
-        forces = np.asarray(curve["force"]) / scales.factor("FU")
-    predicted = branch.at(at, math.inf, held=True)
-    return Checked(at, forces, predicted, float(one.spread().max()))
+        curve = run(scene, Path(folder) / "run", figures=False).curve
+        predicted = branch.at(np.asarray(curve["displacement"]), math.inf, held=True)
+        found.difference = float(np.abs(np.asarray(curve["force"]) - predicted).max())
+    found.allowed = float(one.spread().max())
+    if found.difference > found.allowed:
+        found.warnings["run"] = (
+            f"LAMMPS differs from the fit's model by up to {found.difference:.3g} N, more than the fit's own "
+            f"uncertainty, {found.allowed:.3g} N: lower accuracy.tolerance in [base]"
+        )
 
 
 def own_folder(folder: Path) -> Path:

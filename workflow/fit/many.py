@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import csv
+from collections import Counter
 from collections.abc import Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, wait
-from contextlib import nullcontext
 from dataclasses import dataclass
+from functools import partial
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -27,9 +27,7 @@ from contact1d.workflow.runs.processors import cores, pool
 from contact1d.workflow.units import scale_of
 
 TABLE = "fits.csv"
-AHEAD = 4
-"""Curves for each worker that are handed in before their turn."""
-Job = tuple[int, str, tuple[float, float] | None, ForceCurve | DataError]
+Job = tuple[str, tuple[float, float] | None, ForceCurve | DataError]
 
 
 @dataclass(frozen=True)
@@ -49,34 +47,18 @@ def fit_many(source: AnyFit, folder: AnyPath, workers: int | None = None, progre
         workers: processes; None: as many as there are processors.
         progress: informed of each curve.
     """
-    plan, progress = read_fit(source), progress or Silent()
+    plan, progress, rows = read_fit(source), progress or Silent(), list[dict[str, Any]]()
     out = own_folder(Path(folder))
-    rows: dict[int, dict[str, Any]] = {}
-    jobs = _jobs(plan)
-    progress.phase("fits", None, "curve")
+    jobs = list(_jobs(plan))
+    progress.phase("fits", len(jobs), "curve")
     try:
-        with pool(workers or cores()) if workers != 1 else nullcontext() as executor:
-            if executor is None:
-                for job in jobs:
-                    rows[job[0]] = attempt(plan, job)
-                    progress.advance(1)
-            else:
-                waiting: dict[Future[dict[str, Any]], int] = {}
-                while True:
-                    for job in islice(jobs, AHEAD * (workers or cores()) - len(waiting)):
-                        waiting[executor.submit(attempt, plan, job)] = job[0]
-                    if not waiting:
-                        break
-                    for future in wait(waiting, return_when=FIRST_COMPLETED).done:
-                        rows[waiting.pop(future)] = future.result()
-                        progress.advance(1)
+        with pool(workers or cores()) as executor:
+            for row in executor.map(partial(attempt, plan), jobs):
+                rows.append(row)
+                progress.advance(1)
     finally:
-        ordered = [rows[i] for i in sorted(rows)]
-        _write(plan, ordered, out)
-    counts: dict[str, int] = {}
-    for row in ordered:
-        counts[row["status"]] = counts.get(row["status"], 0) + 1
-    return Fits(out, counts)
+        _write(plan, rows, out)
+    return Fits(out, dict(Counter(row["status"] for row in rows)))
 
 
 def is_series(plan: FitPlan) -> bool:
@@ -86,21 +68,17 @@ def is_series(plan: FitPlan) -> bool:
 
 
 def _jobs(plan: FitPlan) -> Iterator[Job]:
-    """All curves, read one file at a time."""
-    number = 0
+    """All curves; what is wrong with a file stands for its curve."""
     for file in files_of(plan):
         try:
-            read: Sequence[Any] = list(curves(file, plan))
+            yield from curves(file, plan)
         except DataError as error:
-            read = [(file.stem, None, error)]
-        for name, place, curve in read:
-            yield number, name, place, curve
-            number += 1
+            yield file.stem, None, error
 
 
 def attempt(plan: FitPlan, job: Job) -> dict[str, Any]:
     """The line of the table of one curve: what it says, or why it says nothing."""
-    _, name, place, curve = job
+    name, place, curve = job
     row: dict[str, Any] = {"curve": name, "status": "done", "reason": ""}
     if place is not None:
         row |= {"x": place[0], "y": place[1]}
@@ -108,12 +86,10 @@ def attempt(plan: FitPlan, job: Job) -> dict[str, Any]:
         if isinstance(curve, DataError):
             raise curve
         found = fitted(plan, curve, model_of(plan))
-        for key in [*plan.fit.parameters, "contact_point"]:
-            if key in found.intervals:
-                given = entry(found, key)
-                label = f"[{given['unit']}]"
-                for part, value in zip(("", "_low", "_high"), (given["value"], *given["interval"]), strict=True):
-                    row[f"{key}{part} {label}"] = value
+        for key, ends in found.intervals.items():
+            label = f"[{entry(found, key)['unit']}]"
+            for part, value in zip(("", "_low", "_high"), (found.values[key], *ends), strict=True):
+                row[f"{key}{part} {label}"] = value
         row["outliers"], row["reduced_chi_squared"] = found.solution.outliers.size, found.misfit
     except (Contact1dError, ArithmeticError, np.linalg.LinAlgError) as error:
         row |= {"status": "refused", "reason": str(error)}

@@ -18,9 +18,9 @@ from contact1d.workflow.scene.conversion import convert
 from contact1d.workflow.scene.problems import shown
 from contact1d.workflow.scene.quantities import POSITIVE, Listed, Place, Table, Unit, allowed_by
 from contact1d.workflow.scene.read import plain_data
+from contact1d.workflow.scene.si_text import in_si
 from contact1d.workflow.scene.tables import WHOLE
 from contact1d.workflow.scene.uncertain import take_shares
-from contact1d.workflow.units import Scales
 
 AnyFit = str | PathLike[str] | Mapping[str, Any]
 """What `read_fit` makes a plan of."""
@@ -74,19 +74,11 @@ class FitPlan:
     known: Mapping[str, float]
 
     @cached_property
-    def scales(self) -> Scales:
-        """LU and FU in SI."""
-        material = self.base.material
-        assert material is not None
-        assert material.length_unit is not None
-        assert material.force_unit is not None
-        return Scales(material.length_unit, material.force_unit)
-
-    @cached_property
     def units(self) -> dict[str, str]:
-        """The unit of each number of the scene, by dotted key."""
+        """The unit in SI of each number of the scene, by dotted key."""
         tables = Place(self.base.model_dump(by_alias=True, exclude_none=True), WHOLE)
-        return {place.path: place.unit.name for place in tables if place.allowed.quantity and place.is_number}
+        found = {place.path: place.unit for place in tables if place.allowed.quantity and place.is_number}
+        return {key: unit.text[0] if unit.text else in_si(unit.name) for key, unit in found.items()}
 
     @property
     def stiffness(self) -> float:
@@ -140,12 +132,14 @@ def _base(base: Mapping[str, Any], folder: Path) -> tuple[Scene | None, list[Pro
         scene = scene_from_dict(given, folder=folder)
     except SceneError as error:
         return None, [Problem(f"base.{one.path}", one.message, one.given, one.hint) for one in error.problems]
-    material = scene.material
     if scene.bodies.lower != "rigid_plane" or scene.bodies.reduction != "mdr":
         return scene, [Problem("base.bodies.lower", 'must be "rigid_plane", with the reduction "mdr"')]
-    if material is None or material.length_unit is None or material.force_unit is None:
-        hint = 'measured data are in SI: give [base.material] and lengths with units, such as radius = "5 µm"'
-        return scene, [Problem("base.material", "must say what the scene is in SI", hint=hint)]
+    material = scene.material
+    if material is None or (material.length_unit, material.force_unit) != (1.0, 1.0):
+        hint = (
+            'give [base.material] and every number its unit, such as radius = "5 µm", and no length_unit or force_unit'
+        )
+        return scene, [Problem("base.material", "must be in SI, as measured data are", hint=hint)]
     return scene, []
 
 

@@ -28,6 +28,8 @@ ALIKE = 1e-6
 """Least eigenvalue of the scaled information matrix below which parameters trade off against each other."""
 RANGE, LIMITS, RANGES, BEST = "adhesion.range", ("JKR", "DMT"), (-4.0, -2.5, -1.0, 0.5, 2.0, 3.5), 3
 """Of Maugis's contact: its range, its two limits, ranges tried (log of the given one), and how many of them go on."""
+EXACT = 1e-6
+"""± over the value of what is given without one."""
 WIDEST = 1.0
 """Half-width of an interval, in log p, beyond which a parameter is not known: a factor of e."""
 
@@ -75,11 +77,6 @@ class Fitted:
         return np.asarray(covariance / np.outer(spread, spread))
 
     @property
-    def contact_stiffness(self) -> float:
-        """2E*a [FU/LU] without load, or where nothing adheres under the largest one."""
-        return stiffness_of(self.subject, self.solution.values)
-
-    @property
     def criterion(self) -> float:
         """Bayes's information criterion, −2 log L + p log n: the lower the better.
 
@@ -95,11 +92,10 @@ class Fitted:
         return -2.0 * log + (len(self.subject.names) + given) * math.log(n)
 
     def jumps_at(self, values: Sequence[float]) -> Array:
-        """Positions z [LU] at which contact begins and is lost, (2,)."""
-        subject = self.subject
-        branch, k = subject.branch(values), subject.value_of(STIFFNESS, values, subject.stiffness)
+        """Positions z [m] at which contact begins and is lost, (2,)."""
+        branch, k = self.subject.branch(values), self.subject.value_of(STIFFNESS, values)
         ends = np.array([branch.displacements[0], branch.snap_out(k)[0]])
-        return np.asarray(ends + subject.value_of(POINT, values, subject.point), dtype=np.float64)
+        return np.asarray(ends + self.subject.value_of(POINT, values))
 
     def _jumps(self) -> float:
         """log L of the brackets of both jumps, where the parameters leave their positions a spread."""
@@ -124,7 +120,7 @@ class Fitted:
         r = problem.residuals(self.solution.u)
         apart = np.concatenate([one.apart for one in self.curve.segments])
         open_ = np.concatenate([one.points for one in self.curve.segments if one.jump is None] or [apart[:0]])
-        apart = np.concatenate([apart, open_[self.curve.positions[open_] < self._point]])
+        apart = np.concatenate([apart, open_[self.curve.positions[open_] < self.values[POINT]]])
         away = np.isin(problem.kept, apart)
         return 1.0 if away.all() or not away.any() else float(np.mean(r[~away] ** 2) / np.mean(r[away] ** 2))
 
@@ -134,17 +130,15 @@ class Fitted:
         return np.asarray(TWO_SIDED * np.sqrt(np.einsum("ij,jk,ik->i", J, self.solution.best.covariance, J)))
 
     @property
-    def _point(self) -> float:
-        return self.values.get(POINT, self.subject.point)
-
-
-def stiffness_of(subject: Subject, values: list[float]) -> float:
-    """See `Fitted.contact_stiffness`."""
-    branch = subject.branch(values)
-    F, least = branch.forces, int(np.argmin(branch.forces))
-    load = 0.0 if F[least] < 0.0 else float(subject.curve.forces.max() - subject.curve.baseline)
-    radius = float(np.interp(load, F[least:], branch.radii[least:]))
-    return 2.0 * modulus_of(subject.scene_with(values)) * radius
+    def contact_stiffness(self) -> float:
+        """2E*a [N/m] without load, or where nothing adheres under the largest one."""
+        values = self.solution.values
+        branch = self.subject.branch(values)
+        F, least = branch.forces, int(np.argmin(branch.forces))
+        load = 0.0 if F[least] < 0.0 else float(self.curve.forces.max() - self.curve.baseline)
+        return (
+            2.0 * modulus_of(self.subject.scene_with(values)) * float(np.interp(load, F[least:], branch.radii[least:]))
+        )
 
 
 def model_of(plan: FitPlan) -> str:
@@ -210,24 +204,23 @@ def fitted(plan: FitPlan, curve: ForceCurve, model: str) -> Fitted:
 
 def _subject(plan: FitPlan, curve: ForceCurve, model: str) -> Subject:
     """Scene, instrument and unknowns of a contact model: Hertz's has no work of adhesion."""
-    scene, scales = plan.base, plan.scales
+    scene = plan.base
     if model == "Hertz" and scene.adhesion is not None:
         scene = scene.model_copy(update={"adhesion": None})
-    stiffness = plan.stiffness * scales.length / scales.force
     unknowns = []
-    for key in dict.fromkeys([*plan.fit.parameters, *plan.known]):
-        if key.startswith("adhesion.") and (scene.adhesion is None or (key.endswith("range") and model != "Maugis")):
+    for key in dict.fromkeys([*plan.fit.parameters, *plan.known, STIFFNESS]):
+        if key.startswith("adhesion.") and (scene.adhesion is None or (key == RANGE and model != "Maugis")):
             continue
-        value = stiffness if key == STIFFNESS else _number(scene, key)
-        share = plan.known.get(key)
+        value = plan.stiffness if key == STIFFNESS else _number(scene, key)
+        share = plan.known.get(key, EXACT if key == STIFFNESS else None)
         known = None if share is None else (value, share * value / TWO_SIDED)
-        unknowns.append(Unknown(key, value, known=known, fitted=key in plan.fit.parameters))
+        if math.isfinite(value):
+            unknowns.append(Unknown(key, value, known=known, fitted=key in plan.fit.parameters))
     point, depth = plan.fit.contact_point, curve.depth
-    if point == "free":
-        unknowns.append(Unknown(POINT, depth, positive=False))
+    known = None if point == "free" else (point, EXACT * depth)
+    unknowns.append(Unknown(POINT, depth, positive=False, known=known))
     unknowns.append(Unknown(OFFSET, float(np.ptp(curve.forces)), positive=False))
-    given = 0.0 if point == "free" else point / scales.length
-    return Subject(scene, LAWS[model], curve, stiffness, tuple(unknowns), given)
+    return Subject(scene, LAWS[model], curve, tuple(unknowns))
 
 
 def _number(scene: object, key: str) -> float:
@@ -265,12 +258,11 @@ def require_apart(subject: Subject, u: Array) -> None:
 
 
 def _require_stiff(found: Fitted) -> None:
-    k, contact = found.values.get(STIFFNESS, found.subject.stiffness), found.contact_stiffness
+    k, contact = found.values.get(STIFFNESS, math.inf), found.contact_stiffness
     if k < SOFTEST * contact:
-        unit = found.plan.scales.factor("FU/LU")
         raise UndeterminedError(
-            f"the cantilever ({k * unit:.3g} N/m) is softer than {SOFTEST:g} of the contact ({contact * unit:.3g} N/m)"
-            f": the curve shows its own bending: take one of at least {0.5 * contact * unit:.2g} N/m, or a "
+            f"the cantilever ({k:.3g} N/m) is softer than {SOFTEST:g} of the contact ({contact:.3g} N/m)"
+            f": the curve shows its own bending: take one of at least {0.5 * contact:.2g} N/m, or a "
             "sharper tip"
         )
 
@@ -279,7 +271,7 @@ def _require_points(found: Fitted) -> None:
     curve = found.curve
     held = sum(one.held.size for one in curve.segments)
     if not held:
-        held = int((curve.positions > found.values.get(POINT, found.subject.point)).sum())
+        held = int((curve.positions > found.values[POINT]).sum())
     if held < FEWEST_HELD:
         raise UndeterminedError(
             f"only {held} points are in contact, and at least {FEWEST_HELD} are needed: sample faster, or push deeper"

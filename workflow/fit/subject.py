@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -46,17 +47,13 @@ class Subject:
         scene: with a number at each unknown's key.
         law: the contact model.
         curve: what was measured.
-        stiffness: k_c [FU/LU] where it is no unknown.
         unknowns: of the scene, the instrument and the measurement.
-        point: the contact point [LU] where it is no unknown.
     """
 
     scene: Scene
     law: Law
     curve: ForceCurve
-    stiffness: float
     unknowns: tuple[Unknown, ...]
-    point: float = 0.0
     _bodies: dict[tuple[float, ...], Body] = field(default_factory=dict, repr=False)
     _branches: dict[tuple[float, ...], Branch] = field(default_factory=dict, repr=False)
 
@@ -104,33 +101,36 @@ class Subject:
         reach = scene.adhesion.range if scene.adhesion else None
         return self.law(self._bodies[shape], modulus_of(scene), scene.work_of_adhesion, reach or 0.0)
 
-    def value_of(self, name: str, values: Sequence[float], default: float) -> float:
-        """The value of an unknown; the default where it is none."""
-        return values[self.names.index(name)] if name in self.names else default
+    def value_of(self, name: str, values: Sequence[float]) -> float:
+        """The value of an unknown; of a rigid instrument its stiffness is none."""
+        return values[self.names.index(name)] if name in self.names else math.inf
 
     def forces(self, values: Sequence[float]) -> Array:
         """F [FU] at every measured position."""
-        branch, k = self.branch(values), self.value_of(STIFFNESS, values, self.stiffness)
-        z = self.curve.positions - self.value_of(POINT, values, self.point)
+        branch, k = self.branch(values), self.value_of(STIFFNESS, values)
+        z = self.curve.positions - self.value_of(POINT, values)
         found = np.zeros_like(z)
         for points, held in ((self.held, True), (self.open, False)):
             if points.any():
                 found[points] = branch.at(z[points], k, held)
-        return np.asarray(found + self.value_of(OFFSET, values, 0.0))
+        return np.asarray(found + self.value_of(OFFSET, values))
 
     def completed(self, u: Array) -> Array:
         """Unknowns with the contact point such that the largest force is where it was measured."""
         u = u.copy()
         units = {one.name: one.scale for one in self.unknowns}
         u[self.names.index(OFFSET)] = self.curve.baseline / units[OFFSET]
-        if POINT in self.names:
+        place = self.unknowns[self.names.index(POINT)]
+        if place.known is None:
             values = self.problem.values(u)
-            branch, k = self.branch(values), self.value_of(STIFFNESS, values, self.stiffness)
+            branch, k = self.branch(values), self.value_of(STIFFNESS, values)
             z, F = branch.displacements + branch.forces / k, branch.forces
             least = int(np.argmin(F))
             top = int(np.argmax(self.curve.forces))
             at = float(np.interp(self.curve.forces[top] - self.curve.baseline, F[least:], z[least:]))
-            u[self.names.index(POINT)] = (float(self.curve.positions[top]) - at) / units[POINT]
+            u[self.names.index(POINT)] = (float(self.curve.positions[top]) - at) / place.scale
+        else:
+            u[self.names.index(POINT)] = place.known[0] / place.scale
         return u
 
 
@@ -140,6 +140,4 @@ def modulus_of(scene: Scene) -> float:
     if bodies.bulk_stiffness != "auto":
         return bodies.bulk_stiffness / bodies.spacing
     assert material is not None
-    assert material.length_unit is not None
-    assert material.force_unit is not None
-    return material.layer_stiffness(bodies.reduction) * material.length_unit**2 / material.force_unit
+    return material.effective_modulus()
