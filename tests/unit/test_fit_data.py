@@ -92,6 +92,8 @@ def test_a_curve_that_is_none(good: np.ndarray[Any, Any], tmp_path: Path, change
     [
         ("", "is empty"),
         ("a,b\n1,2\n", "name the columns"),
+        ("z,F\n" + "1,2\n" * 60, "z and F without a unit"),
+        ("z [nm],F [nN]\n", "not as many cells"),
         ("z [nm],F [V]\n" + "1,2\n" * 60, "volts"),
         ("z [nm],F [kg]\n" + "1,2\n" * 60, "must be a force"),
         ("z [nm],F [nN]\n" + "1,2\n" * 30 + "1,\n" + "1,2\n" * 30, "line 32: F is empty"),
@@ -175,6 +177,21 @@ def test_a_map_has_a_line_for_each_curve(good: np.ndarray[Any, Any], tmp_path: P
         < float(table[0]["material.contact_modulus_high [Pa]"])
     )
     assert (done.folder / "contact_modulus.png").is_file()
+
+
+def test_what_is_known_is_left_when_a_fit_is_broken_off(
+    good: np.ndarray[Any, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken_off(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("contact1d.workflow.fit.fit.compared", broken_off)
+    with pytest.raises(KeyboardInterrupt):
+        fit(plan(written(tmp_path / "curve.csv", good)), folder=tmp_path / "out")
+    found = json.loads((tmp_path / "out" / "fit.json").read_text(encoding="utf-8"))
+    assert found["status"] == "interrupted"
+    low, high = found["parameters"][PARAMETERS[0]]["interval"]
+    assert low < MODULUS < high
 
 
 def test_the_command_leaves_a_folder(good: np.ndarray[Any, Any], tmp_path: Path) -> None:

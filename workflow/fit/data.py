@@ -68,8 +68,8 @@ def curves(path: Path, plan: FitPlan) -> Iterator[tuple[str, tuple[float, float]
             f"{path}: z is the position of the piezo, of which the instrument takes a part: give [instrument] "
             "stiffness, or a column d, the indentation"
         )
-    for name in (along, "F"):
-        units.setdefault(name, UNITS[name])
+    if without := [name for name in (along, "F") if not units.get(name)]:
+        raise DataError(f"{path}: {' and '.join(without)} without a unit; {FORM}")
     index = table.get("curve")
     starts = [0] if index is None else [0, *(np.flatnonzero(index[1:] != index[:-1]) + 1)]
     for start, end in zip(starts, [*starts[1:], table["F"].size], strict=True):
@@ -120,10 +120,13 @@ def _table(path: Path) -> tuple[dict[str, NDArray[np.generic]], dict[str, str]]:
     text = head[line - 1]
     separator = next((one for one in ";\t," if one in text), r"\s+")
     decimal = "," if separator != "," and any("," in one and "." not in one for one in head[skip : skip + 5]) else "."
-    frame = pandas.read_csv(
-        path, sep=separator, decimal=decimal, skiprows=skip, header=None, usecols=sorted(known.values()),
-        comment="#", skip_blank_lines=False, encoding="utf-8-sig", on_bad_lines="skip", low_memory=False,
-    )  # fmt: skip
+    try:
+        frame = pandas.read_csv(
+            path, sep=separator, decimal=decimal, skiprows=skip, header=None, usecols=sorted(known.values()),
+            comment="#", skip_blank_lines=False, encoding="utf-8-sig", low_memory=False,
+        )  # fmt: skip
+    except ValueError:  # of pandas: no line at all, or lines of several lengths
+        raise DataError(f"{path}: the lines below the names have not as many cells as these; {FORM}") from None
     lines = skip + 1 + np.arange(len(frame))
     blank = frame.isna().all(axis=1).to_numpy()
     table: dict[str, NDArray[np.generic]] = {"line": lines[~blank]}

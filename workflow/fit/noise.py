@@ -29,7 +29,7 @@ Indices = NDArray[np.intp]
 SHARES = (0.0, 0.05, 0.15, 0.35, 0.6, 0.8, 0.93, 1.0)
 """Shares s of a first look; `finer` goes between them."""
 SHORTEST, MEMORIES = 0.7, 12
-"""Shortest memory [points] that is told from white noise, and how many lengths a first look has."""
+"""Shortest memory [points] that differs from white noise, and how many lengths a first look has."""
 LONGEST_SHARE = 0.25
 """Longest memory over the points of the longest run: of a longer one no curve knows its size."""
 UNLIKELY = 1e-5

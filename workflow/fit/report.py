@@ -57,14 +57,18 @@ def document(found: Found) -> dict[str, Any]:
         "parameters": {key: entry(one, key) for key in plan.fit.parameters if key in one.values},
         "fitted": modulus_words(one),
         "contact_modulus": _modulus(one),
-        "calibrations": {key: entry(one, key) for key in one.values if key not in plan.fit.parameters and key not in UNITS},
+        "calibrations": {key: entry(one, key) for key in one.values if key not in (*plan.fit.parameters, *UNITS)},
         **{key: entry(one, key) for key in UNITS if key in one.values},
-        "noise": {"value": best.deviation, "unit": "N", "share_with_memory": best.noise.share, "memory": best.noise.memory},
+        "noise": {
+            "value": best.deviation, "unit": "N", "share_with_memory": best.noise.share, "memory": best.noise.memory,
+        },
         "correlation": {"names": one.subject.names, "matrix": np.round(one.correlation, 4).tolist()},
         "reduced_chi_squared": one.misfit,
         "points": {"in_file": curve.positions.size, "compared": kept.size},
         "fitted_range": {"position": [z.min(), z.max()], "force": [F.min(), F.max()], "units": ["m", "N"]},
-        "outliers": [{"line": int(curve.lines[i]), "position": curve.positions[i], "force": curve.forces[i]} for i in outliers],
+        "outliers": [
+            {"line": int(curve.lines[i]), "position": curve.positions[i], "force": curve.forces[i]} for i in outliers
+        ],
         "snap_out": {
             "position": one.jumps_at(one.solution.values)[1],
             "bracket": None if math.isnan(found.bracket[0]) else found.bracket,
