@@ -103,7 +103,7 @@ class Branch:
         Args:
             positions: of the piezo.
             stiffness: k_c; infinite: d is prescribed.
-            held: whether the contact is known to hold at all of them, so that it is continued below its least z;
+            held: whether the contact holds at all of them, so that it is continued below its least z;
                 else it is lost there.
         """
         z = self.displacements + self.forces / stiffness
