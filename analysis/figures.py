@@ -32,6 +32,7 @@ from contact1d.analysis.chart import (
 )
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import ContactRadius
+from contact1d.analysis.scan import Taken
 from contact1d.analysis.shear import stick_margin
 
 Theory = tuple[str, Array, Array]
@@ -101,6 +102,22 @@ def detachments(forces: Array) -> Chart:
     mean = level(float(forces.mean()), error, f"mean of {forces.size} repeats, standard error")
     legs = [("pulls", np.arange(forces.size))]
     return path(Axis("share of the pulls"), share, legs, (Axis("detachment force", "FU"), np.sort(forces), mean))
+
+
+def scan(taken: Taken) -> Chart:
+    """The points of a scan and the curve that was taken, what is left, and its autocorrelation over the distance."""
+    x, lag = Axis("distance from the apex", "LU"), taken.pitch * np.arange(taken.autocorrelation.size)
+    points = Series(taken.x, taken.heights, "scan", LOADING, "o", 2.0)
+    curve = Series(taken.x, taken.heights - taken.residual, "taken", TENSION)
+    left, correlation = (Axis(name, unit, zero=True) for name, unit in (("residual", "LU"), ("autocorrelation", "1")))
+    return Chart(
+        x,
+        [
+            Panel(Axis("height", "LU"), [points, curve], height=HEIGHT),
+            Panel(left, [Series(taken.x, taken.residual, "", LOADING)], height=0.5 * HEIGHT),
+            Panel(correlation, [Series(lag, taken.autocorrelation, "", UNLOADING)], height=0.5 * HEIGHT),
+        ],
+    )
 
 
 def seen(profiles: Mapping[str, Profile]) -> dict[str, Profile]:

@@ -15,7 +15,10 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from contact1d.files import write_whole
+from contact1d.workflow.continuation.budget import ForceErrors, budgeted
 from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.deck.deck import Deck
@@ -25,7 +28,7 @@ from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import Engine, EngineError, Session
 from contact1d.workflow.errors import Contact1dError, FolderError, RunError
-from contact1d.workflow.experiments import planned
+from contact1d.workflow.experiments import kind_of, planned
 from contact1d.workflow.experiments.spacing import with_spacing
 from contact1d.workflow.experiments.thermal import chunk_steps
 from contact1d.workflow.fit.fit import fit
@@ -112,6 +115,17 @@ def law_of(scene: Scene) -> tuple[float, float, float, float]:
     assert terms is not None
     assert terms.attraction is not None
     return terms.repulsion.amplitude, terms.repulsion.range, terms.attraction.amplitude, terms.attraction.range
+
+
+def modelled(scene: Scene) -> dict[str, Quantity]:
+    """The results of a scene's experiment on its reduced model, with their errors but those of a solver."""
+    with_one = with_spacing(scene)
+    case = kind_of(with_one).reduction(with_one, settings_for(with_one))
+    assert case is not None
+    trace = case.trace(case.model)
+    none = np.zeros(len(trace))
+    found = budgeted(case, trace, ForceErrors(none, none))
+    return {name: Quantity(one.value, sum(one.errors.values()), one.unit) for name, one in found.items()}
 
 
 def still_step() -> float:

@@ -42,6 +42,13 @@ READABLE = {
     "byte-order mark and names": "\ufeffr,z\n" + PLAIN,
     "further columns": "r,z,what\n" + "\n".join(row + ",note" for row in ROWS),
     "a further column that is empty": "\n".join(row + "," for row in ROWS),
+    "decimal commas": PLAIN.replace(",", ";").replace(".", ","),
+    "decimal commas between tabs": PLAIN.replace(",", "\t").replace(".", ","),
+    "decimal commas between blanks": "0,0 0,0\n"
+    + "\n".join(f"{r:.1f} {z:.2f}" for r, z in zip(RADII, HEIGHTS, strict=True)).replace(".", ",")[8:].lstrip(),
+    "German names": "Gerät: Taster\nKraft: 0,5 mg\n\nRadius\tHöhe\n" + PLAIN.replace(",", "\t"),
+    "French names": "Rayon;Hauteur\n" + PLAIN.replace(",", ";"),
+    "lines of an instrument": "Date: 1.2.2026, 10:00\nPoints: 5\n" + PLAIN,
     "exponents": "0,0\n5e-1,2.5E-1\n+1.0,1\n1.5e0,225e-2\n2,4.\n",
 }
 """What a file may look like; each holds the same points."""

@@ -26,7 +26,7 @@ FAULTS: dict[str, tuple[list[float], list[float], str]] = {
     "not from 0": ([0.5, 1, 2, 3], [0, 1, 2, 3], "must begin at the radius 0, not 0.5: the transform needs the slope"),
     "standing": ([0, 1, 2, 2, 3], [0, 1, 2, 3, 4], "radii must increase; 2 follows 2"),
     "falling radii": ([0, 1, 2, 1.5, 3], [0, 1, 2, 3, 4], "radii must increase; 1.5 follows 2"),
-    "apex elsewhere": ([0, 1, 2, 3], [0, 1, -0.5, 3], "its apex at r = 0; at r = 2 the height is lower by 0.5"),
+    "apex elsewhere": ([0, 1, 2, 3], [0, 1, -0.5, 3], "its apex at r = 0; at r = 2 LU the height is lower by 0.5 LU"),
     "flat": ([0, 1, 2, 3], [2, 2, 2, 2], 'is flat: write kind = "flat_punch"'),
     "unequal": ([0, 1, 2, 3], [0, 1, 2, 3, 4], "must have as many radii as heights, not 4 and 5"),
 }  # fmt: skip

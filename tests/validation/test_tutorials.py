@@ -26,7 +26,7 @@ from contact1d.workflow.cli.app import app
 from tests.pages import ROOT, require_shown
 
 FOLDER = "docs/tutorials"
-PAGES = ("hertz", "adhesion", "friction", "profile", "sweep", "particle_model", "fit")
+PAGES = ("hertz", "adhesion", "friction", "profile", "scan", "sweep", "particle_model", "fit")
 PART = re.compile(r"^```(\w*)\n(.*?)^```$|^<!-- (\w+): begin -->$", re.MULTILINE | re.DOTALL)
 LINES = {
     ("hertz", "run"): r"displacement|radius|p\(0\)|stiffness",
@@ -185,6 +185,20 @@ def test_profile(names: dict[str, Any]) -> None:
     for r, z in ((float(r), float(z)) for r, z in rows):
         assert z == pytest.approx(max(r**2 - 50.0**2, 0.0) / 10.0, abs=0.005 + 1e-9)  # nm, two decimals
     require_figure("profile")
+
+
+@one_page("scan")
+def test_scan(names: dict[str, Any]) -> None:
+    """What was taken of the scan has the contact of the ball that it was made of, within its uncertainty."""
+    results, a, R, b = names["run"].results, names["a"], names["R"], names["b"]
+    exact = {"contact_radius": a, "displacement": a / R * math.sqrt(a**2 - b**2)}
+    for name, value in exact.items():
+        assert abs(results[name].value - value) <= results[name].uncertainty <= 5e-3 * value
+    scan = names["run"].document["scan"]
+    assert scan["noise"]["value"] == pytest.approx(3e-9, rel=0.05)
+    for name, value in {"centre": 12e-6, "tilt": 0.05}.items():
+        assert abs(scan[name]["value"] - value) <= scan[name]["uncertainty"]
+    require_figure("scan")
 
 
 @one_page("sweep")

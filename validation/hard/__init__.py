@@ -19,6 +19,7 @@ from validation.hard import (
     pressed,
     random_plane,
     random_scenes,
+    scans,
     settling,
     sharp,
     similarity,
@@ -33,6 +34,6 @@ STUDIES: tuple[Study, ...] = (
     stiffness.STIFFNESS, sharp.SHARP, random_scenes.RANDOM, loads.LOADS, settling.SETTLING, loops.LOOPS,
     friction.FRICTION, similarity.SIMILARITY, forces.FORCES, motion.MOTION, modes.EQUIPARTITION, *thermal.CLASSES,
     extremes.EXTREMES, *pressed.CLASSES, plane_adhesive.ADHESIVE, slides.SLIDES, faults.FAULTS, fuzz.FUZZ,
-    random_plane.RANDOM_PLANE, *kinks.CLASSES, coarse_paths.COARSE_PATHS, lateral.LATERAL, transient.TRANSIENT,
-    cohesive.COHESIVE, fits.FITS,
+    random_plane.RANDOM_PLANE, *kinks.CLASSES, scans.SCANS, coarse_paths.COARSE_PATHS, lateral.LATERAL,
+    transient.TRANSIENT, cohesive.COHESIVE, fits.FITS,
 )  # fmt: skip

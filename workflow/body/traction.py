@@ -17,6 +17,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from operator import itemgetter
+from typing import Any
 
 import numpy as np
 
@@ -150,7 +151,8 @@ def _pressure(
     def heights(x: Array, one: Shape = shape) -> Array:
         return layer * scene.bodies.model_copy(update={"profile": one}).height(x)
 
-    body = heights if alone and not shape.alternatives else None
+    unsure = bool(shape.alternatives or shape.deviations)
+    body = heights if alone and not unsure else None
     apex = _has_apex(scene, TIP if body is None else KNOWN_TIP)
 
     def through(line: Array, stride: int) -> LineLoad | None:
@@ -175,8 +177,21 @@ def _pressure(
     if coarser or body is None:
         spread += _spread(p, *coarser)
     at = np.clip(x, -fine.edge, fine.edge)
-    beside = [heights(at) - heights(at, one) for one in shape.coarser]
-    others = [one.pressure(r) - pulled(r) for less in beside if (one := through(q + less - less[0], 1))]
+
+    def on(bodies: Sequence[Shape]) -> list[Array]:
+        """p(r) of other bodies under as much."""
+        less = [heights(at) - heights(at, one) for one in bodies]
+        return [one.pressure(r) - pulled(r) for line in less if (one := through(q + line - line[0], 1))]
+
+    others, ways = on(shape.coarser), [on(both) for both in shape.deviations]
+
+    def by_shape(read: Callable[[Array], Any]) -> Any:
+        """What the other bodies change of what is read off p, the independent ones in squares."""
+        each = [[abs(read(one) - read(p)) for one in both] for both in ways if both]
+        return sum(abs(read(one) - read(p)) for one in others) + np.sqrt(
+            sum(np.max(both, axis=0) ** 2 for both in each)
+        )
+
     within = np.count_nonzero(side < radius.value / wider)
     told = [one for i, one in enumerate((p, *coarser)) if within >= FEWEST * 2**i]
     noise, top = NOISE * scene.accuracy.tolerance, int(p.argmax())
@@ -192,11 +207,11 @@ def _pressure(
         ("peak_pressure", top, np.max, around.max(), hidden, smooth),
     ):
         known = _converges([read(one) for one in told], noise)
-        if may_have and not fine.has_apex and (known or shape.alternatives):
+        if may_have and not fine.has_apex and (known or unsure):
             known &= not is_open
-            off = error[place] + sum(abs(read(one) - read(p)) for one in others) if known else np.inf
+            off = error[place] + by_shape(read) if known else np.inf
             results[name] = Quantity(float(value), float(off), MEAN_PRESSURE)
-    return BodyPressure(r, p, spread + sum(np.abs(one - p) for one in others), radius.value / wider, results)
+    return BodyPressure(r, p, spread + by_shape(np.asarray), radius.value / wider, results)
 
 
 def _attraction(scene: Scene, zone: ZonedProfile | None, wider: float = 0.0) -> Callable[[Array], Array]:

@@ -45,6 +45,8 @@ def quantities(results: Mapping[str, Any]) -> list[str]:
     In SI where the units are known, and then also what LU and FU are where they are other than m and N.
     """
     lines = [f"  {'reduction':<31} {_whose(results)}"] if "reduction" in results else []
+    if scan := results.get("scan"):
+        lines += [f"  {'scan' * (not i):<31} {part}" for i, part in enumerate(scan["text"].split("; "))]
     for name, entry in results.items():
         if isinstance(entry, dict) and {"value", "uncertainty", "unit"} <= entry.keys():
             label = NAMES.get(name, name.replace("_", " "))

@@ -136,18 +136,29 @@ class Reduction:
 
     @cached_property
     def moves(self) -> tuple[Move, ...]:
-        """What the scene leaves open: each number with ± and each deviation of the profile moved both ways."""
-        scene, profile = self.scene, self.scene.bodies.profile
-        others = [(key, scene.moved(key, 1.0 + way * share)) for key, share in scene.shares.items() for way in WAYS]
-        for number, pair in enumerate(profile.deviations, 1):
-            others += [(f"bodies.profile: deviation {number}", scene.with_profile(shape)) for shape in pair]
-        moves = []
-        for key, other in others:
-            case = self.of(other, settings_for(other, self.settings.tolerance))
-            values = case.values(case.model)
-            changes = {name: values[name] - value for name, value in self.own.items() if name in values}
-            moves.append(Move(key, other, changes))
+        """Of the scene, each number with ± moved both ways; of each pair of bodies half of their difference."""
+        scene, moves = self.scene, []
+        for key, share in scene.shares.items():
+            for way in WAYS:
+                other = scene.moved(key, 1.0 + way * share)
+                values = self._of(other)
+                moves.append(Move(key, other, {name: values.get(name, own) - own for name, own in self.own.items()}))
+        for number, pair in enumerate(scene.bodies.profile.deviations, 1):
+            others = [scene.with_profile(shape) for shape in pair]
+            try:
+                first, second = (self._of(other) for other in others)
+            except SettingsError:  # one of them is no contact
+                continue
+            half = {name: 0.5 * (first[name] - second[name]) for name in first.keys() & second.keys() & self.own.keys()}
+            for other, way in zip(others, (1.0, -1.0), strict=True):
+                changes = {name: way * change for name, change in half.items()}
+                moves.append(Move(f"bodies.profile: deviation {number}", other, changes))
         return tuple(moves)
+
+    def _of(self, scene: Scene) -> Values:
+        """The results of the model of another scene."""
+        case = self.of(scene, settings_for(scene, self.settings.tolerance))
+        return case.values(case.model)
 
     @cached_property
     def inputs(self) -> Values:

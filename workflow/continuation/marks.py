@@ -77,11 +77,9 @@ def _separation(branch: Trace, peak: Peak) -> dict[str, Reading]:
         u = 0.5 * (u + 1.0)
         places = end + (start - end) * u**2
         others = [*range(0, len(at) - 1, every), len(at) - 1]
-        curve = np.interp(places, at[others], off[others], left=0.0)
-        whole = model.work(start, every)
-        if whole is None:
-            curve += model.held(places)
-        return (whole or 0.0) - (start - end) * float(weights @ (u * curve))
+        curve = model.held(places) + np.interp(places, at[others], off[others], left=0.0)
+        known = model.work(start, every)
+        return known if known is not None else -(start - end) * float(weights @ (u * curve))
 
     value = work(NODES, 1)
     missed = abs(value - work(NODES // 2, 2)) + MODEL_DIGITS * value
@@ -109,7 +107,8 @@ def _critical_radius(branch: Trace, peak: Peak, settings: Settings, missed: floa
         if (known := branch.model.radii(places)) is not None:  # of a stiff contact it rises from 0 as a root
             here, there, *ends = known.tolist()
             radius = branch.radius_or_spot(near) + there - here
-            errors = {"sampling": max(abs(there - end) for end in ends) + MODEL_DIGITS * radius}
+            top = branch.model.critical_radius or 0.0
+            errors = {"sampling": max(abs(radius - top), *(abs(there - end) for end in ends)) + MODEL_DIGITS * radius}
     if settings.snaps:
         teeth = rivals(*branch.lists, peak)
         others = [branch.radius_or_spot(i) for i, excess in teeth.items() if excess > -missed]

@@ -11,7 +11,8 @@ from contact1d.workflow.identify.choice import on_plane, usual_preload
 from contact1d.workflow.identify.contact import AskedContact, read_contact
 from contact1d.workflow.runs.advised import run
 from contact1d.workflow.runs.finished import Run
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene import Measured, Scene
+from contact1d.workflow.scene.quantities import keys_of
 
 
 @dataclass(frozen=True)
@@ -98,8 +99,12 @@ def punch(radius: str | float, **contact: Any) -> Contact:
 
 
 def profile(file: AnyPath | None = None, **contact: Any) -> Contact:
-    """A measured profile from a CSV file, or from the lists `r` and `z`; further arguments as of `sphere`."""
-    given: dict[str, Any] = {key: contact.pop(key) for key in ("r", "z", "scale") if key in contact}
+    """A measured profile from a file, or from the lists `r` or `x` and `z`; further arguments as of `sphere`.
+
+    How a scan is read say `centre`, `level`, `smooth`, `fit` and `units`, as in a scene (docs/scene.md).
+    """
+    keys = keys_of(Measured).keys() - {"kind", "file"}
+    given: dict[str, Any] = {key: contact.pop(key) for key in keys if key in contact}
     given |= {} if file is None else {"file": str(file)}
     return _contact(contact, kind="table", **given)
 

@@ -215,6 +215,22 @@ class CohesiveEstimate(AdhesiveEstimate):
         """Displacements [LU] at which a contact that is unloaded jumps, rising; at the first it is lost."""
         return tuple(self._unloaded[1])
 
+    @cached_property
+    def critical_radius(self) -> float:
+        """a [LU] at the force maximum; 0 where that comes before contact."""
+        from scipy.optimize import elementwise
+
+        nodes = self._nodes
+        top = int(np.argmin(nodes.force))
+        if not 0 < top < nodes.edge.size - 1:
+            return float(nodes.edge[top])
+
+        def force(edge: Array) -> Array:
+            return self.law.states(edge, self.law.widths(edge)).force
+
+        found = elementwise.find_minimum(force, tuple(nodes.edge[top + i : top + i + 1] for i in (-1, 0, 1)))
+        return float(found.x[0])
+
     def half_widths(self, displacements: Array, gap: float) -> Array:
         """c(d) [LU] of a contact that is held, at least a spacing."""
         return np.maximum(self.spacing, self.reaches(displacements))

@@ -89,7 +89,7 @@ class Dugdale:
         if float(error(np.zeros(1))[0]) < 0.0:
             raise covered(self.end)
         found = elementwise.find_root(error, (np.zeros(1), np.full(1, self.end)), maxiter=DOUBLINGS)
-        return float(found.x[0])
+        return INSIDE * float(found.x[0])
 
     @property
     def ratio(self) -> float:

@@ -124,6 +124,11 @@ class Reduced(ABC):
         """Displacements [LU] at which the force jumps, on the way in or out."""
         return self.limits
 
+    @property
+    def critical_radius(self) -> float | None:
+        """Contact radius [LU] at the force maximum, likewise."""
+        return None
+
     def unloading(self, start: float, end: float, count: int) -> Array:
         """Displacements [LU] of load steps of a contact that is unloaded, after the first one."""
         return np.linspace(start, end, count + 1)[1:]
@@ -333,6 +338,11 @@ class CohesiveCells(Reduced):
     def radii(self, displacements: Array) -> Array:
         """See `Reduced.radii`."""
         return self.estimate.radii(displacements)
+
+    @property
+    def critical_radius(self) -> float:
+        """See `Reduced.critical_radius`."""
+        return self.estimate.critical_radius
 
     @property
     def jumps(self) -> tuple[float, ...]:

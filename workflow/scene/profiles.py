@@ -23,12 +23,14 @@ from annotated_types import Ge, MinLen
 from pydantic import BeforeValidator, Discriminator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from contact1d.workflow.scene.quantities import Height, Length, Ratio, SignedRadius, Table, Unit
+from contact1d.workflow.scene.quantities import Auto, Height, Length, Ratio, SignedRadius, Table, Unit
 from contact1d.workflow.scene.si_text import UnitTextError, si_value
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+    from contact1d.analysis.scan import Taken
 
     Array = NDArray[np.float64]
 
@@ -50,6 +52,8 @@ class Shape(Table):
     """
 
     has_edge: ClassVar[bool] = False
+    slow: ClassVar[bool] = False
+    """Whether the transform takes long, so that a predictor that asks thousands of times has it tabulated."""
 
     @abstractmethod
     def height(self, x: Array) -> Array:
@@ -86,8 +90,13 @@ class Shape(Table):
 
     @property
     def deviations(self) -> tuple[tuple[Shape, Shape], ...]:
-        """Independent changes of the body at 95 %, each both ways: the noise of a measured one."""
+        """Pairs of bodies: half of the difference of each is an independent uncertainty at 95 %; a formula has none."""
         return ()
+
+    @property
+    def taken(self) -> Taken | None:
+        """What is taken of a scan; None of a shape that is given."""
+        return None
 
     @property
     def steepest(self) -> Self:
@@ -292,6 +301,7 @@ class Power(Shape):
 FEWEST_POINTS = 4
 """Points of a measured profile."""
 Radii = Annotated[tuple[Height, ...], Field(strict=False), MinLen(FEWEST_POINTS)]
+Positions = Annotated[tuple[Height, ...], Field(strict=False), MinLen(FEWEST_POINTS)]
 Heights = Annotated[tuple[Height, ...], Field(strict=False), MinLen(FEWEST_POINTS)]
 ROUGH, BESIDE = 3.0, 2
 """Ratio of the curvatures at the four points around a cell from which on they show no smooth curve, and how many cells
@@ -300,34 +310,14 @@ SHARP = 8.0
 """Curvature at a point, or at two beside each other, over that at both neighbours from which on the slope jumps."""
 
 
-class Measured(Shape):
-    """Profile of the upper body: a measured axisymmetric one, from a file or from two lists.
+class Piecewise(Shape):
+    """A body whose curve is polynomials of up to the third degree between points."""
 
-    Between its points it is a monotone cubic: no overshoot, a paraboloid met exactly, and a continuous slope but at
-    points where that jumps, as at the edge of a land.
-    """
+    slow = True
 
-    kind: Literal["table"]
-    """measured points, monotone cubics between them"""
-    sharp: ClassVar[float] = SHARP
-    file: str | None = None
-    """CSV file with the columns r and z, or r [µm] and z [µm], read into the keys r and z; from −x to x the mean of
-    both sides is taken
-    """
-    scale: Length | None = None
-    """length of one unit of a file's numbers that has no units in it; absent: 1 LU"""
-    r: Radii | None = None
-    """radii of the points, from 0, rising"""
-    z: Heights | None = None
-    """heights at these radii; the first one counts as 0"""
-
-    @model_validator(mode="after")
-    def _is_a_profile(self) -> Self:
-        if self.r is None or self.z is None:
-            raise PydanticCustomError("scene", "needs a file, or the lists r and z")
-        if problem := fault_of(self.r, self.z):
-            raise PydanticCustomError("scene", "{problem}", {"problem": problem})
-        return self
+    @abstractmethod
+    def _curve(self) -> Any:
+        """Its `scipy.interpolate.PPoly`, from the axis to its end."""
 
     def height(self, x: Array) -> Array:
         """z(|x|) − z(0)."""
@@ -356,16 +346,27 @@ class Measured(Shape):
             g[start : start + chunk] = place[:, 0] * parts.sum(axis=1)
         return g.reshape(np.shape(x))
 
+
+class Points(Piecewise):
+    """A body that is known at points (r, z), from r = 0 on.
+
+    Between them it is a monotone cubic: no overshoot, a paraboloid met exactly, and a continuous slope but at points
+    where that jumps, as at the edge of a land.
+    """
+
+    sharp: ClassVar[float] = SHARP
+    r: tuple[float, ...]
+    z: tuple[float, ...]
+
     @property
     def reach(self) -> float:
         """The last radius."""
-        assert self.r is not None
         return self.r[-1]
 
     @property
     def kinks(self) -> tuple[float, ...]:
         """Where the points show that."""
-        x, _, corners = _points(self.r or (), self.z or (), self.sharp)
+        x, _, corners = _points(self.r, self.z, self.sharp)
         return tuple(x[corners].tolist())
 
     @property
@@ -374,30 +375,30 @@ class Measured(Shape):
 
         A body whose slope only rises is between the two. Of heights with few digits, also the apex half a digit lower.
         """
-        found: list[Shape] = [kind.model_construct(**dict(self)) for kind in (Chords, Corners)]
-        if digit := _digit(self.z or ()):
-            found.append(self.model_copy(update={"z": ((self.z or ())[0] - 0.5 * digit, *(self.z or ())[1:])}))
+        found: list[Shape] = [kind.model_construct(r=self.r, z=self.z) for kind in (Chords, Corners)]
+        if digit := _digit(self.z):
+            found.append(Points.model_construct(r=self.r, z=(self.z[0] - 0.5 * digit, *self.z[1:])))
         return tuple(found)
 
     @property
     def coarser(self) -> tuple[Shape, ...]:
         """The curve through every second point, or through the others."""
-        r, z = self.r or (), self.z or ()
+        r, z = self.r, self.z
         fewer = [((r[0], *r[first:-1:2], r[-1]), (z[0], *z[first:-1:2], z[-1])) for first in (1, 2)]
-        return tuple(self.model_copy(update={"r": r, "z": z}) for r, z in fewer if len(r) >= FEWEST_POINTS)
+        return tuple(Points.model_construct(r=r, z=z) for r, z in fewer if len(r) >= FEWEST_POINTS)
 
     def _curve(self) -> Any:
-        return _spline(self.r or (), self.z or ())
+        return _spline(self.r, self.z)
 
 
-class Chords(Measured):
+class Chords(Points):
     """A measured profile that is straight between its points, where these show no smooth curve."""
 
     def _curve(self) -> Any:
-        return _angular(self.r or (), self.z or (), False)
+        return _angular(self.r, self.z, False)
 
 
-class Corners(Measured):
+class Corners(Points):
     """The same with a corner in each such cell where the chords on both sides of it meet in it.
 
     Kinks are also where the points do not exclude that the slope jumps.
@@ -406,7 +407,7 @@ class Corners(Measured):
     sharp: ClassVar[float] = ROUGH
 
     def _curve(self) -> Any:
-        return _angular(self.r or (), self.z or (), True)
+        return _angular(self.r, self.z, True)
 
 
 MOST_DIGITS, NEARLY = 10, 1e-4
@@ -570,6 +571,12 @@ def _slopes(curve: Any) -> tuple[Array, Array, Array, Array]:
     return curve.x, constant - linear * start + square * start**2, linear - 2.0 * square * start, square
 
 
+AS_A_SCAN = (
+    'of a noisy scan, centre = "auto" with smooth = "auto" or fit = "parabola" takes the apex and a curve that rises'
+)
+"""The way out for points that are no profile by themselves."""
+SCAN_KEYS = ("centre", "level", "smooth", "fit")
+"""Keys of a table that say how its scan is read."""
 GAP = 10.0
 """A step of the radii counts as a gap beyond this many times the median step."""
 
@@ -591,14 +598,244 @@ def fault_of(r: tuple[float, ...], z: tuple[float, ...]) -> str | None:
                 f"has a gap from r = {r[at]:.6g} to {r[at + 1]:.6g}: the median step is {middle:.4g}, and "
                 f"the largest gap allowed {GAP * middle:.4g}; add points there"
             )
-    if max(z) == z[0] > min(z):
+    if z[0] - min(z) > max(z) - z[0]:
         return "has heights that decrease from the axis: heights are measured from the plane; change the sign"
     lowest = z.index(min(z))
     if z[lowest] < z[0]:
-        return f"must have its apex at r = 0; at r = {r[lowest]:.6g} the height is lower by {z[0] - z[lowest]:.4g}"
+        off = f"at r = {r[lowest]:.6g} LU the height is lower by {z[0] - z[lowest]:.4g} LU"
+        return f"must have its apex at r = 0; {off}; {AS_A_SCAN}"
     if max(z) == z[0]:
         return 'is flat: write kind = "flat_punch"'
     return None
+
+
+OFF_AXIS = 1
+"""Intervals from the axis on of a smooth curve whose slope may rise as it likes: an apex is no kink beside it."""
+
+
+class Smoothed(Piecewise):
+    """A body whose slope is linear between knots: what was taken of a scan."""
+
+    knots: tuple[float, ...]
+    slopes: tuple[float, ...]
+
+    @property
+    def reach(self) -> float:
+        """The last knot."""
+        return self.knots[-1]
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """The middle of an interval in which the slope rises SHARP times as fast as over all: a jump that was seen so.
+
+        What is infinite at a kink is then no number that depends on the distance of the knots.
+        """
+        cells = zip(pairwise(self.knots), pairwise(self.slopes), strict=True)
+        steep = SHARP * max(self.slopes) / self.reach
+        found = [0.5 * (start + end) for (start, end), (low, high) in cells if high - low > steep * (end - start)]
+        return tuple(place for place in found if place > self.knots[OFF_AXIS])
+
+    def _curve(self) -> Any:
+        return _quadratics(self.knots, self.slopes)
+
+
+@lru_cache(maxsize=64)
+def _quadratics(knots: tuple[float, ...], slopes: tuple[float, ...]) -> Any:
+    """The curve of these slopes, 0 on the axis."""
+    import numpy as np
+    from scipy.interpolate import PPoly
+
+    x, slope = np.asarray(knots), np.asarray(slopes)
+    return PPoly(
+        np.stack([0.0 * x[1:], np.diff(slope) / np.diff(x), slope[:-1]]), x, extrapolate=False
+    ).antiderivative()
+
+
+class Fitted(Shape):
+    """A named shape out to the end of the scan that it was fitted to."""
+
+    slow = True
+    inner: Shape
+    end: float
+
+    def height(self, x: Array) -> Array:
+        """That of the shape."""
+        import numpy as np
+
+        return self.inner.height(np.minimum(np.abs(x), self.end))
+
+    def transformed(self, x: Array) -> Array:
+        """That of the shape."""
+        import numpy as np
+
+        return self.inner.transformed(np.minimum(np.abs(x), self.end))
+
+    @property
+    def reach(self) -> float:
+        """The end."""
+        return min(self.end, self.inner.reach)
+
+    @property
+    def curvature_radius(self) -> float | None:
+        """That of the shape."""
+        return self.inner.curvature_radius
+
+
+Centre = Annotated[float, Unit("LU")]
+
+
+class Measured(Shape):
+    """Profile of the upper body: a measured axisymmetric one, from a file or from two lists.
+
+    As it is, it goes through its points by monotone cubics. Where `centre`, `level`, `smooth` or `fit` say how its scan
+    is to be read, the points are kept, and the profile is what `analysis.scan` takes of them.
+    """
+
+    slow = True
+    kind: Literal["table"]
+    """measured points, monotone cubics between them"""
+    file: str | None = None
+    """CSV file with the columns r and z, or r [µm] and z [µm], read into the keys r and z, or x and z; from −x to x the
+    mean of both sides is taken
+    """
+    scale: Length | None = None
+    """length of one unit of a file's numbers that has no units in it; absent: 1 LU"""
+    units: Annotated[tuple[str, str], Field(strict=False)] | None = None
+    """units of position and height of a file without units in it, such as ["µm", "nm"], in place of scale"""
+    centre: Auto[Centre] | None = None
+    """position of the apex in the scan, or "auto": looked for, by both sides of it; absent: 0"""
+    level: bool = False
+    """whether a tilt of the scan is removed; needs a flat part, or both sides of a given centre"""
+    smooth: Annotated[Length | Literal["none", "auto"], Field()] | None = None
+    """distance of the knots of a smooth curve that rises from the apex on, or "auto": by the noise of the scan"""
+    fit: Literal["none", "parabola", "circle", "power"] = "none"
+    """shape that is fitted to the points in place of a smooth curve"""
+    x: Positions | None = None
+    """positions of the points from side to side, in place of r; with centre, level, smooth or fit"""
+    r: Radii | None = None
+    """radii of the points, from 0, rising"""
+    z: Heights | None = None
+    """heights at these radii; the first one counts as 0"""
+
+    @model_validator(mode="after")
+    def _is_a_profile(self) -> Self:
+        along = self.r if self.x is None else self.x
+        if along is None or self.z is None:
+            raise PydanticCustomError("scene", "needs a file, or the lists r and z")
+        problem = self._fault(along, self.z)
+        if problem:
+            raise PydanticCustomError("scene", "{problem}", {"problem": problem})
+        return self
+
+    def _fault(self, along: tuple[float, ...], z: tuple[float, ...]) -> str | None:
+        """What keeps it from being a profile."""
+        if not self.is_scan:
+            return fault_of(along, z) if self.x is None else f"positions x need to be read as a scan: {AS_A_SCAN}"
+        if self.smooth not in (None, "none") and self.fit != "none":
+            return f'fit = "{self.fit}" is a curve by itself, without smooth: remove one of the two'
+        if len(along) != len(z):
+            return f"must have as many positions as heights, not {len(along)} and {len(z)}"
+        from contact1d.analysis.scan import ScanError  # it loads scipy, which other scenes can do without
+
+        try:
+            body = self.body
+        except ScanError as error:
+            return str(error)
+        return fault_of(body.r, body.z) if isinstance(body, Points) else None
+
+    @property
+    def is_scan(self) -> bool:
+        """Whether the profile is what is taken of the points, and not these themselves."""
+        return self.centre is not None or self.level or self.is_curve
+
+    @property
+    def is_curve(self) -> bool:
+        """Whether the points are given up for a curve."""
+        return self.smooth not in (None, "none") or self.fit != "none"
+
+    @property
+    def taken(self) -> Taken | None:
+        """What is taken of the scan, where there is one."""
+        return self._read(self.smooth if isinstance(self.smooth, float | int) else None) if self.is_scan else None
+
+    def _read(self, length: float | None) -> Taken:
+        """What is taken with knots at this distance; None: by the noise."""
+        centre = None if self.centre == "auto" else self.centre or 0.0
+        along = self.r if self.x is None else self.x
+        shape = None if self.fit == "none" else self.fit
+        return _take(along or (), self.z or (), centre, self.level, length, shape)
+
+    @property
+    def body(self) -> Shape:
+        """The body that is taken."""
+        taken = self.taken
+        if taken is None:
+            return Points.model_construct(r=self.r or (), z=self.z or ())
+        if self.is_curve:
+            return _shape_of(taken, taken.parameters)
+        r, z = taken.folded()
+        return Points.model_construct(r=tuple(r.tolist()), z=tuple(z.tolist()))
+
+    def height(self, x: Array) -> Array:
+        """That of the body."""
+        return self.body.height(x)
+
+    def transformed(self, x: Array) -> Array:
+        """That of the body."""
+        return self.body.transformed(x)
+
+    @property
+    def reach(self) -> float:
+        """That of the body."""
+        return self.body.reach
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Those of the body."""
+        return self.body.kinks
+
+    @property
+    def alternatives(self) -> tuple[Shape, ...]:
+        """Those of the points; of a curve with knots at a given distance that with half of it."""
+        if not self.is_curve:
+            return self.body.alternatives
+        finer = [self._read(0.5 * self.smooth)] if isinstance(self.smooth, float | int) else []
+        return tuple(_shape_of(one, one.parameters) for one in finer)
+
+    @property
+    def coarser(self) -> tuple[Shape, ...]:
+        """That of the points; a curve has none."""
+        return self.body.coarser
+
+    @property
+    def deviations(self) -> tuple[tuple[Shape, Shape], ...]:
+        """Curves that the noise of the scan allows as well."""
+        if not self.is_curve or (taken := self.taken) is None:
+            return ()
+        return tuple((_shape_of(taken, more), _shape_of(taken, less)) for more, less in taken.deviations)
+
+
+@lru_cache(maxsize=8)
+def _take(along: tuple[float, ...], z: tuple[float, ...], *how: Any) -> Taken:
+    """What is taken of a scan; kept, since every height is asked of it."""
+    import numpy as np
+
+    from contact1d.analysis.scan import take
+
+    return take(np.asarray(along), np.asarray(z), *how)
+
+
+def _shape_of(taken: Taken, parameters: Array) -> Shape:
+    """The body with these parameters."""
+    first, *more = parameters.tolist()
+    if taken.shape == "smooth":
+        return Smoothed.model_construct(knots=tuple(taken.knots.tolist()), slopes=(0.0, first, *more))
+    inner: Shape
+    if taken.shape == "power":
+        inner = Power.model_construct(exponent=more[0], radius=float(taken.x[-1] - taken.x[0]), height_there=first)
+    else:
+        inner = (Circle if taken.shape == "circle" else Parabola).model_construct(radius=1.0 / first)
+    return Fitted.model_construct(inner=inner, end=taken.reach)
 
 
 Profile = Annotated[Parabola | Circle | Ellipsoid | Cone | Flat | FlatPunch | Power | Measured, Discriminator("kind")]

@@ -440,11 +440,15 @@ def _declared_keys(d: Draft) -> Rows:
            "not with [noise], whose pulls are repeated with other seeds", "remove it, and give experiment.repeats")
     yield ("experiment.preload", d.kind == "pull_off" and "experiment.cycles" in d and d["experiment.preload"] == 0.0,
            "must be greater than 0 (FU) with cycles, whose bodies are pressed together again", "raise it")
-    listed = "bodies.profile.r" in d or "bodies.profile.z" in d
+    listed = any(f"bodies.profile.{key}" in d for key in "rxz")
     yield ("bodies.profile.file", listed,
            "not together with the lists r and z", "give one of the two")
     yield ("bodies.profile.scale", listed and "bodies.profile.file" not in d,
            "not together with the lists r and z, which have units of their own", "it belongs to a file: remove it")
+    yield ("bodies.profile.units", listed and "bodies.profile.file" not in d,
+           "not together with the lists r and z, which have units of their own", "it belongs to a file: remove it")
+    yield ("bodies.profile.x", "bodies.profile.r" in d and "bodies.profile.x" in d,
+           "not together with r", "give one of the two")
     for key in ("upper_particles", "upper_spacing", "upper_offset", "periodic"):
         path = f"bodies.{key}"
         yield (path, d.on_plane and d[path] is not False,

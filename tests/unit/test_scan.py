@@ -1,0 +1,152 @@
+"""What is taken of a scan, beside the body that it was made of: apex, tilt, offset, noise, curve and deviations.
+
+Statistics are those of the generator: a share of seeds has the binomial bounds that its test names.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+
+from contact1d.analysis.scan import ScanError, Taken, take
+
+R, LAND, NOISE = 1e4, 100.0, 3e-3
+"""[µm]; 3 nm."""
+WIDE, SIDE = np.arange(-600.0, 600.5, 1.0), np.arange(0.0, 600.5, 1.0)
+Array = np.ndarray[Any, np.dtype[np.float64]]
+SEEDS, FEWEST = 40, 33
+"""Of 40 values each inside by 95 %, 33 or fewer would be seen once in 5000 times."""
+
+
+def worn(x: Array, land: float = LAND) -> Array:
+    return np.asarray(np.maximum(x**2 - land**2, 0.0) / (2.0 * R))
+
+
+def white(seed: int, x: Array, deviation: float = NOISE) -> Array:
+    return deviation * np.random.default_rng(seed).standard_normal(x.size)
+
+
+def correlated(seed: int, x: Array, length: float) -> Array:
+    """Exponential autocorrelation."""
+    kept = math.exp(-float(x[1] - x[0]) / length)
+    drawn = np.random.default_rng(seed).standard_normal(x.size + 1000)
+    return np.asarray(NOISE * lfilter([math.sqrt(1.0 - kept**2)], [1.0, -kept], drawn)[1000:])
+
+
+def curve(taken: Taken, r: Array) -> Array:
+    """The height of a smooth curve: its slope is linear between the knots."""
+    fine = np.linspace(0.0, taken.reach, 60_001)
+    slope = np.interp(fine, taken.knots, np.append(0.0, taken.parameters))
+    height = np.concatenate([[0.0], np.cumsum(0.5 * (slope[1:] + slope[:-1]) * np.diff(fine))])
+    return np.interp(r, fine, height)
+
+
+@pytest.mark.parametrize("shape", ["parabola", "circle", "power"])
+def test_a_named_shape_without_noise_is_found_with_its_apex_and_offset(shape: Any) -> None:
+    r = np.abs(WIDE - 37.3)
+    exact = {"parabola": r**2 / (2.0 * R), "circle": R - np.sqrt(R**2 - r**2), "power": 40.0 * (r / 600.0) ** 1.7}
+    taken = take(WIDE, 40.0 + exact[shape], centre=None, shape=shape)
+    # Rounding of heights of 40 to 60 at 1e-16 of them, over the curvature.
+    assert taken.centre[0] == pytest.approx(37.3, rel=1e-6)
+    assert taken.offset[0] == pytest.approx(40.0, rel=1e-9)
+    first, *more = taken.parameters.tolist()
+    if shape == "power":
+        assert more[0] == pytest.approx(1.7, rel=1e-6)
+        assert first * (600.0 / 1200.0) ** 1.7 == pytest.approx(40.0, rel=1e-6)
+    else:
+        assert 1.0 / first == pytest.approx(R, rel=1e-6)
+
+
+def test_a_radius_and_an_apex_are_within_their_uncertainties() -> None:
+    """A tilt moves the apex by R tan, and nothing else."""
+    tilt, inside = math.tan(math.radians(0.1)), np.zeros(2, dtype=int)
+    for seed in range(SEEDS):
+        z = WIDE**2 / (2.0 * R) + tilt * WIDE + white(seed, WIDE)
+        taken = take(WIDE, z, centre=None, shape="parabola")
+        low, high = sorted(1.0 / taken.deviations[1, :, 0])
+        inside += [low <= R <= high, abs(taken.centre[0] + R * tilt) <= taken.centre[1]]
+    assert inside.min() >= FEWEST
+
+
+@pytest.mark.parametrize("length", [0.0, 5.0])
+def test_noise_and_its_correlation_length_are_those_of_the_generator(length: float) -> None:
+    found = [
+        take(WIDE, worn(WIDE) + (correlated(seed, WIDE, length) if length else white(seed, WIDE)), centre=None)
+        for seed in range(8)
+    ]
+    # Of 1201 points, 8 times: the correlation is cut off at 2/√n, 6 % of it, and fitted parameters take some.
+    assert np.mean([one.noise for one in found]) == pytest.approx(NOISE, rel=0.03 if not length else 0.1)
+    assert np.mean([one.correlation for one in found]) == pytest.approx(length, rel=0.3, abs=0.1)
+
+
+def test_a_smooth_curve_has_the_land_and_the_flank() -> None:
+    """The apex off the middle, between two points, and a tilt that the land shows."""
+    z = 40.0 + worn(WIDE - 13.37) + math.tan(math.radians(0.1)) * WIDE + white(5, WIDE)
+    taken = take(WIDE, z, centre=None, level=True)
+    r = np.linspace(0.0, 580.0, 300)
+    far = np.abs(r - LAND) > 5.0
+    assert np.abs(curve(taken, r) - worn(r))[far].max() < 2.0 * NOISE
+    assert abs(taken.centre[0] - 13.37) <= taken.centre[1]
+    assert math.degrees(math.atan(taken.tilt[0])) == pytest.approx(0.1, rel=0.01)
+    assert np.all(np.diff(taken.parameters) >= 0.0)
+
+
+def test_a_parabola_needs_no_knots() -> None:
+    """The criterion adds none for the noise: the curve of two knots is a parabola."""
+    counts = [take(WIDE, worn(WIDE, 0.0) + correlated(seed, WIDE, 5.0), centre=None).knots.size for seed in range(10)]
+    assert sorted(counts)[7] == 2
+
+
+def test_every_deviation_is_a_profile_that_rises() -> None:
+    taken = take(SIDE, worn(SIDE) + white(3, SIDE))
+    assert taken.deviations.shape[1:] == (2, taken.parameters.size)
+    slopes = np.insert(taken.deviations, 0, 0.0, axis=2)
+    assert np.all(np.diff(slopes, axis=2) >= 0.0)
+
+
+def test_deviations_of_four_times_the_noise_are_four_times_as_large() -> None:
+    x = np.arange(-400.0, 400.5, 0.5)
+    widths = [
+        float(np.ptp(take(x, worn(x, 0.0) + white(2, x, size), centre=None, shape="parabola").deviations[1]))
+        for size in (1e-3, 4e-3)
+    ]
+    assert widths[1] / widths[0] == pytest.approx(4.0, rel=1e-6)
+
+
+def test_both_directions_of_a_scan_are_one_with_less_noise() -> None:
+    x = np.append(WIDE, WIDE[::-1])
+    assert take(x, worn(x) + white(9, x), centre=None).noise == pytest.approx(NOISE / math.sqrt(2.0), rel=0.06)
+
+
+def test_a_body_whose_slope_falls_is_followed_where_the_scan_shows_it() -> None:
+    z = 0.05 * WIDE**2 / (200.0**2 + WIDE**2) * 20.0 + white(1, WIDE, 1e-4)
+    taken = take(WIDE, z, centre=None)
+    assert np.diff(taken.parameters).min() < 0.0
+    assert taken.noise == pytest.approx(1e-4, rel=0.2)
+
+
+def test_patches_are_counted_where_the_measured_points_are_lowest() -> None:
+    """Two rings of asperities about one on the axis: five parts."""
+    z = WIDE**2 / (2.0 * R) + white(4, WIDE, 1e-6)
+    for place in (-60.0, -30.0, 0.0, 30.0, 60.0):
+        z[np.abs(WIDE - place) < 1.5] -= place**2 / (2.0 * R) + 0.5
+    assert take(WIDE, z, centre=0.0, shape="parabola").patches >= 5
+
+
+@pytest.mark.parametrize(
+    ("x", "z", "how", "words"),
+    [
+        (WIDE, -worn(WIDE), {}, "change the sign of z"),
+        (WIDE, 0.0 * WIDE, {}, "is flat"),
+        (WIDE[:6], worn(WIDE[:6]), {}, "at least 8 are needed"),
+        (SIDE, worn(SIDE), {"centre": None}, "needs points on both sides"),
+        (WIDE, worn(WIDE, 0.0), {"centre": None, "level": True}, "a tilt of a parabola only moves the apex"),
+    ],
+)
+def test_what_is_no_scan_is_refused(x: Array, z: Array, how: dict[str, Any], words: str) -> None:
+    with pytest.raises(ScanError, match=words):
+        take(x, z, **how)

@@ -1,0 +1,160 @@
+"""Scans in scenes: the keys, what is kept, said and drawn, and the uncertainty that the noise gives to results."""
+
+from __future__ import annotations
+
+import importlib.util
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from contact1d import load_run, run
+from contact1d.workflow.cli.app import app
+from contact1d.workflow.scene import Measured, Scene, SceneError, read_scene, scene_from_dict, scene_to_toml
+
+STEEL_ON_GLASS = "lammps_inputs/scenes/steel_on_glass.toml"
+R, NOISE = 1e4, 3e-3
+"""[µm]"""
+MODULUS = 1.0 / ((1.0 - 0.3**2) / 210e9 + (1.0 - 0.22**2) / 70e9)
+X = np.arange(-400.0, 401.0, 1.0)
+Z = X**2 / (2.0 * R) + 40.0 + 0.001 * X + NOISE * np.random.default_rng(5).standard_normal(X.size)
+FIT = "centre = 'auto', fit = 'parabola'"
+
+
+def text(names: str = "x [µm];z [nm]\n", x: Any = X, z: Any = Z) -> str:
+    return names + "".join(f"{a:.1f};{1e3 * b:.2f}\n" for a, b in zip(x, z, strict=True))
+
+
+def scene(file: Path, keys: str = FIT, *set_: str) -> Scene:
+    return read_scene(STEEL_ON_GLASS, [f"bodies.profile={{ kind = 'table', file = '{file}', {keys} }}", *set_])
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    (tmp_path / "scan.csv").write_text(text(), encoding="utf-8")
+    return tmp_path / "scan.csv"
+
+
+def test_a_run_says_what_was_removed_and_keeps_the_points(file: Path, tmp_path: Path) -> None:
+    done = run(scene(file), tmp_path / "run", figures="png")
+    scan = done.document["scan"]
+    assert abs(scan["centre"]["value"] + 10e-6) <= scan["centre"]["uncertainty"] < 1e-6
+    assert abs(scan["radius"]["value"] - 0.01) <= scan["radius"]["uncertainty"] < 1e-5
+    assert scan["noise"]["value"] == pytest.approx(3e-9, rel=0.1)
+    assert "removed: apex at" in scan["text"]
+    assert "LU" not in scan["text"]
+    exact = (0.75 * 10.0 * 0.01 / MODULUS) ** (1.0 / 3.0)
+    assert abs(done.results.contact_radius.value - exact) <= done.results.contact_radius.uncertainty
+    assert (tmp_path / "run" / "scan.png").stat().st_size > 10_000
+    again = load_run(tmp_path / "run")
+    assert again.scene == done.scene == scene_from_dict(tomllib.loads(scene_to_toml(done.scene)))
+    assert again.scene.bodies.profile.height(np.asarray([1e-4])) == done.scene.bodies.profile.height(np.asarray([1e-4]))
+    again.plot("scan")
+
+
+def test_the_command_line_prints_it(file: Path, tmp_path: Path) -> None:
+    profile = f"bodies.profile={{ kind = 'table', file = '{file}', {FIT} }}"
+    done = CliRunner().invoke(app, ["run", STEEL_ON_GLASS, "--out", str(tmp_path / "run"), "--set", profile])
+    assert done.exit_code == 0, done.output
+    assert "taken: a fitted parabola, R = " in done.stdout
+
+
+def test_more_noise_is_a_larger_part_of_the_uncertainty(tmp_path: Path) -> None:
+    """The same draw ten times as large: the noise is then the whole uncertainty but a few percent."""
+    widths, noise = [], Z - X**2 / (2.0 * R) - 0.001 * X - 40.0
+    for size in (30.0, 300.0):
+        (tmp_path / "scan.csv").write_text(text(z=X**2 / (2.0 * R) + size * noise), encoding="utf-8")
+        done = run(scene(tmp_path / "scan.csv", FIT, "bodies.spacing=1 µm"), figures=False)
+        widths.append(done.results.displacement.uncertainty)
+    assert widths[1] / widths[0] == pytest.approx(10.0, rel=0.1)
+
+
+def test_a_scan_that_is_not_the_fitted_shape_is_a_warning(file: Path, tmp_path: Path) -> None:
+    (tmp_path / "worn.csv").write_text(text(z=np.maximum(Z, 40.0 + 0.001 * X + 0.5)), encoding="utf-8")
+    assert "is no parabola" in run(scene(tmp_path / "worn.csv"), figures=False).warnings["scan_fit"]
+    assert "scan_fit" not in run(scene(file), figures=False).warnings
+
+
+def test_units_of_columns_without_names(file: Path, tmp_path: Path) -> None:
+    (tmp_path / "plain.csv").write_text(text(""), encoding="utf-8")
+    found = scene(tmp_path / "plain.csv", f"{FIT}, units = ['µm', 'nm']").bodies.profile
+    named = scene(file).bodies.profile
+    assert isinstance(found, Measured)
+    assert isinstance(named, Measured)
+    assert (found.x, found.z) == (named.x, named.z)
+    with pytest.raises(SceneError, match="nothing says what LU stands for"):
+        scene(tmp_path / "plain.csv")
+
+
+WRONG = {
+    "no options": ("level = false", "scan, write centre = \"auto\" with smooth = \"auto\" or a fit", FIT),
+    "no flat part": (f"{FIT}, level = true", "a tilt of a parabola only moves the apex; remove level", FIT),
+    "two curves": (f"{FIT}, smooth = 'auto'", "a curve by itself, without smooth", FIT),
+    "units twice": (f"{FIT}, units = ['µm', 'nm']", "not together with units in the file's names", FIT),
+    "units of what": (f"{FIT}, units = ['V', 'nm']", "not together with units", FIT),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_key_gets_its_sentence_and_the_remedy_works(name: str, file: Path) -> None:
+    keys, words, mended = WRONG[name]
+    with pytest.raises(SceneError) as caught:
+        scene(file, keys)
+    assert words in str(caught.value)
+    assert isinstance(scene(file, mended), Scene)
+
+
+def test_a_noisy_side_is_refused_with_units_and_the_way_out(tmp_path: Path) -> None:
+    side = X >= 0.0
+    (tmp_path / "side.csv").write_text(text("r [µm];z [nm]\n", X[side], (Z - 0.001 * X)[side]), encoding="utf-8")
+    with pytest.raises(SceneError, match=r"must have its apex at r = 0; at r = .* µm the height is lower by .* nm"):
+        scene(tmp_path / "side.csv", "level = false")
+    body = scene(tmp_path / "side.csv", "smooth = 'auto'").bodies.profile
+    assert float(body.height(np.asarray([3e-4]))[0]) == pytest.approx(4.5e-6, rel=1e-3)
+
+
+def test_a_stated_length_is_compared_with_half_of_it(file: Path) -> None:
+    profile = scene(file, "centre = 'auto', smooth = '50 µm'").bodies.profile
+    assert len(profile.alternatives) == 1
+    r = np.asarray([1e-4])
+    assert float(profile.alternatives[0].height(r)[0]) == pytest.approx(float(profile.height(r)[0]), rel=0.01)
+
+
+def test_a_clean_scan_may_keep_its_points(tmp_path: Path) -> None:
+    """An apex between two points: centre alone shifts them, and the mean of both sides is the parabola."""
+    (tmp_path / "clean.csv").write_text(text(z=(X - 10.25) ** 2 / (2.0 * R)), encoding="utf-8")
+    body = scene(tmp_path / "clean.csv", "centre = 'auto'").bodies.profile
+    # Heights with two decimals of a nm
+    assert float(body.height(np.asarray([3e-4]))[0]) == pytest.approx(4.5e-6, rel=1e-5)
+
+
+def test_ten_million_lines_are_refused_at_once(tmp_path: Path) -> None:
+    with (tmp_path / "long.csv").open("w") as many:
+        for _ in range(100):
+            many.write("1.0;2.0\n" * 100_000)
+    with pytest.raises(SceneError, match="make it smaller"):
+        scene(tmp_path / "long.csv")
+
+
+@pytest.mark.skipif(importlib.util.find_spec("SurfaceTopography") is None, reason="the extra instruments is not there")
+def test_a_map_of_an_instrument_is_its_line_through_the_highest_point(tmp_path: Path) -> None:
+    from SurfaceTopography import Topography
+
+    along = np.linspace(-300.0, 300.0, 601)
+    x, y = np.meshgrid(along, along[::10], indexing="ij")
+    Topography(-(x**2 + y**2) / (2.0 * R), (601.0, 610.0), unit="µm").to_x3p(str(tmp_path / "map.x3p"))
+    profile = scene(tmp_path / "map.x3p").bodies.profile
+    assert profile.curvature_radius is None
+    assert float(profile.height(np.asarray([1e-4]))[0]) == pytest.approx(0.5e-6, rel=1e-3)
+
+
+def test_without_the_reader_of_instruments_the_way_to_it_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "SurfaceTopography", None)
+    (tmp_path / "map.x3p").write_bytes(b"PK")
+    with pytest.raises(SceneError, match=r"pip install contact1d\[instruments\]"):
+        scene(tmp_path / "map.x3p")
