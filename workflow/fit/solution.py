@@ -209,7 +209,8 @@ def _subject(plan: FitPlan, curve: ForceCurve, model: str) -> Subject:
         scene = scene.model_copy(update={"adhesion": None})
     unknowns = []
     for key in dict.fromkeys([*plan.fit.parameters, *plan.known, STIFFNESS]):
-        if key.startswith("adhesion.") and (scene.adhesion is None or (key == RANGE and model != "Maugis")):
+        idle = key.startswith("adhesion.") and (scene.adhesion is None or (key == RANGE and model != "Maugis"))
+        if idle or key == POINT:
             continue
         value = plan.stiffness if key == STIFFNESS else _number(scene, key)
         share = plan.known.get(key, EXACT if key == STIFFNESS else None)
@@ -217,7 +218,9 @@ def _subject(plan: FitPlan, curve: ForceCurve, model: str) -> Subject:
         if math.isfinite(value):
             unknowns.append(Unknown(key, value, known=known, fitted=key in plan.fit.parameters))
     point, depth = plan.fit.contact_point, curve.depth
-    known = None if point == "free" else (point, EXACT * depth)
+    known = None
+    if point != "free":
+        known = point, plan.known.get(POINT, 0.0) * abs(point) / TWO_SIDED + EXACT * depth
     unknowns.append(Unknown(POINT, depth, positive=False, known=known))
     unknowns.append(Unknown(OFFSET, float(np.ptp(curve.forces)), positive=False))
     return Subject(scene, LAWS[model], curve, tuple(unknowns))

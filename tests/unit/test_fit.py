@@ -36,11 +36,11 @@ def plan(data: Path, **changes: Any) -> dict[str, Any]:
     return {"data": str(data), "parameters": PARAMETERS, "instrument": instrument, "base": BASE} | changes
 
 
-def curve(kind: str = "JKR", stiffness: float = STIFFNESS, count: int = 400, deep: float = 3.0) -> np.ndarray[Any, Any]:
+def curve(kind: str = "JKR", stiffness: float = STIFFNESS, sphere: Sphere = SPHERE) -> np.ndarray[Any, Any]:
     """Columns z [nm] and F [nN]."""
-    z = np.linspace(-2.5, deep, count // 2) * DEPTH
+    z = np.linspace(-2.5, 3.0, 200) * DEPTH
     draw = np.random.default_rng(1)
-    F = measured(SPHERE, kind, stiffness, z) + 0.01 * 1.5 * math.pi * WORK * RADIUS * noise(draw, 2 * z.size, 5.0)
+    F = measured(sphere, kind, stiffness, z) + 0.01 * 1.5 * math.pi * WORK * RADIUS * noise(draw, 2 * z.size, 5.0)
     return np.column_stack([1e9 * np.concatenate([z, z[::-1]]), 1e9 * F])
 
 
@@ -157,6 +157,31 @@ def test_other_forms_of_one_curve_are_the_same(good: np.ndarray[Any, Any], tmp_p
     for path, changes in ((micro, {}), (reverse, {"reverse": ["z", "F"]}), (indentation, {})):
         found = fit(plan(path, **changes)).fit.values[PARAMETERS[0]]
         assert found == pytest.approx(expected, rel=2e-3)
+
+
+def test_a_range_makes_it_the_contact_of_maugis(tmp_path: Path) -> None:
+    """µ = 1: the intervals hold, LAMMPS agrees, and neither limit is as likely."""
+    reach = (RADIUS * WORK**2 / MODULUS**2) ** (1.0 / 3.0)
+    rows = curve("Maugis", sphere=Sphere(MODULUS, WORK, RADIUS, reach))
+    base = BASE | {"adhesion": {"work_of_adhesion": "20 mJ/m²", "range": f"{reach} m"}}
+    found = fit(plan(written(tmp_path / "curve.csv", rows), base=base))
+    for name, exact in zip(PARAMETERS, (MODULUS, WORK), strict=True):
+        low, high = found.fit.intervals[name]
+        assert low < exact < high < 1.1 * low
+    assert next(iter(found.models)) == "Maugis"
+    assert found.difference <= found.allowed
+
+
+def test_a_contact_point_may_be_given(good: np.ndarray[Any, Any], tmp_path: Path) -> None:
+    """Where it is known the modulus is known better; with its ± as well as that allows."""
+    path = written(tmp_path / "curve.csv", good + np.array([500.0, 0.0]))
+    widths = []
+    for point in ("500 nm", "500 ± 20 nm", "free"):
+        found = fit(plan(path, contact_point=point)).fit
+        low, high = found.intervals[PARAMETERS[0]]
+        assert low < MODULUS < high
+        widths.append(high - low)
+    assert widths[0] < widths[1] <= 1.05 * widths[2]
 
 
 def test_a_map_has_a_line_for_each_curve(good: np.ndarray[Any, Any], tmp_path: Path) -> None:
