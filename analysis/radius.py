@@ -186,12 +186,14 @@ def _of_edges(
         middle = float(0.5 * (x.max() + x.min()))
         return ContactRadius(0.0, 0.5 * spacing_of(x), middle, middle, False)
     first, last = int(carrying[0]), int(carrying[-1])
+    sides = [(x, p, first, last), (-x[::-1], p[::-1], end - last, end - first)]
     found = []
-    for places, pressures, least, most in ((-x[::-1], p[::-1], end - last, end - first), (x, p, first, last)):
+    # A contact that is the same on both sides has one edge.
+    for places, pressures, least, most in sides[: 1 if x[0] == -x[-1] and np.array_equal(p, p[::-1]) else 2]:
         low = max(0, most - PARABOLA_POINTS)
         near = slice(low, most + 2)
         found.append(edge(places[near].tolist(), pressures[near].tolist(), least - low, most - low))
-    mirrored, right = found
+    right, mirrored = found[0], found[-1]
     return _between(Place(-mirrored.position, mirrored.uncertainty, mirrored.at_end), right)
 
 

@@ -27,7 +27,7 @@ from contact1d.workflow.experiments.load import LoadExperiment
 from contact1d.workflow.experiments.pull_off import PullOffExperiment
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.scene.profiles import Shape
+from contact1d.workflow.scene.shapes import Shape
 from contact1d.workflow.units import LINE_PRESSURE
 
 RADIUS, LAYER = 1000.0, 1.0

@@ -125,7 +125,7 @@ def measure(bench: Bench) -> Findings:
         found = [modelled(scene_from_dict(case.scene(seed))) for seed in seeds]
         for name, value in exact.items():
             rows += judged(case, name, [one[name] for one in found], value)
-        run = bench.run(case.words.replace(" ", "_").replace(",", ""), case.scene(0))
+        run = bench.run(case.words.replace(" ", "_").replace(",", ""), case.scene(FIRST_SEED))
         apart = [math.inf]
         if not isinstance(run, Refused):
             apart = [abs(run.results[name].value - found[0][name].value) / found[0][name].uncertainty for name in exact]

@@ -11,20 +11,12 @@ from contact1d.workflow.scene.effects import (
     Plate,
 )
 from contact1d.workflow.scene.experiments import Hold, Kind, Load, Path, PullOff, Slide, Span, Tangential
+from contact1d.workflow.scene.measured import Measured
 from contact1d.workflow.scene.problems import Problem, SceneError
-from contact1d.workflow.scene.profiles import (
-    Circle,
-    Cone,
-    Ellipsoid,
-    FlatPunch,
-    Measured,
-    Parabola,
-    Power,
-    Profile,
-    Shape,
-)
+from contact1d.workflow.scene.profiles import Profile
 from contact1d.workflow.scene.quantities import Table
 from contact1d.workflow.scene.read import AnyScene, Scene, read_scene, read_tables, scene_from_dict, scene_to_toml
+from contact1d.workflow.scene.shapes import Circle, Cone, Ellipsoid, FlatPunch, Parabola, Power, Shape
 from contact1d.workflow.scene.tables import EFFECTS, Bodies, Elastic, Material, Reduction
 
 __all__ = [

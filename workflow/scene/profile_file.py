@@ -15,7 +15,7 @@ from typing import Any
 from contact1d.files import read_text
 from contact1d.workflow.scene import instrument_file
 from contact1d.workflow.scene.conversion import is_positive
-from contact1d.workflow.scene.profiles import FEWEST_POINTS, SCAN_KEYS
+from contact1d.workflow.scene.points import FEWEST_POINTS, SCAN_KEYS
 from contact1d.workflow.scene.quantities import Place
 from contact1d.workflow.scene.schema import described
 from contact1d.workflow.scene.si_text import UnitTextError, si_value

@@ -17,9 +17,9 @@ from contact1d.workflow.scene.check import mend_words, report_faults
 from contact1d.workflow.scene.conversion import UNIT_KEYS, convert
 from contact1d.workflow.scene.problems import BARE, Problem, SceneError, shown, suggestion, tables_as_toml
 from contact1d.workflow.scene.profile_file import put_points, take_points
-from contact1d.workflow.scene.profiles import Shape
 from contact1d.workflow.scene.quantities import Place, Table, keys_of
 from contact1d.workflow.scene.rules import check_fit
+from contact1d.workflow.scene.shapes import Shape
 from contact1d.workflow.scene.si_text import MODEL_UNITS
 from contact1d.workflow.scene.tables import EFFECTS, WHOLE, Tables
 from contact1d.workflow.scene.uncertain import moved, take_shares, with_shares

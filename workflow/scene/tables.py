@@ -40,7 +40,7 @@ from contact1d.workflow.scene.effects import (
 )
 from contact1d.workflow.scene.experiments import Experiment, Method
 from contact1d.workflow.scene.materials import BY_NAME
-from contact1d.workflow.scene.profiles import Flat, Parabola, Profile
+from contact1d.workflow.scene.profiles import Profile
 from contact1d.workflow.scene.quantities import (
     AllOr,
     AnyParticleCount,
@@ -62,6 +62,7 @@ from contact1d.workflow.scene.quantities import (
     allowed_by,
     keys_of,
 )
+from contact1d.workflow.scene.shapes import Flat, Parabola
 
 if TYPE_CHECKING:
     import numpy as np

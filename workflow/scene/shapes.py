@@ -1,0 +1,290 @@
+"""Shapes of the upper body, each as drawn, z(x), and as the method of dimensionality reduction (MDR) transforms it.
+
+The MDR takes the axisymmetric body z = f(r) to the plane one
+
+    g(x) = |x| ∫₀^|x| f′(r) / √(x² − r²) dr
+
+which with springs E* per length has the body's force, displacement and contact radius (Popov and Heß, Method of
+Dimensionality Reduction in Contact Mechanics and Friction, 2015, chapter 3). Powers: g = κ_n f, κ_n =
+(√π/2) n Γ(n/2)/Γ((n+1)/2), κ₁ = π/2, κ₂ = 2. Circle: z = R − √(R² − x²), g = x artanh(x/R). An ellipsoid with the half
+axes b along and c across its axis is a sphere of radius c, b/c times as high.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
+
+from annotated_types import Ge
+from pydantic import BeforeValidator, Field
+from pydantic_core import PydanticCustomError
+
+from contact1d.workflow.scene.quantities import Length, Ratio, SignedRadius, Table, Unit
+from contact1d.workflow.scene.si_text import UnitTextError, si_value
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from contact1d.analysis.scan import Taken
+
+    Array = NDArray[np.float64]
+
+Exponent = Annotated[float, Ge(1.0), Unit("1")]
+LAST_SHARE = 1.0 - 1e-12
+"""The transform of a circle grows without end at its edge, and is taken up to this share of the radius."""
+
+
+class Shape(Table):
+    """What all profiles can do; a kind overrides what differs.
+
+    `has_edge`: the body ends at its `reach` by a flank, so that its chain is as long as it is wide and the contact is
+    too; others rise, and the contact ends on them.
+    """
+
+    has_edge: ClassVar[bool] = False
+    slow: ClassVar[bool] = False
+    """Whether the transform takes long, so that a predictor that asks thousands of times has it tabulated."""
+
+    @abstractmethod
+    def height(self, x: Array) -> Array:
+        """Height z(x) = f(|x|) [LU] above the apex as drawn, at the places `x` [LU]; same shape."""
+
+    @abstractmethod
+    def transformed(self, x: Array) -> Array:
+        """Height g(x) [LU] above the apex after the MDR's transform, at the places `x` [LU]; same shape."""
+
+    @property
+    def reach(self) -> float:
+        """Half-width [LU] within which there is a body at all."""
+        return math.inf
+
+    @property
+    def curvature_radius(self) -> float | None:
+        """Radius of curvature R at the apex [LU], None where there is none."""
+        return None
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Radii [LU] off the axis at which the slope jumps: a pressure there has no bound, and g′ is not finite."""
+        return ()
+
+    @property
+    def alternatives(self) -> tuple[Shape, ...]:
+        """What the body may be instead, by all that is known of it; a formula leaves nothing open."""
+        return ()
+
+    @property
+    def coarser(self) -> tuple[Shape, ...]:
+        """The same with less known of it, in place of an alternative that is no contact."""
+        return ()
+
+    @property
+    def deviations(self) -> tuple[tuple[Shape, Shape], ...]:
+        """Pairs of bodies: half of the difference of each is an independent uncertainty at 95 %; a formula has none."""
+        return ()
+
+    @property
+    def taken(self) -> Taken | None:
+        """What is taken of a scan; None of a shape that is given."""
+        return None
+
+    @property
+    def steepest(self) -> Self:
+        """The steeper one of the two bodies, whose slope and size limit the theory: this one on a plane."""
+        return self
+
+
+class Parabola(Shape):
+    """Profile of the upper body: z = x²/2R, of two curved bodies the gap, 1/R = 1/R₁ + 1/R₂."""
+
+    kind: Literal["parabola"]
+    """z = x²/2R, the paper's circle"""
+    radius: Length
+    """radius of curvature R at the apex; with a counter_radius R₁"""
+    counter_radius: SignedRadius | None = None
+    """radius of curvature R₂ of the lower body, 1/R = 1/R₁ + 1/R₂: positive for a convex one; negative for a concave
+    one, a cup, and then larger in magnitude than the radius; absent: a plane
+    """
+
+    def height(self, x: Array) -> Array:
+        """z = x²/2R."""
+        return x**2 / (2 * self.curvature_radius)
+
+    def transformed(self, x: Array) -> Array:
+        """g = x²/R."""
+        return x**2 / self.curvature_radius
+
+    @property
+    def curvature_radius(self) -> float:
+        """R, the effective one of both bodies: R₁/(1 + R₁/R₂)."""
+        return self.radius / (1.0 + self.radius / (self.counter_radius or math.inf))
+
+    @property
+    def steepest(self) -> Self:
+        """The body with the smaller radius: the gap of a ball in a cup is flat where the ball itself is steep."""
+        radius = min(self.radius, abs(self.counter_radius or math.inf))
+        return self.model_copy(update={"radius": radius, "counter_radius": None})
+
+
+class Circle(Shape):
+    """Profile of the upper body: an exact circle, z = R − √(R² − x²)."""
+
+    kind: Literal["circle"]
+    """z = R − √(R² − x²), an exact circle"""
+    radius: Length
+    """radius R"""
+
+    def height(self, x: Array) -> Array:
+        """z = R − √(R² − x²), written without the difference of large numbers."""
+        return x**2 / (self.radius + ((self.radius - x) * (self.radius + x)) ** 0.5)
+
+    def transformed(self, x: Array) -> Array:
+        """g = x artanh(x/R)."""
+        import numpy as np
+
+        share = np.clip(x / self.radius, -LAST_SHARE, LAST_SHARE)
+        return np.asarray(x * np.arctanh(share))
+
+    @property
+    def reach(self) -> float:
+        """R."""
+        return self.radius
+
+    @property
+    def curvature_radius(self) -> float:
+        """R."""
+        return self.radius
+
+
+class Ellipsoid(Shape):
+    """Profile of the upper body: an ellipsoid of revolution, z = b − b √(1 − x²/c²)."""
+
+    kind: Literal["ellipsoid"]
+    """z = b − b √(1 − x²/c²), an ellipsoid of revolution about the load"""
+    radius: Length
+    """half axis c across the load"""
+    half_axis: Length = Field(alias="height")
+    """half axis b along the load"""
+
+    def height(self, x: Array) -> Array:
+        """z = b (x/c)²/(1 + √(1 − x²/c²))."""
+        share = x / self.radius
+        return self.half_axis * share**2 / (1.0 + ((1.0 - share) * (1.0 + share)) ** 0.5)
+
+    def transformed(self, x: Array) -> Array:
+        """g = (b/c) x artanh(x/c)."""
+        import numpy as np
+
+        share = np.clip(x / self.radius, -LAST_SHARE, LAST_SHARE)
+        return np.asarray(self.half_axis * share * np.arctanh(share))
+
+    @property
+    def reach(self) -> float:
+        """c."""
+        return self.radius
+
+    @property
+    def curvature_radius(self) -> float:
+        """c²/b."""
+        return self.radius**2 / self.half_axis
+
+
+def _half_angle(text: object) -> object:
+    """The text as it is, where it is a half angle. Raises PydanticCustomError."""
+    problem = 'must be text with a unit, greater than 0° and less than 90°, from the axis to the flank: write "80°"'
+    try:
+        if isinstance(text, str) and "±" in text:
+            problem = 'has no uncertainty: give the slope, its cotangent, with one, slope = "0.18 ± 0.01"'
+        elif isinstance(text, str) and 0.0 < si_value(text, "rad")[0] < 0.5 * math.pi:
+            return text
+    except UnitTextError as error:
+        problem = str(error)
+    raise PydanticCustomError("scene", "{problem}", {"problem": problem})
+
+
+class Cone(Shape):
+    """Profile of the upper body: z = s |x|."""
+
+    one_of = ((("slope", "half_angle"), 'give one of the two: slope = 0.1, or half_angle = "80°"'),)
+
+    kind: Literal["cone"]
+    """z = s |x|"""
+    slope: Ratio | None = None
+    """slope s, the tangent of the angle between flank and plane"""
+    half_angle: Annotated[str, BeforeValidator(_half_angle)] | None = None
+    """half angle from the axis to the flank, such as "80°" or "1.4 rad", less than 90°, in place of the slope, which
+    is its cotangent
+    """
+
+    @property
+    def rise(self) -> float:
+        """s."""
+        return self.slope or 1.0 / math.tan(si_value(self.half_angle or "", "rad")[0])
+
+    def height(self, x: Array) -> Array:
+        """z = s |x|."""
+        return self.rise * abs(x)
+
+    def transformed(self, x: Array) -> Array:
+        """g = (π/2) s |x|."""
+        return 0.5 * math.pi * self.rise * abs(x)
+
+
+class Level(Shape):
+    """z = 0 wherever there is a body."""
+
+    has_edge = True
+
+    def height(self, x: Array) -> Array:
+        """z = 0."""
+        return 0.0 * abs(x)
+
+    def transformed(self, x: Array) -> Array:
+        """g = 0."""
+        return 0.0 * abs(x)
+
+
+class Flat(Level):
+    """Profile of the upper body: z = 0 without end; its chain closes on itself (`bodies.periodic`)."""
+
+    kind: Literal["flat"]
+    """z = 0 without end, with bodies.periodic"""
+
+
+class FlatPunch(Level):
+    """Profile of the upper body: z = 0 out to the edge, and no body beyond it."""
+
+    kind: Literal["flat_punch"]
+    """z = 0 within the radius, no body beyond it"""
+    radius: Length
+    """radius, a whole number of half spacings"""
+
+    @property
+    def reach(self) -> float:
+        """The radius."""
+        return self.radius
+
+
+class Power(Shape):
+    """Profile of the upper body: z = h (|x|/a)ⁿ."""
+
+    kind: Literal["power"]
+    """z = h (|x|/a)ⁿ"""
+    exponent: Exponent
+    """exponent n"""
+    radius: Length
+    """radius a at which the height is given"""
+    height_there: Length = Field(alias="height")
+    """height h at that radius"""
+
+    def height(self, x: Array) -> Array:
+        """z = h (|x|/a)ⁿ."""
+        return self.height_there * abs(x / self.radius) ** self.exponent
+
+    def transformed(self, x: Array) -> Array:
+        """g = κ_n z."""
+        from contact1d.analysis.theory.indenters import galin_factor  # it loads numpy, which a scene can do without
+
+        return galin_factor(self.exponent) * self.height(x)
