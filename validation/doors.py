@@ -27,10 +27,12 @@ from contact1d.workflow.deck.steps import Displace, UnderLoad
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import Engine, EngineError, Session
-from contact1d.workflow.errors import FolderError, RunError
+from contact1d.workflow.errors import Contact1dError, FolderError, RunError
 from contact1d.workflow.experiments import kind_of, planned
 from contact1d.workflow.experiments.spacing import with_spacing
 from contact1d.workflow.experiments.thermal import chunk_steps
+from contact1d.workflow.fit.fit import fit
+from contact1d.workflow.fit.many import fit_many
 from contact1d.workflow.identify import Target, estimated, identify, jkr_target, material_scene
 from contact1d.workflow.model.settings import CALIBRATION, Settings, SettingsError, settings_for
 from contact1d.workflow.runs import campaign

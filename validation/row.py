@@ -178,6 +178,11 @@ def at_most(
     return Row(name, value, Reference(bound, source, evidence), Bound("at most", 0.0, limited_by))
 
 
+def at_least(name: str, value: float, bound: float, source: str, evidence: Evidence = "closed form") -> Row:
+    """A row that passes where `value` ≥ `bound`."""
+    return Row(name, value, Reference(bound, source, evidence), Bound("at least", 0.0, "–"))
+
+
 def so(name: str, wrong: bool, source: str = "what must be", limited_by: str = "–") -> Row:
     """A row about what must not be; its value is 1 where it is so."""
     return at_most(name, float(wrong), 0.0, source, limited_by, "set bound")

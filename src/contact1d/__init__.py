@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from contact1d.analysis.atoms import atoms
     from contact1d.workflow.engine.failure import EngineError
     from contact1d.workflow.errors import Contact1dError, FolderError, RunError
+    from contact1d.workflow.fit.fit import fit
+    from contact1d.workflow.fit.many import fit_many
     from contact1d.workflow.identify.choice import from_material
     from contact1d.workflow.identify.shortcuts import Contact, cone, profile, punch, sphere
     from contact1d.workflow.model.chain import SettingsError
@@ -55,6 +57,8 @@ __all__ = [
     "Sweep",
     "atoms",
     "cone",
+    "fit",
+    "fit_many",
     "from_material",
     "load_run",
     "profile",
@@ -71,6 +75,8 @@ _HOMES = {
     "analysis.atoms": ("atoms",),
     "workflow.engine.failure": ("EngineError",),
     "workflow.errors": ("Contact1dError", "FolderError", "RunError"),
+    "workflow.fit.fit": ("fit",),
+    "workflow.fit.many": ("fit_many",),
     "workflow.identify.choice": ("from_material",),
     "workflow.identify.shortcuts": ("Contact", "cone", "profile", "punch", "sphere"),
     "workflow.runs.advised": ("run",),

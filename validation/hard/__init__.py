@@ -5,6 +5,7 @@ from validation.hard import (
     cohesive,
     extremes,
     faults,
+    fits,
     forces,
     friction,
     fuzz,
@@ -34,5 +35,5 @@ STUDIES: tuple[Study, ...] = (
     friction.FRICTION, similarity.SIMILARITY, forces.FORCES, motion.MOTION, modes.EQUIPARTITION, *thermal.CLASSES,
     extremes.EXTREMES, *pressed.CLASSES, plane_adhesive.ADHESIVE, slides.SLIDES, faults.FAULTS, fuzz.FUZZ,
     random_plane.RANDOM_PLANE, *kinks.CLASSES, scans.SCANS, coarse_paths.COARSE_PATHS, lateral.LATERAL,
-    transient.TRANSIENT, cohesive.COHESIVE,
+    transient.TRANSIENT, cohesive.COHESIVE, fits.FITS,
 )  # fmt: skip

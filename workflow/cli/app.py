@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from contact1d.workflow.cli.ending import CALL_IS_WRONG, FAILS, RUN_FAILED, Commands, command, read, say, stop
+from contact1d.workflow.cli.fit import fit
 from contact1d.workflow.cli.identify import identify
 
 if TYPE_CHECKING:
@@ -361,7 +362,7 @@ def _write(path: Path, text: str, instead: str) -> None:
         raise
 
 
-for one in (new, run, sweep, report, animate, deck, cost, identify, materials, schema, doctor):
+for one in (new, run, sweep, fit, report, animate, deck, cost, identify, materials, schema, doctor):
     app.command()(one)
 
 

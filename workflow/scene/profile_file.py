@@ -159,7 +159,11 @@ def _from_the_axis(points: list[list[float]]) -> tuple[list[float], list[float]]
 
 def _rows(path: Path) -> list[Row]:
     """The lines that have content, each with its number, as cells with decimal points."""
-    lines = read_text(path).splitlines()
+    return rows_in(read_text(path).splitlines())
+
+
+def rows_in(lines: list[str]) -> list[Row]:
+    """The same of lines of text."""
     if len(lines) > MOST_LINES:
         raise ProfileFileError(f"has {len(lines)} lines, at most {MOST_LINES} are allowed; use fewer points")
     full = [(i, line) for i, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]

@@ -1,0 +1,244 @@
+"""Measured force curves in CSV files: their columns, units and signs, read or refused with the remedy."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.workflow.errors import Contact1dError
+from contact1d.workflow.fit.curve import ForceCurve
+from contact1d.workflow.fit.plan import FitPlan
+from contact1d.workflow.scene.profile_file import NAME, rows_in
+from contact1d.workflow.scene.si_text import UnitTextError, si_value
+
+Array = NDArray[np.float64]
+COLUMNS = {
+    "z": ("z", "piezo", "zpiezo", "z_piezo", "height", "position", "hub", "höhe", "hauteur"),
+    "d": ("d", "indentation", "displacement", "depth", "eindringtiefe", "weg", "déplacement"),
+    "F": ("f", "force", "load", "kraft", "last", "deflection_force"),
+    "segment": ("segment", "richtung", "direction"),
+    "curve": ("curve", "index", "kurve", "courbe"),
+    "x": ("x",),
+    "y": ("y",),
+}
+"""Names of columns, in small letters."""
+UNITS = {"z": "m", "d": "m", "F": "N"}
+FORM = "name the columns with their units, z [nm] (or d [nm]) and F [nN]"
+APPROACH = ("approach", "trace", "extend", "loading", "annähern", "anfahren", "0")
+RETRACT = ("retract", "retrace", "withdraw", "unloading", "rückzug", "1")
+LARGEST = 400_000_000
+"""Bytes of a file: a map of 1000 curves has a tenth of them."""
+MOST_POINTS = 20_000
+"""Points of one curve: a fit takes seconds. More are one every few nanometres in any experiment."""
+FEWEST = 40
+HEAD_LINES = 200
+"""Lines in which the names of columns are looked for."""
+SATURATED = 6
+"""Points of equal force at an end of it that are no measurement."""
+FLAT_PART = 1e-4
+"""Range of a force over the largest within which it counts as equal."""
+APART = 0.05
+"""Distance of an end of the force from that of bodies apart over its range, from which on it may be saturated."""
+BLOCKS, RISE = 20, 2.0
+"""Parts of a curve whose mean forces differ by so many times its noise, if it has a contact."""
+GAP = 8.0
+"""Distance of neighbouring positions over the usual one that is a gap."""
+
+
+class DataError(Contact1dError, ValueError):
+    """A file that is no force curve; the message says where, why and what to do."""
+
+
+def curves(path: Path, plan: FitPlan) -> Iterator[tuple[str, tuple[float, float] | None, ForceCurve | DataError]]:
+    """The curves of a file: name, place (x, y) of a map, and the curve, or why it is none.
+
+    Raises:
+        DataError: nothing in the file can be read.
+    """
+    table, units = _table(path)
+    if "F" not in table or not {"z", "d"} & table.keys():
+        raise DataError(f"{path}: its columns are not known; {FORM}")
+    along = "z" if "z" in table else "d"
+    if along == "z" and not math.isfinite(plan.stiffness):
+        raise DataError(
+            f"{path}: z is the position of the piezo, of which the instrument takes a part: give [instrument] "
+            "stiffness, or a column d, the indentation"
+        )
+    if without := [name for name in (along, "F") if not units.get(name)]:
+        raise DataError(f"{path}: {' and '.join(without)} without a unit; {FORM}")
+    index = table.get("curve")
+    starts = [0] if index is None else [0, *(np.flatnonzero(index[1:] != index[:-1]) + 1)]
+    for start, end in zip(starts, [*starts[1:], table["F"].size], strict=True):
+        part = {name: column[start:end] for name, column in table.items()}
+        name = path.stem if index is None else f"{part['curve'][0]}"
+        place = (float(part["x"][0]), float(part["y"][0])) if {"x", "y"} <= part.keys() else None
+        try:
+            yield name, place, _curve(part, along, units, plan)
+        except DataError as error:
+            yield name, place, DataError(f"{path}: {error}")
+
+
+def _table(path: Path) -> tuple[dict[str, NDArray[np.generic]], dict[str, str]]:
+    """The columns that are known, by our names, the line of each point as `line`, and the units of the columns."""
+    import pandas
+
+    try:
+        size = path.stat().st_size
+        if size > LARGEST:
+            raise DataError(
+                f"{path} has {size} bytes, and at most {LARGEST} are read: average neighbouring points, or split the "
+                "map into files"
+            )
+        with path.open(encoding="utf-8-sig") as file:
+            head = [line for line, _ in zip(file, range(HEAD_LINES), strict=False)]
+    except UnicodeDecodeError:
+        raise DataError(f"{path} is not UTF-8 text; export the curve as CSV") from None
+    except OSError as error:
+        raise DataError(f"{path} cannot be read: {error.strerror}") from None
+    rows = rows_in([line.rstrip("\r\n") for line in head])
+    found = next((row for row in rows if {"F"} < {*_known(row[1])}), None)
+    if found is None:
+        raise DataError(f"{path}: {'is empty' if not rows else 'has no line of names'}; {FORM}")
+    line, names = found
+    known = _known(names)
+    units = {
+        name: match[2].strip() for name, i in known.items() if (match := NAME.match(names[i].strip('" '))) and match[2]
+    }
+    below = next((cells for number, cells in rows if number > line), [])
+    skip = line
+    if (
+        not units
+        and len(below) == len(names)
+        and all(cell.strip() and not any(map(str.isdigit, cell)) for cell in below)
+    ):
+        units = {name: below[i].strip('[]()" ') for name, i in known.items()}
+        skip += 1
+    text = head[line - 1]
+    separator = next((one for one in ";\t," if one in text), r"\s+")
+    decimal = "," if separator != "," and any("," in one and "." not in one for one in head[skip : skip + 5]) else "."
+    try:
+        frame = pandas.read_csv(
+            path, sep=separator, decimal=decimal, skiprows=skip, header=None, usecols=sorted(known.values()),
+            comment="#", skip_blank_lines=False, encoding="utf-8-sig", low_memory=False,
+        )  # fmt: skip
+    except ValueError:  # of pandas: no line at all, or lines of several lengths
+        raise DataError(f"{path}: the lines below the names have not as many cells as these; {FORM}") from None
+    lines = skip + 1 + np.arange(len(frame))
+    blank = frame.isna().all(axis=1).to_numpy()
+    table: dict[str, NDArray[np.generic]] = {"line": lines[~blank]}
+    for name, i in known.items():
+        column = frame[i][~blank]
+        if name not in ("segment", "curve"):
+            numbers = pandas.to_numeric(column, errors="coerce").to_numpy(dtype=float)
+            bad = np.flatnonzero(~np.isfinite(numbers))
+            if bad.size and name not in ("x", "y"):
+                at = lines[~blank][bad[0]]
+                raise DataError(
+                    f"{path}: line {at}: {name} is empty or no number; leave such lines out ({bad.size} in all)"
+                )
+            table[name] = numbers
+        else:
+            table[name] = column.astype(str).str.strip().str.lower().to_numpy()
+    return table, units
+
+
+def _known(cells: list[str]) -> dict[str, int]:
+    """Where the columns are whose names are known; of several of one name the first."""
+    found: dict[str, int] = {}
+    for i, cell in enumerate(cells):
+        match = NAME.match(cell.strip().strip('"'))
+        word = match[1].lower() if match else ""
+        name = next((name for name, words in COLUMNS.items() if word in words), None)
+        if name is not None:
+            found.setdefault(name, i)
+    return found
+
+
+def _curve(table: dict[str, NDArray[np.generic]], along: str, units: dict[str, str], plan: FitPlan) -> ForceCurve:
+    """One curve. Raises DataError."""
+    reverse = plan.fit.reverse or ()
+    columns = []
+    for name in (along, "F"):
+        try:
+            factor = float(si_value(f"1 {units[name]}", UNITS[name])[0])
+        except UnitTextError as error:
+            volts = units[name].endswith("V")
+            what = "is in volts: multiply it by sensitivity and stiffness of the cantilever" if volts else f"{error}"
+            raise DataError(f"column {name} {what}") from None
+        sign = -1.0 if name in reverse else 1.0
+        columns.append(sign * factor * np.asarray(table[name], dtype=float))
+    z, F = columns
+    if z.size < FEWEST:
+        raise DataError(f"has {z.size} points, and at least {FEWEST} are needed: approach and retraction at full rate")
+    if z.size > MOST_POINTS:
+        raise DataError(f"has {z.size} points, and at most {MOST_POINTS} are compared: average neighbouring points")
+    turn = _turn(z, table.get("segment"))
+    if math.isfinite(plan.stiffness) and along == "d":
+        z = z + F / plan.stiffness
+    curve = ForceCurve(z, F, turn, np.asarray(table["line"], dtype=int))
+    _require_signs(curve)
+    _require_whole(curve, along)
+    return curve
+
+
+def _turn(z: Array, segment: NDArray[np.generic] | None) -> int:
+    """How many points approach; they come first. Raises DataError where a segment is missing."""
+    if segment is not None:
+        approaches = np.isin(segment, APPROACH)
+        unknown = ~approaches & ~np.isin(segment, RETRACT)
+        if unknown.any():
+            raise DataError("column segment has words other than approach and retract")
+        turn = int(approaches.sum())
+        if not approaches[:turn].all():
+            raise DataError("column segment: the approach must come before the retraction")
+    else:
+        turn, low = (int(extreme(z)) + 1 for extreme in (np.argmax, np.argmin))
+        if not FEWEST // 4 <= turn <= z.size - FEWEST // 4 and FEWEST // 4 <= low <= z.size - FEWEST // 4:
+            raise DataError('z is reversed, since the approach lowers it: write reverse = ["z"]')
+    if not FEWEST // 4 <= turn <= z.size - FEWEST // 4:
+        raise DataError(
+            f"has one segment only ({turn} points approach, {z.size - turn} retract): give both, the approach first"
+        )
+    return turn
+
+
+def _require_signs(curve: ForceCurve) -> None:
+    """Refuse what would be a contact with other signs only."""
+    z, F = curve.positions, curve.forces
+    low, high = (
+        F[np.argsort(z[: curve.turn])[part]].mean()
+        for part in (slice(0, curve.turn // 10 + 1), slice(-(curve.turn // 10 + 1), None))
+    )
+    span = float(np.ptp(F))
+    if high - low < -0.2 * span:
+        raise DataError('the force falls towards the sample: tension is positive here; write reverse = ["F"]')
+    if z[curve.turn - 1] < z[0]:
+        raise DataError('z falls on the approach: it must grow towards the sample; write reverse = ["z"]')
+    blocks = [float(part.mean()) for part in np.array_split(F, BLOCKS)]
+    if np.ptp(blocks) < RISE * float(np.std(np.diff(F))):
+        raise DataError("the force does not leave its noise: no contact is in the curve, or z and F are swapped")
+
+
+def _require_whole(curve: ForceCurve, along: str) -> None:
+    """Refuse a force that is cut at an end of its range, and positions with gaps."""
+    F, span = curve.forces, float(np.ptp(curve.forces))
+    for end, what in ((float(F.max()), "largest"), (float(F.min()), "least")):
+        flat = int((np.abs(F - end) <= FLAT_PART * span).sum())
+        if flat >= SATURATED and abs(end - curve.baseline) > APART * span:
+            raise DataError(
+                f"the force is saturated: {flat} points have its {what} value; lower the trigger force or the gain, or "
+                "leave these lines out"
+            )
+    for points in (slice(0, curve.turn), slice(curve.turn, None)):
+        steps = np.abs(np.diff(curve.positions[points]))
+        usual = float(np.median(steps))
+        at = int(np.argmax(steps))
+        if steps[at] > GAP * usual and steps[at] > 0.1 * curve.depth:
+            line = curve.lines[points][at]
+            raise DataError(
+                f"has a gap in {along} after line {line}: give the points between, or the curve up to there"
+            )

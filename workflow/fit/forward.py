@@ -1,0 +1,207 @@
+"""The force that a contact model predicts at each position of the piezo.
+
+With the profile's transform g, its integral G(a) = ∫₀ᵃ g dx, and the contact edge a
+
+    Hertz   d = g(a),                    F = 2E*(a d − G)
+    DMT     the same,                    F lower by 2πWR
+    Maugis  d = g(a) − (2σ₀/E*) √(c² − a²),  F lower by that of the cohesive zone up to c
+    JKR     d = g(a) − √(2πaW/E*),       F = 2E*(a d − G)
+
+An instrument of stiffness k_c has its contact point at z = d + F/k_c. A measured position z is prescribed, and F
+follows from it on the branch that is held: down to the least z, where dF/dd = −k_c and the contact snaps out. The
+noise of the force is in no displacement.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+from scipy.optimize import elementwise
+
+from contact1d.workflow.scene import Shape
+
+Array = NDArray[np.float64]
+EDGES = 300
+"""Edges a between which a branch is cubic, in geometric progression over SPAN."""
+THINNED, NODES, BEFORE = 3, 20, 40
+"""Of Maugis's equations: every how many edges has a root, nodes of a quadrature, and places before contact."""
+NEWTON = 2
+"""Steps to the place of a position between two of them: from a straight start the error is below 1e-9 of the cell."""
+SPAN = 2e-3
+"""The first of them over the last."""
+DEEPEST = 8.0
+"""Transformed height of the last edge over the range of positions of the data."""
+STEEP = 3.0
+"""Slope of the continuation below the least z over that of the branch's first quarter: no model holds a contact there,
+so that a point there pulls the parameters back."""
+
+
+@dataclass(frozen=True)
+class Body:
+    """A profile's transform at EDGES: a, g and G [LU, LU, LU²], the profile f [LU], the radius at its apex [LU]."""
+
+    edges: Array
+    heights: Array
+    areas: Array
+    surface: Array
+    radius: float | None
+
+    @classmethod
+    def of(cls, shape: Shape, depth: float) -> Body:
+        """The profile up to where its transform is DEEPEST times `depth` [LU], or to its end."""
+        last = depth
+        while last < shape.reach and float(shape.transformed(np.array([last]))[0]) > DEEPEST * depth:
+            last *= 0.5
+        while last < shape.reach and float(shape.transformed(np.array([last]))[0]) < DEEPEST * depth:
+            last *= 1.3
+        a = np.geomspace(SPAN, 1.0, EDGES) * min(last, shape.reach)
+        g = shape.transformed(a)
+        # ∫ g dx of a power between two edges is (g₂x₂ − g₁x₁)/(1 + n), n = log(g₂/g₁)/log(x₂/x₁).
+        with np.errstate(divide="ignore", invalid="ignore"):
+            n = np.where(g[:-1] > 0.0, np.log(g[1:] / g[:-1]) / np.log(a[1] / a[0]), math.inf)
+        steps = (g[1:] * a[1:] - g[:-1] * a[:-1]) / (1.0 + n)
+        first = a[0] * g[0] / (1.0 + n[0])
+        areas = first + np.concatenate(
+            [[0.0], np.cumsum(np.where(np.isfinite(n), steps, 0.5 * (g[1:] + g[:-1]) * np.diff(a)))]
+        )
+        zero = np.zeros(1)
+        columns = a, g, areas, shape.height(a)
+        a, g, areas, f = (np.concatenate([zero, one]) for one in columns)
+        return cls(a, g, areas, f, shape.curvature_radius)
+
+    @cached_property
+    def height(self) -> CubicSpline:
+        """g of places x [LU]."""
+        return CubicSpline(self.edges, self.heights)
+
+    @cached_property
+    def drawn(self) -> CubicSpline:
+        """f of places x [LU]."""
+        return CubicSpline(self.edges, self.surface)
+
+
+@dataclass(frozen=True)
+class Branch:
+    """Displacements and forces [LU, FU] along a path of states, and a length that grows along it [LU]: a, where bodies
+    touch at once.
+    """
+
+    radii: Array
+    displacements: Array
+    forces: Array
+
+    def at(self, positions: Array, stiffness: float, held: bool) -> Array:
+        """F [FU] at positions z [LU] of an instrument of this stiffness [FU/LU], contact point at 0.
+
+        Args:
+            positions: of the piezo.
+            stiffness: k_c; infinite: d is prescribed.
+            held: whether the contact holds at all of them, so that it is continued below its least z;
+                else it is lost there.
+        """
+        z = self.displacements + self.forces / stiffness
+        least = min(int(np.argmin(z)), z.size - 4)  # of an adhesion that is known to be too strong the rest matters not
+        a, z, F = self.radii[least:], np.maximum.accumulate(z[least:]), self.forces[least:]
+        found = np.where(positions < z[0], 0.0, _between(a, z, F, positions))
+        below = positions < z[0]
+        if held and below.any():
+            at = np.searchsorted(F, F[0] + 0.25 * abs(F[0])) if F[0] < 0.0 else 1
+            at = int(min(max(at, 1), z.size - 1))
+            slope = STEEP * (F[at] - F[0]) / max(z[at] - z[0], 1e-300)
+            found = np.where(below, F[0] + slope * (positions - z[0]), found)
+        return np.asarray(found)
+
+    def snap_out(self, stiffness: float) -> tuple[float, float]:
+        """Position z [LU] and force [FU] at which the contact is lost."""
+        z = self.displacements + self.forces / stiffness
+        least = int(np.argmin(z))
+        return float(z[least]), float(self.forces[least])
+
+
+def _between(a: Array, z: Array, F: Array, positions: Array) -> Array:
+    """F at z, both cubic in a between its places: under correlated noise the differences of neighbours count."""
+    i = np.clip(np.searchsorted(z, positions) - 1, 0, a.size - 2)
+    width = np.diff(a)[i]
+    cubic = [_cubic(values[i], values[i + 1], slope[i] * width, slope[i + 1] * width)
+             for values, slope in ((z, np.gradient(z, a)), (F, np.gradient(F, a)))]  # fmt: skip
+    (z0, z1, z2, z3), (f0, f1, f2, f3) = cubic
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = np.clip((positions - z[i]) / (z[i + 1] - z[i]), 0.0, 1.0)
+        for _ in range(NEWTON):
+            slope = z1 + t * (2.0 * z2 + 3.0 * t * z3)
+            t = t - np.where(slope > 0.0, (z0 + t * (z1 + t * (z2 + t * z3)) - positions) / slope, 0.0)
+    t = np.nan_to_num(np.clip(t, 0.0, 1.0))
+    return np.asarray(f0 + t * (f1 + t * (f2 + t * f3)))
+
+
+def _cubic(start: Array, end: Array, leaving: Array, arriving: Array) -> tuple[Array, Array, Array, Array]:
+    """The coefficients of Hermite's cubic from 0 to 1."""
+    rise = end - start
+    return start, leaving, 3.0 * rise - 2.0 * leaving - arriving, leaving + arriving - 2.0 * rise
+
+
+Law = Callable[[Body, float, float, float], Branch]
+"""A contact model: the branch of a body, E* [FU/LU²], W [FU/LU] and the range h₀ [LU]."""
+
+
+def hertz(body: Body, modulus: float, work: float, reach: float) -> Branch:
+    """Without adhesion."""
+    return Branch(body.edges, body.heights, 2.0 * modulus * (body.edges * body.heights - body.areas))
+
+
+def dmt(body: Body, modulus: float, work: float, reach: float) -> Branch:
+    """Adhesion of long range, which adds 2πWR to the load."""
+    assert body.radius is not None
+    free = hertz(body, modulus, work, reach)
+    return Branch(free.radii, free.displacements, free.forces - 2.0 * math.pi * work * body.radius)
+
+
+def jkr(body: Body, modulus: float, work: float, reach: float) -> Branch:
+    """Adhesion of no range."""
+    a = body.edges
+    d = body.heights - np.sqrt(2.0 * math.pi * work / modulus * a)
+    return Branch(a, d, 2.0 * modulus * (a * d - body.areas))
+
+
+def maugis(body: Body, modulus: float, work: float, reach: float) -> Branch:
+    """Dugdale's stress σ₀ = W/h₀ over the range h₀ around the contact (equations: `model.cohesive`), by a rising path.
+
+    Its states before contact, a = 0, are explicit in c; of a contact s = √(c² − a²) is a root for each a.
+    """
+    ratio, a = 2.0 * work / reach / modulus, np.concatenate([[0.0], body.edges[1::THINNED]])
+    g = body.height(a)
+    node, weight = leggauss(NODES)
+
+    def gap(s: Array, a: Array, g: Array) -> Array:
+        """Gap at c less h₀."""
+        c, angle = np.hypot(a, s), np.arctan2(a, s)
+        pressed = 0.5 * angle * (body.height(c[:, None] * np.sin(0.5 * angle[:, None] * (node + 1.0))) @ weight)
+        d = g - ratio * s
+        # c − a without a difference of numbers that are nearly the same
+        ring = ratio * s * s / (c + a + 1e-300)
+        return np.asarray(body.drawn(c) - d + 2.0 / math.pi * (d * angle - pressed - ring) - reach)
+
+    high = np.full_like(a, reach / ratio + math.sqrt(reach * a[-1]))
+    for _ in range(60):
+        short = gap(high, a, g) < 0.0
+        if not short.any():
+            break
+        high[short] *= 2.0
+    s = elementwise.find_root(gap, (np.zeros_like(a), high), args=(a, g), tolerances={"xrtol": 1e-9}).x
+    d = g - ratio * s
+    ring = 0.5 * ((a * a + s * s) * np.arctan2(s, a) - a * s)
+    F = 2.0 * modulus * (a * d - np.interp(a, body.edges, body.areas)) - 2.0 * modulus * ratio * ring
+    c = s[0] * np.linspace(0.0, 1.0, BEFORE, endpoint=False)
+    before = body.drawn(c) - 2.0 / math.pi * ratio * c - reach
+    path = np.concatenate([c, s[0] + a])
+    return Branch(path, np.concatenate([before, d]), np.concatenate([-math.pi * work / reach * c * c, F]))
+
+
+LAWS: Mapping[str, Law] = {"Hertz": hertz, "DMT": dmt, "Maugis": maugis, "JKR": jkr}

@@ -1,0 +1,128 @@
+"""Many curves under one plan: a folder of files or a map, one table with intervals, a histogram and a map."""
+
+from __future__ import annotations
+
+import csv
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from contact1d.analysis import plots
+from contact1d.files import AnyPath, whole
+from contact1d.workflow.engine.progress import Progress, Silent
+from contact1d.workflow.errors import Contact1dError
+from contact1d.workflow.fit.curve import ForceCurve
+from contact1d.workflow.fit.data import DataError, curves
+from contact1d.workflow.fit.fit import files_of, own_folder
+from contact1d.workflow.fit.plan import AnyFit, FitPlan, read_fit
+from contact1d.workflow.fit.report import entry
+from contact1d.workflow.fit.solution import fitted, model_of
+from contact1d.workflow.runs.processors import cores, pool
+from contact1d.workflow.units import scale_of
+
+TABLE = "fits.csv"
+Job = tuple[str, tuple[float, float] | None, ForceCurve | DataError]
+
+
+@dataclass(frozen=True)
+class Fits:
+    """A finished or interrupted series: its folder, and how many curves ended as done or refused."""
+
+    folder: Path
+    counts: dict[str, int]
+
+
+def fit_many(source: AnyFit, folder: AnyPath, workers: int | None = None, progress: Progress | None = None) -> Fits:
+    """Fit every curve that a plan's data name; DIR/fits.csv has a line for each, in their order.
+
+    Args:
+        source: a fit file, or its tables.
+        folder: for fits.csv and the figures.
+        workers: processes; None: as many as there are processors.
+        progress: informed of each curve.
+    """
+    plan, progress, rows = read_fit(source), progress or Silent(), list[dict[str, Any]]()
+    out = own_folder(Path(folder))
+    jobs = list(_jobs(plan))
+    progress.phase("fits", len(jobs), "curve")
+    try:
+        with pool(workers or cores()) as executor:
+            for row in executor.map(partial(attempt, plan), jobs):
+                rows.append(row)
+                progress.advance(1)
+    finally:
+        _write(plan, rows, out)
+    return Fits(out, dict(Counter(row["status"] for row in rows)))
+
+
+def is_series(plan: FitPlan) -> bool:
+    """Whether the data are more than one curve."""
+    files = files_of(plan)
+    return len(files) > 1 or len(list(islice(curves(files[0], plan), 2))) > 1
+
+
+def _jobs(plan: FitPlan) -> Iterator[Job]:
+    """All curves; what is wrong with a file stands for its curve."""
+    for file in files_of(plan):
+        try:
+            yield from curves(file, plan)
+        except DataError as error:
+            yield file.stem, None, error
+
+
+def attempt(plan: FitPlan, job: Job) -> dict[str, Any]:
+    """The line of the table of one curve: what it says, or why it says nothing."""
+    name, place, curve = job
+    row: dict[str, Any] = {"curve": name, "status": "done", "reason": ""}
+    if place is not None:
+        row |= {"x": place[0], "y": place[1]}
+    try:
+        if isinstance(curve, DataError):
+            raise curve
+        found = fitted(plan, curve, model_of(plan))
+        for key, ends in found.intervals.items():
+            label = f"[{entry(found, key)['unit']}]"
+            for part, value in zip(("", "_low", "_high"), (found.values[key], *ends), strict=True):
+                row[f"{key}{part} {label}"] = value
+        row["outliers"], row["reduced_chi_squared"] = found.solution.outliers.size, found.misfit
+    except (Contact1dError, ArithmeticError, np.linalg.LinAlgError) as error:
+        row |= {"status": "refused", "reason": str(error)}
+    return row
+
+
+def _write(plan: FitPlan, rows: Sequence[dict[str, Any]], folder: Path) -> None:
+    """The table and the figures."""
+    columns = list(dict.fromkeys(name for row in rows for name in row))
+    with whole(folder / TABLE) as part, part.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, columns, restval="", lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    for key in plan.fit.parameters:
+        name = next((name for name in columns if name.startswith(f"{key} [")), None)
+        done = [row for row in rows if name in row]
+        if name is not None and len(done) > 1:
+            _draw(plan, key, name, done, folder)
+
+
+def _draw(plan: FitPlan, key: str, name: str, rows: Sequence[dict[str, Any]], folder: Path) -> None:
+    """Histogram of a parameter, and beside it its map where the curves have places."""
+    values = np.array([row[name] for row in rows])
+    factor, unit = scale_of(float(np.median(values)), name.rpartition("[")[2].rstrip("]"))
+    label, has_map = f"{key.rpartition('.')[2].replace('_', ' ')} ({unit})", "x" in rows[0]
+    figure = plots.new_figure((10.0 if has_map else 5.0, 4.0))
+    axes = figure.subplots(1, 1 + has_map, squeeze=False)[0]
+    axes[0].hist(factor * values, bins="auto", color="#0072B2")
+    plots.describe(axes[0], label, "curves", plan.fit.title, zero=False)
+    if has_map:
+        x, y = (np.array([row[place] for row in rows]) for place in "xy")
+        shown = axes[1].scatter(x, y, c=factor * values, marker="s", cmap="viridis")
+        axes[1].set_aspect("equal")
+        plots.describe(axes[1], "x", "y", zero=False)
+        figure.colorbar(shown, ax=axes[1], label=label)
+    plots.save_figure(figure, folder / f"{key.rpartition('.')[2]}.png")

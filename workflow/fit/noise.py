@@ -1,0 +1,221 @@
+"""Noise of a measured force curve: white noise and noise with a memory, as one covariance that the residuals decide.
+
+    F_i = F(z_i) + σ (√(1 − s) e_i + √s m_i),    cov(m_i, m_j) = exp(−|i − j|/τ)
+
+s is the share of the variance that has a memory, τ [points] its length: s = 0 is white noise, s = 1 a first-order
+autoregression. The exact likelihood and the whitened residuals follow from a Kalman filter for m, whose gain is a
+recursion of numbers, so that whitening solves one bidiagonal system. Points that were left out leave a gap: τ counts
+them. τ and s are never taken for known: everything is averaged over a grid of both, each with the restricted likelihood
+of its residuals (REML), in which the parameters of the curve have been integrated out.
+
+Source: P. J. Brockwell, R. A. Davis, Time Series: Theory and Methods (1991), chapter 12; D. A. Harville, Journal of the
+American Statistical Association 72 (1977) 320.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve, solve_banded
+from scipy.optimize import brentq
+from scipy.stats import t as student
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
+SHARES = (0.0, 0.05, 0.15, 0.35, 0.6, 0.8, 0.93, 1.0)
+"""Shares s of a first look; `finer` goes between them."""
+SHORTEST, MEMORIES = 0.7, 12
+"""Shortest memory [points] that differs from white noise, and how many lengths a first look has."""
+LONGEST_SHARE = 0.25
+"""Longest memory over the points of the longest run: of a longer one no curve knows its size."""
+UNLIKELY = 1e-5
+"""Weight over the largest one below which a place of the grid is left out of a finer one."""
+
+
+@dataclass(frozen=True)
+class Noise:
+    """One noise of unit variance, ready to whiten the kept points of some runs.
+
+    Attributes:
+        share, memory: s and τ [points].
+        filters: of each run, the decay and the gain of its points' prediction, and their standard deviations, (n,).
+    """
+
+    share: float
+    memory: float
+    filters: tuple[tuple[Array, Array, Array], ...]
+
+    def whitened(self, columns: Array) -> Array:
+        """Columns (n, m) [any unit] of all kept points, run after run, as independent numbers of that unit."""
+        parts, start = [], 0
+        for decay, gain, deviation in self.filters:
+            part = columns[start : start + decay.size]
+            start += decay.size
+            if self.share == 0.0 or len(part) < 2:
+                parts.append(part / deviation[:, None])
+                continue
+            # x_i = (1 − K_i) φ_i x_{i−1} + K_i y_i is what is known of m after point i, φ_{i+1} x_i its prediction.
+            band = np.zeros((2, decay.size))
+            band[0] = 1.0
+            band[1, :-1] = -((1.0 - gain) * decay)[1:]
+            known = solve_banded((1, 0), band, gain[:, None] * part, check_finite=False)
+            predicted = np.zeros_like(part)
+            predicted[1:] = decay[1:, None] * known[:-1]
+            parts.append((part - predicted) / deviation[:, None])
+        return np.concatenate(parts)
+
+    @property
+    def log_determinant(self) -> float:
+        """log |V|, V of unit variance."""
+        return 2.0 * sum(float(np.log(deviation).sum()) for _, _, deviation in self.filters)
+
+
+def noises(pairs: Sequence[tuple[float, float]], runs: Sequence[Indices]) -> list[Noise]:
+    """The noises of pairs (s, τ) for runs of kept points, each given by the indices of its points."""
+    share, memory = (np.array(values)[:, None] for values in zip(*pairs, strict=True))
+    tables = []
+    for run in runs:
+        decay = np.exp(-np.diff(run, prepend=run[:1]) / memory)
+        gain, variance = np.empty_like(decay), np.empty_like(decay)
+        left = share[:, 0].copy()  # variance of m before the first point
+        for i in range(run.size):
+            if i:
+                left = decay[:, i] ** 2 * left + share[:, 0] * (1.0 - decay[:, i] ** 2)
+            variance[:, i] = left + 1.0 - share[:, 0]
+            gain[:, i] = left / variance[:, i]
+            left = left * (1.0 - gain[:, i])
+        tables.append((decay, gain, np.sqrt(variance)))
+    return [
+        Noise(one_share, one_memory, tuple((d[j], g[j], v[j]) for d, g, v in tables))
+        for j, (one_share, one_memory) in enumerate(pairs)
+    ]
+
+
+@dataclass(frozen=True)
+class Judged:
+    """What the residuals say under one noise.
+
+    Attributes:
+        noise: that one.
+        deviation: σ [unit of the residuals].
+        step: change of the parameters (p,) that this noise asks for.
+        covariance: of the parameters (p, p).
+        weight: its share of the restricted likelihood.
+    """
+
+    noise: Noise
+    deviation: float
+    step: Array
+    covariance: Array
+    weight: float
+
+
+def _judge(noise: Noise, residuals: Array, slopes: Array, prior: Array) -> tuple[Judged, float]:
+    """One noise, and the logarithm of its likelihood.
+
+    The residuals change by −slopes·step; `prior` (q, p + 1) has rows of what is known of the parameters, its last
+    column the misfit, in standard deviations.
+    """
+    white = noise.whitened(np.column_stack([slopes, residuals]))
+    J, r = white[:, :-1], white[:, -1]
+    P, known = prior[:, :-1], prior[:, -1]
+    freedom = max(1.0, r.size - float(J.shape[1] - P.shape[0]))
+    step, deviation = np.zeros(J.shape[1]), math.sqrt(float(r @ r) / freedom)
+    for _ in range(3):  # σ weighs the data against what is known of the parameters
+        information = J.T @ J / deviation**2 + P.T @ P
+        factor = cho_factor(information)
+        step = cho_solve(factor, J.T @ r / deviation**2 + P.T @ known)
+        left = r - J @ step
+        deviation = math.sqrt(float(left @ left) / freedom)
+    misfit = known - P @ step
+    log = -0.5 * noise.log_determinant - r.size * math.log(deviation) - 0.5 * float(misfit @ misfit)
+    log -= float(np.log(np.diag(factor[0])).sum())
+    return Judged(noise, deviation, step, cho_solve(factor, np.eye(J.shape[1])), 0.0), log
+
+
+@dataclass(frozen=True)
+class Uncertain:
+    """The parameters of a curve under all noises that its residuals allow.
+
+    Attributes:
+        judged: each noise with its weight.
+        freedom: degrees of freedom of each σ.
+    """
+
+    judged: tuple[Judged, ...]
+    freedom: float
+
+    @property
+    def best(self) -> Judged:
+        """The most likely one."""
+        return max(self.judged, key=lambda one: one.weight)
+
+    def mean(self, values: Sequence[float]) -> float:
+        """The mean of a value of each."""
+        return float(sum(one.weight * value for one, value in zip(self.judged, values, strict=True)))
+
+    def quantile(self, index: int, level: float) -> float:
+        """Above its value under the most likely noise a parameter is by at most this much, with a probability `level`.
+
+        Student's t under each noise, averaged: no noise is taken for known.
+        """
+        weights = np.array([one.weight for one in self.judged])
+        centres = np.array([one.step[index] for one in self.judged]) - self.best.step[index]
+        scales = np.sqrt([one.covariance[index, index] for one in self.judged])
+
+        def excess(value: float) -> float:
+            return float(weights @ student.cdf((value - centres) / scales, self.freedom)) - level
+
+        reach = 60.0 * float(scales.max()) + float(np.abs(centres).max())
+        return float(brentq(excess, -reach, reach, rtol=1e-6, xtol=1e-9 * reach))
+
+
+def uncertain(runs: Sequence[Indices], residuals: Array, slopes: Array, prior: Array, looks: int = 2) -> Uncertain:
+    """All noises with their weights: a first look over s and τ, and a finer one where it is likely.
+
+    Args:
+        runs: indices of the kept points of each run; whitening begins anew with each.
+        residuals: (n,) of all runs.
+        slopes: (n, p), −∂residuals/∂parameters.
+        prior: (q, p + 1), see `_judge`.
+        looks: 1 where the most likely noise is enough.
+    """
+    longest = max(4.0, LONGEST_SHARE * max(run.size for run in runs))
+    memories: Array = np.geomspace(SHORTEST, longest, MEMORIES)
+    shares: Array = np.array(SHARES)
+    for _ in range(looks):
+        pairs = [(float(s), float(m)) for s in shares for m in (memories if s > 0.0 else memories[:1])]
+        found = [_judge(noise, residuals, slopes, prior) for noise in noises(pairs, runs)]
+        logs = np.array([log for _, log in found])
+        # White noise stands once for all memories.
+        weights = np.exp(logs - logs.max()) * [1.0 if s > 0.0 else memories.size for s, _ in pairs]
+        likely = [pair for pair, weight in zip(pairs, weights, strict=True) if weight > UNLIKELY * weights.max()]
+        shares, memories = (
+            _between(np.array(values), grid)
+            for values, grid in zip(zip(*likely, strict=True), (shares, memories), strict=True)
+        )
+    weights /= weights.sum()
+    freedom = max(1.0, residuals.size - float(slopes.shape[1] - prior.shape[0]))
+    judged = (
+        Judged(one.noise, one.deviation, one.step, one.covariance, float(w))
+        for (one, _), w in zip(found, weights, strict=True)
+    )
+    return Uncertain(tuple(judged), freedom)
+
+
+def _between(likely: Array, grid: Array) -> Array:
+    """As many places as before between the neighbours of those that are likely."""
+    low, high = (int(np.searchsorted(grid, end)) for end in (likely.min(), likely.max()))
+    low, high = max(0, low - 1), min(grid.size - 1, high + 1)
+    if high - low >= grid.size - 2:
+        return grid
+    ends = grid[low], grid[high]
+    return (
+        np.linspace(*ends, grid.size)
+        if ends[0] == 0.0 or ends[1] == 1.0 or grid[-1] == 1.0
+        else np.geomspace(*ends, grid.size)
+    )

@@ -1,0 +1,159 @@
+"""A fit file: data, parameters, instrument and a base scene; checked as a scene is, every problem at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from os import PathLike
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from annotated_types import Gt
+from pydantic import Field, ValidationError
+
+from contact1d.workflow.scene import Problem, Scene, SceneError, read_tables, scene_from_dict
+from contact1d.workflow.scene.check import mend_words, report_faults
+from contact1d.workflow.scene.conversion import convert
+from contact1d.workflow.scene.problems import shown
+from contact1d.workflow.scene.quantities import POSITIVE, Listed, Place, Table, Unit, allowed_by
+from contact1d.workflow.scene.read import plain_data
+from contact1d.workflow.scene.si_text import in_si
+from contact1d.workflow.scene.tables import WHOLE
+from contact1d.workflow.scene.uncertain import take_shares
+
+AnyFit = str | PathLike[str] | Mapping[str, Any]
+"""What `read_fit` makes a plan of."""
+STIFFNESS = "instrument.stiffness"
+BODIES = {"particles": "auto", "spacing": "auto", "lower": "rigid_plane"}
+"""Of a base scene that leaves them out."""
+LOAD = {"kind": "load", "force": "1 nN"}
+"""Stands in for the experiment that a base scene has not."""
+
+
+class Instrument(Table):
+    """What pushes the contact."""
+
+    stiffness: Annotated[float, POSITIVE, Unit("N/m")]
+    """stiffness k_c of the cantilever, with its ± where that is known"""
+
+
+class Fit(Table):
+    """A fit file, but for its base scene."""
+
+    title: str = "Fit of a force curve"
+    """title, one line"""
+    data: str
+    """a CSV file with columns z or d, and F; several by a folder or a pattern, or a column `curve`: a map"""
+    parameters: Listed[str]
+    """dotted keys of the base scene's numbers that are to be found; their values there are first guesses"""
+    contact_point: Annotated[float, Unit("m")] | Literal["free"] = "free"
+    """position z of the contact point, or "free\""""
+    reverse: Listed[Literal["z", "d", "F"]] | None = None
+    """columns whose sign is opposite: z and d grow towards the sample, F is positive in compression"""
+    instrument: Instrument | None = None
+    """the instrument; absent: it is rigid, and the data have d"""
+    outliers: Annotated[int, Gt(-1)] = Field(default=20)
+    """most points that may be left out as outliers"""
+
+
+@dataclass(frozen=True)
+class FitPlan:
+    """What a fit file asks for.
+
+    Attributes:
+        fit: the file's own keys.
+        base: the scene.
+        folder: where data are looked up.
+        known: 95 % half-widths over the values of numbers with ±, by dotted key.
+    """
+
+    fit: Fit
+    base: Scene
+    folder: Path
+    known: Mapping[str, float]
+
+    @cached_property
+    def units(self) -> dict[str, str]:
+        """The unit in SI of each number of the scene, by dotted key."""
+        tables = Place(self.base.model_dump(by_alias=True, exclude_none=True), WHOLE)
+        found = {place.path: place.unit for place in tables if place.allowed.quantity and place.is_number}
+        return {key: unit.text[0] if unit.text else in_si(unit.name) for key, unit in found.items()}
+
+    @property
+    def stiffness(self) -> float:
+        """k_c [N/m]; infinite for a rigid instrument."""
+        return self.fit.instrument.stiffness if self.fit.instrument else float("inf")
+
+
+def read_fit(source: AnyFit, **changes: Any) -> FitPlan:
+    """The plan of a fit file, by its path, or of its tables.
+
+    Args:
+        source: the file or the tables.
+        changes: keys at the top of it that are set.
+
+    Raises:
+        SceneError: with every problem of the file and of its base scene.
+    """
+    tables = dict(plain_data(source) if isinstance(source, Mapping) else read_tables(source)) | changes
+    folder = Path.cwd() if isinstance(source, Mapping) else Path(source).parent
+    base = tables.pop("base", None)
+    whole = Place(tables, allowed_by(Fit))
+    mend_words(whole)
+    shares = take_shares(whole)
+    convert(whole)
+    fit = None
+    try:
+        fit = Fit.model_validate(tables)
+    except ValidationError as error:
+        report_faults(whole, error)
+    problems = list(whole.problems)
+    if not isinstance(base, Mapping):
+        must = "missing" if base is None else "must be a table of a scene's tables"
+        problems.append(Problem("base", must, hint="write [base.bodies], [base.material] … as in a scene"))
+        raise SceneError(problems)
+    scene, found = _base(base, folder)
+    problems += found
+    if fit is not None and scene is not None:
+        plan = FitPlan(fit, scene, folder, {**scene.shares, **shares})
+        problems += _of_parameters(plan)
+        if not problems:
+            return plan
+    raise SceneError(problems)
+
+
+def _base(base: Mapping[str, Any], folder: Path) -> tuple[Scene | None, list[Problem]]:
+    """The base scene, with what a fit's contact always has, and its problems."""
+    bodies = base.get("bodies", {})
+    given = {"title": "fit", "experiment": LOAD, **base}
+    given["bodies"] = {**BODIES, **bodies} if isinstance(bodies, Mapping) else bodies
+    try:
+        scene = scene_from_dict(given, folder=folder)
+    except SceneError as error:
+        return None, [Problem(f"base.{one.path}", one.message, one.given, one.hint) for one in error.problems]
+    if scene.bodies.lower != "rigid_plane" or scene.bodies.reduction != "mdr":
+        return scene, [Problem("base.bodies.lower", 'must be "rigid_plane", with the reduction "mdr"')]
+    material = scene.material
+    if material is None or (material.length_unit, material.force_unit) != (1.0, 1.0):
+        hint = (
+            'give [base.material] and every number its unit, such as radius = "5 µm", and no length_unit or force_unit'
+        )
+        return scene, [Problem("base.material", "must be in SI, as measured data are", hint=hint)]
+    return scene, []
+
+
+def _of_parameters(plan: FitPlan) -> list[Problem]:
+    """What is wrong with the names of parameters."""
+    problems, names = [], plan.fit.parameters
+    for i, name in enumerate(names):
+        must = "is no number of the base scene" if name not in plan.units else ""
+        must = "is named twice" if name in names[:i] else must
+        if must:
+            known = [key for key in plan.units if key.split(".")[0] in ("bodies", "material", "adhesion")]
+            left = [
+                key for key in known if key not in ("bodies.spacing", "material.length_unit", "material.force_unit")
+            ]
+            hint = f"give it there, as a first guess; numbers of the scene are {', '.join(left)}"
+            problems.append(Problem(f"parameters[{i}]", must, shown(name), hint))
+    return problems

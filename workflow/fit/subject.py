@@ -1,0 +1,143 @@
+"""What is fitted: a scene whose numbers change, under a contact model and an instrument."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.workflow.fit.curve import ForceCurve
+from contact1d.workflow.fit.forward import Body, Branch, Law
+from contact1d.workflow.fit.plan import STIFFNESS
+from contact1d.workflow.fit.search import Problem, Unknown
+from contact1d.workflow.scene import Scene
+
+Array = NDArray[np.float64]
+POINT, OFFSET = "contact_point", "force_offset"
+"""Unknowns that are of the measurement."""
+KEPT = 50
+"""Bodies and branches that are remembered."""
+
+
+def fields(value: Any, key: str) -> list[str]:
+    """The names in Python of a dotted key's parts, in a table."""
+    names = []
+    for part in key.split("."):
+        name = next((name for name, field in type(value).model_fields.items() if field.alias == part), part)
+        value = getattr(value, name)
+        names.append(name)
+    return names
+
+
+def changed(table: Any, names: Sequence[str], value: float) -> Any:
+    """A table of a scene with another number at a path of fields; nothing is checked again."""
+    first, *rest = names
+    return table.model_copy(update={first: changed(getattr(table, first), rest, value) if rest else value})
+
+
+@dataclass
+class Subject:
+    """A scene on a rigid plane and an instrument, of which some numbers are unknown.
+
+    Attributes:
+        scene: with a number at each unknown's key.
+        law: the contact model.
+        curve: what was measured.
+        unknowns: of the scene, the instrument and the measurement.
+    """
+
+    scene: Scene
+    law: Law
+    curve: ForceCurve
+    unknowns: tuple[Unknown, ...]
+    _bodies: dict[tuple[float, ...], Body] = field(default_factory=dict, repr=False)
+    _branches: dict[tuple[float, ...], Branch] = field(default_factory=dict, repr=False)
+
+    def __post_init__(self) -> None:
+        """Which points may be lost, and which hold."""
+        self.names = [one.name for one in self.unknowns]
+        self.paths = [[] if name in (POINT, OFFSET, STIFFNESS) else fields(self.scene, name) for name in self.names]
+        self.shaping = [i for i, name in enumerate(self.names) if name.startswith("bodies.profile")]
+        n = self.curve.positions.size
+        self.held, self.open = np.zeros(n, dtype=bool), np.zeros(n, dtype=bool)
+        for one in self.curve.segments:
+            self.held[one.held] = True
+            if one.jump is None:
+                self.open[one.points] = True
+
+    @property
+    def problem(self) -> Problem:
+        """The least-squares problem."""
+        runs = tuple(one.compared for one in self.curve.segments)
+        return Problem(self.unknowns, self.forces, self.curve.forces, runs)
+
+    def scene_with(self, values: Sequence[float]) -> Scene:
+        """The scene with these values of its unknowns, unchecked."""
+        scene = self.scene
+        for path, value in zip(self.paths, values, strict=True):
+            if path:
+                scene = changed(scene, path, value)
+        return scene
+
+    def branch(self, values: Sequence[float]) -> Branch:
+        """The contact's own curve; kept for the values that only the measurement changes."""
+        key = tuple(value for path, value in zip(self.paths, values, strict=True) if path)
+        if key not in self._branches:
+            if len(self._branches) > KEPT:
+                self._branches.clear()
+            self._branches[key] = self._branch(values)
+        return self._branches[key]
+
+    def _branch(self, values: Sequence[float]) -> Branch:
+        scene, shape = self.scene_with(values), tuple(values[i] for i in self.shaping)
+        if shape not in self._bodies:
+            if len(self._bodies) > KEPT:
+                self._bodies.clear()
+            self._bodies[shape] = Body.of(scene.bodies.profile, self.curve.depth)
+        reach = scene.adhesion.range if scene.adhesion else None
+        return self.law(self._bodies[shape], modulus_of(scene), scene.work_of_adhesion, reach or 0.0)
+
+    def value_of(self, name: str, values: Sequence[float]) -> float:
+        """The value of an unknown; of a rigid instrument its stiffness is none."""
+        return values[self.names.index(name)] if name in self.names else math.inf
+
+    def forces(self, values: Sequence[float]) -> Array:
+        """F [FU] at every measured position."""
+        branch, k = self.branch(values), self.value_of(STIFFNESS, values)
+        z = self.curve.positions - self.value_of(POINT, values)
+        found = np.zeros_like(z)
+        for points, held in ((self.held, True), (self.open, False)):
+            if points.any():
+                found[points] = branch.at(z[points], k, held)
+        return np.asarray(found + self.value_of(OFFSET, values))
+
+    def completed(self, u: Array) -> Array:
+        """Unknowns with the contact point such that the largest force is where it was measured."""
+        u = u.copy()
+        units = {one.name: one.scale for one in self.unknowns}
+        u[self.names.index(OFFSET)] = self.curve.baseline / units[OFFSET]
+        place = self.unknowns[self.names.index(POINT)]
+        if place.known is None:
+            values = self.problem.values(u)
+            branch, k = self.branch(values), self.value_of(STIFFNESS, values)
+            z, F = branch.displacements + branch.forces / k, branch.forces
+            least = int(np.argmin(F))
+            top = int(np.argmax(self.curve.forces))
+            at = float(np.interp(self.curve.forces[top] - self.curve.baseline, F[least:], z[least:]))
+            u[self.names.index(POINT)] = (float(self.curve.positions[top]) - at) / place.scale
+        else:
+            u[self.names.index(POINT)] = place.known[0] / place.scale
+        return u
+
+
+def modulus_of(scene: Scene) -> float:
+    """E* [FU/LU²] of a contact on a rigid plane."""
+    bodies, material = scene.bodies, scene.material
+    if bodies.bulk_stiffness != "auto":
+        return bodies.bulk_stiffness / bodies.spacing
+    assert material is not None
+    return material.effective_modulus()
