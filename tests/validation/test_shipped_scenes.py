@@ -151,6 +151,7 @@ def model_of(scene: Scene) -> ChainModel:
         scene.bulk_stiffness,
         law,
         radius=scene.bodies.plane_radius,
+        spacing=scene.bodies.spacing,
         neighbour_stiffness=0.0 if scene.neighbours is None else scene.neighbours.stiffness,
         horizontal=scene.horizontal is not None,
         rigid_plane=law is None,

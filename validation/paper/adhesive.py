@@ -191,7 +191,7 @@ def _checks(row: Rows, case: Case) -> list[Row]:
 
 
 def _by_range(case: Case, runs: Runs, scene: Scene) -> float:
-    """Tabor's μ with the range of the attraction for z₀, γ and E* by Eq. (9)."""
+    """Tabor's μ with the range of the attraction for h₀ = γ/σ₀, γ and E* by Eq. (9)."""
     force, a_0 = (found(runs[case.pull_off], q).value for q in ("adhesion_force", "zero_load_radius"))
     radius, reach = _lengths(scene)
     work, modulus = force / (1.5 * math.pi * radius), 3.0 * force * radius / a_0**3
