@@ -195,7 +195,7 @@ def first_look(problem: Problem, sought: Sequence[int], complete: Callable[[Arra
 
     def misfit(place: Array) -> float:
         total = float(np.abs(problem.residuals(whole(place))).sum())
-        return total if math.isfinite(total) else 1e300
+        return total if total < 1e100 else 1e100  # of NaN, too; and the square of it is a number
 
     reach = DECADES * math.log(10.0)
     found = differential_evolution(

@@ -254,6 +254,11 @@ def require_apart(subject: Subject, u: Array) -> None:
     if values[0] < ALIKE:
         heavy = [names[i] for i in np.argsort(-np.abs(vectors[:, 0])) if abs(vectors[i, 0]) > 0.2]
         shown = [name for name in heavy if name not in (POINT, OFFSET)]
+        if len(shown) < 2:
+            raise UndeterminedError(
+                f"the curve shows {' and '.join(shown or heavy)} no better than contact point and offset of the force: "
+                "are z and F swapped, and is the baseline in the curve?"
+            )
         raise UndeterminedError(
             f"{' and '.join(shown)} trade off: one does to the curve what the others undo. Give one of them in "
             'the base scene with its ±, such as radius = "5 ± 0.1 µm", and leave it out of parameters'
