@@ -23,9 +23,6 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
-from scipy.optimize import nnls
-from scipy.stats import t as student
 
 Array = NDArray[np.float64]
 Named = Literal["parabola", "circle", "power"]
@@ -242,6 +239,8 @@ class Taken:
 
     def folded(self) -> tuple[Array, Array]:
         """Radii and heights (n,) of the points themselves: the mean of both sides where there are two, z(0) = 0."""
+        from scipy.interpolate import PchipInterpolator  # which takes longer to import than a small run
+
         sides = [PchipInterpolator(*_rising(side * self.x, self.heights)) for side in (1.0, -1.0)]
         end = float(min(self.x[-1], -self.x[0])) if self.both_sides else float(self.x[-1])
         r = np.linspace(0.0, end, 1 + round(end / self.pitch))
@@ -473,7 +472,9 @@ class _Fit:
         deviation = math.sqrt(noise.power * max(1.0, points / noise.together / free))
         looked_for = np.r_[np.ones(many + 1, dtype=bool), self.moves, self.tilts]
         off = _drawn(solved.columns, found[looked_for], form.least, deviation)
-        reach, factor = float(np.abs(x).max()), float(student.ppf(0.5 + 0.5 * COVERAGE, free))
+        from scipy.special import stdtrit
+
+        reach, factor = float(np.abs(x).max()), float(stdtrit(free, 0.5 + 0.5 * COVERAGE))
         spread = np.zeros(3)
         spread[looked_for[many:]] = factor * np.sqrt(np.mean(off[:, many:] ** 2, axis=0))
         theta, (offset, centre, tilt) = found[:many], found[many:].tolist()
@@ -524,6 +525,8 @@ def bounded(columns: Array, target: Array, least: Array) -> Array:
     first, free = np.split(columns / size, [len(least)], axis=1)
     q, _ = np.linalg.qr(free)
     target = target - columns[:, : len(least)] @ least
+    from scipy.optimize import nnls
+
     above, _ = nnls(first - q @ (q.T @ first), target - q @ (q.T @ target), maxiter=PATIENCE * len(least))
     rest = np.linalg.lstsq(free, target - first @ above)[0]
     return np.asarray(np.concatenate([least, 0.0 * rest]) + np.concatenate([above, rest]) / size)

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve, solve_banded
 from scipy.optimize import brentq
-from scipy.stats import t as student
+from scipy.special import stdtr
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -168,7 +168,7 @@ class Uncertain:
         scales = np.sqrt([one.covariance[index, index] for one in self.judged])
 
         def excess(value: float) -> float:
-            return float(weights @ student.cdf((value - centres) / scales, self.freedom)) - level
+            return float(weights @ stdtr(self.freedom, (value - centres) / scales)) - level
 
         reach = 60.0 * float(scales.max()) + float(np.abs(centres).max())
         return float(brentq(excess, -reach, reach, rtol=1e-6, xtol=1e-9 * reach))
