@@ -136,7 +136,7 @@ def measure(bench: Bench) -> Findings:
     return Findings(rows)
 
 
-ONE_SIDE = "of one side of a worn ball the noise is told from the rim's bend by a single flank"
+ONE_SIDE = "of one side of a worn ball the noise is separated from the rim's bend by a single flank"
 SHORT = {
     "worn ball, one side: share of 50 values of contact_radius outside": Known(0.2, 0.07, ONE_SIDE),
     "worn ball, one side, tilted: median uncertainty of displacement over its median error": Known(6.2, 1.0, ONE_SIDE),
