@@ -67,6 +67,8 @@ def _read(place: Place, value: Any, spread: Any) -> tuple[Any, Fraction]:
     """The value as a scene has it, and the half-width over it. Raises UnitTextError."""
     number, units = _plain(value), place.unit.texts
     half = _plain(spread)
+    if not any(map(str.isdigit, str(spread))):
+        raise UnitTextError('must have a number behind ±, as in "10 ± 0.1 mm" or "10 mm ± 1 %"')
     if half is None and str(spread).strip().endswith("%"):
         share = _plain(str(spread).strip()[:-1])
         if share is None:
