@@ -36,11 +36,14 @@ def plan(data: Path, **changes: Any) -> dict[str, Any]:
     return {"data": str(data), "parameters": PARAMETERS, "instrument": instrument, "base": BASE} | changes
 
 
-def curve(kind: str = "JKR", stiffness: float = STIFFNESS, sphere: Sphere = SPHERE) -> np.ndarray[Any, Any]:
-    """Columns z [nm] and F [nN]."""
+def curve(
+    kind: str = "JKR", stiffness: float = STIFFNESS, sphere: Sphere = SPHERE, share: float = 0.01, memory: float = 5.0
+) -> np.ndarray[Any, Any]:
+    """Columns z [nm] and F [nN], with noise that is a share of the pull-off force."""
     z = np.linspace(-2.5, 3.0, 200) * DEPTH
     draw = np.random.default_rng(1)
-    F = measured(sphere, kind, stiffness, z) + 0.01 * 1.5 * math.pi * WORK * RADIUS * noise(draw, 2 * z.size, 5.0)
+    both = noise(draw, 2 * z.size, memory)
+    F = measured(sphere, kind, stiffness, z) + share * 1.5 * math.pi * WORK * RADIUS * both
     return np.column_stack([1e9 * np.concatenate([z, z[::-1]]), 1e9 * F])
 
 
@@ -66,6 +69,35 @@ def with_gap(rows: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
 
 def saturated(rows: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
     return np.column_stack([rows[:, 0], np.minimum(rows[:, 1], 0.7 * rows[:, 1].max())])
+
+
+@pytest.mark.parametrize("share", [0.05, 0.15, 0.3])
+def test_a_noisy_curve_whose_jumps_are_hardly_seen(tmp_path: Path, share: float) -> None:
+    found = fit(plan(written(tmp_path / "curve.csv", curve(share=share, memory=0.0))))
+    low, high = found.fit.intervals["adhesion.work_of_adhesion"]
+    assert low < WORK < high < 2.0 * low
+    assert next(iter(found.models)) == "JKR"
+
+
+def test_a_jump_that_is_small_beside_the_force_in_contact(tmp_path: Path) -> None:
+    rows = curve(sphere=Sphere(MODULUS, 0.1 * WORK, RADIUS))
+    found = fit(plan(written(tmp_path / "curve.csv", rows)))
+    low, high = found.bracket
+    assert low < found.fit.jumps_at(found.fit.solution.values)[1] < high
+
+
+def test_adhesion_that_may_be_none(tmp_path: Path) -> None:
+    """Hertz's contact, with noise that looks like a little adhesion."""
+    d = np.linspace(0.0, 400e-9, 20_000)
+    F = 4.0 / 3.0 * 26.66e6 * math.sqrt(10e-6) * d**1.5
+    z = np.linspace(-300e-9, 400e-9, 700)
+    both = np.concatenate([z, z[::-1]])
+    noisy = np.interp(both, d + F / 40.0, F) + np.random.default_rng(52).normal(0.0, 15e-9, both.size)
+    rows = np.round(1e9 * np.column_stack([both, noisy]), 2)
+    base = BASE | {"bodies": {"profile": {"kind": "parabola", "radius": "10 ± 0.2 µm"}}}
+    known = {"instrument": {"stiffness": "40 ± 2 N/m"}, "base": base}
+    found = fit(plan(written(tmp_path / "curve.csv", rows), **known))
+    assert "W may be 0" in found.warnings["adhesion"]
 
 
 @pytest.mark.parametrize(
@@ -94,6 +126,7 @@ def test_a_curve_that_is_none(good: np.ndarray[Any, Any], tmp_path: Path, change
         ("a,b\n1,2\n", "name the columns"),
         ("z,F\n" + "1,2\n" * 60, "z and F without a unit"),
         ("z [nm],F [nN]\n", "not as many cells"),
+        ("z [nm],F [nN]\n" + "-250,0,19,1383\n" * 60, "line 2: has 4 numbers under 2 names"),
         ("z [nm],F [V]\n" + "1,2\n" * 60, "volts"),
         ("z [nm],F [kg]\n" + "1,2\n" * 60, "must be a force"),
         ("z [nm],F [nN]\n" + "1,2\n" * 30 + "1,\n" + "1,2\n" * 30, "line 32: F is empty"),

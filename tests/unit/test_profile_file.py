@@ -101,6 +101,7 @@ UNREADABLE = {
     "line counted with comments": ("# one\n\n0,0\n# four\nx,1\n", "line 5: r is not a number"),
     "one column": ("0\n0.5\n1\n", "line 1: has one column; r and z are needed"),
     "names of another table": ("a:hunter2,b,c\n0,0,0\n", "line 1: the names of its 3 columns are not known"),
+    "two kinds of commas": ("r,z\n0,0,0,0\n0,5,0,2\n", "line 2: has 4 numbers under 2 names"),
     "names only": ("r,z\n", "has no points"),
     "comments only": ("# r z\n\n#\n", "has no points"),
     "half a body": ("-1.5,2.25\n-0.5,0.25\n0.5,0.25\n1.5,2.25\n", "at least 4 points from the axis out, not 2"),

@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import median_filter
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -14,6 +15,8 @@ JUMP = 6.0
 """Change of the force between neighbouring points over its usual spread that counts as a jump."""
 PART_OF_JUMP = 3.0
 """The same for a point beside it that belongs to it: a jump that takes several points."""
+NEIGHBOURS = 15
+"""Points whose usual change of the force is no jump."""
 BESIDE = 3
 """Points beside a jump that are not compared: there the force is no smooth function of the parameters."""
 
@@ -80,7 +83,8 @@ class ForceCurve:
     def _jump(self, points: Indices, sign: float) -> tuple[int, int] | None:
         """The largest change of the force of this sign from one point to the next, if it is one."""
         change = sign * np.diff(self.forces[points])
-        spread = 1.4826 * float(np.median(np.abs(change - np.median(change))))
+        change -= median_filter(change, NEIGHBOURS, mode="nearest")  # what the contact's stiffness does
+        spread = 1.4826 * float(np.median(np.abs(change)))
         at = int(np.argmax(change))
         if not change[at] > JUMP * max(spread, 1e-12 * float(np.ptp(self.forces))):
             return None

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from contact1d.workflow.errors import Contact1dError
 from contact1d.workflow.fit.curve import ForceCurve
 from contact1d.workflow.fit.plan import FitPlan
-from contact1d.workflow.scene.profile_file import NAME, rows_in
+from contact1d.workflow.scene.profile_file import NAME, require_names, rows_in
 from contact1d.workflow.scene.si_text import UnitTextError, si_value
 
 Array = NDArray[np.float64]
@@ -102,13 +102,17 @@ def _table(path: Path) -> tuple[dict[str, NDArray[np.generic]], dict[str, str]]:
     rows = rows_in([line.rstrip("\r\n") for line in head])
     found = next((row for row in rows if {"F"} < {*_known(row[1])}), None)
     if found is None:
-        raise DataError(f"{path}: {'is empty' if not rows else 'has no line of names'}; {FORM}")
+        raise DataError(f"{path}: {'is empty' if not rows else 'no line has names of columns that are known'}; {FORM}")
     line, names = found
     known = _known(names)
     units = {
         name: match[2].strip() for name, i in known.items() if (match := NAME.match(names[i].strip('" '))) and match[2]
     }
     below = next((cells for number, cells in rows if number > line), [])
+    try:
+        require_names(line + 1, below, names)
+    except ValueError as error:
+        raise DataError(f"{path}: {error}") from None
     skip = line
     if (
         not units

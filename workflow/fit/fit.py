@@ -210,6 +210,12 @@ DECISIVE = 10.0
 
 def _judge_models(found: Found) -> None:
     best, *_ = found.models
+    free = found.others.get("Hertz")
+    if free is not None and free.criterion < found.fit.criterion + DECISIVE:
+        found.warnings["adhesion"] = (
+            "contact without adhesion describes the curve about as well (criteria under models): W may be 0, which its "
+            "interval leaves out; fit without [base.adhesion], too, and average more curves"
+        )
     ahead = found.fit.criterion - found.models[best].criterion
     if best != found.fit.model and ahead > DECISIVE:
         found.warnings["model"] = (

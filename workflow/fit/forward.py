@@ -97,7 +97,7 @@ class Branch:
     displacements: Array
     forces: Array
 
-    def at(self, positions: Array, stiffness: float, held: bool) -> Array:
+    def at(self, positions: Array, stiffness: float, held: bool, pitch: float = 1e-300) -> Array:
         """F [FU] at positions z [LU] of an instrument of this stiffness [FU/LU], contact point at 0.
 
         Args:
@@ -105,13 +105,15 @@ class Branch:
             stiffness: k_c; infinite: d is prescribed.
             held: whether the contact holds at all of them, so that it is continued below its least z;
                 else it is lost there.
+            pitch: distance of positions [LU], over which a contact is lost: of a step no least squares sees a slope.
         """
         z = self.displacements + self.forces / stiffness
         least = min(int(np.argmin(z)), z.size - 4)  # of an adhesion that is known to be too strong the rest matters not
         a, z, F = self.radii[least:], np.maximum.accumulate(z[least:]), self.forces[least:]
-        found = np.where(positions < z[0], 0.0, _between(a, z, F, positions))
-        below = positions < z[0]
-        if held and below.any():
+        found, below = _between(a, z, F, positions), positions < z[0]
+        if not held:
+            return np.asarray(np.clip(0.5 + (positions - z[0]) / pitch, 0.0, 1.0) * found)
+        if below.any():
             at = np.searchsorted(F, F[0] + 0.25 * abs(F[0])) if F[0] < 0.0 else 1
             at = int(min(max(at, 1), z.size - 1))
             slope = STEEP * (F[at] - F[0]) / max(z[at] - z[0], 1e-300)

@@ -187,7 +187,8 @@ def fitted(plan: FitPlan, curve: ForceCurve, model: str) -> Fitted:
     if found.outliers.size > plan.fit.outliers:
         raise UndeterminedError(
             f"{found.outliers.size} points are no part of the noise, more than outliers = {plan.fit.outliers}: either "
-            f"{model} does not describe the curve, or the noise is not one of the instrument; look at the residuals"
+            f"{model} does not describe the curve, or a unit or the stiffness is wrong, or the noise is not one of the "
+            "instrument; look at the residuals"
         )
     result = Fitted(plan, curve, model, subject, found, {})
     _require_stiff(result)
@@ -290,7 +291,10 @@ def _open(found: Fitted, index: int, low: float, high: float) -> str:
     """Why an interval has no end, and what would help."""
     name, correlation = found.subject.names[index], np.abs(found.correlation[index])
     if name.startswith("adhesion.") and not math.isfinite(low):
-        return f"no {name} is seen in the curve: leave [base.adhesion] and its parameters out, as in Hertz's contact"
+        return (
+            f"no {name} is seen in the curve beyond its noise: leave [base.adhesion] and its parameters out, as in "
+            "Hertz's contact, or average more curves"
+        )
     correlation[index] = 0.0
     other = found.subject.names[int(np.argmax(correlation))]
     ends = [found.subject.unknowns[index].value(end) / found.values[name] for end in (low, high)]

@@ -58,16 +58,18 @@ class Subject:
     _branches: dict[tuple[float, ...], Branch] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
-        """Which points may be lost, and which hold."""
+        """Which points may be lost, which hold, and which may be before contact."""
         self.names = [one.name for one in self.unknowns]
         self.paths = [[] if name in (POINT, OFFSET, STIFFNESS) else fields(self.scene, name) for name in self.names]
         self.shaping = [i for i, name in enumerate(self.names) if name.startswith("bodies.profile")]
         n = self.curve.positions.size
-        self.held, self.open = np.zeros(n, dtype=bool), np.zeros(n, dtype=bool)
+        self.held, self.open, self.early = (np.zeros(n, dtype=bool) for _ in range(3))
         for one in self.curve.segments:
             self.held[one.held] = True
             if one.jump is None:
                 self.open[one.points] = True
+                self.early[one.points] = one.approaches
+        self.pitch = float(np.median(np.abs(np.diff(self.curve.positions)))) or 1e-300
 
     @property
     def problem(self) -> Problem:
@@ -112,7 +114,8 @@ class Subject:
         found = np.zeros_like(z)
         for points, held in ((self.held, True), (self.open, False)):
             if points.any():
-                found[points] = branch.at(z[points], k, held)
+                found[points] = branch.at(z[points], k, held, self.pitch)
+        found[self.early & (z < branch.displacements[0])] = 0.0  # no force before the bodies touch
         return np.asarray(found + self.value_of(OFFSET, values))
 
     def completed(self, u: Array) -> Array:

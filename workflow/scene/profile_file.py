@@ -214,6 +214,8 @@ def _header(rows: list[Row]) -> tuple[Sequence[int], str | None, float]:
             raise ProfileFileError(f"has {many} columns without names; {FORM}")
         return (0, 1), None, 1.0
     del rows[0]
+    if rows:
+        require_names(*rows[0], names)
     words = _words(names)
     sides = RADII if set(words) & set(RADII) else SIDES
     columns = [_only(line, words, allowed) for allowed in (sides, HEIGHTS)]
@@ -234,6 +236,16 @@ def _header(rows: list[Row]) -> tuple[Sequence[int], str | None, float]:
         what = "only one of radius and height has a unit"
         raise ProfileFileError(f"line {line}: {what}; give both the same way, r [µm], z [µm]")
     return columns, *((f"1 {units[0]}", float(sizes[1] / sizes[0])) if sizes else (None, 1.0))
+
+
+def require_names(line: int, cells: list[str], names: list[str]) -> None:
+    """Refuse whole numbers that are more than the names above them: commas of numbers between commas of columns."""
+    many = sum(bool(cell) for cell in cells)
+    if many > len(names) and all(re.fullmatch(r"[+-]?\d*", cell) for cell in cells):
+        raise ProfileFileError(
+            f"line {line}: has {many} numbers under {len(names)} names; where numbers have a decimal comma, separate "
+            "the columns by a semicolon"
+        )
 
 
 def _only(line: int, words: list[str], allowed: tuple[str, ...]) -> int:
