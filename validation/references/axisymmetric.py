@@ -92,7 +92,11 @@ class Body:
 
 def _piece(function: Function, low: float, high: float) -> float:
     """The integral between two kinks."""
-    return float(quad(function, low, high, epsrel=ACCURACY, epsabs=0.0, limit=400)[0]) if high > low else 0.0
+    return (
+        float(quad(function, low, high, epsrel=ACCURACY, epsabs=0.0, limit=400, full_output=1)[0])
+        if high > low
+        else 0.0
+    )
 
 
 @dataclass(frozen=True)
@@ -124,7 +128,11 @@ class Contact:
         depth = self.displacement(a) if d is None else d
         ends = [0.0, *(b for b in self.body.kinks if b < a), a]
         elastic = sum(
-            float(quad(lambda x: (depth - self.body.transformed(x)) ** 2, low, high, epsrel=1e-10, limit=200)[0])
+            float(
+                quad(
+                    lambda x: (depth - self.body.transformed(x)) ** 2, low, high, epsrel=1e-10, limit=200, full_output=1
+                )[0]
+            )
             for low, high in pairwise(ends)
         )
         return self.modulus * elastic - math.pi * a * a * self.work
@@ -227,7 +235,8 @@ class Contact:
 
         ends = [0.0, *(math.sqrt((b - r) * (b + r)) for b in self.body.kinks if r < b < a), s]
         inside = sum(
-            float(quad(inner, low, high, epsrel=1e-9, epsabs=0.0, limit=200)[0]) for low, high in pairwise(ends)
+            float(quad(inner, low, high, epsrel=1e-9, epsabs=0.0, limit=200, full_output=1)[0])
+            for low, high in pairwise(ends)
         )
         return self.modulus / math.pi * (inside - jump / s)
 
@@ -347,5 +356,6 @@ class Slipping:
 
         ends = [c, *(b for b in self.contact.body.kinks if c < b < self.radius), self.radius]
         return 2.0 * sum(
-            float(quad(density, low, high, epsrel=1e-10, epsabs=0.0, limit=200)[0]) for low, high in pairwise(ends)
+            float(quad(density, low, high, epsrel=1e-10, epsabs=0.0, limit=200, full_output=1)[0])
+            for low, high in pairwise(ends)
         )
