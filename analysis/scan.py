@@ -319,7 +319,7 @@ class _Fit:
         if square <= 0.0 and float(np.median(self.z)) > 0.5 * float(self.z.max()):
             raise ScanError(
                 "its heights decrease from the apex outwards, as those of a bump seen from above; heights are "
-                "measured from the plane and grow outwards: change the sign of z"
+                'measured from the plane and grow outwards: change the sign of z, or of its unit: units = ["mm", "-µm"]'
             )
         start = min(max(start, float(self.x[0])), float(self.x[-1]))
         reach = float(np.abs(self.x - start).max())

@@ -89,12 +89,21 @@ def test_units_of_columns_without_names(file: Path, tmp_path: Path) -> None:
         scene(tmp_path / "plain.csv")
 
 
+@pytest.mark.parametrize("names", ["", "x [µm];z [nm]\n"])
+def test_a_ball_that_was_measured_from_above(names: str, file: Path, tmp_path: Path) -> None:
+    (tmp_path / "above.csv").write_text(text(names, z=-Z), encoding="utf-8")
+    with pytest.raises(SceneError, match="as those of a bump seen from above"):
+        scene(tmp_path / "above.csv", f"{FIT}, units = ['µm', 'nm']")
+    found, other = scene(tmp_path / "above.csv", f"{FIT}, units = ['µm', '-nm']"), scene(file)
+    assert (found.bodies.profile.x, found.bodies.profile.z) == (other.bodies.profile.x, other.bodies.profile.z)
+
+
 WRONG = {
     "no options": ("level = false", "scan, write centre = \"auto\" with smooth = \"auto\" or a fit", FIT),
     "no flat part": (f"{FIT}, level = true", "a tilt of a parabola only moves the apex; remove level", FIT),
     "two curves": (f"{FIT}, smooth = 'auto'", "a curve by itself, without smooth", FIT),
-    "units twice": (f"{FIT}, units = ['µm', 'nm']", "not together with units in the file's names", FIT),
-    "units of what": (f"{FIT}, units = ['V', 'nm']", "not together with units", FIT),
+    "other units": (f"{FIT}, units = ['mm', 'nm']", "not together with other units in the file's names", FIT),
+    "units of what": (f"{FIT}, units = ['V', 'nm']", "must be the two units of position and height", FIT),
 }  # fmt: skip
 
 

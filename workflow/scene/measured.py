@@ -117,7 +117,9 @@ class Measured(Shape):
     scale: Length | None = None
     """length of one unit of a file's numbers that has no units in it; absent: 1 LU"""
     units: Annotated[tuple[str, str], Field(strict=False)] | None = None
-    """units of position and height of a file without units in it, such as ["µm", "nm"], in place of scale"""
+    """units of position and height of a file, such as ["µm", "nm"], in place of scale; with a minus for heights of a
+    body seen from above: ["µm", "-nm"]
+    """
     centre: Auto[Centre] | None = None
     """position of the apex in the scan, or "auto": looked for, by both sides of it; absent: 0"""
     level: bool = False

@@ -67,9 +67,12 @@ def take_points(scene: Place, folder: Path) -> dict[str, list[float]]:
         wrong = scale
         if not units.absent:
             wrong = units
-            if unit or not scale.absent:
-                raise ValueError("not together with units in the file's names, or scale; remove it")
-            unit, ratio = _sizes(units.value)
+            if not scale.absent:
+                raise ValueError("not together with scale; remove it")
+            given, over = _sizes(units.value)
+            if unit and not _same((unit, ratio), (given, abs(over))):
+                raise ValueError("not together with other units in the file's names; remove it")
+            unit, ratio = given, over
         if scale.absent:
             scale.put(unit or 1.0)
             scale.source = file
@@ -91,13 +94,20 @@ def is_scan(profile: Mapping[str, Any]) -> bool:
     return any(profile.get(key) not in (None, False, "none") for key in SCAN_KEYS)
 
 
-def _sizes(units: object) -> tuple[str | None, float]:
-    """The unit of the positions, "1 µm", and that of the heights over it. Raises ValueError."""
+def _sizes(units: object) -> tuple[str, float]:
+    """Unit of the positions, "1 µm", and that of the heights over it, negative with a minus. Raises ValueError."""
     try:
-        along, up = (si_value(f"1 {unit}", MODEL)[0] for unit in units if isinstance(unit, str))  # type: ignore[attr-defined]
+        along, up = map(str, units)  # type: ignore[call-overload]
+        size = si_value(f"1 {up.lstrip('-−')}", MODEL)[0] / si_value(f"1 {along}", MODEL)[0]
     except (ValueError, TypeError):
         raise ValueError('must be the two units of position and height, such as ["µm", "nm"]') from None
-    return f"1 {units[0]}", float(up / along)  # type: ignore[index]
+    return f"1 {along}", float(-size if up[0] in "-−" else size)
+
+
+def _same(one: tuple[str, float], other: tuple[str, float]) -> bool:
+    """Whether two pairs of a unit of positions and of that of heights over it are the same."""
+    along, wanted = (si_value(unit, MODEL)[0] for unit, _ in (one, other))
+    return along == wanted and math.isclose(one[1], other[1], rel_tol=1e-12)
 
 
 def put_points(scene: Place, lists: dict[str, list[float]]) -> None:
