@@ -13,8 +13,10 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 JUMP = 6.0
 """Change of the force between neighbouring points over its usual spread that counts as a jump."""
-PART_OF_JUMP = 3.0
-"""The same for a point beside it that belongs to it: a jump that takes several points."""
+PART_OF_JUMP, SHARE_OF_JUMP = 3.0, 0.2
+"""The same for a point beside it that belongs to it, a jump that takes several points, and its change over the largest
+one: close to the fold a contact softens, which is no jump.
+"""
 NEIGHBOURS = 15
 """Points whose usual change of the force is no jump."""
 BESIDE = 3
@@ -88,10 +90,10 @@ class ForceCurve:
         at = int(np.argmax(change))
         if not change[at] > JUMP * max(spread, 1e-12 * float(np.ptp(self.forces))):
             return None
-        first, last = at, at
-        while first > 0 and change[first - 1] > PART_OF_JUMP * spread:
+        first, last, part = at, at, max(PART_OF_JUMP * spread, SHARE_OF_JUMP * change[at])
+        while first > 0 and change[first - 1] > part:
             first -= 1
-        while last < change.size - 1 and change[last + 1] > PART_OF_JUMP * spread:
+        while last < change.size - 1 and change[last + 1] > part:
             last += 1
         return first, last + 1
 
