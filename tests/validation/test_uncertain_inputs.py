@@ -121,7 +121,7 @@ def test_a_punch_of_uncertain_radius() -> None:
         ("10 mm ± 6 mm", "less than half of its value"),
         ("10 mm ± 1 N", "1 N is a force"),
         ("10 ± 0 mm", "greater than 0"),
-        ("10 mm ± x", "does not begin with a number"),
+        ("10 mm ± x", "must have a number behind ±"),
         ("± 1 mm", "must be a length"),
     ],
 )
