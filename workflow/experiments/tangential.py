@@ -90,8 +90,9 @@ class TangentialExperiment(Scripted[Tangential]):
         strongest = max(row.carried for row in rows)
         error = ROUND_OFF * len(rows) * strongest + _moved_too_far(scene, settings)
         lost, force = error * scene.experiment.way, float(trace.force[last.state])
-        unseen = _unseen_slip(rows, scene)[0] if last.dissipated <= lost else 0.0
-        radius = trace.radius(last.state) or 0.0
+        is_unseen = last.dissipated <= lost
+        unseen = _unseen_slip(rows, scene)[0] if is_unseen else 0.0
+        radius, narrowest = trace.radius(last.state) or 0.0, min(row.stick.value for row in rows)
         found = {
             "normal_force": Reading(
                 force, FORCE, {"solver": ROUND_OFF * abs(force)}, prescribed=scene.experiment.compression is not None
@@ -102,9 +103,11 @@ class TangentialExperiment(Scripted[Tangential]):
                 scale=strongest if abs(last.force) <= error + unseen else None,
             ),
             "contact_radius": Reading(radius, LENGTH, prescribed=radius == 0.0),
-            # Of a contact that slips as far as its particles show, another lattice may have one that sticks.
+            # Of a contact that slips as far as its particles show, another lattice may have one that sticks. An annulus
+            # that has slipped between the outermost particles leaves no trace when the body goes back.
             "stick_radius": Reading(
                 last.stick.value + trace.shift_of(last.state) * last.stick.uncertainty, LENGTH,
+                {LATTICE: (last.stick.value - narrowest) * is_unseen},
                 prescribed=radius == 0.0, scale=radius if last.stick.value == 0.0 else None,
             ),
             "dissipated_energy": _energy(rows, lost, scene),

@@ -93,11 +93,15 @@ class Points(Piecewise):
     def alternatives(self) -> tuple[Shape, ...]:
         """Where the points show no smooth curve, chords, and the corners in which neighbouring chords meet.
 
-        A body whose slope only rises is between the two. Of heights with few digits, also the apex half a digit lower.
+        A body whose slope only rises is between the two. Of heights with few digits, also the apex half a digit lower,
+        and heights by as much higher and lower in pairs: that changes the slope at every other point most.
         """
         found: list[Shape] = [kind.model_construct(r=self.r, z=self.z) for kind in (Chords, Corners)]
         if digit := _digit(self.z):
             found.append(Points.model_construct(r=self.r, z=(self.z[0] - 0.5 * digit, *self.z[1:])))
+            for first in (1, 2):  # at the points between, too
+                z = [z + (digit * ((i + first) % 4 < 2) - 0.5 * digit) * (i > 0) for i, z in enumerate(self.z)]
+                found.append(Points.model_construct(r=self.r, z=tuple(z)))
         return tuple(found)
 
     @property
