@@ -103,9 +103,9 @@ class Case:
 
     @property
     def is_elastic(self) -> bool:
-        """Whether springs under the profile are all there is: no attraction, no neighbour springs, no noise."""
+        """Whether springs under the profile are all there is: no attraction, neighbour springs, noise or memory."""
         scene = self.scene
-        return not (scene.adheres or scene.neighbours or scene.noise)
+        return not (scene.adheres or scene.neighbours or scene.noise or scene.viscoelasticity)
 
     @property
     def sphere(self) -> tuple[float, float, float]:

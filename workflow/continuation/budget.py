@@ -44,8 +44,8 @@ MORE_PHASES = (0.375, 0.25, 0.125, 0.0)
 """Such positions where friction makes several edges, the errors of which may cancel at two positions."""
 SHIFTS = (0.0, 0.25, 0.5, 0.75)
 """Shifts of a path's steps over their width, of which the worst counts where the model is no copy of the deck."""
-DENSE, FEWEST = 16, 200
-"""Positions of the model in one step of a path; particles that the model of a plane keeps for so many."""
+FEWEST = 200
+"""Particles that the model of a plane keeps for dense positions."""
 FOLLOWED = 0.5
 """Difference of the model from a motion, over the result, beyond which its lattice says nothing of that."""
 SLOWEST = 0.9
@@ -201,10 +201,10 @@ def sampling_errors(case: Reduction, trace: Trace) -> Values:
     model, found = case.model, dict[str, float]()
     step = float(np.median(np.abs(np.diff(trace.displacement)))) if len(trace) > 1 else 0.0
     is_copy = case.scene.is_stepped
-    while is_copy and DENSE * len(trace) * model.x.size > MOST_NUMBERS and model.x.size > FEWEST:
+    while is_copy and model.dense * len(trace) * model.x.size > MOST_NUMBERS and model.x.size > FEWEST:
         model = model.resized(2.0)  # steps miss the same on a coarser lattice
     for share in SHIFTS[:1] if is_copy else SHIFTS:
-        dense, same = (case.values(model, between, share * step) for between in (DENSE, 1))
+        dense, same = (case.values(model, between, share * step) for between in (model.dense, 1))
         for name in same.keys() | dense.keys():
             missed = abs(same.get(name, 0.0) - dense.get(name, 0.0))
             found[name] = max(found.get(name, 0.0), (STEP_MARGIN if is_copy else PATH_MARGIN) * missed)

@@ -21,7 +21,7 @@ from contact1d.workflow.deck.steps import Phase, numbered
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.engine.session import Engine
-from contact1d.workflow.model.reduced import Reduced, reduced
+from contact1d.workflow.model.reduced import History, Reduced, reduced
 
 ASIDE = ".aside"
 """Folder of a context aside, in the run folder."""
@@ -191,6 +191,10 @@ class ContactBranch:
     def visit(self, positions: Sequence[float] | Array, along: Sequence[float] | None = None) -> None:
         """Go to displacements [LU]. Raises UntrustedError under load control."""
         raise UntrustedError('a plate under a load has no prescribed displacement: use method = "quasistatic"')
+
+    def follow(self, history: History) -> None:
+        """Go through a history. Raises UntrustedError where load steps are not those of springs alone (`stepped`)."""
+        raise UntrustedError('a history needs springs on a rigid plane: use lower = "rigid_plane"')
 
     def mark(self, name: str) -> None:
         """Report the last state."""

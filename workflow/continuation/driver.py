@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.workflow.model.reduced import Reduced
+from contact1d.workflow.model.reduced import History, Reduced
 from contact1d.workflow.model.settings import Settings
 
 
@@ -47,6 +47,9 @@ class Driver(Protocol):
 
     def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
         """Hold a displacement [LU] or a force [FU] for a time [TU]."""
+
+    def follow(self, history: History) -> None:
+        """Go through displacements or forces over time, the first of them from apart."""
 
     def mark(self, name: str) -> None:
         """Report the last state."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from contact1d.workflow.continuation.state import radius_rule
 from contact1d.workflow.continuation.trace import Trace, of_model
-from contact1d.workflow.model.reduced import Path, Reduced, swing
+from contact1d.workflow.model.reduced import History, Path, Reduced, swing
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 
@@ -72,17 +72,22 @@ class ModelBranch:
         before = self._rows[-1].displacement if self._rows else float(wanted[0])
         self._turn(float(wanted[-1]) >= before)
         between = min(self.dense, max(1, MOST_NUMBERS // max(1, wanted.size * self.model.x.size)))
-        if between == 1 or not self._rows:
+        if between == 1:
             self._add(wanted, along)
             return
-        ends = np.append(before, wanted)
+        if not self._rows:
+            self._add(wanted[:1])
+            wanted = wanted[1:]
+        ends = np.append(self._rows[-1].displacement, wanted)
         dense = [self._between(*pair, between) for pair in pairwise(ends.tolist())]
         own = self._phase
-        if self._rows[-1].phase == UNSEEN:  # what leads from there to the first state of a path is none of it either
+        if dense and self._rows[-1].phase == UNSEEN:  # what leads from there to the first state of a path is none of it
             self._phase = UNSEEN
-        self._add(dense[0][:-1])
+            self._add(dense[0][:-1])
+            dense[0] = dense[0][-1:]
         self._phase = own
-        self._add(np.concatenate([dense[0][-1:], *dense[1:]]))
+        for positions in dense:
+            self._add(positions)
 
     def _between(self, start: float, end: float, count: int) -> Array:
         """So many positions [LU] of a step, its end the last, and others on both sides of each jump."""
@@ -112,6 +117,14 @@ class ModelBranch:
                 self.reach(0.0, self.scale)
                 start = self._rows[-1].displacement
             self._add(swing(self.scene, self.settings, self.model, start, force, duration), time=(0.0, duration))
+
+    def follow(self, history: History) -> None:
+        """Displacements or forces over time, and others between them."""
+        history = history.denser(self.dense)
+        path = history.path(self.model)
+        self._leg += 1
+        rows = zip(history.phases, path.displacement.tolist(), path.time.tolist(), strict=True)
+        self._rows += [Row(name, self._leg, displacement, 0.0, time) for name, displacement, time in rows]
 
     def maximum(self) -> None:
         """Pass the force maximum, densely about it."""

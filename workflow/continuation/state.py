@@ -144,6 +144,7 @@ class State:
         plate_x: position of the plate along x [LU], from where it is in system.data.
         cantilever_force: [FU].
         step: LAMMPS timestep.
+        time: of a history [TU].
         motion: of a slide, what `contact.MOTION` and `contact.HEAT` name.
         number: of its row, over all phases.
     """
@@ -161,6 +162,7 @@ class State:
     plate_x: float = 0.0
     cantilever_force: float = 0.0
     step: float = 0.0
+    time: float = 0.0
     motion: Mapping[str, float] = field(default_factory=dict, compare=False)
     number: int = field(default=0, compare=False)
 

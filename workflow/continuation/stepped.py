@@ -5,10 +5,15 @@ The reduced model of such a contact is identical to the deck, so that its limit 
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import groupby
+
 import numpy as np
 
 from contact1d.workflow.continuation.branch import Branch
 from contact1d.workflow.continuation.trust import DigitsError, TensionError
+from contact1d.workflow.deck.steps import Displace, Spend
+from contact1d.workflow.model.reduced import History
 from contact1d.workflow.model.settings import Settings
 
 LOADING_STEPS = 24
@@ -72,6 +77,23 @@ class SteppedBranch(Branch):
                 "round-off error of the contact force",
                 "use a larger adhesion.work_of_adhesion, or a smaller preload",
             )
+
+    def follow(self, history: History) -> None:
+        """Load steps that take their time; those of forces are where the model carries them."""
+        path, rows = history.path(self.model), []
+        for place, time in zip(
+            path.displacement.tolist(), np.diff(path.time, prepend=path.time[:1]).tolist(), strict=True
+        ):
+            rows.append(Spend(place, time) if self.scene.viscoelasticity else Displace(place))
+        self._turned, done = True, 0
+        for name, same in groupby(history.phases):
+            count = len(list(same))
+            self.begin(name)
+            self._enter()
+            states = self.contact.rows(rows[done : done + count])
+            times = path.time[done : done + count].tolist()
+            self._keep([replace(state, time=time) for state, time in zip(states, times, strict=True)])
+            done += count
 
     def open(self) -> None:
         """Load steps over the limit point."""

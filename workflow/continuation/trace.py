@@ -201,7 +201,7 @@ def of_states(
         np.asarray([state.displacement for state in states]),
         np.asarray([state.force for state in states]),
         np.asarray([state.plate_x for state in states]),
-        time_step * np.asarray([state.step for state in states]),
+        np.asarray([time_step * state.step + state.time for state in states]),
         lambda i: states[i].profile,
         lambda i: states[i].radius,
         states[0].rule,

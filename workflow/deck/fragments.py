@@ -49,11 +49,16 @@ class Fragment:
 def fragment(name: str) -> Fragment:
     """Read `lammps_inputs/fragments/<name>.lmp` and hold its header against its text.
 
+    Of a name "<name>:2" ARM in the text is 2, and BEFORE 1: a piece that a deck has several times.
+
     Raises:
         DeckError: if a header line is missing, or a variable is used that is neither needed nor defined, or named as
             needed and not used.
     """
-    text = files("contact1d.lammps_inputs").joinpath("fragments", *f"{name}.lmp".split("/")).read_text(encoding="utf-8")
+    file, _, arm = name.partition(":")
+    text = files("contact1d.lammps_inputs").joinpath("fragments", *f"{file}.lmp".split("/")).read_text(encoding="utf-8")
+    if arm:
+        text = text.replace("ARM", arm).replace("BEFORE", str(int(arm) - 1))
     header = {key: re.search(rf"^# {key}: (.+)$", text, re.MULTILINE) for key in (*KEYS, REDEFINES)}
     missing = [key for key in KEYS if header[key] is None]
     if missing:

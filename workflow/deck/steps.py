@@ -23,7 +23,7 @@ UNITS = (
     dict.fromkeys(("displacement", "place", "parted", "through", "end", "edge", "reach", "height"), "LU")
     | dict.fromkeys(("load", "rest"), "FU")
     | dict.fromkeys(("damping", "drag"), "FU·TU/LU")
-    | {"spring": "FU/LU"}
+    | {"spring": "FU/LU", "duration": "TU"}
 )
 """Units of the numbers in rows; whole ones have none."""
 
@@ -67,6 +67,14 @@ class Cohere(Displace):
     edge: float
     reach: float
     height: float
+
+
+@dataclass(frozen=True)
+class Spend(Displace):
+    """The same, reached evenly over a duration [TU]."""
+
+    step: ClassVar[str] = "sweep_timed"
+    duration: float
 
 
 @dataclass(frozen=True)
@@ -131,7 +139,7 @@ class Hold(Row):
     steps: int
 
 
-STEPS: tuple[type[Row], ...] = (Displace, Cohere, Draw, DisplaceInTime, UnderLoad, DrawnOff, Hold)
+STEPS: tuple[type[Row], ...] = (Displace, Cohere, Spend, Draw, DisplaceInTime, UnderLoad, DrawnOff, Hold)
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.continuation.trust import slowness
 from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.experiments.experiment import Experiment, in_smaller_steps
+from contact1d.workflow.experiments.history import HistoryExperiment
 from contact1d.workflow.experiments.hold import HoldExperiment
 from contact1d.workflow.experiments.keeping import kept_way, planned_way
 from contact1d.workflow.experiments.load import LoadExperiment, ThermalLoad
@@ -20,6 +21,7 @@ from contact1d.workflow.scene import Scene
 __all__ = ["KINDS", "kind_of", "perform", "planned"]
 
 KINDS: dict[str, Experiment[Any]] = {
+    "history": HistoryExperiment(),
     "hold": HoldExperiment(),
     "load": LoadExperiment(),
     "path": PathExperiment(),

@@ -88,7 +88,13 @@ class Experiment(ABC, Generic[K]):
 
 
 class Scripted(Experiment[K]):
-    """A script over a branch, and a reader of the resulting trace."""
+    """A script over a branch, and a reader of the resulting trace.
+
+    Attributes:
+        is_sampled: whether the load steps are given, and what lies between them is an error.
+    """
+
+    is_sampled: ClassVar[bool] = False
 
     @abstractmethod
     def script(self, branch: Driver, scene: Scene) -> None:
@@ -114,7 +120,8 @@ class Scripted(Experiment[K]):
         # An error of the force changes its sign within half a range: it moves where a flat maximum lies.
         errors = force_errors(scene, settings, branch.states, branch.marked.values(), branch.unbalance)
         slower = self._slower(context, case, trace)
-        results = budgeted(case, trace, errors, length=0.5 * settings.forces.range, repeated=slower)
+        length = 0.5 * settings.forces.range
+        results = budgeted(case, trace, errors, self.is_sampled, length, repeated=slower)
         warnings = doubts(scene, settings, tuple(branch.states))
         tables = self.tables(trace, scene, settings)
         states, moves = tuple(branch.states), case.moves
@@ -131,7 +138,7 @@ class Scripted(Experiment[K]):
 
     def _slower(self, context: RunContext, case: Reduction, trace: Trace) -> dict[str, list[Trace]]:
         """A motion once more in longer timesteps, and slower where inertia or drag is the program's choice."""
-        if not trace.time.any():
+        if context.deck.scene.method != "dynamic" or not trace.time.any():
             return {}
         found = []
         for scene, settings in slower(context.deck.scene, context.deck.settings):

@@ -4,6 +4,7 @@
     pairs of opposite chains    f = f(r),  G(r) = r₀ + h(x) − d, on the branch that a pair came by
     cells that adhere           f = k φ [d − g(x) + c (1 − φ)], while the contact is held (`adhesion`)
     cells with an attraction    f = ∫ q dx over the cell, where the contact is on its curve (`cohesive`)
+    springs with a memory       f = k (part u + Σ share s_j) ≥ 0  (`relaxing`)
     springs with a slider       s ← clip(s + k_t Δu, ±μ f)
 
 It follows any path of displacements with the memory that its particles have, all positions at once. No result
@@ -17,6 +18,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,8 +29,9 @@ from contact1d.workflow.model.cohesive import CohesiveEstimate
 from contact1d.workflow.model.friction import Sliders, sliders_of
 from contact1d.workflow.model.motion import inertia
 from contact1d.workflow.model.pairs import ContactEstimate, places_within
+from contact1d.workflow.model.relaxing import Memory
 from contact1d.workflow.model.settings import Settings
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene import Scene, Viscoelasticity
 
 Array = NDArray[np.float64]
 OVERREACH = 0.1
@@ -60,6 +63,34 @@ class Path:
     displacement: Array
     along: Array
     time: Array
+
+
+@dataclass(frozen=True)
+class History:
+    """Displacements or forces over time, straight from one moment to the next; arrays (m,).
+
+    Attributes:
+        phases: names, of each moment.
+        time: rising [TU].
+        values: displacements [LU], or forces [FU] where `by_force`.
+    """
+
+    phases: tuple[str, ...]
+    time: Array
+    values: Array
+    by_force: bool
+
+    def denser(self, times: int) -> History:
+        """The same with so many moments for each."""
+        at = np.linspace(0.0, len(self.phases) - 1.0, (len(self.phases) - 1) * times + 1)
+        time, values = (np.interp(at, np.arange(len(self.phases)), one) for one in (self.time, self.values))
+        phases = tuple(self.phases[int(i)] for i in np.ceil(at - NEAREST))
+        return History(phases, time, values, self.by_force)
+
+    def path(self, model: Reduced) -> Path:
+        """The displacements of the body [LU]."""
+        found = model.carrying(self.time, self.values) if self.by_force else self.values
+        return Path(found, np.zeros_like(found), self.time)
 
 
 def path_of(displacement: Array) -> Path:
@@ -101,9 +132,12 @@ class Reduced(ABC):
     x: Array
     deepest: float
 
+    dense: ClassVar[int] = 16
+    """Positions in one step of a path that show what its steps miss."""
+
     @abstractmethod
     def follow(self, path: Path) -> Followed:
-        """Forces along a path that begins apart. Springs have no memory in time."""
+        """Forces along a path that begins apart."""
 
     @abstractmethod
     def held(self, displacements: Array) -> Array:
@@ -113,6 +147,11 @@ class Reduced(ABC):
     @abstractmethod
     def apart(self) -> float:
         """Displacement [LU] below which nothing is felt."""
+
+    def carrying(self, times: Array, forces: Array) -> Array:
+        """Displacements [LU] of load steps at times (m,) [TU] that carry forces (m,) [FU] ≥ 0."""
+        found = {force: self.displacement_at(force) if force > 0.0 else 0.0 for force in np.unique(forces).tolist()}
+        return np.asarray([found[force] for force in forces.tolist()])
 
     @property
     def limits(self) -> tuple[float, ...]:
@@ -390,6 +429,53 @@ class Sliding(Springs):
         return Followed(self.x, total, normal.__getitem__, lambda state: -shears[state])
 
 
+@dataclass(frozen=True, eq=False)
+class RelaxingSprings(Reduced):
+    """The particles of a body that relaxes."""
+
+    law: Viscoelasticity
+
+    dense: ClassVar[int] = 4
+
+    @cached_property
+    def _heights(self) -> tuple[Array, NDArray[np.intp], Array]:
+        """Undeformed heights [LU], each once, which is whose, and how many there are of each."""
+        found, own = np.unique(self.estimate.profile.height(np.abs(self.x)), return_inverse=True)
+        return np.asarray(found, dtype=np.float64), own, np.bincount(own).astype(np.float64)
+
+    @property
+    def apart(self) -> float:
+        """Where a body that is untouched feels nothing [LU]."""
+        return 0.0
+
+    def held(self, displacements: Array) -> Array:
+        """F [FU] of a body that has had no time."""
+        heights, _, counts = self._heights
+        return np.asarray(self.estimate.stiffness * (np.maximum(displacements[:, None] - heights, 0.0) @ counts))
+
+    def carrying(self, times: Array, forces: Array) -> Array:
+        """See `Reduced.carrying`; each follows from those before."""
+        heights, _, counts = self._heights
+        memory, found = Memory(self.law, heights), np.zeros_like(times)
+        for i, (force, time) in enumerate(
+            zip(forces.tolist(), np.diff(times, prepend=times[:1]).tolist(), strict=True)
+        ):
+            found[i] = memory.under(force / self.estimate.stiffness, counts, time)
+            memory.go(float(found[i]), time)
+        return found
+
+    def follow(self, path: Path) -> Followed:
+        """A load step from each state to the next, in the time between them; see `Reduced.follow`."""
+        heights, own, counts = self._heights
+        memory, each = Memory(self.law, heights), np.empty((path.displacement.size, heights.size))
+        times = np.diff(path.time, prepend=path.time[:1])
+        for i, (place, time) in enumerate(zip(path.displacement.tolist(), times.tolist(), strict=True)):
+            each[i] = memory.pressed(place, time)
+            memory.go(place, time)
+        each *= self.estimate.stiffness
+        return Followed(self.x, each @ counts, lambda state: each[state][own])
+
+
 def legs(displacements: Array) -> list[slice]:
     """Stretches of a path along which displacements do not turn."""
     ways = np.sign(np.diff(displacements))
@@ -415,6 +501,8 @@ def reduced(scene: Scene, settings: Settings) -> Reduced:
     if scene.bodies.particles != "auto" or scene.bodies.own_count is not None:
         reach = min(reach, half * (1.0 + 1e-12))
     x = places_within(reach, spacing, phase)
+    if scene.viscoelasticity:
+        return RelaxingSprings(estimate, x, deepest, scene.viscoelasticity)
     return Sliding(estimate, x, deepest, sliders_of(scene, x)) if scene.friction else Springs(estimate, x, deepest)
 
 

@@ -53,6 +53,7 @@ from contact1d.workflow.model.pairs import (
     tabulated,
 )
 from contact1d.workflow.model.pairs import Profile as Undeformed
+from contact1d.workflow.model.relaxing import creep
 from contact1d.workflow.scene import Interaction, Scene
 from contact1d.workflow.scene.remedies import less_compression
 
@@ -548,7 +549,10 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     require_room(bodies)
     forces, estimate = _forces(scene, tolerance, calibration)
     load = scene.experiment.compression
-    largest = max(scene.experiment.places()) if load is None else estimate.displacement_at(load)
+    if load is None:
+        largest = max(scene.experiment.places())
+    else:
+        largest = estimate.displacement_at(load * creep(scene.viscoelasticity, scene.experiment.lasts or 0.0))
     chains = _chains(scene, estimate, forces, largest, calibration.chain * tolerance)
     # A punch that adheres and carries nothing is not deep, and yet its springs hold it up to its limit.
     scale = forces.scale_of(scene, max(largest, -estimate.parted(0.0)) if scene.adhesion else largest)

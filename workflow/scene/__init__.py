@@ -9,8 +9,9 @@ from contact1d.workflow.scene.effects import (
     Neighbours,
     Noise,
     Plate,
+    Viscoelasticity,
 )
-from contact1d.workflow.scene.experiments import Hold, Kind, Load, Path, PullOff, Slide, Span, Tangential
+from contact1d.workflow.scene.experiments import History, Hold, Kind, Load, Path, PullOff, Slide, Span, Tangential
 from contact1d.workflow.scene.measured import Measured
 from contact1d.workflow.scene.problems import Problem, SceneError
 from contact1d.workflow.scene.profiles import Profile
@@ -32,6 +33,7 @@ __all__ = [
     "Ellipsoid",
     "FlatPunch",
     "Friction",
+    "History",
     "Hold",
     "Interaction",
     "Kind",
@@ -55,6 +57,7 @@ __all__ = [
     "Span",
     "Table",
     "Tangential",
+    "Viscoelasticity",
     "read_scene",
     "read_tables",
     "scene_from_dict",

@@ -13,6 +13,7 @@ from collections.abc import Mapping
 from copy import copy
 from fractions import Fraction
 
+from contact1d.workflow.scene.experiments import KINDS, Kind
 from contact1d.workflow.scene.quantities import Place, numbers_in
 from contact1d.workflow.scene.si_text import UnitTextError, example, si_value
 from contact1d.workflow.units import SI
@@ -90,7 +91,13 @@ def _scales(scene: Place, texts: list[Place]) -> dict[str, Fraction] | None:
     scales = {base: Fraction(repr(unit.value)) for base, unit in units.items() if is_positive(unit)}
     chosen = frozenset(base for base in needed if units[base].absent)
     fixed = "FU" in chosen and elastic and stiffness != "auto"
-    plain = [place for place in numbers_in(scene) if place.is_number and place.unit.bases & chosen]
+    kind = scene.at("experiment.kind")
+    massless = kind is not None and KINDS.get(kind.value, Kind).is_massless
+    plain = [
+        place
+        for place in numbers_in(scene)
+        if place.is_number and place.unit.bases & chosen and not (massless and place.absent and place.key == "mass")
+    ]
     if fixed and own and own.sound:
         own.report("follows from the material here", 'write "auto"')
     elif plain and not fixed:

@@ -10,13 +10,17 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, ClassVar, Literal
 
+from annotated_types import Le
 from pydantic import AfterValidator
 from pydantic_core import PydanticCustomError
 
 from contact1d.workflow.scene.quantities import (
+    DIMENSIONLESS,
+    POSITIVE,
     Auto,
     DampingCoefficient,
     DampingCoefficientOrZero,
+    Duration,
     Energy,
     Length,
     LineEnergy,
@@ -150,6 +154,48 @@ class Adhesion(Effect):
             return self.work_of_adhesion
         assert self.surface_energy is not None
         return 2.0 * self.surface_energy
+
+
+class Term(Table):
+    """One term of a Prony series."""
+
+    share: Annotated[float, POSITIVE, Le(1), DIMENSIONLESS]
+    """share of the instantaneous modulus that relaxes in this time"""
+    time: Duration
+    """relaxation time τ"""
+
+
+class Viscoelasticity(Effect):
+    """Effect: a body that relaxes, on a rigid plane: E(t) = E (1 − Σ share (1 − exp(−t/time))), or Kelvin and Voigt's.
+
+    Poisson's ratio is constant, so that each spring has the function of the material.
+    """
+
+    one_of = ((("terms", "retardation_time"), "give the terms of a Prony series, or one retardation_time; not both"),)
+    how = "[viscoelasticity] with terms = [{ share, time }, …]"
+    excludes: ClassVar[Mapping[str, str]] = {
+        "adhesion": "what opens the edge of such a contact depends on all that came before, which no rule for the edge "
+        "of an elastic contact has",
+        "friction": "a slip depends on the order in which pressure and shear relax, which is not exact here",
+        "neighbours": "each of its springs follows the material by itself, and neighbours would couple them",
+        "noise": "particles that are fixed to their body have no thermal motion",
+        "damping": "the springs have the damping of the material",
+    }
+
+    terms: Listed[Term] | None = None
+    """Prony series of the instantaneous modulus, which [material] or bulk_stiffness gives"""
+    retardation_time: Duration | None = None
+    """in place of terms: time T of a dashpot beside each spring, p ∝ E (u + T u′)"""
+
+    @property
+    def lasting(self) -> float:
+        """Share of the instantaneous modulus that stays; 1 of Kelvin and Voigt's."""
+        return max(0.0, 1.0 - math.fsum(term.share for term in self.terms or ()))
+
+    @property
+    def shortest_time(self) -> float:
+        """The shortest of its times [TU]."""
+        return self.retardation_time or min(term.time for term in self.terms or ())
 
 
 class Damping(Effect):

@@ -1,4 +1,4 @@
-"""The experiments of a scene: load, path, pull_off, slide, tangential; and hold, which is not in `Experiment` yet.
+"""The experiments of a scene: load, path, pull_off, slide, tangential, hold, history.
 
 Each declares its keys, what it needs and what it excludes: the rules read nothing else of it.
 
@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Annotated, ClassVar, Literal, Self
 
+from annotated_types import MinLen
 from pydantic import Discriminator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
@@ -29,6 +30,7 @@ from contact1d.workflow.scene.quantities import (
     StepCount,
     Stiffness,
     Table,
+    Time,
     Velocity,
     allowed_by,
 )
@@ -98,6 +100,7 @@ def _for_each(given: tuple[float, ...] | float | None, count: int) -> list[float
 
 
 UNPULLED = "only a slide is pulled through a spring"
+UNTIMED = "its states have no time, which a body that relaxes needs"
 UNMOVED = "it has no tangential displacement, so that friction has no effect"
 TIMELESS = "it is quasi-static, each load step in equilibrium"
 """Why an experiment excludes an effect."""
@@ -117,11 +120,14 @@ class Kind(Table):
         way_is_given: the scene prescribes the loading history, so that nothing is searched for and states are unique.
         motion_is_result: the motion itself is examined, so that the scene exists in time only and its drag is its own.
         draws_off: the plate is retracted through a spring along z.
+        is_massless: the mass of a particle matters nowhere.
         goes_along: the scene also prescribes places along x, on a plane, and has no other method.
     """
 
     only_method: ClassVar[Method | None] = None
-    excludes: ClassVar[Mapping[str, str]] = {"cantilever": UNPULLED, "friction": UNMOVED}
+    excludes: ClassVar[Mapping[str, str]] = {
+        "cantilever": UNPULLED, "friction": UNMOVED, "viscoelasticity": UNTIMED,
+    }  # fmt: skip
     needs: ClassVar[tuple[str, ...]] = ()
     needs_in_time: ClassVar[tuple[str, ...]] = ("damping", "plate")
     only_with_noise: ClassVar[tuple[str, ...]] = ()
@@ -129,6 +135,7 @@ class Kind(Table):
     finds_pull_off: ClassVar[bool] = False
     way_is_given: ClassVar[bool] = False
     motion_is_result: ClassVar[bool] = False
+    is_massless: ClassVar[bool] = False
     goes_along: ClassVar[bool] = False
 
     @property
@@ -257,6 +264,7 @@ class Slide(Kind):
     excludes: ClassVar[Mapping[str, str]] = {
         "adhesion": "it is that of a rigid plane, which cannot drag the upper body",
         "friction": "its friction results from the interaction of the particles",
+        "viscoelasticity": "it is that of a body on a rigid plane, which cannot drag the upper body",
     }
     needs = ("horizontal", "damping", "plate", "cantilever")
     load_key = "normal_force"
@@ -301,6 +309,7 @@ class Tangential(Kind):
         "adhesion": "whether shear peels an adhesive edge or makes it slip is a criterion of its own (Savkoor and "
         "Briggs), which neither JKR nor Mindlin has",
         "neighbours": "friction depends on the loading history, and a minimiser, which such springs need, has none",
+        "viscoelasticity": UNTIMED,
         "damping": TIMELESS,
         "noise": TIMELESS,
         "plate": f"{TIMELESS}; a plate with inertia would oscillate about it, and friction depends on this history",
@@ -373,7 +382,76 @@ class Hold(Kind):
         return [] if self.displacement is None else [self.displacement]
 
 
-Experiment = Annotated[Load | Path | PullOff | Slide | Tangential | Hold, Discriminator("kind")]
+class Moment(Table):
+    """A point of a history, written [time, displacement]."""
+
+    as_list = True
+
+    time: Time
+    """time; each is later than the one before"""
+    displacement: Displacement
+    """displacement then, compression positive"""
+
+
+class LoadedMoment(Table):
+    """A point of a history, written [time, force]."""
+
+    as_list = True
+
+    time: Time
+    """time; each is later than the one before"""
+    force: CompressionOrNone
+    """compressive force then"""
+
+
+class History(Kind):
+    """Displacement or force over time, on a rigid plane; each load step is in equilibrium."""
+
+    one_of = (
+        (("displacement", "force"), "give displacement = [[time, displacement], …] or force = [[time, force], …]"),
+    )
+    only_method = "quasistatic"
+    excludes: ClassVar[Mapping[str, str]] = {
+        "cantilever": UNPULLED,
+        "friction": UNMOVED,
+        "neighbours": "it is one of springs that know nothing of their neighbours",
+        "damping": TIMELESS,
+        "noise": TIMELESS,
+        "plate": "a history prescribes the plate's displacement or force, so the plate has no motion of its own",
+    }
+    way_is_given = True
+    is_massless = True
+
+    kind: Literal["history"]
+    """displacement or force over time"""
+    displacement: Annotated[tuple[Moment, ...], Field(strict=False), MinLen(2)] | None = None
+    """points [time, displacement], straight between them"""
+    force: Annotated[tuple[LoadedMoment, ...], Field(strict=False), MinLen(2)] | None = None
+    """in place of the displacement: points [time, force], straight between them"""
+    steps: StepCount | None = None
+    """load steps of each leg; absent: by accuracy.tolerance"""
+
+    @property
+    def times(self) -> list[float]:
+        """Of the points [TU]."""
+        return [point.time for point in self.displacement or self.force or ()]
+
+    @property
+    def lasts(self) -> float:
+        """From the first point to the last."""
+        return self.times[-1] - self.times[0]
+
+    @property
+    def compression(self) -> float | None:
+        """The largest force; None where displacements are given."""
+        return max((point.force for point in self.force), default=None) if self.force else None
+
+    def places(self) -> list[float]:
+        """Displacements [LU] of the points, none where forces are given."""
+        return [point.displacement for point in self.displacement or ()]
+
+
+Experiment = Annotated[Load | Path | PullOff | Slide | Tangential | Hold | History, Discriminator("kind")]
 
 KINDS: dict[str, type[Kind]] = {
     kind: table for kind, table in allowed_by(Experiment).kinds.items() if issubclass(table, Kind)

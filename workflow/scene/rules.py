@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 from contact1d.digits import apart
@@ -119,6 +120,10 @@ def _lower_body(d: Draft) -> Rows:
     yield ("friction", d.on_chain and not along,
            "not between two chains, whose friction comes from the interaction",
            f'remove it, or use {PLANE} and kind = "tangential"')
+    timed = d.kind == "history" or "viscoelasticity" in d
+    yield ("bodies.lower", d.on_chain and timed,
+           f'must be "rigid_plane" with {"[viscoelasticity]" if "viscoelasticity" in d else "a history"}: the springs '
+           "of one body have the memory of both", f"use {PLANE}, with the contact modulus of both bodies")
     yield ("adhesion", d.on_chain,
            "not between two chains, which attract each other by the interaction",
            f"use interaction.attraction, or {PLANE}")
@@ -211,6 +216,32 @@ def _normal_loads(d: Draft) -> Rows:
            f"must be one number or as many as there are displacements, {count}; these are {len(loads)}",
            "give one for each displacement, or one for all")
     yield (given[0], max(loads) <= 0.0, "must be greater than 0 somewhere, else the bodies never touch", "raise it")
+
+
+def _relaxing(d: Draft) -> Rows:
+    """A body that relaxes, and the times of a history."""
+    shares = [term["share"] for term in d["viscoelasticity.terms"] or []]
+    whole = math.fsum(shares)
+    yield ("viscoelasticity.terms", whole > 1.0 + WHOLE_NUMBER_ERROR,
+           f"the shares of the instantaneous modulus must add up to 1 at most, not {apart(whole, 1.0, DIGITS)[0]}",
+           "lower one of them")
+    points = d["experiment.displacement"] or d["experiment.force"] if d.kind == "history" else None
+    if not points:
+        return
+    key = "experiment.displacement" if "experiment.displacement" in d else "experiment.force"
+    times, values = zip(*((point["time"], point[key.partition(".")[2]]) for point in points), strict=True)
+    back = next((i for i in range(1, len(times)) if times[i] <= times[i - 1]), 0)
+    yield (key, back, f"times must rise; {times[back]:.6g} follows {times[back - 1]:.6g}",
+           "each point is later than the one before; a jump is a leg as short as you want")
+    yield (key, max(values) <= 0.0, "must be greater than 0 somewhere, else the bodies never touch", "raise it")
+    retarded, steps = d["viscoelasticity.retardation_time"], d["experiment.steps"]
+    yield (key, retarded is not None and values[0] > 0.0,
+           "must begin apart with a retardation_time: dashpots resist a jump without bound", "begin with 0 or less")
+    longest = max(after - before for before, after in pairwise(times)) / (steps or 1)
+    shortest = min([retarded] if retarded else [term["time"] for term in d["viscoelasticity.terms"] or []], default=0.0)
+    yield ("experiment.steps", steps is not None and "experiment.force" in d and longest > shortest > 0.0,
+           "a load step under a given force would take {} (TU), longer than the shortest time of the body, {}".format(
+               *apart(longest, shortest, DIGITS)), "give more steps, or leave it to the program")
 
 
 def _open_spacing(d: Draft) -> Rows:
@@ -469,6 +500,7 @@ RULES = (
     _attraction,
     _plate,
     _normal_loads,
+    _relaxing,
     _open_spacing,
     _punch,
     _material,

@@ -37,6 +37,7 @@ from contact1d.workflow.scene.effects import (
     Neighbours,
     Noise,
     Plate,
+    Viscoelasticity,
 )
 from contact1d.workflow.scene.experiments import Experiment, Method
 from contact1d.workflow.scene.materials import BY_NAME
@@ -284,6 +285,8 @@ class Tables(Table):
     """particles may also move along x"""
     adhesion: Adhesion | None = None
     """adhesion to a rigid plane"""
+    viscoelasticity: Viscoelasticity | None = None
+    """a body that relaxes, on a rigid plane"""
     friction: Friction | None = None
     """friction on a rigid plane"""
     damping: Damping | None = None

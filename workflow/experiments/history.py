@@ -1,0 +1,139 @@
+"""History: a displacement or a force over time, on a rigid plane, of a body that may relax."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from itertools import groupby, pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.workflow.continuation.driver import Driver
+from contact1d.workflow.continuation.outcome import Outcome, Reading
+from contact1d.workflow.continuation.trace import Trace
+from contact1d.workflow.deck.steps import Displace, Phase, Spend
+from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
+from contact1d.workflow.model.reduced import History as Moments
+from contact1d.workflow.model.reduced import reduced
+from contact1d.workflow.model.settings import Settings
+from contact1d.workflow.scene import History, Scene
+from contact1d.workflow.units import ENERGY, FORCE, LENGTH, MEAN_PRESSURE, TIME
+
+STEPS, FOR_TOLERANCE = 50, 1e-3
+"""Load steps of a leg at a tolerance; they miss a part that goes with the square of their width."""
+SOONEST = 0.05
+"""First of the load steps that become longer and longer, over the shortest time of the body."""
+PHASES = {1.0: "loading", -1.0: "unloading", 0.0: "holding"}
+
+
+class HistoryExperiment(Scripted[History]):
+    """d, F and a at the end, the peaks, what is lost, and how long the bodies touch."""
+
+    main_results = ("peak_force", "peak_displacement", "displacement", "force", "contact_radius")
+    is_sampled = True
+
+    def script(self, branch: Driver, scene: Scene) -> None:
+        """All of it, and the reported states: the end of each leg."""
+        branch.follow(_moments(scene))
+        branch.mark("final")
+
+    def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
+        """See the class."""
+        by_force, last = self.given(scene).force is not None, len(trace) - 1
+        d, force = trace.displacement, trace.force
+        found = {
+            "peak_force": Reading(float(force.max()), FORCE, prescribed=by_force),
+            "peak_displacement": Reading(float(d.max()), LENGTH, prescribed=not by_force),
+            "displacement": Reading(float(d[last]), LENGTH, prescribed=not by_force, scale=float(np.abs(d).max())),
+            "force": Reading(float(force[last]), FORCE, prescribed=by_force, scale=float(np.abs(force).max())),
+        }
+        if radius := trace.radius(last):
+            found["contact_radius"] = Reading(radius, LENGTH)
+            found["mean_pressure"] = Reading(float(force[last]) / (math.pi * radius**2), MEAN_PRESSURE)
+        if trace.phase[-1].startswith("holding"):
+            free, unit = (d, LENGTH) if by_force else (force, FORCE)
+            first = next(i for i in range(last, -1, -1) if not trace.phase[i].startswith("holding"))
+            found["relaxation"] = Reading(float(abs(free[last] - free[first])), unit, scale=float(np.abs(free).max()))
+        if force[last] == 0.0:
+            found["dissipated_energy"] = Reading(float(np.trapezoid(force, d)), ENERGY, scale=_work(d, force))
+            found["contact_time"] = Reading(_lost(trace) - _touched(trace), TIME)
+        return found
+
+    def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
+        """The time of each state."""
+        if "contact_time" not in outcome.results:
+            words = "the bodies still touch at the end, so there is neither a contact_time nor a dissipated_energy"
+            outcome = replace(outcome, warnings={**outcome.warnings, "no_contact_time": words})
+        return replace(outcome, columns={"time": tuple(one.time for one in outcome.states)})
+
+    def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
+        """The schedule that runs; a leg is a phase."""
+        moments = _moments(scene)
+        path, relaxes = moments.path(reduced(scene, settings)), scene.viscoelasticity is not None
+        times = np.diff(path.time, prepend=path.time[:1]).tolist()
+        rows = [Spend(d, t) if relaxes else Displace(d) for d, t in zip(path.displacement.tolist(), times, strict=True)]
+        phases: list[Phase] = []
+        done = 0
+        for name, same in groupby(moments.phases):
+            count = len(list(same))
+            phases.append(Phase(name, tuple(rows[done : done + count])))
+            done += count
+        return (*phases[:-1], replace(phases[-1], state=True))
+
+    def advice(self, scene: Scene) -> str:
+        """What is left is the lattice's, and that of the load steps."""
+        return f"Use more experiment.steps, or {FINER_SPACING}"
+
+
+def _moments(scene: Scene) -> Moments:
+    """The load steps of the legs, dense behind each corner where the body relaxes."""
+    given = scene.experiment
+    assert isinstance(given, History)
+    values = [point.force for point in given.force] if given.force else given.places()
+    count = given.steps or math.ceil(STEPS * math.sqrt(FOR_TOLERANCE / scene.accuracy.tolerance))
+    names: list[str] = []
+    times, wanted = [np.asarray(given.times[:1])], [np.asarray(values[:1])]
+    for (before, after), (start, end) in zip(pairwise(given.times), pairwise(values), strict=True):
+        parts = np.linspace(0.0, 1.0, count + 1)[1:]
+        if scene.viscoelasticity and not given.steps:
+            soonest = min(1.0, SOONEST * scene.viscoelasticity.shortest_time / (after - before))
+            parts = np.union1d(parts, np.geomspace(soonest, 1.0, count // 2))
+        names += [PHASES[float(np.sign(end - start))]] * parts.size
+        times.append(before + (after - before) * parts)
+        wanted.append(start + (end - start) * parts)
+    return Moments(_numbered([names[0], *names]), np.concatenate(times), np.concatenate(wanted), bool(given.force))
+
+
+def _numbered(names: list[str]) -> tuple[str, ...]:
+    """Names of phases, each with a number where it comes again."""
+    counts: dict[str, int] = {}
+    found: list[str] = []
+    for name, same in groupby(names):
+        counts[name] = counts.get(name, 0) + 1
+        found += [name if counts[name] == 1 else f"{name}_{counts[name]}"] * len(list(same))
+    return tuple(found)
+
+
+def _work(d: NDArray[np.float64], force: NDArray[np.float64]) -> float:
+    """∫|F dd| [FU·LU]."""
+    return float(np.sum(0.5 * np.abs((force[1:] + force[:-1]) * np.diff(d))))
+
+
+def _touched(trace: Trace) -> float:
+    """When the bodies touch first [TU]: at d = 0, or with the first force."""
+    first = int(np.argmax(trace.force != 0.0))
+    if first == 0:
+        return float(trace.time[0])
+    d, time = trace.displacement[first - 1 : first + 1], trace.time[first - 1 : first + 1]
+    return float(np.interp(0.0, d, time)) if d[0] < d[1] else float(time[0])
+
+
+def _lost(trace: Trace) -> float:
+    """When they part for good [TU]: the largest pressure falls to 0 evenly."""
+    last = int(np.flatnonzero(trace.force)[-1])
+    before, here = (float(np.abs(trace.profile(i).pressure).max()) for i in (last - 1, last))
+    start, time, end = trace.time[last - 1 : last + 2].tolist()
+    part = here / (before - here) if before > here else 1.0
+    return float(min(end, time + part * (time - start)))
