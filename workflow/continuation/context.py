@@ -17,12 +17,14 @@ from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Array, Search, Trace, of_states
 from contact1d.workflow.continuation.trust import UntrustedError
 from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.deck.steps import Phase, numbered
+from contact1d.workflow.deck.steps import Fly, Launch, Phase, numbered
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.engine.session import Engine
-from contact1d.workflow.model.reduced import History, Reduced, reduced
+from contact1d.workflow.model.reduced import FLIGHT, STRETCHES, History, Reduced, is_over, reduced, stretch
 
+MOST_STRETCHES = 100
+"""How long an impact lasts at most, over the time of a fall to the deepest displacement."""
 ASIDE = ".aside"
 """Folder of a context aside, in the run folder."""
 
@@ -195,6 +197,23 @@ class ContactBranch:
     def follow(self, history: History) -> None:
         """Go through a history. Raises UntrustedError where load steps are not those of springs alone (`stepped`)."""
         raise UntrustedError('a history needs springs on a rigid plane: use lower = "rigid_plane"')
+
+    def fly(self, velocity: float) -> None:
+        """Come down at a velocity [LU/TU]: equal stretches of time, until the body flies off or sticks.
+
+        Raises:
+            UntrustedError: the bodies neither part nor stick in MOST_STRETCHES times the time of a fall.
+        """
+        self.moves, steps = True, stretch(self.settings, velocity)
+        self._turn(rises=True)
+        for name, row in (("touching", Launch(velocity, steps)), ("impact", Fly(steps))):
+            self.begin(name)
+            self._enter()
+            self._keep(self.contact.rows([row], moving=True))
+        while not is_over(*zip(*((state.displacement, state.force) for state in self.states), strict=True)):
+            if len(self.states) > MOST_STRETCHES * STRETCHES:
+                raise UntrustedError("the body has not come to an end of its impact: use a shorter retardation_time")
+            self._keep(self.contact.rows([Fly(steps)] * FLIGHT, moving=True))
 
     def mark(self, name: str) -> None:
         """Report the last state."""

@@ -51,5 +51,8 @@ class Driver(Protocol):
     def follow(self, history: History) -> None:
         """Go through displacements or forces over time, the first of them from apart."""
 
+    def fly(self, velocity: float) -> None:
+        """Come down at a velocity [LU/TU] from d = 0 on, and move freely until the bodies part or stick."""
+
     def mark(self, name: str) -> None:
         """Report the last state."""

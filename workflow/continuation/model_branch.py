@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from contact1d.workflow.continuation.state import radius_rule
 from contact1d.workflow.continuation.trace import Trace, of_model
-from contact1d.workflow.model.reduced import History, Path, Reduced, swing
+from contact1d.workflow.model.reduced import History, Path, Reduced, impact, swing
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 
@@ -125,6 +125,12 @@ class ModelBranch:
         self._leg += 1
         rows = zip(history.phases, path.displacement.tolist(), path.time.tolist(), strict=True)
         self._rows += [Row(name, self._leg, displacement, 0.0, time) for name, displacement, time in rows]
+
+    def fly(self, velocity: float) -> None:
+        """See `reduced.impact`."""
+        self._phase, path = "impact", impact(self.scene, self.settings, self.model, velocity)
+        self._leg += 1
+        self._add(path.displacement, time=path.time.tolist())
 
     def maximum(self) -> None:
         """Pass the force maximum, densely about it."""

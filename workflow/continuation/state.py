@@ -121,7 +121,7 @@ def radius_rule(scene: Scene, tolerance: float) -> RadiusRule:
         return ToTheEdge(scene.bodies, share, bool(scene.adhesion))
     if not scene.adheres:
         return Compressed(scene.bodies, share)
-    if scene.adhesion and scene.adhesion.range:
+    if scene.adhesion and (scene.adhesion.range or scene.adhesion.rate):
         return Zoned(scene.bodies, share)
     return (Held if scene.adhesion else InTension)(scene.bodies, share)
 

@@ -12,8 +12,8 @@ import numpy as np
 
 from contact1d.workflow.continuation.branch import Branch
 from contact1d.workflow.continuation.trust import DigitsError, TensionError
-from contact1d.workflow.deck.steps import Displace, Spend
-from contact1d.workflow.model.reduced import History
+from contact1d.workflow.deck.steps import Cohere, Displace, Phase, Spend
+from contact1d.workflow.model.reduced import History, Path, RatedCells, Reduced, RelaxingSprings
 from contact1d.workflow.model.settings import Settings
 
 LOADING_STEPS = 24
@@ -80,24 +80,39 @@ class SteppedBranch(Branch):
 
     def follow(self, history: History) -> None:
         """Load steps that take their time; those of forces are where the model carries them."""
-        path, rows = history.path(self.model), []
-        for place, time in zip(
-            path.displacement.tolist(), np.diff(path.time, prepend=path.time[:1]).tolist(), strict=True
-        ):
-            rows.append(Spend(place, time) if self.scene.viscoelasticity else Displace(place))
-        self._turned, done = True, 0
-        for name, same in groupby(history.phases):
-            count = len(list(same))
-            self.begin(name)
+        self._turned, times = True, iter(history.time.tolist())
+        for phase in followed(self.model, history):
+            self.begin(phase.name)
             self._enter()
-            states = self.contact.rows(rows[done : done + count])
-            times = path.time[done : done + count].tolist()
-            self._keep([replace(state, time=time) for state, time in zip(states, times, strict=True)])
-            done += count
+            self._keep([replace(state, time=next(times)) for state in self.contact.rows(phase.rows)])
+            if phase.name in history.marks:
+                self.mark(history.marks[phase.name])
 
     def open(self) -> None:
         """Load steps over the limit point."""
         self._visit(np.linspace(self._last.displacement, BEYOND_LIMIT * self.model.apart, LOADING_STEPS + 1)[1:])
+
+
+def followed(model: Reduced, history: History) -> tuple[Phase, ...]:
+    """The load steps of a history, a phase for each of its own."""
+    rows, phases = iter(_timed(model, history.path(model))), []
+    for name, moments in groupby(history.phases):
+        phases.append(Phase(name, tuple(next(rows) for _ in moments), state=name in history.marks))
+    return tuple(phases)
+
+
+def _timed(model: Reduced, path: Path) -> list[Displace]:
+    """Load steps along a path in time: those of bodies that relax have a duration, of an edge that does its place."""
+    if isinstance(model, RatedCells):
+        zone = model.zone(path)
+        area = model.estimate.law.area(zone.edge)
+        height = np.divide(area, zone.edge, out=np.zeros_like(area), where=zone.edge > 0.0)
+        columns = (column.tolist() for column in (path.displacement, zone.edge, zone.edge, height))
+        return [Cohere(*numbers) for numbers in zip(*columns, strict=True)]
+    if not isinstance(model, RelaxingSprings):
+        return [Displace(place) for place in path.displacement.tolist()]
+    spent = np.diff(path.time, prepend=path.time[:1]).tolist()
+    return [Spend(place, time) for place, time in zip(path.displacement.tolist(), spent, strict=True)]
 
 
 def curve_steps(settings: Settings) -> int:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from contact1d.analysis.pressure import Profile, ZonedProfile
 from contact1d.analysis.radius import ContactRadius
 from contact1d.workflow.continuation.state import RadiusRule, State
-from contact1d.workflow.model.reduced import Followed, Path, Reduced
+from contact1d.workflow.model.reduced import CohesiveCells, Followed, Path, Reduced
 
 Array = NDArray[np.float64]
 BESIDE = 2
@@ -119,7 +119,7 @@ class Trace:
     def reach(self, state: int) -> float | None:
         """How far an attraction with a range goes, c [LU]; None of others."""
         profile = self.profile(state)
-        return profile.reach if isinstance(profile, ZonedProfile) else None
+        return profile.reach if isinstance(profile, ZonedProfile) and isinstance(self.model, CohesiveCells) else None
 
     def _perturbed(self, found: ContactRadius, state: int) -> float:
         if found.uncertainty == 0.0:  # a body that ends at an edge

@@ -23,7 +23,7 @@ UNITS = (
     dict.fromkeys(("displacement", "place", "parted", "through", "end", "edge", "reach", "height"), "LU")
     | dict.fromkeys(("load", "rest"), "FU")
     | dict.fromkeys(("damping", "drag"), "FU·TU/LU")
-    | {"spring": "FU/LU", "duration": "TU"}
+    | {"spring": "FU/LU", "duration": "TU", "velocity": "LU/TU"}
 )
 """Units of the numbers in rows; whole ones have none."""
 
@@ -105,6 +105,23 @@ class UnderLoad(Row):
 
 
 @dataclass(frozen=True)
+class Launch(Row):
+    """The plate begins to move down at a velocity [LU/TU], for a number of timesteps."""
+
+    step: ClassVar[str] = "launch"
+    velocity: float
+    steps: int
+
+
+@dataclass(frozen=True)
+class Fly(Row):
+    """The plate moves on for a number of timesteps."""
+
+    step: ClassVar[str] = "fly"
+    steps: int
+
+
+@dataclass(frozen=True)
 class DrawnOff(Row):
     """Plate and particles move while the plate's spring [FU/LU] has its far end at a displacement [LU]."""
 
@@ -139,7 +156,7 @@ class Hold(Row):
     steps: int
 
 
-STEPS: tuple[type[Row], ...] = (Displace, Cohere, Spend, Draw, DisplaceInTime, UnderLoad, DrawnOff, Hold)
+STEPS: tuple[type[Row], ...] = (Displace, Cohere, Spend, Draw, DisplaceInTime, UnderLoad, Launch, Fly, DrawnOff, Hold)
 
 
 @dataclass(frozen=True)

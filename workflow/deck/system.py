@@ -24,7 +24,7 @@ from contact1d.workflow.deck.effects import number, sphere_radius
 from contact1d.workflow.deck.lattice import Body, bodies, period
 from contact1d.workflow.deck.parts import margins
 from contact1d.workflow.model.adhesion import cells_of
-from contact1d.workflow.model.cohesive import CohesiveEstimate
+from contact1d.workflow.model.cohesive import ZonedEstimate
 from contact1d.workflow.model.motion import inertia
 
 CELLS = "adhesion.cells"
@@ -163,7 +163,7 @@ def write_system(deck: Deck, folder: Path) -> None:
     particle, plate = inertia(scene, settings)
     mass = plate / anchors if scene.plate else particle
     if scene.stands and scene.plate:
-        particle += mass  # there are no anchors that would have it
+        particle = mass + particle * (not scene.experiment.is_massless)  # there are no anchors that would have it
     system = assemble(
         both,
         bool(scene.neighbours),
@@ -184,7 +184,7 @@ def _write_cells(deck: Deck, path: Path) -> None:
     """The columns of `Cells` of `model.adhesion` or `model.cohesive` below each other, for `variable atomfile`."""
     x, estimate = bodies(deck.scene, deck.settings)[0].particles[:, 0], deck.settings.estimate
     unit = deck.units.to_deck(1.0, "LU")
-    if isinstance(estimate, CohesiveEstimate):
+    if isinstance(estimate, ZonedEstimate):
         zones = estimate.zones(x)
         powers = {"inner": 1, "outer": 1, "below": 2, "above": 2, "sides": 0}
         columns = {name: unit**power * getattr(zones, name) for name, power in powers.items()}

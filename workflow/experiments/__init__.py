@@ -9,6 +9,7 @@ from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.experiments.experiment import Experiment, in_smaller_steps
 from contact1d.workflow.experiments.history import HistoryExperiment
 from contact1d.workflow.experiments.hold import HoldExperiment
+from contact1d.workflow.experiments.impact import ImpactExperiment
 from contact1d.workflow.experiments.keeping import kept_way, planned_way
 from contact1d.workflow.experiments.load import LoadExperiment, ThermalLoad
 from contact1d.workflow.experiments.path import PathExperiment, ThermalPath
@@ -23,6 +24,7 @@ __all__ = ["KINDS", "kind_of", "perform", "planned"]
 KINDS: dict[str, Experiment[Any]] = {
     "history": HistoryExperiment(),
     "hold": HoldExperiment(),
+    "impact": ImpactExperiment(),
     "load": LoadExperiment(),
     "path": PathExperiment(),
     "pull_off": PullOffExperiment(),

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.outcome import Outcome, Reading
+from contact1d.workflow.continuation.stepped import followed
 from contact1d.workflow.continuation.trace import Trace
-from contact1d.workflow.deck.steps import Displace, Phase, Spend
+from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
 from contact1d.workflow.model.reduced import History as Moments
 from contact1d.workflow.model.reduced import reduced
@@ -35,9 +36,8 @@ class HistoryExperiment(Scripted[History]):
     is_sampled = True
 
     def script(self, branch: Driver, scene: Scene) -> None:
-        """All of it, and the reported states: the end of each leg."""
+        """All of it; the end of each leg is reported."""
         branch.follow(_moments(scene))
-        branch.mark("final")
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
         """See the class."""
@@ -58,7 +58,7 @@ class HistoryExperiment(Scripted[History]):
             found["relaxation"] = Reading(float(abs(free[last] - free[first])), unit, scale=float(np.abs(free).max()))
         if force[last] == 0.0:
             found["dissipated_energy"] = Reading(float(np.trapezoid(force, d)), ENERGY, scale=_work(d, force))
-            found["contact_time"] = Reading(_lost(trace) - _touched(trace), TIME)
+            found["contact_time"] = Reading(lost(trace) - _touched(trace), TIME)
         return found
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
@@ -70,17 +70,7 @@ class HistoryExperiment(Scripted[History]):
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The schedule that runs; a leg is a phase."""
-        moments = _moments(scene)
-        path, relaxes = moments.path(reduced(scene, settings)), scene.viscoelasticity is not None
-        times = np.diff(path.time, prepend=path.time[:1]).tolist()
-        rows = [Spend(d, t) if relaxes else Displace(d) for d, t in zip(path.displacement.tolist(), times, strict=True)]
-        phases: list[Phase] = []
-        done = 0
-        for name, same in groupby(moments.phases):
-            count = len(list(same))
-            phases.append(Phase(name, tuple(rows[done : done + count])))
-            done += count
-        return (*phases[:-1], replace(phases[-1], state=True))
+        return followed(reduced(scene, settings), _moments(scene))
 
     def advice(self, scene: Scene) -> str:
         """What is left is the lattice's, and that of the load steps."""
@@ -103,7 +93,9 @@ def _moments(scene: Scene) -> Moments:
         names += [PHASES[float(np.sign(end - start))]] * parts.size
         times.append(before + (after - before) * parts)
         wanted.append(start + (end - start) * parts)
-    return Moments(_numbered([names[0], *names]), np.concatenate(times), np.concatenate(wanted), bool(given.force))
+    phases = _numbered([names[0], *names])
+    marks = {name: f"after_{name}" for name in phases} | {phases[-1]: "final"}
+    return Moments(phases, np.concatenate(times), np.concatenate(wanted), bool(given.force), marks)
 
 
 def _numbered(names: list[str]) -> tuple[str, ...]:
@@ -130,7 +122,7 @@ def _touched(trace: Trace) -> float:
     return float(np.interp(0.0, d, time)) if d[0] < d[1] else float(time[0])
 
 
-def _lost(trace: Trace) -> float:
+def lost(trace: Trace) -> float:
     """When they part for good [TU]: the largest pressure falls to 0 evenly."""
     last = int(np.flatnonzero(trace.force)[-1])
     before, here = (float(np.abs(trace.profile(i).pressure).max()) for i in (last - 1, last))

@@ -15,19 +15,21 @@ from contact1d.workflow.continuation.holding import held_phase, overshoot
 from contact1d.workflow.continuation.load_control import FEWEST_HELD, SPREAD, top_of
 from contact1d.workflow.continuation.marks import unloading
 from contact1d.workflow.continuation.outcome import Outcome, Reading
-from contact1d.workflow.continuation.stepped import BEYOND_LIMIT, LOADING_STEPS
+from contact1d.workflow.continuation.stepped import BEYOND_LIMIT, LOADING_STEPS, followed
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.continuation.trust import require_no_contradiction
 from contact1d.workflow.deck.steps import Phase, displacements
 from contact1d.workflow.experiments.detachment import planned_detachment, pull_off_thermal
 from contact1d.workflow.experiments.experiment import Scripted
-from contact1d.workflow.model.reduced import reduced
+from contact1d.workflow.model.reduced import History, Path, RatedCells, reduced
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import PullOff, Scene
 from contact1d.workflow.units import FORCE, LENGTH
 
 UNLOADING_STEPS, TENSIONS = 80, 12
 """Load steps of a planned unloading, and tensions of a planned pull, where a run would search."""
+RATED_STEPS = 120
+"""Load steps of a pull whose edge recedes at a finite speed."""
 LARGEST_TENSION = 1.2
 """The last of these tensions over the expected pull-off force."""
 
@@ -40,8 +42,11 @@ class PullOffExperiment(Scripted[PullOff]):
 
     def script(self, branch: Driver, scene: Scene) -> None:
         """Compress, unload to F = 0, retract to the force maximum, separate; as many times as there are cycles."""
-        preload = self.given(scene).preload
+        preload, model = self.given(scene).preload, branch.model
         scale = max(preload, branch.scale)
+        if isinstance(model, RatedCells):
+            branch.follow(_pulled(model, self.given(scene)))
+            return
         for _ in range(self.given(scene).cycles or 1):
             branch.begin("loading")
             branch.reach(preload, scale)
@@ -82,6 +87,8 @@ class PullOffExperiment(Scripted[PullOff]):
                 held_phase("unloading", scene, settings, (0.0,), max(preload, tension), state=True),
                 held_phase("pulling", scene, settings, tensions, tension, state=True),
             )
+        if isinstance(model := reduced(scene, settings), RatedCells):
+            return followed(model, _pulled(model, self.given(scene)))
         deepest, apart = settings.largest_displacement, BEYOND_LIMIT * reduced(scene, settings).apart
         down = displacements(np.linspace(0.0, deepest, LOADING_STEPS + 1).tolist())
         back = displacements(np.linspace(deepest, apart, UNLOADING_STEPS).tolist())
@@ -100,6 +107,23 @@ class PullOffExperiment(Scripted[PullOff]):
         """With the limitation of load control in time."""
         since = ", since load control never reaches the pull-off itself" if scene.method == "dynamic" else ""
         return super().advice(scene) + since
+
+
+def _pulled(model: RatedCells, given: PullOff) -> History:
+    """Down to the preload and back at the velocity, with load steps at equal ways of the edge."""
+    assert given.velocity is not None
+    deepest = model.displacement_at(given.preload)
+    back = model.estimate.pulled(deepest, given.velocity, RATED_STEPS)[1:]
+    down = np.linspace(0.0, 1.0, LOADING_STEPS + 1)
+    time = np.append(deepest / given.velocity * (down - 1.0), back)
+    places = np.append(deepest * down, deepest - given.velocity * back)
+    force = model.follow(Path(places, np.zeros_like(places), time)).total[down.size :]
+    top = int(np.argmin(force))
+    zero = int(np.argmin(np.abs(force[: top + 1])))
+    counts = {"loading": down.size, "unloading": zero + 1, "pulling": top - zero, "separating": back.size - top - 1}
+    phases = tuple(name for name, count in counts.items() for _ in range(count))
+    marks = {"unloading": "zero_load", "pulling": "critical"}
+    return History(phases, time, places, by_force=False, marks=marks)
 
 
 class ThermalPullOff(PullOffExperiment):

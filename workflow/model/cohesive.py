@@ -10,8 +10,10 @@ A particle has the integral of q over its cell. Integrals of neighbours add up, 
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass, field, fields
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 
 import numpy as np
@@ -21,7 +23,7 @@ from contact1d.workflow.model.adhesion import SPANNED, AdhesiveEstimate
 from contact1d.workflow.model.chain import SettingsError
 from contact1d.workflow.model.dugdale import DOUBLINGS, TINY, Dugdale, Zone, covered
 from contact1d.workflow.model.pairs import ContactEstimate, Profile, beside_kinks, plane_estimate
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene import Rate, Scene
 
 Array = NDArray[np.float64]
 POINTS, FIRST, NEAR = 400, 1e-3, 40
@@ -34,6 +36,9 @@ APART = -1.0
 """Place on the curve of bodies that do not feel each other."""
 ENERGY_PLACES = 4000
 """Positions of the two integrals of an energy."""
+LOST, EXACT, FOLLOWED = 1e-3, 1e-9, 4000
+"""Edge over that under fixed grips at which a receding one is lost; error of its motion, and times at which a pull
+looks for equal ways."""
 SAME = 1e-9
 """Fall of d over its range that is one: others are round-off."""
 
@@ -56,16 +61,48 @@ class Cells:
 
 
 @dataclass(frozen=True, eq=False)
-class CohesiveEstimate(AdhesiveEstimate):
+class ZonedEstimate(AdhesiveEstimate):
+    """A contact whose edges each load step gives.
+
+    Attributes:
+        surface: f, whose transform the profile is.
+    """
+
+    surface: Profile = field(kw_only=True)
+
+    @property
+    @abstractmethod
+    def law(self) -> Dugdale:
+        """Its equations."""
+
+    def zones(self, x: Array) -> Cells:
+        """The cells of particles at positions x, (n,) [LU]."""
+        at, half = np.abs(x), 0.5 * self.spacing
+        inner, outer = np.maximum(at - half, 0.0), at + half
+        sides = np.where(at < 0.25 * self.spacing, 2.0, 1.0)
+        # Beyond the body nothing is known, and nothing carries.
+        below, above = (self.law.area(np.minimum(end, self.known)) for end in (inner, outer))
+        return Cells(inner, outer, below, above, sides)
+
+    def loads(self, cells: Cells, zone: Zone, state: int) -> Array:
+        """∫ q dx [FU] over each cell in a state."""
+        a, c, d = (float(column[state]) for column in (zone.edge, zone.reach, zone.displacement))
+        end = np.minimum(cells.outer, a)
+        area = np.where(cells.outer < a, cells.above, self.law.area(np.asarray([a]))[0])
+        pressed = self.modulus * np.where(cells.inner < a, d * (end - cells.inner) - (area - cells.below), 0.0)
+        low, high = (np.minimum(np.maximum(one, a), c) for one in (cells.inner, cells.outer))
+        return np.asarray(cells.sides * (pressed - 2.0 * self.law.stress * (_half_disc(high, c) - _half_disc(low, c))))
+
+
+@dataclass(frozen=True, eq=False)
+class CohesiveEstimate(ZonedEstimate):
     """The curve of a contact whose attraction has a range.
 
     Attributes:
         range: h₀ [LU].
-        surface: f, whose transform the profile is.
     """
 
     range: float = field(kw_only=True)
-    surface: Profile = field(kw_only=True)
 
     @cached_property
     def law(self) -> Dugdale:
@@ -259,23 +296,77 @@ class CohesiveEstimate(AdhesiveEstimate):
         disc = c * c * (c - a) - (c**3 - a**3) / 3.0
         return pressed - 4.0 * law.stress**2 / self.modulus * disc + drawn - math.pi * c * c * self.work
 
-    def zones(self, x: Array) -> Cells:
-        """The cells of particles at positions x, (n,) [LU]."""
-        at, half = np.abs(x), 0.5 * self.spacing
-        inner, outer = np.maximum(at - half, 0.0), at + half
-        sides = np.where(at < 0.25 * self.spacing, 2.0, 1.0)
-        # Beyond the body nothing is known, and nothing carries.
-        below, above = (self.law.area(np.minimum(end, self.known)) for end in (inner, outer))
-        return Cells(inner, outer, below, above, sides)
 
-    def loads(self, cells: Cells, zone: Zone, state: int) -> Array:
-        """∫ q dx [FU] over each cell in a state."""
-        a, c, d = (float(column[state]) for column in (zone.edge, zone.reach, zone.displacement))
-        end = np.minimum(cells.outer, a)
-        area = np.where(cells.outer < a, cells.above, self.law.area(np.asarray([a]))[0])
-        pressed = self.modulus * np.where(cells.inner < a, d * (end - cells.inner) - (area - cells.below), 0.0)
-        low, high = (np.minimum(np.maximum(one, a), c) for one in (cells.inner, cells.outer))
-        return np.asarray(cells.sides * (pressed - 2.0 * self.law.stress * (_half_disc(high, c) - _half_disc(low, c))))
+@dataclass(frozen=True, eq=False)
+class RatedEstimate(ZonedEstimate):
+    """JKR's contact, whose edge recedes at a finite speed and advances at once (D. Maugis, M. Barquins, J. Phys. D 11
+    (1978) 1989):
+
+        G = E* (g(a) − d)²/(2πa),    −da/dt = v₀ (G/W − 1)^(1/n)  where G > W,    F = 2E* ∫₀ᵃ (d − g) dx
+
+    Attributes:
+        rate: v₀ and n.
+    """
+
+    rate: Rate = field(kw_only=True)
+
+    @cached_property
+    def law(self) -> Dugdale:
+        """Without an attraction beyond the edge."""
+        return Dugdale(self.profile, self.surface, self.modulus, 0.0, self.known, self.known)
+
+    def _recedes(self, edge: float, displacement: float) -> float:
+        """da/dt [LU/TU]."""
+        opened = float(self.profile.height(np.asarray([edge]))[0]) - displacement
+        excess = self.modulus * opened * opened / (2.0 * math.pi * edge * self.work) - 1.0
+        return -self.rate.velocity * excess ** (1.0 / self.rate.exponent) if excess > 0.0 and opened > 0.0 else 0.0
+
+    def _narrowed(self, edge: float, place: Callable[[float], float], times: Array) -> Array:
+        """a [LU] at times (m,) [TU] from the first one on, where it is `edge`; 0 from where it is lost."""
+        from scipy.integrate import solve_ivp
+
+        least = LOST * self.fixed_grips[0]
+
+        def gone(_: float, log: Array) -> float:
+            return float(log[0]) - math.log(least)
+
+        gone.terminal = True  # type: ignore[attr-defined]
+
+        def change(time: float, log: Array) -> list[float]:
+            radius = math.exp(float(log[0]))
+            return [self._recedes(radius, place(time)) / radius]
+
+        ends, start = (float(times[0]), float(times[-1])), [math.log(edge)]
+        found = solve_ivp(change, ends, start, "LSODA", times, events=gone, rtol=EXACT, atol=EXACT)
+        return np.append(np.exp(found.y[0]), np.zeros(times.size - found.t.size))
+
+    def edges(self, times: Array, displacements: Array) -> Array:
+        """a [LU] at times (m,) [TU] along displacements (m,) [LU], straight between them, from apart on."""
+        found, edge, turns = np.zeros_like(times), 0.0, np.flatnonzero(np.diff(np.sign(np.diff(displacements)))) + 1
+        for leg in pairwise([0, *turns.tolist(), times.size - 1]):
+            own = slice(leg[0], leg[1] + 1)
+            d = displacements[own]
+            if d.size > 1 and edge > 0.0 and d[-1] <= d[0]:
+                found[own] = self._narrowed(edge, partial(np.interp, xp=times[own], fp=d), times[own])
+            else:
+                touched = np.maximum.accumulate(d >= -SAME * self.spacing) | (edge > 0.0)
+                found[own] = np.where(touched, np.maximum(edge, self.radii(d)), 0.0)
+            edge = float(found[own][-1])
+        return found
+
+    def pulled(self, start: float, velocity: float, count: int) -> Array:
+        """Times [TU] of a pull from rest at which the edge has gone `count` equal ways, the last when it is lost."""
+        edge, least = float(self.radii(np.asarray([start]))[0]), self.fixed_grips[1]
+        end = (start - least) / velocity
+        while True:
+            times = np.linspace(0.0, end, FOLLOWED)
+            found = self._narrowed(edge, lambda time: start - velocity * time, times)
+            if found[-1] == 0.0:
+                break
+            end *= 2.0
+        held = found > 0.0
+        ways = np.interp(-np.linspace(edge, found[held][-1], count), -found[held], times[held])
+        return np.append(np.unique(ways), times[~held][0])
 
 
 def _half_disc(x: Array, radius: float) -> Array:
@@ -308,6 +399,9 @@ def estimate_on_plane(scene: Scene, profile: Profile) -> ContactEstimate:
         known *= 2.0
     if reach and work:
         estimate = _with_range(estimate, reach, bodies.profile, wanted, load)
+    elif scene.adhesion.rate and work:
+        own = {one.name: getattr(estimate, one.name) for one in fields(estimate)}
+        estimate = RatedEstimate(**own, surface=bodies.profile, rate=scene.adhesion.rate)
     if bodies.own_count is None:
         widest = float(estimate.radii(np.asarray([max(wanted, estimate.displacement_at(load))]))[0])
         limit = min(profile.reach, bodies.profile.steepest.curvature_radius or math.inf)

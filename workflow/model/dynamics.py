@@ -11,7 +11,7 @@ from dataclasses import MISSING, dataclass, field
 from typing import Any
 
 from contact1d.workflow.model.pairs import ContactEstimate
-from contact1d.workflow.scene import Cantilever, Damping, Scene, Slide
+from contact1d.workflow.scene import Cantilever, Damping, Impact, Scene, Slide
 
 RELAXING_STEP = 0.5
 """ω_max·Δt without time, where a minimiser is the only one that takes steps (`workflow.deck.deck.RELAXATION`)."""
@@ -20,6 +20,8 @@ MOVING_STEP, MOVING_TOLERANCE = 0.2, 1e-3
 
 Measured on 24 random slides: mean friction off by 1e-6 to 9e-5 of itself, by 5e-4 where that is 1e-4 of a particle's.
 """
+IMPACT_STEP = 1e-3
+"""Time step of an impact over the time to the deepest displacement at the first velocity; below that tolerance, too."""
 SWING = 0.5
 """Of the swing of a slide's plate on the law and its springs, the time to settle at least: springs may be rigid."""
 DRAG_STEP = 0.2
@@ -119,6 +121,8 @@ def motion_of(
         longest_step(product, stiffest, bodies.mass, damping + beside),
         longest_step(product, held, plate_mass, plate_damping + particles * beside),
     )
+    if isinstance(scene.experiment, Impact):
+        step = IMPACT_STEP * min(1.0, math.sqrt(tolerance / MOVING_TOLERANCE)) * largest / scene.experiment.velocity
     slowest = contact / moving if plate else scene.bulk_stiffness / bodies.mass
     settle_time = 2.0 * math.pi / math.sqrt(slowest)
     calm, calm_step = damping, step
@@ -174,6 +178,8 @@ def _drags(scene: Scene, particles: int, critical: float, plate_mass: float) -> 
         return damping, 0.0
     if scene.plate.damping != "auto":
         return damping, scene.plate.damping
+    if isinstance(scene.experiment, Impact):  # it is free
+        return damping, 0.0
     if scene.noise:  # drag without its noise would cool the plate; the particles' heat bath is its
         return damping, 0.0
     swinging = _swinging_apart(plate_mass, particles * mass, damping / mass)

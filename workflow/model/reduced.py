@@ -14,18 +14,19 @@ depends on it: it is a predictor, and it gives the discretisation error (`shifte
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import ClassVar
+from typing import Any, ClassVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.shear import slip
 from contact1d.workflow.model.adhesion import AdhesiveEstimate, Cells
-from contact1d.workflow.model.cohesive import CohesiveEstimate
+from contact1d.workflow.model.cohesive import CohesiveEstimate, RatedEstimate
+from contact1d.workflow.model.dugdale import Zone
 from contact1d.workflow.model.friction import Sliders, sliders_of
 from contact1d.workflow.model.motion import inertia
 from contact1d.workflow.model.pairs import ContactEstimate, places_within
@@ -73,19 +74,21 @@ class History:
         phases: names, of each moment.
         time: rising [TU].
         values: displacements [LU], or forces [FU] where `by_force`.
+        marks: names under which the last states of phases are reported.
     """
 
     phases: tuple[str, ...]
     time: Array
     values: Array
     by_force: bool
+    marks: Mapping[str, str]
 
     def denser(self, times: int) -> History:
         """The same with so many moments for each."""
         at = np.linspace(0.0, len(self.phases) - 1.0, (len(self.phases) - 1) * times + 1)
         time, values = (np.interp(at, np.arange(len(self.phases)), one) for one in (self.time, self.values))
         phases = tuple(self.phases[int(i)] for i in np.ceil(at - NEAREST))
-        return History(phases, time, values, self.by_force)
+        return replace(self, phases=phases, time=time, values=values)
 
     def path(self, model: Reduced) -> Path:
         """The displacements of the body [LU]."""
@@ -152,6 +155,17 @@ class Reduced(ABC):
         """Displacements [LU] of load steps at times (m,) [TU] that carry forces (m,) [FU] ≥ 0."""
         found = {force: self.displacement_at(force) if force > 0.0 else 0.0 for force in np.unique(forces).tolist()}
         return np.asarray([found[force] for force in forces.tolist()])
+
+    def feeling(self) -> Callable[[float, float], float]:
+        """F [FU] of a body that has just touched, by its next displacement [LU] and the time until then [TU]."""
+        is_lost = False
+
+        def force(place: float, time: float) -> float:
+            nonlocal is_lost
+            is_lost = place < self.apart or (is_lost and place < 0.0)
+            return 0.0 if is_lost else float(self.held(np.asarray([place]))[0])
+
+        return force
 
     @property
     def limits(self) -> tuple[float, ...]:
@@ -400,6 +414,37 @@ class CohesiveCells(Reduced):
 
 
 @dataclass(frozen=True, eq=False)
+class RatedCells(Reduced):
+    """The cells of a chain on a rigid plane whose edge recedes at a finite speed."""
+
+    estimate: RatedEstimate
+
+    dense: ClassVar[int] = 4
+
+    @property
+    def apart(self) -> float:
+        """Where fixed grips would lose a contact that takes its time [LU]."""
+        return self.estimate.fixed_grips[1]
+
+    def held(self, displacements: Array) -> Array:
+        """F [FU] at rest."""
+        return self.estimate.contact_forces(displacements)
+
+    def zone(self, path: Path) -> Zone:
+        """The edge and F of each state."""
+        edge = self.estimate.edges(path.time, path.displacement)
+        none = np.zeros_like(edge)
+        return Zone(edge, edge, path.displacement, self.estimate.law.forces(edge, none, path.displacement))
+
+    def follow(self, path: Path) -> Followed:
+        """See `Reduced.follow`."""
+        zone, cells = self.zone(path), self.estimate.zones(self.x)
+        return Followed(
+            self.x, zone.force, lambda state: self.estimate.loads(cells, zone, state), zone=(zone.edge, zone.reach)
+        )
+
+
+@dataclass(frozen=True, eq=False)
 class Sliding(Springs):
     """Springs with a slider each, on a rigid plane; a path is of displacements and positions along x."""
 
@@ -464,6 +509,18 @@ class RelaxingSprings(Reduced):
             memory.go(float(found[i]), time)
         return found
 
+    def feeling(self) -> Callable[[float, float], float]:
+        """See `Reduced.feeling`."""
+        heights, _, counts = self._heights
+        memory = Memory(self.law, heights)
+
+        def force(place: float, time: float) -> float:
+            pressed = memory.pressed(place, time)
+            memory.go(place, time)
+            return self.estimate.stiffness * float(pressed @ counts)
+
+        return force
+
     def follow(self, path: Path) -> Followed:
         """A load step from each state to the next, in the time between them; see `Reduced.follow`."""
         heights, own, counts = self._heights
@@ -490,8 +547,9 @@ def reduced(scene: Scene, settings: Settings) -> Reduced:
     deepest = settings.largest_displacement
     phase = 0.5 if settings.chains.upper % 2 == 0 else 0.0
     half = 0.5 * (settings.chains.upper - 1) * spacing
-    if isinstance(estimate, CohesiveEstimate):
-        return CohesiveCells(estimate, places_within(min(half, scene.bodies.reach), spacing, phase), deepest)
+    if isinstance(estimate, CohesiveEstimate | RatedEstimate):
+        kind: Any = CohesiveCells if isinstance(estimate, CohesiveEstimate) else RatedCells
+        return cast("Reduced", kind(estimate, places_within(min(half, scene.bodies.reach), spacing, phase), deepest))
     if isinstance(estimate, AdhesiveEstimate) and estimate.attracts:
         reach = min(half, scene.bodies.reach)
         return AdheringCells(estimate, places_within(reach * (1.0 + 1e-12), spacing, phase), deepest)
@@ -523,13 +581,54 @@ def swing(scene: Scene, settings: Settings, model: Reduced, start: float, load: 
         return np.full(2, model.displacement_at(load))
     particle, plate = inertia(scene, settings)
     mass, drag, step = plate + settings.chains.upper * particle, settings.drag(), settings.motion.time_step
-    path, place, velocity, is_lost = np.empty(total), start, 0.0, False
+    path, place, velocity, feel = np.empty(total), start, 0.0, model.feeling()
     force = load - float(model.held(np.asarray([place]))[0])
     for i in range(total):
         velocity += 0.5 * step * force / mass
         place += step * velocity
-        is_lost = place < model.apart or (is_lost and place < 0.0)
-        force = load - drag * velocity - (0.0 if is_lost else float(model.held(np.asarray([place]))[0]))
+        force = load - drag * velocity - feel(place, step)
         velocity += 0.5 * step * force / mass
         path[i] = place
     return path[[0, total - 1]]
+
+
+STRETCHES, COARSER = 60, 4
+"""States of an impact in the time of a fall to the deepest displacement; timesteps of the model in each."""
+FLIGHT = 3
+"""States in free flight that show its velocity."""
+
+
+def stretch(settings: Settings, velocity: float) -> int:
+    """Timesteps from state to state of an impact at a velocity [LU/TU]."""
+    return max(1, round(settings.largest_displacement / velocity / STRETCHES / settings.motion.time_step))
+
+
+def is_over(displacement: Sequence[float], force: Sequence[float]) -> bool:
+    """Whether a body that has hit flies off, or comes down again without having parted: it sticks."""
+    ways = np.sign(np.diff(displacement))
+    parted = not any(force[-FLIGHT:]) and ways[-1] < 0.0
+    return bool(parted or np.count_nonzero(np.diff(ways[ways != 0.0])) > 1)
+
+
+def impact(scene: Scene, settings: Settings, model: Reduced, velocity: float) -> Path:
+    """The model's states of an impact, the same times as those of a run.
+
+    It takes longer timesteps: with `feeling` F, velocity Verlet of M d″ = −F.
+    """
+    assert scene.plate
+    assert scene.plate.mass != "auto"
+    total = stretch(settings, velocity) * settings.motion.time_step
+    step, feel, place, force, mass = total / COARSER, model.feeling(), 0.0, 0.0, scene.plate.mass
+    places, forces = [0.0], [0.0]
+    while len(places) < FLIGHT or not is_over(places, forces):
+        for _ in range(COARSER):
+            velocity -= 0.5 * step * force / mass
+            place += step * velocity
+            force = feel(place, step)
+            velocity -= 0.5 * step * force / mass
+        places.append(place)
+        forces.append(force)
+        if len(places) > MOST_STEPS:
+            break
+    path = np.asarray(places[1:])
+    return Path(path, np.zeros_like(path), total * np.arange(1.0, len(places)))

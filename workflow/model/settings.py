@@ -54,7 +54,7 @@ from contact1d.workflow.model.pairs import (
 )
 from contact1d.workflow.model.pairs import Profile as Undeformed
 from contact1d.workflow.model.relaxing import creep
-from contact1d.workflow.scene import Interaction, Scene
+from contact1d.workflow.scene import Impact, Interaction, Scene
 from contact1d.workflow.scene.remedies import less_compression
 
 FILE = Path(__file__).with_name("calibration.json")
@@ -491,6 +491,8 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
     return chosen
 
 
+STOPPING = 200
+"""Displacements at which the force is looked at up to where a body stops."""
 INERTIA, LONGER = 4.0, 2.0
 """Masses that the program chose, in a slower motion over the usual one; its drags, which go with the root, and the
 timesteps of a coarser one. What is of first order in these changes by its own amount at least."""
@@ -505,7 +507,7 @@ def slower(scene: Scene, settings: Settings) -> list[tuple[Scene, Settings]]:
         forces = replace(forces, plane_stiffness=plane, bulk_stiffness=_beside_plane(scene.bulk_stiffness, plane))
     found = [(scene, replace(settings, forces=forces, motion=replace(own, time_step=longer)))]
     bodies, plate, damping = scene.bodies, scene.plate, scene.damping
-    if "mass" not in bodies.model_fields_set:
+    if "mass" not in bodies.model_fields_set and not scene.experiment.is_massless:
         bodies = bodies.model_copy(update={"mass": INERTIA * bodies.mass})
     if plate and plate.mass == "auto":
         plate = plate.model_copy(update={"mass": INERTIA * own.plate_mass})
@@ -520,6 +522,28 @@ def slower(scene: Scene, settings: Settings) -> list[tuple[Scene, Settings]]:
         time_step=whole_steps(motion.time_step, duration),
     )  # fmt: skip
     return [*found, (heavier, replace(settings, motion=motion))] if motion != own else found
+
+
+def stopped_at(scene: Scene, estimate: ContactEstimate) -> float:
+    """Displacement [LU] at which an elastic body that hits the plane is at rest: ∫F dd = ½ M v²; 0 without a velocity.
+
+    Adhesion takes it deeper by what it gains at touch.
+    """
+    if not isinstance(scene.experiment, Impact):
+        return 0.0
+    assert scene.plate
+    assert scene.plate.mass != "auto"
+    energy, deepest = 0.5 * scene.plate.mass * scene.experiment.velocity**2, scene.bodies.spacing
+
+    def stored(displacement: float) -> float:
+        places = np.linspace(0.0, displacement, STOPPING)
+        return float(np.trapezoid(estimate.contact_forces(places), places))
+
+    from scipy.optimize import brentq
+
+    while stored(deepest) < energy:
+        deepest *= 2.0
+    return float(brentq(lambda d: stored(d) - energy, 0.0, deepest))
 
 
 def _beside_plane(stiffness: float, plane: float) -> float:
@@ -550,7 +574,7 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     forces, estimate = _forces(scene, tolerance, calibration)
     load = scene.experiment.compression
     if load is None:
-        largest = max(scene.experiment.places())
+        largest = max(scene.experiment.places(), default=0.0) or stopped_at(scene, estimate)
     else:
         largest = estimate.displacement_at(load * creep(scene.viscoelasticity, scene.experiment.lasts or 0.0))
     chains = _chains(scene, estimate, forces, largest, calibration.chain * tolerance)

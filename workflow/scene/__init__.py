@@ -9,9 +9,21 @@ from contact1d.workflow.scene.effects import (
     Neighbours,
     Noise,
     Plate,
+    Rate,
     Viscoelasticity,
 )
-from contact1d.workflow.scene.experiments import History, Hold, Kind, Load, Path, PullOff, Slide, Span, Tangential
+from contact1d.workflow.scene.experiments import (
+    History,
+    Hold,
+    Impact,
+    Kind,
+    Load,
+    Path,
+    PullOff,
+    Slide,
+    Span,
+    Tangential,
+)
 from contact1d.workflow.scene.measured import Measured
 from contact1d.workflow.scene.problems import Problem, SceneError
 from contact1d.workflow.scene.profiles import Profile
@@ -35,6 +47,7 @@ __all__ = [
     "Friction",
     "History",
     "Hold",
+    "Impact",
     "Interaction",
     "Kind",
     "Load",
@@ -49,6 +62,7 @@ __all__ = [
     "Problem",
     "Profile",
     "PullOff",
+    "Rate",
     "Reduction",
     "Scene",
     "SceneError",

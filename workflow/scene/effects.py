@@ -27,6 +27,7 @@ from contact1d.workflow.scene.quantities import (
     Listed,
     Mass,
     OutOfRange,
+    Ratio,
     RatioOrZero,
     Seed,
     Stiffness,
@@ -127,6 +128,15 @@ class Friction(Effect):
     """largest tangential over normal force of a particle; before slip it has bodies.bulk_stiffness_tangential"""
 
 
+class Rate(Table):
+    """How the energy that opens an edge grows with its speed: G = W (1 + (v/v₀)ⁿ) (Maugis and Barquins)."""
+
+    velocity: Velocity
+    """v₀, at which it is doubled"""
+    exponent: Ratio
+    """n, about 0.6 of elastomers"""
+
+
 class Adhesion(Effect):
     """Effect: adhesion to a rigid plane, JKR's, or with a range that of Maugis and Dugdale. W or γ is given."""
 
@@ -145,6 +155,10 @@ class Adhesion(Effect):
     range: Length | None = None
     """range h₀ = W/σ₀ of the attraction, 0.974 z₀ of a Lennard-Jones surface: the contact is that of Maugis and
     Dugdale, from DMT to JKR; absent: a range of zero, JKR
+    """
+    rate: Rate | None = None
+    """in a pull_off with a velocity, or a history of displacements: the edge recedes at a finite speed, and advances at
+    once; absent: at once
     """
 
     @property

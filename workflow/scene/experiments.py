@@ -1,4 +1,4 @@
-"""The experiments of a scene: load, path, pull_off, slide, tangential, hold, history.
+"""The experiments of a scene: load, path, pull_off, slide, tangential, hold, history, impact.
 
 Each declares its keys, what it needs and what it excludes: the rules read nothing else of it.
 
@@ -120,7 +120,7 @@ class Kind(Table):
         way_is_given: the scene prescribes the loading history, so that nothing is searched for and states are unique.
         motion_is_result: the motion itself is examined, so that the scene exists in time only and its drag is its own.
         draws_off: the plate is retracted through a spring along z.
-        is_massless: the mass of a particle matters nowhere.
+        is_massless: the mass of a particle matters nowhere; of a plate that moves it is all.
         goes_along: the scene also prescribes places along x, on a plane, and has no other method.
     """
 
@@ -214,7 +214,7 @@ class Path(Kind):
 class PullOff(Kind):
     """Compression by a preload, then unloading up to pull-off."""
 
-    only_with_noise = ("loading_rate", "velocity", "stiffness", "repeats")
+    only_with_noise = ("loading_rate", "stiffness", "repeats")
     load_key = "preload"
     finds_pull_off = True
 
@@ -225,7 +225,9 @@ class PullOff(Kind):
     loading_rate: LoadingRate | None = None
     """with [noise]: rate at which the load decreases until the bodies separate"""
     velocity: Velocity | None = None
-    """with [noise], in place of loading_rate: velocity of the far end of a spring that retracts the plate"""
+    """with [noise], in place of loading_rate: velocity of the far end of a spring that retracts the plate; with
+    adhesion.rate that of the plate itself
+    """
     stiffness: Stiffness | None = None
     """with velocity: stiffness of that spring; absent: that of the contact at zero load"""
     repeats: RepeatCount | None = None
@@ -451,7 +453,28 @@ class History(Kind):
         return [point.displacement for point in self.displacement or ()]
 
 
-Experiment = Annotated[Load | Path | PullOff | Slide | Tangential | Hold | History, Discriminator("kind")]
+class Impact(Kind):
+    """A body that hits the rigid plane with a velocity, and rebounds or sticks; always dynamic."""
+
+    only_method = "dynamic"
+    excludes: ClassVar[Mapping[str, str]] = {
+        "cantilever": UNPULLED,
+        "friction": UNMOVED,
+        "neighbours": "it is one of springs that know nothing of their neighbours",
+        "damping": "nothing but the contact slows the body",
+        "noise": "nothing but the contact slows the body",
+    }
+    needs = ("plate",)
+    way_is_given = True
+    is_massless = True
+
+    kind: Literal["impact"]
+    """a body that hits the plane; always dynamic"""
+    velocity: Velocity
+    """velocity at which it comes; its mass is plate.mass"""
+
+
+Experiment = Annotated[Load | Path | PullOff | Slide | Tangential | Hold | History | Impact, Discriminator("kind")]
 
 KINDS: dict[str, type[Kind]] = {
     kind: table for kind, table in allowed_by(Experiment).kinds.items() if issubclass(table, Kind)

@@ -120,10 +120,10 @@ def _lower_body(d: Draft) -> Rows:
     yield ("friction", d.on_chain and not along,
            "not between two chains, whose friction comes from the interaction",
            f'remove it, or use {PLANE} and kind = "tangential"')
-    timed = d.kind == "history" or "viscoelasticity" in d
-    yield ("bodies.lower", d.on_chain and timed,
-           f'must be "rigid_plane" with {"[viscoelasticity]" if "viscoelasticity" in d else "a history"}: the springs '
-           "of one body have the memory of both", f"use {PLANE}, with the contact modulus of both bodies")
+    what = "[viscoelasticity]" if "viscoelasticity" in d else f'kind = "{d.kind}"'
+    yield ("bodies.lower", d.on_chain and (d.kind in ("history", "impact") or "viscoelasticity" in d),
+           f'must be "rigid_plane" with {what}, whose springs are those of both bodies',
+           f"use {PLANE}, with the contact modulus of both")
     yield ("adhesion", d.on_chain,
            "not between two chains, which attract each other by the interaction",
            f"use interaction.attraction, or {PLANE}")
@@ -180,6 +180,19 @@ def _attraction(d: Draft) -> Rows:
     yield ("adhesion.range", adheres and "adhesion.range" in d and bool(timed or d["experiment.method"] == "dynamic"),
            f"only of contacts at rest, not {f'with [{timed[0]}]' if timed else 'in time'}",
            'remove it, or use method = "quasistatic" without [plate], [damping] and [noise]')
+    rated, pulled = adheres and "adhesion.rate" in d, d.kind == "pull_off" and "experiment.velocity" in d
+    yield ("adhesion.rate", rated and "adhesion.range" in d, "not together with a range: it is that of JKR's edge",
+           "give one of the two")
+    yield ("adhesion.rate", rated and not (pulled or (d.kind == "history" and "experiment.displacement" in d)),
+           "only in a pull_off with a velocity, or in a history of displacements: other states have no time",
+           'remove it, or give experiment.velocity with kind = "pull_off"')
+    yield ("adhesion.rate", rated and bool(timed or d["experiment.method"] == "dynamic" or "experiment.cycles" in d),
+           "only of one pull in equilibrium, whose edge alone takes time",
+           'remove it, or use method = "quasistatic" without cycles, [plate], [damping] and [noise]')
+    yield ("adhesion.rate", rated and d.profile == "flat_punch",
+           "not with a flat punch, whose edge does not move before it is lost", "remove it")
+    yield ("experiment.force", adheres and d.kind == "history" and "experiment.force" in d,
+           "not with [adhesion], under which a force has two displacements", "give experiment.displacement")
     yield ("damping", adheres and d.kind == "path",
            "not with [adhesion] in a path, which under displacement control has no dynamics",
            'remove it: method = "quasistatic" is the same without time')
@@ -192,6 +205,8 @@ def _plate(d: Draft) -> Rows:
     yield ("horizontal", not slides and "x" in (free or ()),
            'missing, needed by plate.free with "x"',
            f'write plate.free = ["z"], or add {EFFECT_TABLES["horizontal"].how}')
+    yield ("plate.mass", d.kind == "impact" and d["plate.mass"] == "auto",
+           "must be given in an impact (MU): it is that of the body", "give its mass")
     held = d.kind == "hold"
     yield ("plate", held and "experiment.displacement" in d,
            "not with a displacement that is held: the plate has no motion of its own", "remove it, or give a force")
@@ -264,6 +279,7 @@ def _open_spacing(d: Draft) -> Rows:
     yield ("bodies.spacing", d.profile == "flat",
            "must be a length (LU) of a flat body without an edge", f'{GIVE_SPACING}, or use kind = "flat_punch"')
     tied = [f"[{name}]" for name in ("neighbours", "damping", "noise", "plate") if name in d]
+    tied = [] if d.experiment.is_massless else tied
     tied += ['method = "dynamic"'] * (d["experiment.method"] == "dynamic")
     what = next(iter(tied), "")
     yield ("bodies.spacing", what,
@@ -373,6 +389,9 @@ def _pull_off(d: Draft) -> Rows:
            "give the rate (FU/TU) at which the load decreases, or the velocity (LU/TU) of a spring that retracts the "
            "plate, or remove [noise]")
     yield ("experiment.velocity", rate, "not together with a loading_rate", "remove one of the two")
+    yield ("experiment.velocity", "noise" not in d and "adhesion.rate" not in d,
+           "only with [noise], or with adhesion.rate: otherwise a pull-off does not depend on it",
+           "remove it, or add one of these")
     yield ("experiment.stiffness", not velocity,
            "only with a velocity: it is that of the spring",
            "remove it, or give the velocity of its far end")

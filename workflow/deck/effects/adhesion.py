@@ -1,6 +1,7 @@
 """Effect [adhesion]: d = g(a) − √(2π a W/E*) at the edge a of the contact, the rule of Heß, which makes it JKR's.
 
-With a range it is Maugis and Dugdale's: an attraction σ₀ = W/h₀ beyond the edge (`model.cohesive`).
+With a range it is Maugis and Dugdale's: an attraction σ₀ = W/h₀ beyond the edge (`model.cohesive`). There, and where
+the edge takes time, each load step has its edges.
 """
 
 from contact1d.workflow.deck.effects import Contribution, Stage, number
@@ -14,8 +15,8 @@ TOUCH = 1e-9
 def adhesion(scene: Scene, settings: Settings) -> Contribution:
     """The cells of the particles are in a file of their own. The effect follows the plane."""
     own, stiffness = scene.the(Adhesion), {"adhesion_stiffness": number(scene.bulk_stiffness)}
-    if own.range:
-        modulus, stress = scene.bulk_stiffness / scene.bodies.spacing, own.work / own.range
+    if own.range or own.rate:
+        modulus, stress = scene.bulk_stiffness / scene.bodies.spacing, own.work / own.range if own.range else 0.0
         stiffness |= {"adhesion_modulus": number(modulus), "adhesion_stress": number(stress)}
         return Contribution("adhesion", Stage.DRAG, ("cohesion",), stiffness)
     last = settings.estimate.parted(0.0) / settings.estimate.spacing

@@ -1,0 +1,82 @@
+"""Impact: a body hits the rigid plane with a velocity; how fast it leaves, how long it touches, how hard it presses."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.analysis.polynomial import lowest_minimum, through, value
+from contact1d.workflow.continuation.driver import Driver
+from contact1d.workflow.continuation.outcome import Outcome, Reading
+from contact1d.workflow.continuation.trace import Trace
+from contact1d.workflow.deck.steps import Fly, Launch, Phase
+from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
+from contact1d.workflow.experiments.history import lost
+from contact1d.workflow.model.reduced import FLIGHT, impact, reduced, stretch
+from contact1d.workflow.model.settings import Settings
+from contact1d.workflow.scene import Impact, Plate, Scene
+from contact1d.workflow.units import ENERGY, FORCE, LENGTH, NUMBER, TIME
+
+Array = NDArray[np.float64]
+NEAR = 2
+"""States on both sides of a maximum that its polynomial goes through."""
+
+
+class ImpactExperiment(Scripted[Impact]):
+    """e = −v′/v, the time of contact, the peaks, and ½ M (v² − v′²)."""
+
+    main_results = ("restitution", "contact_time", "peak_force", "peak_displacement", "peak_contact_radius")
+
+    def script(self, branch: Driver, scene: Scene) -> None:
+        """Hit."""
+        branch.fly(self.given(scene).velocity)
+        branch.mark("final")
+
+    def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
+        """A body that comes down again sticks: its restitution is 0, and all of its energy is lost in the end."""
+        velocity, mass = self.given(scene).velocity, scene.the(Plate).mass
+        assert mass != "auto"
+        d, time = trace.displacement, trace.time
+        energy, parted = 0.5 * mass * velocity**2, not trace.force[-FLIGHT:].any()
+        back = float((d[-2] - d[-1]) / (time[-1] - time[-2])) / velocity if parted else 0.0
+        radii = np.asarray([trace.radius(i) or 0.0 for i in range(len(trace))])
+        found = {
+            "restitution": Reading(back, NUMBER, scale=1.0),
+            "dissipated_energy": Reading(energy * (1.0 - back**2), ENERGY, scale=energy),
+            "peak_force": Reading(_top(time, trace.force), FORCE),
+            "peak_displacement": Reading(_top(time, d), LENGTH),
+            "peak_contact_radius": Reading(float(radii.max()), LENGTH),
+        }
+        return found | ({"contact_time": Reading(lost(trace), TIME)} if parted else {})
+
+    def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
+        """The time of each state."""
+        if "contact_time" not in outcome.results:
+            words = "the body sticks: it comes down again without having parted, so there is no contact_time"
+            outcome = replace(outcome, warnings={**outcome.warnings, "sticks": words})
+        return replace(outcome, columns={"time": tuple(one.step * settings.motion.time_step for one in outcome.states)})
+
+    def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
+        """The load steps that are expected to run."""
+        velocity = self.given(scene).velocity
+        steps = stretch(settings, velocity)
+        count = impact(scene, settings, reduced(scene, settings), velocity).time.size
+        first = Phase("touching", (Launch(velocity, steps),))
+        return first, Phase("impact", (Fly(steps),) * (count - 1), state=True)
+
+    def advice(self, scene: Scene) -> str:
+        """What is left is the lattice's."""
+        return f"Use {FINER_SPACING}"
+
+
+def _top(time: Array, column: Array) -> float:
+    """The largest value of a column over time, by a polynomial through the states about it."""
+    at = min(max(int(column.argmax()), NEAR), column.size - 1 - NEAR)
+    near = slice(at - NEAR, at + NEAR + 1)
+    width = float(time[at + NEAR] - time[at])
+    loss = through((time[near] - time[at]) / width, -column[near])
+    top, _ = lowest_minimum(loss, -1.0, 1.0)
+    return float(column.max() if np.isnan(top) else -value(loss, top))
