@@ -111,7 +111,7 @@ def _timed(model: Reduced, path: Path) -> list[Displace]:
         return [Cohere(*numbers) for numbers in zip(*columns, strict=True)]
     if not isinstance(model, RelaxingSprings):
         return [Displace(place) for place in path.displacement.tolist()]
-    spent = np.diff(path.time, prepend=path.time[:1]).tolist()
+    spent = model.spent(path.time).tolist()
     return [Spend(place, time) for place, time in zip(path.displacement.tolist(), spent, strict=True)]
 
 

@@ -89,7 +89,7 @@ def _moments(scene: Scene) -> Moments:
         parts = np.linspace(0.0, 1.0, count + 1)[1:]
         if scene.viscoelasticity and not given.steps:
             soonest = min(1.0, SOONEST * scene.viscoelasticity.shortest_time / (after - before))
-            parts = np.union1d(parts, np.geomspace(soonest, 1.0, count // 2))
+            parts = np.union1d(parts, np.geomspace(soonest, 1.0, count // 2 + 1)[:-1])
         names += [PHASES[float(np.sign(end - start))]] * parts.size
         times.append(before + (after - before) * parts)
         wanted.append(start + (end - start) * parts)

@@ -65,7 +65,7 @@ class ImpactExperiment(Scripted[Impact]):
         steps = stretch(settings, velocity)
         count = impact(scene, settings, reduced(scene, settings), velocity).time.size
         first = Phase("touching", (Launch(velocity, steps),))
-        return first, Phase("impact", (Fly(steps),) * (count - 1), state=True)
+        return first, Phase("impact", (Fly(steps),) * (count - 2), state=True)
 
     def advice(self, scene: Scene) -> str:
         """What is left is the lattice's."""

@@ -30,7 +30,7 @@ from contact1d.workflow.model.dugdale import Zone
 from contact1d.workflow.model.friction import Sliders, sliders_of
 from contact1d.workflow.model.motion import inertia
 from contact1d.workflow.model.pairs import ContactEstimate, places_within
-from contact1d.workflow.model.relaxing import Memory
+from contact1d.workflow.model.relaxing import SUDDEN, Memory
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene, Viscoelasticity
 
@@ -498,6 +498,10 @@ class RelaxingSprings(Reduced):
         heights, _, counts = self._heights
         return np.asarray(self.estimate.stiffness * (np.maximum(displacements[:, None] - heights, 0.0) @ counts))
 
+    def spent(self, times: Array) -> Array:
+        """Durations (m,) [TU] of load steps that end at times (m,) [TU]; the first happens at once."""
+        return np.diff(times, prepend=times[0] - SUDDEN * self.law.shortest_time)
+
     def carrying(self, times: Array, forces: Array) -> Array:
         """See `Reduced.carrying`; each follows from those before."""
         heights, _, counts = self._heights
@@ -525,8 +529,7 @@ class RelaxingSprings(Reduced):
         """A load step from each state to the next, in the time between them; see `Reduced.follow`."""
         heights, own, counts = self._heights
         memory, each = Memory(self.law, heights), np.empty((path.displacement.size, heights.size))
-        times = np.diff(path.time, prepend=path.time[:1])
-        for i, (place, time) in enumerate(zip(path.displacement.tolist(), times.tolist(), strict=True)):
+        for i, (place, time) in enumerate(zip(path.displacement.tolist(), self.spent(path.time).tolist(), strict=True)):
             each[i] = memory.pressed(place, time)
             memory.go(place, time)
         each *= self.estimate.stiffness
@@ -611,7 +614,7 @@ def is_over(displacement: Sequence[float], force: Sequence[float]) -> bool:
 
 
 def impact(scene: Scene, settings: Settings, model: Reduced, velocity: float) -> Path:
-    """The model's states of an impact, the same times as those of a run.
+    """The model's states of an impact, from touch on at the times of a run.
 
     It takes longer timesteps: with `feeling` F, velocity Verlet of M d″ = −F.
     """
@@ -630,5 +633,5 @@ def impact(scene: Scene, settings: Settings, model: Reduced, velocity: float) ->
         forces.append(force)
         if len(places) > MOST_STEPS:
             break
-    path = np.asarray(places[1:])
-    return Path(path, np.zeros_like(path), total * np.arange(1.0, len(places)))
+    path = np.asarray(places)
+    return Path(path, np.zeros_like(path), total * np.arange(float(path.size)))

@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 from contact1d.workflow.scene import Viscoelasticity
 
 Array = NDArray[np.float64]
-MOMENTS, SOONEST = 200, 1e-3
-"""Steps of the creep of one spring, and the end of the first one over the whole time, at most."""
+SUDDEN, MOMENTS = 1e-6, 200
+"""Time over the shortest one of a body in which something happens at once; steps of the creep of one spring."""
 
 
 class Memory:
@@ -46,7 +46,7 @@ class Memory:
             none = np.empty(0)
             return 1.0, self.surface * np.exp(-time / self._retarded), none, none
         age = time / self._time
-        decay, gain = np.exp(-age), np.where(age > 0.0, -np.expm1(-age) / np.where(age > 0.0, age, 1.0), 1.0)
+        decay, gain = np.exp(-age), -np.expm1(-age) / age
         response = self._lasting + float(self._share @ gain)
         past = (self._share * decay) @ self._arms - float(self._share @ gain) * self.surface
         return response, -past / response, decay, gain
@@ -56,7 +56,7 @@ class Memory:
         response, free, *_ = self._ahead(time)
         overlap = place - self._heights
         if self._retarded:
-            rate = self._retarded * (place - self.place) / time if time > 0.0 else 0.0
+            rate = self._retarded * (place - self.place) / time
             return np.where(overlap > free, np.maximum(overlap + rate, 0.0), 0.0)
         return response * np.maximum(overlap - free, 0.0)
 
@@ -66,7 +66,7 @@ class Memory:
         Each is straight, slope (place − base), beyond where it is touched.
         """
         slope, free, *_ = self._ahead(time)
-        rate = self._retarded / time if time > 0.0 else 0.0
+        rate = self._retarded / time
         slope, base = slope + rate, (self._heights + (rate * self.place if rate else free)) / (1.0 + rate)
         touch = np.maximum(base, self._heights + free)
         order = np.argsort(touch)
@@ -88,7 +88,7 @@ def creep(law: Viscoelasticity | None, time: float) -> float:
     if law is None or law.retardation_time or time <= 0.0:
         return 1.0
     spring, alone = Memory(law, np.zeros(1)), np.ones(1)
-    moments = np.append(0.0, time * np.geomspace(min(SOONEST, law.shortest_time / time), 1.0, MOMENTS))
+    moments = time * np.geomspace(SUDDEN * min(1.0, law.shortest_time / time), 1.0, MOMENTS)
     for step in np.diff(moments, prepend=0.0).tolist():
         spring.go(spring.under(1.0, alone, step), step)
     return spring.place

@@ -10,18 +10,21 @@ from contact1d.workflow.scene import Scene, Viscoelasticity
 
 def viscoelasticity(scene: Scene, settings: Settings) -> Contribution:
     """An arm is a fragment of its own, in the order of the terms."""
-    own, elapsed = scene.the(Viscoelasticity), "elapsed_rows" if scene.is_stepped else "elapsed_steps"
+    own, rows = scene.the(Viscoelasticity), scene.is_stepped
+    fragments = ["elapsed_rows" if rows else "elapsed_steps"]
     variables = {"viscoelasticity_stiffness": number(settings.forces.plane_stiffness)}
+    if not rows:
+        variables["elapsed_step"] = number(settings.motion.time_step)
     if own.retardation_time:
         variables["retardation_time"] = number(own.retardation_time)
-        return Contribution("viscoelasticity", Stage.DRAG, (elapsed, "retardation", "relaxed"), variables)
+        return Contribution("viscoelasticity", Stage.DRAG, (*fragments, "retardation", "relaxed"), variables)
     variables["viscoelasticity_part"] = number(own.lasting)
+    fragments.append("viscoelasticity")
     for arm, term in enumerate(own.terms or (), 1):
-        variables |= {
-            f"viscoelasticity_share_{arm}": number(term.share),
-            f"viscoelasticity_time_{arm}": number(term.time),
-        }
+        variables |= {f"viscoelasticity_share_{arm}": number(term.share)}
+        variables |= {f"viscoelasticity_time_{arm}": number(term.time)}
+        fragments += [f"decay_{'rows' if rows else 'steps'}:{arm}", f"viscoelasticity_arm:{arm}"]
     arms = range(1, len(own.terms or ()) + 1)
-    before, after = ([f"{name}:{arm}" for arm in arms] for name in ("viscoelasticity_arm", "relaxed_arm"))
-    fragments = (elapsed, "viscoelasticity", *before, f"relaxing:{len(arms)}", *after, "relaxed")
-    return Contribution("viscoelasticity", Stage.DRAG, fragments, variables)
+    fragments += [f"decayed:{len(arms)}"] * rows + [f"relaxing:{len(arms)}"]
+    fragments += [*(f"relaxed_arm:{arm}" for arm in arms), "relaxed"]
+    return Contribution("viscoelasticity", Stage.DRAG, tuple(fragments), variables)
