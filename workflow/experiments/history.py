@@ -26,6 +26,8 @@ STEPS, FOR_TOLERANCE = 50, 1e-3
 """Load steps of a leg at a tolerance; they miss a part that goes with the square of their width."""
 SOONEST = 0.05
 """First of the load steps that become longer and longer, over the shortest time of the body."""
+ROUNDED = 9
+"""Decimals of parts of a leg: none is as short as round-off."""
 PHASES = {1.0: "loading", -1.0: "unloading", 0.0: "holding"}
 
 
@@ -89,7 +91,8 @@ def _moments(scene: Scene) -> Moments:
         parts = np.linspace(0.0, 1.0, count + 1)[1:]
         if scene.viscoelasticity and not given.steps:
             soonest = min(1.0, SOONEST * scene.viscoelasticity.shortest_time / (after - before))
-            parts = np.union1d(parts, np.geomspace(soonest, 1.0, count // 2 + 1)[:-1])
+            parts = np.union1d(parts, np.geomspace(soonest, 1.0, count // 2)).round(ROUNDED)
+            parts = np.unique(parts[parts > 0.0])
         names += [PHASES[float(np.sign(end - start))]] * parts.size
         times.append(before + (after - before) * parts)
         wanted.append(start + (end - start) * parts)
