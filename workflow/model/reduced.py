@@ -506,9 +506,7 @@ class RelaxingSprings(Reduced):
         """See `Reduced.carrying`; each follows from those before."""
         heights, _, counts = self._heights
         memory, found = Memory(self.law, heights), np.zeros_like(times)
-        for i, (force, time) in enumerate(
-            zip(forces.tolist(), np.diff(times, prepend=times[:1]).tolist(), strict=True)
-        ):
+        for i, (force, time) in enumerate(zip(forces.tolist(), self.spent(times).tolist(), strict=True)):
             found[i] = memory.under(force / self.estimate.stiffness, counts, time)
             memory.go(float(found[i]), time)
         return found
