@@ -1,6 +1,6 @@
 """Every set of effects: it either runs in LAMMPS, row by row and as a deck with bitwise the same states, or is refused.
 
-Five experiments with their methods, two lower bodies, every set of up to MOST effects and every larger one that is
+Seven experiments with their methods, two lower bodies, every set of up to MOST effects and every larger one that is
 allowed; so every effect alone (with what it requires) and every pair of effects is among them.
 """
 
@@ -19,7 +19,7 @@ from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.deck.steps import DisplaceInTime, Draw, Phase, UnderLoad, displacements
+from contact1d.workflow.deck.steps import DisplaceInTime, Draw, Fly, Launch, Phase, Spend, UnderLoad, displacements
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import Engine
@@ -36,6 +36,7 @@ TABLES: dict[str, dict[str, Any]] = {
     "neighbours": {"stiffness": 0.3},
     "horizontal": {},
     "adhesion": {"work_of_adhesion": 5e-4},
+    "viscoelasticity": {"terms": [{"share": 0.4, "time": 1.0}, {"share": 0.3, "time": 10.0}]},
     "friction": {"coefficient": 0.3},
     "damping": {"coefficient": "auto"},
     "noise": {"temperature": 1e-3, "seed": 1},
@@ -48,10 +49,14 @@ EXPERIMENTS: dict[str, dict[str, Any]] = {
     "pull_off": {"preload": 0.1},
     "slide": {"normal_force": 0.1, "distance": 2.0},
     "tangential": {"normal_force": 0.1, "displacements": [0.0, 0.01, -0.02]},
+    "history": {"displacement": [[0.0, 0.0], [1.0, 0.05], [2.0, 0.0]]},
+    "impact": {"velocity": 0.1},
 }
 METHODS: dict[str, tuple[str, ...]] = dict.fromkeys(EXPERIMENTS, ("quasistatic", "dynamic")) | {
     "slide": ("dynamic",),
     "tangential": ("quasistatic",),
+    "history": ("quasistatic",),
+    "impact": ("dynamic",),
 }
 STEPS = 25
 MOST = 3
@@ -69,7 +74,12 @@ def fits(kind: str, method: str, lower: str, effects: frozenset[str]) -> bool:
     cantilever slides a plate, whose particles have to follow it along x. Coulomb's friction is a rigid plane's, in a
     tangential and alone: its history has no minimum to be found, and no time. An energy of adhesion is a rigid
     plane's, too, of particles that stand still in their body: alone, and in time with the plate that they belong to.
+    Memory is of such particles, over a history or in an impact, which nothing else slows.
     """
+    if kind in ("history", "impact") or "viscoelasticity" in effects:
+        moved = {"history": set(), "impact": {"plate"}}.get(kind)
+        one = effects - (moved or set()) in (set(), {"adhesion"}, {"viscoelasticity"})
+        return moved is not None and lower == "rigid_plane" and one and effects >= moved
     if "adhesion" in effects:
         alone = lower == "rigid_plane" and kind in ("load", "path", "pull_off")
         moved = effects == {"adhesion", "damping", "plate"} and kind != "path"
@@ -113,8 +123,8 @@ def label(case: Case) -> str:
 def scene_of(make_scene: MakeScene, case: Case, **bodies: Any) -> Scene:
     kind, method, lower, effects = case
     tables: dict[str, Any] = {name: TABLES[name] if name in effects else None for name in EFFECTS}
-    if kind == "slide" and "plate" in effects:
-        tables["plate"] = {"free": ["x", "z"]}
+    if "plate" in effects:
+        tables["plate"] = {"slide": {"free": ["x", "z"]}, "impact": {"mass": 1.0}}.get(kind, TABLES["plate"])
     experiment = {"kind": kind} | EXPERIMENTS[kind] | ({"method": method} if len(METHODS[kind]) > 1 else {})
     reduction = {"reduction": "mdr"} if "adhesion" in effects else {}
     return make_scene(**tables, experiment=experiment, bodies={"lower": lower} | reduction | bodies)
@@ -124,12 +134,19 @@ ALL = list(cases())
 ALLOWED = [case for case in ALL if fits(*case)]
 
 
-def phases_of(kind: str, method: str) -> tuple[Phase, ...]:
+def phases_of(kind: str, method: str, relaxes: bool) -> tuple[Phase, ...]:
     """A few rows of each kind of step that the experiment uses, forth and back, with a state after each phase."""
     if kind == "tangential":
         return (
             Phase("forward", (Draw(0.05, 0.0), Draw(0.05, 0.01), Draw(0.1, 0.02)), state=True),
             Phase("backward", (Draw(0.1, -0.01), Draw(-0.02, -0.02)), state=True),
+        )
+    if kind == "impact":
+        return Phase("touching", (Launch(0.1, STEPS),)), Phase("impact", (Fly(STEPS),) * 3, state=True)
+    if relaxes:
+        return (
+            Phase("loading", (Spend(0.0, 0.1), Spend(0.02, 0.5), Spend(0.05, 2.0)), state=True),
+            Phase("unloading", (Spend(0.01, 1.0), Spend(-0.02, 0.3)), state=True),
         )
     if method == "quasistatic":
         return (
@@ -174,7 +191,7 @@ def test_allowed_sets_run(make_scene: MakeScene, tmp_path: Path, case: Case) -> 
     assert set(scene.effects) == case[3]
     assert scene.method == case[1]
     deck = Deck(scene, settings_for(scene))
-    phases = phases_of(case[0], case[1])
+    phases = phases_of(case[0], case[1], "viscoelasticity" in case[3])
     context = RunContext(deck, prepared(deck, tmp_path / "rows"), Silent(), 60.0)
     with context.contact() as contact:
         states = replayed(contact, phases)
@@ -205,7 +222,7 @@ LONG = [case for case in ALLOWED if case[3] >= {"horizontal", "neighbours"}]
 def run_a_little(scene: Scene, case: Case, folder: Path) -> None:
     deck = Deck(scene, settings_for(scene))
     with RunContext(deck, prepared(deck, folder / "rows"), Silent(), 60.0).contact() as contact:
-        states = replayed(contact, phases_of(case[0], case[1]))
+        states = replayed(contact, phases_of(case[0], case[1], "viscoelasticity" in case[3]))
     assert np.isfinite([state.force for state in states]).all()
 
 

@@ -69,7 +69,7 @@ ONE_MISTAKE: list[tuple[dict[str, Any], str, str, str]] = [
     (MATERIAL, "material.upper.poisson_ratio=0.6", "material.upper.poisson_ratio",
      "greater than -1 and at most 0.5"),
     ({}, "accuracy.tolerance=0.2", "accuracy.tolerance", "from 1e-07 to 0.1"),
-    ({}, "experiment.kind=indent", "experiment.kind", '"load", "path", "pull_off", "slide", "tangential" or "hold"'),
+    ({}, "experiment.kind=indent", "experiment.kind", '"tangential", "hold", "history" or "impact"'),
     ({}, "experiment.kind=[1]", "experiment.kind", '"load"'),
     ({}, "experiment.kind=pull-off", "experiment.kind", 'did you mean "pull_off"?'),
     ({}, "experiment={}", "experiment.kind", "missing"),

@@ -68,6 +68,9 @@ TABLES = {
     "neighbours": effects.Neighbours,
     "horizontal": effects.Horizontal,
     "adhesion": effects.Adhesion,
+    "adhesion.rate": effects.Rate,
+    "viscoelasticity": effects.Viscoelasticity,
+    "viscoelasticity.terms, each": effects.Term,
     "friction": effects.Friction,
     "damping": scenes.Damping,
     "noise": effects.Noise,
@@ -85,6 +88,8 @@ TABLES = {
     "experiment, kind tangential": scenes.Tangential,
     "experiment.cycles": Cycles,
     "experiment, kind hold": scenes.Hold,
+    "experiment, kind history": scenes.History,
+    "experiment, kind impact": scenes.Impact,
 }
 
 

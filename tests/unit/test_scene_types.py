@@ -117,7 +117,7 @@ def test_tangential_stiffness_is_the_normal_one_unless_given() -> None:
 def test_effects_come_in_deck_order_and_free_directions_in_one() -> None:
     names = ["neighbours.stiffness=0.3", "noise={ temperature = 0.01, seed = 1 }"]
     scene = scene_from_dict(BASE, [*names[::-1], *SLIDE])
-    assert scene.effects == tuple(name for name in EFFECTS if name not in ("adhesion", "friction"))
+    assert scene.effects == tuple(name for name in EFFECTS if name not in ("adhesion", "friction", "viscoelasticity"))
     assert scene.plate is not None
     assert scene.plate.free == ("x", "z")
 
