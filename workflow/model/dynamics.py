@@ -85,8 +85,8 @@ class Motion:
     settle_time: float = measured("TU")
     calm_damping: float = measured("FU·TU/LU")
     calm_step: float = measured("TU")
-    plate_mass: float = 0.0
-    drive: tuple[DriveLeg, ...] = ()
+    plate_mass: float
+    drive: tuple[DriveLeg, ...]
 
 
 def motion_of(
