@@ -122,6 +122,17 @@ def test_what_is_known_counts_as_a_further_point() -> None:
     assert found.freedom == 4000.0
 
 
+def test_what_is_known_of_one_parameter_moves_the_other_that_is_tied_to_it() -> None:
+    """Only their sum is measured, to be 5 with next to no doubt; the second is known to be 2 ± 1."""
+    slopes, prior = np.ones((100, 2)), np.array([[0.0, 1.0, 2.0]])
+    residuals = 5.0 + 1e-6 * np.random.default_rng(1).standard_normal(100)
+    found = uncertain([np.arange(100)], residuals, slopes, prior, looks=1)
+    white = next(one for one in found.judged if one.noise.share == 0.0)
+    assert white.step == pytest.approx([3.0, 2.0], rel=1e-5)
+    assert np.sqrt(np.diag(white.covariance)) == pytest.approx(1.0, rel=1e-5)
+    assert found.freedom == 99.0
+
+
 @pytest.mark.parametrize("memory", [0.0, 8.0])
 def test_the_noise_of_a_series_is_found(memory: float) -> None:
     draw = np.random.default_rng(4)
