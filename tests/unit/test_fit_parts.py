@@ -139,7 +139,7 @@ def test_the_noise_of_a_series_is_found(memory: float) -> None:
     drawn, kept = draw.standard_normal(800), math.exp(-1.0 / memory) if memory else 0.0
     for i in range(1, 800):
         drawn[i] = kept * drawn[i - 1] + math.sqrt(1.0 - kept**2) * drawn[i]
-    found = uncertain([np.arange(400), np.arange(400, 800)], 2.0 * drawn, np.ones((800, 1)), np.zeros((0, 2)))
+    found = uncertain([np.arange(400), np.arange(400, 800)], 2.0 * drawn, np.ones((800, 1)), np.zeros((0, 2)), looks=2)
     deviations = found.mean([one.deviation for one in found.judged])
     assert deviations == pytest.approx(2.0, rel=0.25 if memory else 0.1)
     if memory:

@@ -210,8 +210,8 @@ class ForceErrors:
 
     common: Array
     turning: Array
-    law: float = 0.0
-    anchor: float = 0.0
+    law: float
+    anchor: float
 
 
 def force_errors(
