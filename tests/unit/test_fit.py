@@ -204,6 +204,7 @@ def test_a_range_makes_it_the_contact_of_maugis(tmp_path: Path) -> None:
         assert low < exact < high < 1.1 * low
     assert next(iter(found.models)) == "Maugis"
     assert found.difference <= found.allowed
+    assert np.all(found.fit.spread() <= found.allowed)
 
 
 def test_a_contact_point_may_be_given(good: np.ndarray[Any, Any], tmp_path: Path) -> None:
