@@ -178,6 +178,8 @@ def test_a_slide_back_over_a_body_that_repeats_itself_is_the_mirror_image(tmp_pa
     there, back = (found[way].friction for way in (1.0, -1.0))
     assert back["plate_x"] == pytest.approx(-there["plate_x"], abs=MIRRORED)
     assert back["friction"] == pytest.approx(-there["friction"], abs=MIRRORED)
+    for name, one in found[1.0].results.items():
+        assert found[-1.0].results[name].value == pytest.approx(one.value, rel=1e-6, abs=MIRRORED), name
     seen = [
         [(state.smallest_distance, state.profile.z_lower[0]) for state in one.outcome.states]
         for one in found.values()

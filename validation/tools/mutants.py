@@ -5,9 +5,9 @@
 A fault changes one operator, comparison or number in a copy of this checkout. A trace of calls says which tests reach
 its function; these run there, quick ones first, up to the first that fails or LONGEST. One that passes them survives:
 it is printed and listed in results/mutants.json, with the reason if one was written there by hand (kept for the same
-change). What no user could meet is not drawn: messages, types, drawings (sizes and colours, not what they show), and
-`strict=`. Exit code 1 where fewer than ASKED are noticed. Every processor has a share of the trace, and a fault at a
-time.
+change). What no user could meet is not drawn: messages, types, drawings (sizes and colours, not what they show),
+`strict=` and `repr=`. Exit code 1 where fewer than ASKED are noticed. Every processor has a share of the trace, and a
+fault at a time.
 """
 
 from __future__ import annotations
@@ -192,7 +192,7 @@ def changes(node: ast.AST) -> Iterator[Change]:
 
 def inner(node: ast.AST, function: str = "") -> Iterator[tuple[ast.AST, str]]:
     """The nodes whose change may make a wrong number, each with the outermost function that it is in."""
-    if isinstance(node, SKIPPED) or (isinstance(node, ast.keyword) and node.arg in ("strict", "encoding")):
+    if isinstance(node, SKIPPED) or (isinstance(node, ast.keyword) and node.arg in ("strict", "encoding", "repr")):
         return
     if isinstance(node, ast.FunctionDef | ast.ClassDef) and (not function or function.endswith(".")):
         told = [node.returns, *(one.annotation for one in node.args.args)] if isinstance(node, ast.FunctionDef) else []
