@@ -31,6 +31,8 @@ CARRIED = 1e-3
 """Relative difference of F_A where the highest tooth carries the tension; measured 4e-5 and 1e-6."""
 BESIDE, EVEN = 7, 2.0
 """Load steps on either side of the maximum, and the ratio of the ways that they take; one of them is the maximum."""
+APART = 0.03
+"""Tension over F_A of bodies that are pulled apart."""
 TAIL = 1e-6
 """Part of the force that the law's tail beyond the cutoff may have at least."""
 
@@ -71,6 +73,7 @@ def test_adhesion_force_is_that_of_the_highest_tooth(tmp_path: Path, profile: st
     assert abs(found.value - exact) <= max(found.uncertainty, TAIL * exact)
     assert abs(found.value - exact) <= asked.accuracy.tolerance * exact
     assert max(-state.force for state in outcome.states) <= found.value + found.uncertainty
+    assert abs(outcome.states[-1].force) <= APART * found.value
     places = np.unique([state.displacement for state in outcome.states])
     top = int(np.searchsorted(places, outcome.marked["critical"].displacement))
     before, after = places[top] - places[max(0, top - BESIDE)], places[top + BESIDE] - places[top]

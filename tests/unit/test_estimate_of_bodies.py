@@ -174,6 +174,12 @@ def test_a_pair_snaps_over_the_fall_of_its_own_grid(stiffness: float, points: in
     assert found.stiffness == 0.5 * stiffness
 
 
+def test_pairs_that_do_not_snap_are_not_let_go_early() -> None:
+    found = pairs("parabola", 5.0)
+    assert not found.snaps
+    assert found.let_go_early(1.0, 1.0) == 0.0
+
+
 @pytest.mark.parametrize("stiffness", np.geomspace(0.01, 100.0, 24).tolist())
 @pytest.mark.parametrize("shape", ["circle", "punch"])
 def test_a_body_carries_no_more_than_all_its_particles_on_the_opposite_ones(shape: str, stiffness: float) -> None:
@@ -237,3 +243,7 @@ def test_a_cone_lets_go_of_a_weak_attraction_without_a_jump(work: float, reach: 
     first = float(estimate.held.displacement[0])
     assert first == pytest.approx(estimate.limits[0]) if jumps else first == -reach
     assert (float(estimate.held.force[0]) < -1e-3) == jumps
+    early = estimate.curve.edge == 0.0
+    c, stress = estimate.curve.reach[early], work / reach
+    assert estimate.curve.force[early] == pytest.approx(-math.pi * stress * c**2, rel=1e-12)
+    assert estimate.curve.displacement[early] == pytest.approx(0.2 * c - 4.0 * stress / math.pi * c - reach, rel=1e-12)
