@@ -24,6 +24,8 @@ STIFF = 2.0 * MODULUS * SPHERE.zero_load_radius
 CURVE = 2e-4
 """Of the pull-off force: 6000 places of the reference, with straight lines between."""
 ROUND_OFF = 1e-9
+QUARTER = 0.15
+"""Relative: a quarter of the tension is gone between two edges of the branch; measured 0.09."""
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
 
@@ -48,6 +50,26 @@ def test_a_contact_model_on_a_spring_is_the_closed_form(kind: str, stiffness: fl
     let_go = branch.at(z, stiffness, False, pitch)
     assert np.all(let_go[z < lost - pitch] == 0.0)
     assert let_go[held] == pytest.approx(down[held], rel=1e-4, abs=CURVE * force)
+
+
+@pytest.mark.parametrize("kind", ["JKR", "DMT"])
+def test_a_contact_that_is_known_to_hold_goes_on_where_the_model_has_lost_it(kind: str) -> None:
+    """Straight, three times as steep as from there to where a quarter of the tension is gone."""
+    branch = LAWS[kind](Body.of(Parabola(kind="parabola", radius=RADIUS), 4.0 * DEPTH), MODULUS, WORK, 0.0)
+    lost, force = branch.snap_out(STIFF)
+    z = np.linspace(lost, 3.0 * DEPTH, 20_000)
+    quarter = float(np.interp(0.75 * force, branch.at(z, STIFF, True), z))
+    slope = 3.0 * -0.25 * force / (quarter - lost)
+    below = lost - np.array([0.1, 1.0]) * DEPTH
+    assert branch.at(below, STIFF, True) == pytest.approx(force - slope * (lost - below), rel=QUARTER)
+
+
+def test_the_first_touch_is_between_the_axis_and_the_first_edge() -> None:
+    """F = (4/3) E* √R d^(3/2)."""
+    body = Body.of(Parabola(kind="parabola", radius=RADIUS), 4.0 * DEPTH)
+    d = 0.5 * body.heights[1:2]
+    exact = 4.0 / 3.0 * MODULUS * math.sqrt(RADIUS) * d**1.5
+    assert LAWS["Hertz"](body, MODULUS, 0.0, 0.0).at(d, math.inf, True) == pytest.approx(exact, rel=0.2)
 
 
 @pytest.mark.parametrize("kind", ["Hertz", "JKR"])
