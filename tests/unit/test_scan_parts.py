@@ -194,3 +194,11 @@ def test_few_points_are_refused_and_as_many_as_are_asked_are_not() -> None:
         take(WIDE[:7], WIDE[:7] ** 2)
     x = np.arange(-4.0, 4.0)
     assert 1.0 / take(x, x**2 / 10.0, shape="parabola").parameters[0] == pytest.approx(5.0, rel=SAME)
+
+
+def test_the_autocorrelation_is_known_as_far_as_most_points_have_a_partner() -> None:
+    """ρ₀ = 1, and up to a quarter of the scan: of points farther apart there are few pairs."""
+    taken = take(WIDE, worn(WIDE, 0.0) + white(1, WIDE), 0.0, shape="parabola")
+    assert taken.autocorrelation[0] == pytest.approx(1.0)
+    assert taken.pitch * taken.autocorrelation.size == pytest.approx(0.25 * (WIDE[-1] - WIDE[0]), abs=taken.pitch)
+    assert np.abs(taken.autocorrelation[1:]).max() < 0.2
