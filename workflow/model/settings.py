@@ -118,7 +118,7 @@ def slide_cutoff(law: DoubleExponential, spacing: float, load: float, share: flo
 
 def largest_holding_force(law: DoubleExponential, spacing: float, load: float) -> float:
     """max_x F_x [FU] of a particle pressed by a load [FU] onto a rigid chain, at its height in a potential minimum."""
-    reach = math.ceil(REACH * law.longest_range / spacing)
+    reach = math.ceil(REACH * law.longest_range / spacing) + 1
     row: Array = np.asarray(spacing * np.arange(-reach, reach + 1), dtype=np.float64)
     heights: Array = np.asarray(law.longest_range * np.geomspace(1e-2, 10.0, HEIGHTS))
     _, upward = _row_forces(law, 0.5 * spacing - row, heights)
