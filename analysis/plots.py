@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 WIDTH, BESIDE = 6.4, 1.0
 """Of a figure, and the height of title and axis that its panels leave [inch]."""
 DPI = 120
+"""Of a figure, points of an image [1/inch]."""
 TITLE, HEADING = 11.0, 10.0
 """Sizes of what stands above a figure and above a panel [pt]."""
 LINE, DIGIT, TICK, PAD = 13.0, 6.4, 10.0, 6.0

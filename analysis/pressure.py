@@ -117,14 +117,14 @@ def smallest_distance(x_upper: ArrayLike, z_upper: ArrayLike, x_lower: ArrayLike
         raise ValueError("a distance between the bodies needs a particle in each of them")
     if not all(np.isfinite(row).all() for row in (across, height, x, z)):
         raise ValueError("the positions of particles must be finite")
-    nearest = np.minimum(np.searchsorted(x, across), x.size - 1)
-    least = float(np.hypot(across - x[nearest], height - z[nearest]).min())
+    next_one = np.searchsorted(x, across)
+    least = float(np.hypot(across - x.take(next_one, mode="clip"), height - z.take(next_one, mode="clip")).min())
     near = np.maximum(height - z.max(), z.min() - height) < least  # of no other one a lower particle is nearer
     across, height = across[near], height[near]
     first, end = np.searchsorted(x, across - least), np.searchsorted(x, across + least, side="right")
     for step in range(int((end - first).max(initial=0))):
-        at = np.minimum(first + step, x.size - 1)
-        least = min(least, float(np.hypot(across - x[at], height - z[at]).min()))
+        at = first + step
+        least = min(least, float(np.hypot(across - x.take(at, mode="clip"), height - z.take(at, mode="clip")).min()))
     return least
 
 

@@ -124,7 +124,7 @@ def modelled(scene: Scene) -> dict[str, Quantity]:
     assert case is not None
     trace = case.trace(case.model)
     none = np.zeros(len(trace))
-    found = budgeted(case, trace, ForceErrors(none, none))
+    found = budgeted(case, trace, ForceErrors(none, none, law=0.0, anchor=0.0))
     return {name: Quantity(one.value, sum(one.errors.values()), one.unit) for name, one in found.items()}
 
 

@@ -17,6 +17,8 @@ from validation.references.slide import Integrator
 from validation.slides import slide_model
 
 SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
+MIRRORED = 1e-9
+"""Round-off [LU, FU], as a motion with drag leaves it."""
 TRACE = 1e-3
 """Of the peak: legs other than the first have timesteps of their own, and the inertia of the first one's drag."""
 
@@ -163,3 +165,24 @@ def test_the_pair_that_is_named_closes_and_has_as_many_particles() -> None:
     with pytest.raises(SceneError, match="or particles = 5 and upper_particles = 5 with upper_spacing = 1"):
         read_scene(flat(particles=8, upper_particles=5))
     assert read_scene(flat(particles=5, upper_particles=5, upper_spacing=1.0)).bodies.upper_particles == 5
+
+
+def test_a_slide_back_over_a_body_that_repeats_itself_is_the_mirror_image(tmp_path: Path) -> None:
+    """Off either end of the lower chain there is the next one, to what is beside and below a particle."""
+    found = {}
+    for way in (1.0, -1.0):
+        tables = flat(upper_particles=1, particles=4, lower="particles", bulk_stiffness=4.0)
+        tables |= {"accuracy": {"tolerance": 1e-2}, "cantilever": {"stiffness": 0.5, "velocity": 0.01}}
+        tables["experiment"] = {"kind": "slide", "normal_force": 0.2, "path": [[0.01 * way, 3.0]]}
+        found[way] = run(tables, tmp_path / str(way), figures=False)
+    there, back = (found[way].friction for way in (1.0, -1.0))
+    assert back["plate_x"] == pytest.approx(-there["plate_x"], abs=MIRRORED)
+    assert back["friction"] == pytest.approx(-there["friction"], abs=MIRRORED)
+    for name, one in found[1.0].results.items():
+        assert found[-1.0].results[name].value == pytest.approx(one.value, rel=1e-6, abs=MIRRORED), name
+    seen = [
+        [(state.smallest_distance, state.profile.z_lower[0]) for state in one.outcome.states]
+        for one in found.values()
+        if one.outcome
+    ]
+    np.testing.assert_allclose(seen[1], seen[0], rtol=0.0, atol=MIRRORED)

@@ -9,9 +9,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from contact1d import run
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import scene_from_dict
 from tests.pair_lattice import PairLattice
 from validation.hard.cases import TENSION, PairCase, reach, shaped
@@ -28,6 +30,11 @@ PROFILES: dict[str, dict[str, Any]] = {
 PRELOAD = 0.19
 CARRIED = 1e-3
 """Relative difference of F_A where the highest tooth carries the tension; measured 4e-5 and 1e-6."""
+BESIDE, EVEN = 7, 2.0
+"""Load steps on either side of the maximum, and the ratio of the ways that they take; one of them is the maximum."""
+ROUND_OFF = 1e-9
+APART = 0.03
+"""Tension over F_A of bodies that are pulled apart."""
 TAIL = 1e-6
 """Part of the force that the law's tail beyond the cutoff may have at least."""
 
@@ -68,6 +75,13 @@ def test_adhesion_force_is_that_of_the_highest_tooth(tmp_path: Path, profile: st
     assert abs(found.value - exact) <= max(found.uncertainty, TAIL * exact)
     assert abs(found.value - exact) <= asked.accuracy.tolerance * exact
     assert max(-state.force for state in outcome.states) <= found.value + found.uncertainty
+    assert abs(outcome.states[-1].force) <= APART * found.value
+    falling = [deepest, *(s.displacement for s in outcome.states if s.phase in ("unloading", "pulling"))]
+    assert np.abs(np.diff(falling)).max() <= settings_for(asked).increments.longest_move * (1.0 + ROUND_OFF)
+    places = np.unique([state.displacement for state in outcome.states])
+    top = int(np.searchsorted(places, outcome.marked["critical"].displacement))
+    before, after = places[top] - places[max(0, top - BESIDE)], places[top + BESIDE] - places[top]
+    assert before <= EVEN * after
 
 
 @pytest.mark.parametrize("ratio", [0.99])

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from contact1d.potentials import DoubleExponential, Exponential
+from contact1d.workflow.model.cohesive import CohesiveEstimate, estimate_on_plane
 from contact1d.workflow.model.pairs import (
     ContactEstimate,
     NotCarriedError,
@@ -173,6 +174,12 @@ def test_a_pair_snaps_over_the_fall_of_its_own_grid(stiffness: float, points: in
     assert found.stiffness == 0.5 * stiffness
 
 
+def test_pairs_that_do_not_snap_are_not_let_go_early() -> None:
+    found = pairs("parabola", 5.0)
+    assert not found.snaps
+    assert found.let_go_early(1.0, 1.0) == 0.0
+
+
 @pytest.mark.parametrize("stiffness", np.geomspace(0.01, 100.0, 24).tolist())
 @pytest.mark.parametrize("shape", ["circle", "punch"])
 def test_a_body_carries_no_more_than_all_its_particles_on_the_opposite_ones(shape: str, stiffness: float) -> None:
@@ -220,3 +227,23 @@ def test_an_estimate_that_scenes_share_is_not_to_be_written_to() -> None:
     for shared in (found.gap, found.force):
         with pytest.raises(ValueError, match="read-only"):
             shared[0] = 1.0
+
+
+@pytest.mark.parametrize(("work", "reach", "jumps"), [(1e-3, 1.0, False), (2e-2, 0.1, True)])
+def test_a_cone_lets_go_of_a_weak_attraction_without_a_jump(work: float, reach: float, jumps: bool) -> None:
+    """Before contact d = f(c) − (4σ₀/πE*) c − h₀: it rises from c = 0 on where the slope is more than 4σ₀/πE*."""
+    bodies = {"profile": SHAPES["cone"], "spacing": 0.2, "bulk_stiffness": 0.2, "lower": "rigid_plane"}
+    adhesion = {"work_of_adhesion": work, "range": reach}
+    pull = {"kind": "pull_off", "preload": 0.2}
+    scene = scene_from_dict(chains(1.0, bodies=bodies, adhesion=adhesion, interaction=None, experiment=pull))
+    estimate = estimate_on_plane(scene, scene.bodies)
+    assert isinstance(estimate, CohesiveEstimate)
+    assert (4.0 * work / reach / math.pi > 0.2) == jumps
+    assert len(estimate.limits) == jumps
+    first = float(estimate.held.displacement[0])
+    assert first == pytest.approx(estimate.limits[0]) if jumps else first == -reach
+    assert (float(estimate.held.force[0]) < -1e-3) == jumps
+    early = estimate.curve.edge == 0.0
+    c, stress = estimate.curve.reach[early], work / reach
+    assert estimate.curve.force[early] == pytest.approx(-math.pi * stress * c**2, rel=1e-12)
+    assert estimate.curve.displacement[early] == pytest.approx(0.2 * c - 4.0 * stress / math.pi * c - reach, rel=1e-12)

@@ -14,6 +14,7 @@ import pytest
 from typer.testing import CliRunner
 
 from contact1d import Contact1dError, SceneError, fit, fit_many
+from contact1d.workflow.body.theory import ASSUMED_RANGE
 from contact1d.workflow.cli.app import app
 from validation.references.force_curves import Sphere, measured, noise
 
@@ -203,6 +204,7 @@ def test_a_range_makes_it_the_contact_of_maugis(tmp_path: Path) -> None:
         assert low < exact < high < 1.1 * low
     assert next(iter(found.models)) == "Maugis"
     assert found.difference <= found.allowed
+    assert np.all(found.fit.spread() <= found.allowed)
 
 
 def test_a_contact_point_may_be_given(good: np.ndarray[Any, Any], tmp_path: Path) -> None:
@@ -271,5 +273,58 @@ def test_the_command_leaves_a_folder(good: np.ndarray[Any, Any], tmp_path: Path)
         assert low < exact < high
     assert found["run"]["difference"] <= found["run"]["allowed"]
     assert {"curve.csv", "scene.toml", "fit.png"} <= {path.name for path in out.iterdir()}
+    _require_complete(found, out, good)
     again = CliRunner().invoke(app, ["fit", str(file), "--out", str(tmp_path)])
     assert again.exit_code == 2
+
+
+def _require_complete(found: dict[str, Any], out: Path, rows: np.ndarray[Any, Any]) -> None:
+    """What fit.json says of the curve, and curve.csv, are what was measured, in SI."""
+    spread, tabor = 0.01 * 1.5 * math.pi * WORK * RADIUS, (RADIUS * WORK**2 / MODULUS**2) ** (1.0 / 3.0) / ASSUMED_RANGE
+    assert found["noise"]["value"] == pytest.approx(spread, rel=0.3)
+    assert found["reduced_chi_squared"] == pytest.approx(1.0, abs=0.5)
+    assert found["tabor_parameter"]["value"] == pytest.approx(tabor, rel=0.2)
+    assert found["tabor_parameter"]["assumed"]
+    low, high = found["contact_modulus"]["interval"]
+    assert [low, high] == pytest.approx(found["parameters"][PARAMETERS[0]]["interval"])
+    matrix = np.array(found["correlation"]["matrix"])
+    assert np.diag(matrix) == pytest.approx(1.0)
+    assert matrix == pytest.approx(matrix.T)
+    assert np.abs(matrix).max() <= 1.0
+    low, high = found["snap_out"]["bracket"]
+    assert low < found["snap_out"]["position"] < high
+    assert set(found["models"]) == {"JKR", "DMT", "Hertz"}
+    assert min(one["criterion_above_least"] for one in found["models"].values()) == 0.0
+    assert found["points"]["in_file"] == len(rows)
+    with (out / "curve.csv").open(encoding="utf-8", newline="") as file:
+        table = list(csv.DictReader(file))
+    assert [int(row["line"]) for row in table] == list(range(2, 2 + len(rows)))
+    assert [row["segment"] for row in table] == ["approach"] * 200 + ["retract"] * 200
+    position, force, predicted = (
+        np.array([float(row[name]) for row in table]) for name in ("position [m]", "force [N]", "predicted force [N]")
+    )
+    assert position == pytest.approx(1e-9 * rows[:, 0], rel=1e-6, abs=1e-14)
+    assert force == pytest.approx(1e-9 * rows[:, 1], rel=1e-6, abs=1e-14)
+    used = np.array([row["compared"] == "yes" for row in table])
+    assert used.sum() == found["points"]["compared"]
+    assert float(np.std((force - predicted)[used])) == pytest.approx(spread, rel=0.4)
+    # Mean variance of a prediction by four unknowns under white noise; one with a memory averages out less.
+    least = 1.96 * found["noise"]["value"] * math.sqrt(4.0 / used.sum())
+    assert least <= found["run"]["allowed"] < 10.0 * least
+    assert found["fitted_range"]["position"] == pytest.approx([position[used].min(), position[used].max()], rel=1e-6)
+
+
+@pytest.mark.parametrize("adheres", [False, True])
+def test_a_contact_model_is_compared_where_its_numbers_are_in_the_base(tmp_path: Path, adheres: bool) -> None:
+    """DMT's needs a radius, JKR's a work of adhesion, Hertz's a parameter of the material, Maugis's a range."""
+    slope, d = 0.3, np.linspace(-0.5, 1.5, 200) * 1e-6
+    F = MODULUS * np.maximum(d, 0.0) ** 2 / slope * 2.0 / math.pi
+    noise_ = 1e-3 * float(F.max()) * np.random.default_rng(3).standard_normal(400)
+    rows = 1e9 * np.column_stack([np.append(d, d[::-1]), np.append(F, F[::-1]) + noise_])
+    base: dict[str, Any] = {"bodies": {"profile": {"kind": "cone", "slope": slope}}, "material": BASE["material"]}
+    base |= {"adhesion": {"work_of_adhesion": "1 nJ/m²"}} if adheres else {}
+    path = written(tmp_path / "curve.csv", rows, "d [nm],F [nN]")
+    found = fit({"data": str(path), "parameters": PARAMETERS[:1], "base": base})
+    assert set(found.models) == ({"JKR", "Hertz"} if adheres else {"Hertz"})
+    low, high = found.fit.intervals[PARAMETERS[0]]
+    assert low < MODULUS < high < 1.02 * low

@@ -81,7 +81,7 @@ def test_error_names_the_nearest_values_and_these_are_accepted() -> None:
 def test_jkr_with_the_springs_of_the_mdr_can_be_reached() -> None:
     """F_A R₁/(c a₀³) = 1/6 for every sphere, whatever its material."""
     for modulus, energy, radius in ((200e9, 1.0, 6.1e-6), (1e6, 0.03, 1e-3), (3e9, 0.05, 1e-7)):
-        scene, wanted = material_scene(modulus, radius, jkr_target(modulus, energy, radius))
+        scene, wanted = material_scene(modulus, radius, jkr_target(modulus, energy, radius), tolerance=1e-3)
         require_reachable(scene, wanted)
         assert scene.bodies.profile.curvature_radius is not None
         own, layer = 0.5 * scene.bodies.profile.curvature_radius, 0.5 * scene.bulk_stiffness
@@ -128,15 +128,15 @@ def test_scene_of_a_material_has_its_radius_stiffness_and_target() -> None:
 def test_coarse_length_unit_is_refused_with_the_coarsest() -> None:
     si = jkr_target(200e9, 1.0, 6.1e-6)
     with pytest.raises(IdentifyError) as caught:
-        material_scene(200e9, 6.1e-6, si, length_unit=50e-9)
+        material_scene(200e9, 6.1e-6, si, length_unit=50e-9, tolerance=1e-3)
     assert "a length unit of 5e-08 m gives 3.5 particles in the zero-load radius of 1.739e-07 m" in str(caught.value)
     found = re.search(r"at most ([\d.e+-]+) m for 8$", str(caught.value))
     assert found is not None
     coarsest = float(found[1])
     assert coarsest == pytest.approx(si.zero_load_radius / 8.0, rel=1e-3)
-    material_scene(200e9, 6.1e-6, si, length_unit=0.999 * coarsest)
+    material_scene(200e9, 6.1e-6, si, length_unit=0.999 * coarsest, tolerance=1e-3)
     with pytest.raises(IdentifyError):
-        material_scene(200e9, 6.1e-6, si, length_unit=1.001 * coarsest)
+        material_scene(200e9, 6.1e-6, si, length_unit=1.001 * coarsest, tolerance=1e-3)
 
 
 # One search.

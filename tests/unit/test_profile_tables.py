@@ -196,11 +196,61 @@ def test_a_table_is_as_sure_as_without_every_second_point(count: int) -> None:
     assert set.intersection(*fewer) == {0.0, 40.0}
 
 
-@pytest.mark.parametrize(("wide", "high"), [(1e-3, 1e-3), (1e4, 1.0), (1.0, 1e5)])
+@pytest.mark.parametrize(("wide", "high"), [(1e-3, 1e-3), (1e4, 1.0), (1.0, 1e5), (1.0, 1e-7)])
 def test_a_table_has_the_same_corners_in_any_units(wide: float, high: float) -> None:
     """A worn ball: a flat, then an arc, of which some cells are straight and others smooth."""
     r = np.linspace(0.0, 40.0, 41)
     z = np.maximum(0.0, r**2 - 8.3**2) * (1.0 + 1e-3 * np.sin(r))
     x = np.linspace(0.0, 40.0, 333)
-    own, other = table(r, z).height(x), table(wide * r, high * z).height(wide * x)
-    np.testing.assert_allclose(other, high * own, rtol=1e-9, atol=1e-9 * high * own.max())
+    given, scaled = table(r, z), table(wide * r, high * z)
+    assert len(given.alternatives) == len(scaled.alternatives) == 2
+    for one, same in zip((given, *given.alternatives), (scaled, *scaled.alternatives), strict=True):
+        own, other = one.height(x), same.height(wide * x)
+        np.testing.assert_allclose(other, high * own, rtol=1e-9, atol=1e-9 * high * own.max())
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("size", [1.0, 1e-4])
+def test_points_without_a_smooth_curve_lie_on_chords_or_in_corners_of_neighbouring_chords(
+    seed: int, size: float
+) -> None:
+    """A body whose slope only rises is below its chords, and above the two that go on from both sides."""
+    draw = np.random.default_rng(seed)
+    slope = np.cumsum(draw.choice([0.02, 0.2], 24) * draw.uniform(0.5, 1.0, 24))
+    r, z = np.arange(25.0), np.append(0.0, np.cumsum(slope))
+    profile = table(size * r, size * z)
+    chords, corners = profile.alternatives
+    x = np.linspace(3.05, 20.95, 359)  # on its ends the curve is smooth
+    cell = x.astype(int)
+    before, after = (z[i] + slope[i] * (x - r[i]) for i in (cell - 1, cell + 1))
+    np.testing.assert_allclose(chords.height(size * x), size * np.interp(x, r, z), rtol=1e-9)
+    np.testing.assert_allclose(corners.height(size * x), size * np.maximum(before, after), rtol=1e-9)
+    assert {round(place / size, 6) for place in profile.kinks} <= {round(place / size, 6) for place in corners.kinks}
+
+
+@pytest.mark.parametrize(("digits", "scale"), [(2, 1.0), (0, 1.0), (2, 1e-6), (4, 1e3)])
+def test_heights_with_few_digits_may_have_their_apex_half_a_digit_lower(digits: int, scale: float) -> None:
+    r = np.arange(31.0)
+    rounded = np.round(r**2 / 7.0, digits)
+    *_, lower = table(r, scale * rounded).alternatives
+    assert len(table(r, scale * rounded).alternatives) == 3
+    between = np.array([r[-2] + 0.5])
+    own = float(table(r, scale * rounded).height(between)[0])
+    assert float(lower.height(between)[0]) - own == pytest.approx(0.5 * scale * 10.0**-digits, rel=1e-6)
+    assert len(table(r, scale * r**2 / 7.0).alternatives) == 2
+
+
+def test_radii_have_gaps_up_to_ten_steps_and_heights_no_apex_elsewhere() -> None:
+    r = np.append(np.arange(8.0), 17.0)
+    assert table(r, r**2).reach == 17.0
+    for radii, heights, words in (
+        (np.append(np.arange(8.0), 17.01), r**2, "has a gap from r = 7 to 17.01"),
+        (r + 1e-9, r**2, "must begin at the radius 0"),
+        (r, -(r**2), "decrease from the axis"),
+        (r, np.maximum(r, 2.0 - r) - 1.5, "must have its apex at r = 0; at r = 1 LU the height is lower by 1 LU"),
+        (r, 0.0 * r, "is flat"),
+        (np.append(r[:-1], 7.0), r**2, "radii must increase; 7 follows 7"),
+        (r, r[:-1] ** 2, "as many radii as heights, not 9 and 8"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            table(radii, heights)

@@ -83,4 +83,6 @@ def test_what_differs_between_both_sides_cancels(count: int) -> None:
 
 def test_a_zone_that_comes_back_to_a_kink_or_stays_leaves_none() -> None:
     assert kinks_of([9.0, 4.0, 7.0, 4.0, 4.0], [9.0] * 5) == [[], [4.0], [4.0, 7.0], [4.0], [4.0]]
+    small = [1e-6 * c for c in (9.0, 4.0, 7.0, 4.0, 4.0)]
+    assert kinks_of(small, [9e-6] * 5) == [[], [small[1]], [small[1], small[2]], [small[1]], [small[1]]]
     assert kinks_of([0.0, 0.0, 5.0, 5.0], [3.0, 6.0, 8.0, 5.0]) == [[], [], [5.0], []]

@@ -24,3 +24,13 @@ def test_a_mutant_is_one_change_of_a_function() -> None:
     found = mutants("potentials/double_exponential.py")
     assert len({one.source for one in found}) > 10
     assert any(one.function == "DoubleExponential.force" for one in found)
+
+
+def test_of_drawings_and_messages_only_what_they_show_is_drawn() -> None:
+    """Sizes and digits are left, numbers stay."""
+    drawn = [one.text for file in ("workflow/report/animation.py", "analysis/figures.py") for one in mutants(file)]
+    assert not [text for text in drawn if text.startswith("HEIGHT =")]
+    assert [text for text in drawn if text.startswith("SHOWN_SHARE =")]
+    assert [text for text in drawn if "4.0 * a**3" in text]
+    spacings = [one for one in mutants("workflow/experiments/spacing.py") if "digits_apart" in one.text]
+    assert not spacings

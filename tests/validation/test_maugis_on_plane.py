@@ -72,6 +72,17 @@ def test_no_number_depends_on_the_spacing(run_tables: RunTables) -> None:
         assert coarse[name].value == pytest.approx(fine[name].value, rel=CLOSE), name
 
 
+def test_a_particle_on_the_axis_has_the_cells_of_both_sides(run_tables: RunTables) -> None:
+    """Of an odd number one stands there; a force is that of an even number, to round-off of sixty cells."""
+    path = {"kind": "path", "displacements": [0.05, 0.3, -0.05]}
+    forces = []
+    for count in (60, 61):
+        scene = tables(1.0, path, spacing=1.0)
+        scene["bodies"]["particles"] = count
+        forces.append(run_tables(scene).curve.force)
+    assert forces[1] == pytest.approx(forces[0], rel=CURVE)
+
+
 def test_a_stiff_contact_has_no_limit_point_but_that_of_the_attraction(run_tables: RunTables) -> None:
     """Snap-in at d = −h₀, and attracted states with a = 0 on the way out; a soft one is lost at once."""
     for tabor, gradual in ((0.1, True), (5.0, False)):

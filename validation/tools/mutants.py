@@ -5,8 +5,9 @@
 A fault changes one operator, comparison or number in a copy of this checkout. A trace of calls says which tests reach
 its function; these run there, quick ones first, up to the first that fails or LONGEST. One that passes them survives:
 it is printed and listed in results/mutants.json, with the reason if one was written there by hand (kept for the same
-change). What no user could meet is not drawn: messages, types, drawings, and `strict=`. Exit code 1 where fewer than
-ASKED are noticed. Every processor has a share of the trace, and a fault at a time.
+change). What no user could meet is not drawn: messages, types, drawings (sizes and colours, not what they show),
+`strict=` and `repr=`. Exit code 1 where fewer than ASKED are noticed. Every processor has a share of the trace, and a
+fault at a time.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from itertools import pairwise
 from multiprocessing import get_context
 from pathlib import Path
 from types import CodeType, FrameType
@@ -53,6 +55,13 @@ OPERATORS: dict[type[ast.AST], type[ast.AST]] = {
     ast.In: ast.NotIn, ast.NotIn: ast.In,
 }  # fmt: skip
 NAMES = {"min": "max", "max": "min", "argmin": "argmax", "argmax": "argmin", "ceil": "floor", "floor": "ceil"}
+LOOKS: dict[str, tuple[int, tuple[str, ...]]] = {
+    "Series": (3, ("width", "opacity")), "Panel": (5, ("height",)), "apart": (2, ()), "digits_apart": (2, ()),
+    "dumps": (1, ("indent",)),
+}  # fmt: skip
+"""What is called for a drawing or a message: from which argument on, and by which names, it is told how to look."""
+SIZES = ("[inch]", "[1/inch]", "[pt]")
+"""Units of a constant of drawings."""
 SKIPPED = (ast.Assert, ast.Raise, ast.JoinedStr, ast.Import, ast.ImportFrom)
 """Words and types: no fault of these makes a wrong number."""
 Called = dict[str, tuple[float, list[str]]]
@@ -183,7 +192,7 @@ def changes(node: ast.AST) -> Iterator[Change]:
 
 def inner(node: ast.AST, function: str = "") -> Iterator[tuple[ast.AST, str]]:
     """The nodes whose change may make a wrong number, each with the outermost function that it is in."""
-    if isinstance(node, SKIPPED) or (isinstance(node, ast.keyword) and node.arg in ("strict", "encoding")):
+    if isinstance(node, SKIPPED) or (isinstance(node, ast.keyword) and node.arg in ("strict", "encoding", "repr")):
         return
     if isinstance(node, ast.FunctionDef | ast.ClassDef) and (not function or function.endswith(".")):
         told = [node.returns, *(one.annotation for one in node.args.args)] if isinstance(node, ast.FunctionDef) else []
@@ -191,11 +200,25 @@ def inner(node: ast.AST, function: str = "") -> Iterator[tuple[ast.AST, str]]:
             return
         function += node.name + "." * isinstance(node, ast.ClassDef)
     yield node, function
+    left = looks(node)
     for name, value in ast.iter_fields(node):
         if name not in ("annotation", "returns", "decorator_list"):
             for child in value if isinstance(value, list) else [value]:
-                if isinstance(child, ast.AST):
+                if isinstance(child, ast.AST) and child not in left:
                     yield from inner(child, function)
+
+
+def looks(node: ast.AST) -> list[ast.AST]:
+    """Children of a node that say how something looks: sizes of drawings, digits of messages."""
+    match node:
+        case ast.Module(body=body):
+            told = [(one, after.value.value) for one, after in pairwise(body) if isinstance(after, ast.Expr)
+                    and isinstance(one, ast.Assign) and isinstance(after.value, ast.Constant)]  # fmt: skip
+            return [one for one, words in told if any(unit in str(words) for unit in SIZES)]
+        case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name), args=args, keywords=words) if name in LOOKS:
+            first, names = LOOKS[name]
+            return [*args[first:], *(one for one in words if one.arg in names)]
+    return []
 
 
 def mutants(file: str) -> list[Mutant]:

@@ -103,7 +103,7 @@ def is_of_a_body(scene: Scene) -> bool:
 
 
 def body_pressures(
-    scene: Scene, profiles: Mapping[str, Profile], of_radius: float = 0.0, of_all: float = 0.0, given: float = 0.0
+    scene: Scene, profiles: Mapping[str, Profile], of_radius: float, of_all: float, given: float
 ) -> dict[str, BodyPressure]:
     """p(r) of the reported states in which the bodies touch over a width; none where there is no body for them.
 

@@ -296,7 +296,7 @@ def animate(
     typer.echo(path)
 
 
-Kind = StrEnum("Kind", ["PULL_OFF", "LOAD", "PATH", "HOLD", "SLIDE", "TANGENTIAL"])
+Kind = StrEnum("Kind", ["PULL_OFF", "LOAD", "PATH", "HOLD", "HISTORY", "IMPACT", "SLIDE", "TANGENTIAL"])
 """The experiments."""
 Profile = StrEnum("Profile", ["PARABOLA", "CIRCLE", "ELLIPSOID", "CONE", "FLAT_PUNCH", "POWER"])
 """The profiles that need no file."""

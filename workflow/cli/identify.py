@@ -149,7 +149,9 @@ def _scene_of_sphere(given: Mapping[str, float], tolerance: float, out: Path) ->
             target = jkr_target(modulus, given["surface-energy"], radius)
         else:
             target = Target(given["adhesion-force"], given["zero-load-radius"])
-        found = search(*material_scene(modulus, radius, target, given.get("length-unit"), tolerance), out, progress)
+        found = search(
+            *material_scene(modulus, radius, target, given.get("length-unit"), tolerance=tolerance), out, progress
+        )
     from contact1d.workflow.cli.summary import quantities
     from contact1d.workflow.units import prefixed
 

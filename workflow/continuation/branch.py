@@ -123,15 +123,19 @@ class Branch(ContactBranch):
         direction = 1 if rises else -1
         self._turn(rises)
         self._first_rows(force, direction)
+
+        def goes_beyond(state: State) -> bool:
+            return state.carried > force if rises else state.carried < force
+
         before: State | None = None
         beyond: State | None = None
         while abs(self._last.carried - force) > near:
             last, states = self._last, self.leg
-            if direction * (last.carried - force) > 0:
+            if goes_beyond(last):
                 beyond = last
             else:
                 before = last
-            before = before or next((s for s in states[::-1] if direction * (s.carried - force) <= 0), None)
+            before = before or next((s for s in states[::-1] if not goes_beyond(s)), None)
             if before is None:
                 wanted, start = apart(force, last.carried, 4)
                 raise UntrustedError(

@@ -23,6 +23,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from contact1d.analysis.convergence import extrapolated
 from contact1d.workflow.continuation.model_branch import MOST_NUMBERS, ModelBranch
 from contact1d.workflow.continuation.outcome import LATTICE, Move, Reading, Result, in_squares
 from contact1d.workflow.continuation.state import State
@@ -48,10 +49,6 @@ FEWEST = 200
 """Particles that the model of a plane keeps for dense positions."""
 FOLLOWED = 0.5
 """Difference of the model from a motion, over the result, beyond which its lattice says nothing of that."""
-SLOWEST = 0.9
-"""Ratio of two differences of three spacings above which they do not shrink."""
-
-
 WAYS = (-1.0, 1.0)
 """Both ways."""
 
@@ -131,7 +128,7 @@ class Reduction:
         if self.converges:
             finer = [self.values(model.resized(0.5)), self.values(model.resized(0.25))]
             for name, value in own.items():
-                found[name] = max(found[name], _extrapolated(value, *(one.get(name, 0.0) for one in finer)))
+                found[name] = max(found[name], extrapolated(value, *(one.get(name, 0.0) for one in finer)))
         return {name: MARGIN * error for name, error in found.items()}
 
     @cached_property
@@ -185,17 +182,6 @@ class Reduction:
         return {name: max((abs(one.get(name, 0.0) - value) for one in others), default=0.0) for name, value in own}
 
 
-def _extrapolated(coarse: float, fine: float, finest: float) -> float:
-    """|v_h − v_{h/2}|/(1 − q) with the observed ratio q = 2⁻ᵖ of the differences of three spacings.
-
-    Where the second is the larger one, the first is small by accident, and later ones are taken to halve.
-    """
-    first, second = abs(coarse - fine), abs(fine - finest)
-    if second > first:
-        return first + 2.0 * second
-    return first / (1.0 - min(second / first, SLOWEST)) if first else 0.0
-
-
 def sampling_errors(case: Reduction, trace: Trace) -> Values:
     """Sampling error of each result by the steps of the scene, from the model with the same and with dense steps."""
     model, found = case.model, dict[str, float]()
@@ -224,8 +210,8 @@ class ForceErrors:
 
     common: Array
     turning: Array
-    law: float = 0.0
-    anchor: float = 0.0
+    law: float
+    anchor: float
 
 
 def force_errors(

@@ -50,7 +50,7 @@ class ModelBranch:
         shift: of the displacements that it gives [LU].
     """
 
-    def __init__(self, scene: Scene, settings: Settings, model: Reduced, dense: int = 1, shift: float = 0.0) -> None:
+    def __init__(self, scene: Scene, settings: Settings, model: Reduced, dense: int, shift: float) -> None:
         """Begin apart."""
         self.scene, self.settings, self.model, self.dense, self.shift = scene, settings, model, dense, shift
         self._phase, self._leg = "", -1

@@ -99,7 +99,7 @@ class InTension(RadiusRule):
 class ToTheEdge(RadiusRule):
     """A body with an edge touches up to there; one that `clings` does so without any force where it stands."""
 
-    clings: bool = False
+    clings: bool
     ends_with_chain: ClassVar[bool] = False
 
     def of(self, profile: Profile) -> ContactRadius | None:
@@ -139,11 +139,11 @@ class State:
         smallest_distance: between particles of opposite bodies, or of a particle from the plane [LU].
         depth: how far an upper particle lies below the lower surface [LU]; 0 where none does.
         residual: largest unbalanced force of a particle along a direction in which it may move [FU].
+        plate_x: position of the plate along x [LU], from where it is in system.data.
+        step: LAMMPS timestep.
         pushed: force of other effects that presses the upper body onto the lower one [FU].
         plate_velocity: [LU/TU], 0 where the plate's position is prescribed.
-        plate_x: position of the plate along x [LU], from where it is in system.data.
         cantilever_force: [FU].
-        step: LAMMPS timestep.
         time: of a history [TU].
         motion: of a slide, what `contact.MOTION` and `contact.HEAT` name.
         number: of its row, over all phases.
@@ -154,14 +154,14 @@ class State:
     force: float
     profile: Profile
     rule: RadiusRule = field(repr=False, compare=False)
-    smallest_distance: float = 0.0
-    depth: float = 0.0
-    residual: float = 0.0
+    smallest_distance: float
+    depth: float
+    residual: float
+    plate_x: float
+    step: float
     pushed: float = 0.0
     plate_velocity: float = 0.0
-    plate_x: float = 0.0
     cantilever_force: float = 0.0
-    step: float = 0.0
     time: float = 0.0
     motion: Mapping[str, float] = field(default_factory=dict, compare=False)
     number: int = field(default=0, compare=False)

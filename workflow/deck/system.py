@@ -148,11 +148,10 @@ def _bonds(kind: int, first: Integers, second: Integers) -> Integers:
 
 
 def _write_rows(file: TextIO, template: str, *columns: NDArray[np.float64] | Integers) -> None:
-    """One `%` operation per chunk: ten times quicker than numpy.savetxt, which formats row by row."""
+    """Formatted from lists: several times quicker than numpy.savetxt, which goes through arrays."""
     for start in range(0, len(columns[0]), CHUNK):
         lists = [column[start : start + CHUNK].tolist() for column in columns]
-        rows = [value for row in zip(*lists, strict=True) for value in row]
-        file.write(template * len(lists[0]) % tuple(rows))
+        file.write("".join(map(template.__mod__, zip(*lists, strict=True))))
 
 
 def write_system(deck: Deck, folder: Path) -> None:

@@ -41,8 +41,8 @@ ORDINARY_FORCES = (1e-4, 1e4)
 class DeckUnits:
     """A deck's unit of length [LU] and of force [FU]; that of mass is MU."""
 
-    length: float = 1.0
-    force: float = 1.0
+    length: float
+    force: float
 
     @property
     def are_own(self) -> bool:

@@ -93,7 +93,7 @@ class WorkerProcess:
         last_words: what it printed before it died; "" while it lives.
     """
 
-    def __init__(self, ranks: int = 1) -> None:
+    def __init__(self, ranks: int) -> None:
         """Start a worker of so many MPI ranks, which loads LAMMPS.
 
         Raises:

@@ -121,6 +121,8 @@ def _table(path: Path) -> tuple[dict[str, NDArray[np.generic]], dict[str, str]]:
     ):
         units = {name: below[i].strip('[]()" ') for name, i in known.items()}
         skip += 1
+    while skip < len(head) and not head[skip].strip():  # the first line says how many columns there are
+        skip += 1
     text = head[line - 1]
     separator = next((one for one in ";\t," if one in text), r"\s+")
     decimal = "," if separator != "," and any("," in one and "." not in one for one in head[skip : skip + 5]) else "."

@@ -174,7 +174,7 @@ class Uncertain:
         return float(brentq(excess, -reach, reach, rtol=1e-6, xtol=1e-9 * reach))
 
 
-def uncertain(runs: Sequence[Indices], residuals: Array, slopes: Array, prior: Array, looks: int = 2) -> Uncertain:
+def uncertain(runs: Sequence[Indices], residuals: Array, slopes: Array, prior: Array, looks: int) -> Uncertain:
     """All noises with their weights: a first look over s and τ, and a finer one where it is likely.
 
     Args:

@@ -107,7 +107,7 @@ SHAPE = {"amplitudes": 2.0, "ranges": 2.0}
 
 
 def material_scene(
-    contact_modulus: float, radius: float, target: Target, length_unit: float | None = None, tolerance: float = 1e-3
+    contact_modulus: float, radius: float, target: Target, length_unit: float | None = None, *, tolerance: float
 ) -> tuple[Scene, Target]:
     """A scene for a sphere of a material, and its target in model units; the interaction is still to be identified.
 

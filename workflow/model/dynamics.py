@@ -68,6 +68,8 @@ class Motion:
     """Numbers of a motion in time.
 
     Attributes:
+        plate_mass: [MU].
+        drive: the legs of a slide; `time_step` is that of the first one.
         time_step: [TU].
         damping: coefficient of a particle [FU·TU/LU].
         damped_stiffness: of the contact [FU/LU], for which that is critical; 0 where it is the same under every load.
@@ -76,10 +78,10 @@ class Motion:
         calm_damping, calm_step: damping with which particles snap together and don't swing [FU·TU/LU], and the time
             step for it [TU]; the usual ones where the scene gives its damping. In a slide the one under which it is
             loaded, with which its plate does not swing.
-        plate_mass: [MU].
-        drive: the legs of a slide; `time_step` is that of the first one.
     """
 
+    plate_mass: float
+    drive: tuple[DriveLeg, ...]
     time_step: float = measured("TU")
     damping: float = measured("FU·TU/LU")
     damped_stiffness: float = measured("FU/LU")
@@ -87,8 +89,6 @@ class Motion:
     settle_time: float = measured("TU")
     calm_damping: float = measured("FU·TU/LU")
     calm_step: float = measured("TU")
-    plate_mass: float = 0.0
-    drive: tuple[DriveLeg, ...] = ()
 
 
 def motion_of(
@@ -141,7 +141,7 @@ def motion_of(
     damped = SOFTENING * contact if is_automatic and not moves else 0.0
     drive = drive_steps(scene, step)
     first = drive[0].time_step if drive else whole_steps(step, scene.experiment.lasts)
-    return Motion(first, damping, damped, plate_damping, settle_time, calm, calm_step, plate_mass, drive)
+    return Motion(plate_mass, drive, first, damping, damped, plate_damping, settle_time, calm, calm_step)
 
 
 def whole_steps(longest: float, duration: float | None) -> float:

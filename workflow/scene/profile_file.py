@@ -125,7 +125,7 @@ def put_points(scene: Place, lists: dict[str, list[float]]) -> None:
         scale.fault("is too large for the numbers of the file")
 
 
-def read_profile(path: Path, scan: bool = False) -> tuple[dict[str, list[float]], str | None, float]:
+def read_profile(path: Path, scan: bool) -> tuple[dict[str, list[float]], str | None, float]:
     """The lists r and z of a measured profile, from the axis out; the unit of r, "1 µm", and that of z over it.
 
     Without units the second is None, LU. Messages name lines and never quote them: a path in a scene may point at any
