@@ -17,7 +17,7 @@ from contact1d.digits import digits_apart
 from contact1d.workflow.continuation.outcome import LATTICE, LOSSES
 from contact1d.workflow.experiments import kind_of
 from contact1d.workflow.model.settings import SettingsError, settings_for
-from contact1d.workflow.scene import Path, PullOff, Scene
+from contact1d.workflow.scene import Impact, Path, PullOff, Scene
 
 FEWEST, MOST = 30, 5000
 """Particles in the contact radius: at FEWEST F_A and a₀ of JKR are within 3e-3; MOST keep 1e-6."""
@@ -138,7 +138,14 @@ def contact_radius(scene: Scene) -> float:
     load = scene.experiment.compression
     if scene.adheres and isinstance(scene.experiment, Path | PullOff):
         load = 0.0
-    values, wanted = (displacements, max(scene.experiment.places())) if load is None else (forces, load)
+    values, wanted = forces, load or 0.0
+    if isinstance(scene.experiment, Impact):  # where the body has given up its energy
+        assert scene.plate
+        assert scene.plate.mass != "auto"
+        work = np.cumsum(0.5 * (forces[1:] + forces[:-1]) * np.diff(displacements))
+        values, wanted = np.append(0.0, work), 0.5 * scene.plate.mass * scene.experiment.velocity**2
+    elif load is None:
+        values, wanted = displacements, max(scene.experiment.places())
     lower = np.flatnonzero(values < wanted)
     at = int(lower[-1]) if lower.size else int(np.argmin(values))
     if at == 0 and radii.size > 1:
