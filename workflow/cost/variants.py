@@ -57,6 +57,7 @@ SETTINGS = {
     # Without attraction displacements are measured from the cutoff.
     "interaction.cutoff": Setting((0.8, None), None, lambda scene: scene.adheres),
     "experiment.displacements.steps": Setting((0.25, 0.5, 2.0), 2.0),
+    "experiment.steps": Setting((0.5, 2.0, None), 2.0),
     "damping.coefficient": Setting((0.5, 2.0, None), None, at_rest),
     "noise.seed": Setting((), 3.0),
 }

@@ -10,6 +10,7 @@ from itertools import groupby, pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from contact1d.analysis.polynomial import through
 from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.outcome import Outcome, Reading
 from contact1d.workflow.continuation.stepped import followed
@@ -20,12 +21,14 @@ from contact1d.workflow.model.reduced import History as Moments
 from contact1d.workflow.model.reduced import reduced
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import History, Scene
-from contact1d.workflow.units import ENERGY, FORCE, LENGTH, MEAN_PRESSURE, TIME
+from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, MEAN_PRESSURE, TIME
 
 STEPS, FOR_TOLERANCE = 50, 1e-3
 """Load steps of a leg at a tolerance; they miss a part that goes with the square of their width."""
 SOONEST = 0.05
 """First of the load steps that become longer and longer, over the shortest time of the body."""
+RATES = 3
+"""States on one side of a corner that give the rates there."""
 ROUNDED = 9
 """Decimals of parts of a leg: none is as short as round-off."""
 PHASES = {1.0: "loading", -1.0: "unloading", 0.0: "holding"}
@@ -61,7 +64,7 @@ class HistoryExperiment(Scripted[History]):
         if force[last] == 0.0:
             found["dissipated_energy"] = Reading(float(np.trapezoid(force, d)), ENERGY, scale=_work(d, force))
             found["contact_time"] = Reading(lost(trace) - _touched(trace), TIME)
-        return found
+        return found | _slopes(trace)
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
         """The time of each state."""
@@ -109,6 +112,29 @@ def _numbered(names: list[str]) -> tuple[str, ...]:
         counts[name] = counts.get(name, 0) + 1
         found += [name if counts[name] == 1 else f"{name}_{counts[name]}"] * len(list(same))
     return tuple(found)
+
+
+def _slopes(trace: Trace) -> dict[str, Reading]:
+    """dF/dd where the first unloading begins, and what it is without the creep of the moment before.
+
+    The body's own is the ratio of the jumps of the rates, [Ḟ]/[ḋ], under a held force 1/(1/S + ḋ/|Ḟ|): G. Feng,
+    A. H. W. Ngan, J. Mater. Res. 17 (2002) 660. Oliver and Pharr have 2 E* a of it.
+    """
+    falls = [name.startswith("unloading") for name in trace.phase]
+    first = falls.index(True) if True in falls else 0
+    if first < RATES or first + RATES - 1 > len(trace) or not falls[first + RATES - 2]:
+        return {}
+    corner, time, d, force = first - 1, trace.time, trace.displacement, trace.force
+    before, after = ([corner - i for i in range(RATES)], [corner + i for i in range(RATES)])
+    rates = [
+        [float(through(time[side] - time[corner], one[side])[1]) for one in (force, d)] for side in (before, after)
+    ]
+    (force_before, d_before), (force_after, d_after) = rates
+    found = {"unloading_stiffness": Reading(force_after / d_after, LINE_PRESSURE)} if d_after else {}
+    if d_after != d_before:
+        own = (force_after - force_before) / (d_after - d_before)
+        found["creep_corrected_stiffness"] = Reading(own, LINE_PRESSURE)
+    return found
 
 
 def _work(d: NDArray[np.float64], force: NDArray[np.float64]) -> float:

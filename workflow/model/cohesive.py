@@ -23,7 +23,7 @@ from contact1d.workflow.model.adhesion import SPANNED, AdhesiveEstimate
 from contact1d.workflow.model.chain import SettingsError
 from contact1d.workflow.model.dugdale import DOUBLINGS, TINY, Dugdale, Zone, covered
 from contact1d.workflow.model.pairs import ContactEstimate, Profile, beside_kinks, plane_estimate
-from contact1d.workflow.scene import Rate, Scene
+from contact1d.workflow.scene import Impact, Rate, Scene
 
 Array = NDArray[np.float64]
 POINTS, FIRST, NEAR = 400, 1e-3, 40
@@ -380,6 +380,35 @@ def _between(column: Array, low: int, value: float) -> float:
     return low + (min(max((value - start) / (end - start), 0.0), 1.0) if end > start else 0.0)
 
 
+STOPPING = 200
+"""Displacements at which the force is looked at up to where a body stops."""
+
+
+def stopped_at(scene: Scene, estimate: ContactEstimate) -> float:
+    """Displacement [LU] at which an elastic body that hits the plane is at rest: ∫F dd = ½ M v²; 0 without a velocity.
+
+    Infinite where that lies beyond what is known of the contact.
+    """
+    if not isinstance(scene.experiment, Impact):
+        return 0.0
+    assert scene.plate
+    assert scene.plate.mass != "auto"
+    energy, deepest = 0.5 * scene.plate.mass * scene.experiment.velocity**2, scene.bodies.spacing
+    last = estimate.end[1] if isinstance(estimate, AdhesiveEstimate) else math.inf
+
+    def stored(displacement: float) -> float:
+        places = np.linspace(0.0, displacement, STOPPING)
+        return float(np.trapezoid(estimate.contact_forces(places), places))
+
+    from scipy.optimize import brentq
+
+    while stored(min(deepest, last)) < energy:
+        if deepest >= last:
+            return math.inf
+        deepest *= 2.0
+    return float(brentq(lambda d: stored(d) - energy, 0.0, min(deepest, last)))
+
+
 def estimate_on_plane(scene: Scene, profile: Profile) -> ContactEstimate:
     """The predictor of a scene on a rigid plane; that of one with [adhesion] is known as far as its experiment needs.
 
@@ -390,12 +419,14 @@ def estimate_on_plane(scene: Scene, profile: Profile) -> ContactEstimate:
     springs = plane_estimate(profile, bodies.spacing, stiffness)
     if not scene.adhesion:
         return springs
-    wanted, load = max([0.0, *scene.experiment.places()]), scene.experiment.compression or 0.0
-    known, work, estimate, reach = bodies.spacing, scene.adhesion.work, None, scene.adhesion.range
+    given, load = max([0.0, *scene.experiment.places()]), scene.experiment.compression or 0.0
+    known, work, reach = bodies.spacing, scene.adhesion.work, scene.adhesion.range
+    estimate, wanted = None, given
     common = springs.gap, springs.force, springs.rest, profile, bodies.spacing, stiffness
     while estimate is None or not (estimate.known == profile.reach or estimate.is_beyond(wanted, load)):
         widest = min(known, profile.reach)
         estimate = AdhesiveEstimate(*common, work=work, known=widest)
+        wanted = max(given, stopped_at(scene, estimate))
         known *= 2.0
     if reach and work:
         estimate = _with_range(estimate, reach, bodies.profile, wanted, load)

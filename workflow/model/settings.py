@@ -42,7 +42,7 @@ from contact1d.workflow.model.chain import (
     require_rows,
     require_travel,
 )
-from contact1d.workflow.model.cohesive import estimate_on_plane
+from contact1d.workflow.model.cohesive import estimate_on_plane, stopped_at
 from contact1d.workflow.model.dynamics import Motion, measured, motion_of, whole_steps
 from contact1d.workflow.model.pairs import (
     ContactEstimate,
@@ -54,7 +54,7 @@ from contact1d.workflow.model.pairs import (
 )
 from contact1d.workflow.model.pairs import Profile as Undeformed
 from contact1d.workflow.model.relaxing import creep
-from contact1d.workflow.scene import Impact, Interaction, Scene
+from contact1d.workflow.scene import Interaction, Scene
 from contact1d.workflow.scene.remedies import less_compression
 
 FILE = Path(__file__).with_name("calibration.json")
@@ -491,8 +491,6 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
     return chosen
 
 
-STOPPING = 200
-"""Displacements at which the force is looked at up to where a body stops."""
 INERTIA, LONGER = 4.0, 2.0
 """Masses that the program chose, in a slower motion over the usual one; its drags, which go with the root, and the
 timesteps of a coarser one. What is of first order in these changes by its own amount at least."""
@@ -522,28 +520,6 @@ def slower(scene: Scene, settings: Settings) -> list[tuple[Scene, Settings]]:
         time_step=whole_steps(motion.time_step, duration),
     )  # fmt: skip
     return [*found, (heavier, replace(settings, motion=motion))] if motion != own else found
-
-
-def stopped_at(scene: Scene, estimate: ContactEstimate) -> float:
-    """Displacement [LU] at which an elastic body that hits the plane is at rest: ∫F dd = ½ M v²; 0 without a velocity.
-
-    Adhesion takes it deeper by what it gains at touch.
-    """
-    if not isinstance(scene.experiment, Impact):
-        return 0.0
-    assert scene.plate
-    assert scene.plate.mass != "auto"
-    energy, deepest = 0.5 * scene.plate.mass * scene.experiment.velocity**2, scene.bodies.spacing
-
-    def stored(displacement: float) -> float:
-        places = np.linspace(0.0, displacement, STOPPING)
-        return float(np.trapezoid(estimate.contact_forces(places), places))
-
-    from scipy.optimize import brentq
-
-    while stored(deepest) < energy:
-        deepest *= 2.0
-    return float(brentq(lambda d: stored(d) - energy, 0.0, deepest))
 
 
 def _beside_plane(stiffness: float, plane: float) -> float:
