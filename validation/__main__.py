@@ -44,6 +44,14 @@ def speed(only: Only = None, out: Out = None, full: Full = False, workers: Worke
 
 
 @app.command()
+def grains(only: Only = None, out: Out = None, full: Full = False, workers: Workers = 1) -> None:
+    """LAMMPS's granular contact models beside exact answers. Exit code 1: a row fails."""
+    from validation.grains import STUDIES
+
+    _conduct(STUDIES, out or Path("grains"), only, full, workers)
+
+
+@app.command()
 def pages() -> None:
     """VALIDATION.md, the tables and the times of docs/performance.md from the records in validation/results."""
     from contact1d.analysis.plots import save_figure
