@@ -70,7 +70,7 @@ MEASURED = 1.1
 """Of OVER_STICKING: from the restitution at it the sticking velocity follows."""
 OVER_STICKING = (0.8, 1.1, 1.5, 3.0, 10.0)
 """Velocities over that below which spheres of JKR stick."""
-DRAWN = (0.5, 0.0, -0.2, -0.35, -0.5, -0.7)
+DRAWN = (0.8, 0.5, 0.2, 0.0, -0.2, -0.35, -0.4, -0.5, -0.6, -0.7)
 """Overlaps over (π²W²R/E*²)^(1/3) while the spheres are drawn apart."""
 
 
