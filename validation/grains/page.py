@@ -100,18 +100,18 @@ def _models(rows: Rows) -> Iterator[Sequence[str]]:
     lines = (
         ("hertz", "`hertz`, no damping", "", "restitution", "right"),
         ("hertz", "`hertz`, no damping", "", "contact_time", "right"),
-        ("viscoelastic", "`damping viscoelastic`", "A = 0.3", "restitution", eta),
-        ("viscoelastic", "`damping viscoelastic`", "A = 0.3", "contact_time", "`limit_damping`"),
-        ("viscoelastic limit_damping", "the same with `limit_damping`", "A = 0.3", "restitution", eta),
-        ("coeff_restitution", "`damping coeff_restitution`", "e = 0.6", "restitution",
+        ("viscoelastic", "`viscoelastic`", "A = 0.3", "restitution", eta),
+        ("viscoelastic", "`viscoelastic`", "A = 0.3", "contact_time", "`limit_damping`"),
+        ("viscoelastic limit_damping", "with `limit_damping`", "A = 0.3", "restitution", eta),
+        ("coeff_restitution", "`coeff_restitution`", "e = 0.6", "restitution",
          "right, the same at every velocity"),
         (
-            "coeff_restitution limit_damping", "the same with `limit_damping`", "e = 0.6", "restitution",
+            "coeff_restitution limit_damping", "with `limit_damping`", "e = 0.6", "restitution",
             "leave `limit_damping` out",
         ),
-        ("tsuji", "`damping tsuji`", "e = 0.6", "restitution", "`coeff_restitution`, or a newer LAMMPS"),
+        ("tsuji", "`tsuji`", "e = 0.6", "restitution", "`coeff_restitution`, or a newer LAMMPS"),
         ("jkr", "`jkr`", "v = 1.5 v_s", "restitution", f"{cases.STRONGER:g} γ, if e matters more than pull-off"),
-        ("jkr", "`jkr`", "", "sticking velocity", "the same"),
+        ("jkr", "`jkr`", "", "sticking velocity", "as for the restitution"),
         ("jkr", "`jkr`", "", "pull off", "right"),
         ("jkr", "`jkr`", "", "dissipated", "as for the restitution"),
         ("dmt", "`dmt`", "v = 1.5 v_s", "restitution", "right for small hard spheres (Tabor parameter far below 1)"),
@@ -166,10 +166,13 @@ def _nearest(rows: Rows) -> str:
             found = [rows[near_name(model, A, v)] for v in cases.DECADE]
             given = cases.NEAREST[model.name][place]
             words = f"e = {given:g}" if model is cases.RESTITUTION else f"η = {given:g} · 2 E* τ/m"
-            off = max(abs(row.value - row.reference.value) for row in found)
-            cells = [f"{value(row.value)}, exact {value(row.reference.value)}" for row in found]
-            lines.append([f"{A:g}", f"`{model.name.replace(' ', '` with `')}`", words, *cells, number(off, 2)])
-    return table(["A", "model", "nearest coefficient", "e at v/√10", "at v", "at √10 v", "largest error of e"], lines)
+            cells = [f"{value(row.value)} ({_signed(row.value - row.reference.value)})" for row in found]
+            lines.append([f"{A:g}", f"`{model.name.replace(' ', '` with `')}`", words, *cells])
+    return table(["A", "model", "nearest coefficient", "e at v/√10", "at v", "at √10 v"], lines)
+
+
+def _signed(error: float) -> str:
+    return f"{error:+.4f}".replace("-", "−")
 
 
 def _adhesive(rows: Rows) -> str:
