@@ -18,7 +18,7 @@ from validation.grains import STUDIES, cases
 from validation.grains.granular import DECKS
 from validation.grains.page import blocks
 from validation.grains.studies import AGREES
-from validation.references.impact import Spheres, coeff_restitution, kelvin_voigt, restoring, tsuji
+from validation.references.grains import Spheres, coeff_restitution, kelvin_voigt, restoring, tsuji
 from validation.study import Study, answered, read_record
 
 RECORD = read_record(RESULTS / "grains.json")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from validation.references.impact import Impact, Spheres, coeff_restitution, restoring, tsuji, viscoelastic
+from validation.references.grains import Impact, Spheres, coeff_restitution, restoring, tsuji, viscoelastic
 
 HERTZ = "hertz 1.3333333333333333"
 """k = 4/3, E* = 1."""

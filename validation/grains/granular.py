@@ -14,7 +14,7 @@ from validation.doors import load_lammps
 
 DECKS = Path(__file__).parent / "decks"
 QUANTITIES = ("restitution", "contact_time", "peak_force", "peak_overlap")
-"""What impact.lmp measures, as in `validation.references.impact.Impact`."""
+"""What impact.lmp measures, as in `validation.references.grains.Impact`."""
 STEP, SLOW_STEP = 5e-5, 4e-5
 """Timesteps at velocity 1, and of adhesive spheres, which are slower; each run is made once more in half of it."""
 INCREMENT = 4e-7

@@ -14,7 +14,7 @@ from validation.grains import cases
 from validation.grains.cases import SPHERES, at_number, near_name, row_name
 from validation.grains.studies import ABOUT, AGREES, LATE, LENGTH, TENSION
 from validation.page import number, table
-from validation.references.impact import kelvin_voigt
+from validation.references.grains import kelvin_voigt
 from validation.row import Row
 from validation.study import Record
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from validation.grains import cases
 from validation.grains.cases import SPHERES, WORK_OF_ADHESION, Model, at_number, row_name
 from validation.grains.granular import INCREMENT, SLOW_STEP, Found, force_at, impact, variables_of
-from validation.references.impact import kelvin_voigt
+from validation.references.grains import kelvin_voigt
 from validation.row import Bound, Evidence, Known, Reference, Row
 from validation.study import Bench, Findings, Study
 
