@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 from validation.references.grains import Impact, Spheres, coeff_restitution, restoring, tsuji, viscoelastic
 
+OURS = "contact1d"
+"""Stands in place of a model in the names of the program's own rows."""
 HERTZ = "hertz 1.3333333333333333"
 """k = 4/3, E* = 1."""
 WORK_OF_ADHESION = 1e-3

@@ -11,15 +11,13 @@ from numpy.typing import NDArray
 
 from validation.figures import Drawing, Panel, Series
 from validation.grains import cases
-from validation.grains.cases import SPHERES, at_number, near_name, row_name
+from validation.grains.cases import OURS, SPHERES, at_number, near_name, row_name
 from validation.grains.studies import ABOUT, AGREES, LATE, LENGTH, TENSION
 from validation.page import number, table
 from validation.references.grains import kelvin_voigt
 from validation.row import Row
 from validation.study import Record
 
-OURS = "contact1d"
-"""Stands in place of a model in the names of the program's own rows."""
 DENSE = 25
 """Points of a line."""
 HEAD = ("model", "quantity", "LAMMPS", "exact", "deviation", "what to use")
