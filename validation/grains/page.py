@@ -13,7 +13,7 @@ from validation.figures import Drawing, Panel, Series
 from validation.grains import cases
 from validation.grains.cases import OURS, SPHERES, at_number, near_name, row_name
 from validation.grains.studies import ABOUT, AGREES, LATE, LENGTH, TENSION
-from validation.page import number, table
+from validation.page import measured, number, table
 from validation.references.grains import kelvin_voigt
 from validation.row import Row
 from validation.study import Record
@@ -38,7 +38,7 @@ class Rows(dict[str, Row]):
         if not any(name.startswith(OURS) for name in self):
             return []
         row = self.get(row_name(OURS, at, quantity))
-        return [value(row.value) if row else NOWHERE]
+        return [measured(row.value, row.uncertainty, "1") if row else NOWHERE]
 
     @property
     def our_head(self) -> list[str]:

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from validation.grains import cases
 from validation.grains.cases import SPHERES, WORK_OF_ADHESION, Model, at_number, row_name
 from validation.grains.granular import INCREMENT, SLOW_STEP, Found, force_at, impact, variables_of
+from validation.grains.ours import impacts
 from validation.references.grains import kelvin_voigt
 from validation.row import Bound, Evidence, Known, Reference, Row
 from validation.study import Bench, Findings, Study
@@ -178,4 +179,5 @@ STUDIES = (
     Study("adhesive", "Adhesive impact", "`jkr` and `dmt` without damping", adhesive),
     Study("drawn", "Drawn apart", "`jkr` and `dmt` by displacement", drawn),
     Study("wall", "A wall", "`fix wall/gran granular`", wall),
+    Study("impacts", "The program's own impacts", "Kelvin-Voigt bodies, and adhesive ones", impacts),
 )
