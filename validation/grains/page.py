@@ -21,7 +21,7 @@ from validation.study import Record
 DENSE = 25
 """Points of a line."""
 HEAD = ("model", "quantity", "LAMMPS", "exact", "deviation", "what to use")
-NOWHERE = "–"
+NOWHERE, STICK = "–", "they stick"
 JKR_IN_NAMES = {"jkr": "`jkr`", "dmt": "`dmt`", "nearest jkr": f"`jkr`, {cases.STRONGER:g} γ"}
 Array = NDArray[np.float64]
 
@@ -38,7 +38,9 @@ class Rows(dict[str, Row]):
         if not any(name.startswith(OURS) for name in self):
             return []
         row = self.get(row_name(OURS, at, quantity))
-        return [measured(row.value, row.uncertainty, "1") if row else NOWHERE]
+        if row is None:
+            return [NOWHERE]
+        return [measured(row.value, row.uncertainty, "1") if row.value else STICK]
 
     @property
     def our_head(self) -> list[str]:
@@ -179,7 +181,7 @@ def _adhesive(rows: Rows) -> str:
         at = f"v = {over:g} v_s"
         found = [rows.get(row_name(name, at, "restitution")) for name in JKR_IN_NAMES]
         assert found[0]
-        exact = value(found[0].reference.value) if over > 1.0 else "they stick"
+        exact = value(found[0].reference.value) if over > 1.0 else STICK
         cells = [both(row) if row and row.reference.value else value(row.value) if row else NOWHERE for row in found]
         lines.append([f"{over:g}", exact, *rows.ours(at, "restitution"), *cells])
     return table(["v/v_s", "exact e, JKR", *rows.our_head, *JKR_IN_NAMES.values()], lines)
