@@ -44,10 +44,19 @@ def speed(only: Only = None, out: Out = None, full: Full = False, workers: Worke
 
 
 @app.command()
+def grains(only: Only = None, out: Out = None, full: Full = False, workers: Workers = 1) -> None:
+    """LAMMPS's granular contact models beside exact answers. Exit code 1: a row fails."""
+    from validation.grains import STUDIES
+
+    _conduct(STUDIES, out or Path("grains"), only, full, workers)
+
+
+@app.command()
 def pages() -> None:
-    """VALIDATION.md, the tables and the times of docs/performance.md from the records in validation/results."""
+    """VALIDATION.md, the tables, the times of docs/performance.md and docs/grains.md from validation/results."""
     from contact1d.analysis.plots import save_figure
-    from validation.figures import margins
+    from validation.figures import margins, save
+    from validation.grains.page import blocks, drawings
     from validation.page import margins_of, speed_table, summary, tables_page, write_between
     from validation.study import read_record
 
@@ -56,6 +65,11 @@ def pages() -> None:
     (RESULTS / "tables.md").write_text(tables_page([records["paper"], records["hard"]]), encoding="utf-8")
     write_between(ROOT / "docs" / "performance.md", "speed", speed_table(records["speed"]))
     save_figure(margins(margins_of(records["hard"])), ROOT / "docs" / "stability" / "margins.png")
+    of_grains = read_record(RESULTS / "grains.json")
+    for name, text in blocks(of_grains).items():
+        write_between(ROOT / "docs" / "grains.md", name, text)
+    for name, drawing in drawings(of_grains).items():
+        save(drawing, ROOT / "docs" / name)
 
 
 @app.command()

@@ -19,7 +19,8 @@ CODE = ("src", "workflow", "analysis", "potentials", "lammps_inputs")
 """Folders of the program itself."""
 RECORDS = {
     "the paper": "validation/results/paper.json", "hard cases": "validation/results/hard.json",
-    "speed": "validation/results/speed.json", "random faults": "validation/results/mutants.json",
+    "speed": "validation/results/speed.json", "grains": "validation/results/grains.json",
+    "random faults": "validation/results/mutants.json",
     "listed faults": "validation/results/faults.json", "slow tests": "docs/slow.json",
 }  # fmt: skip
 NAMED = 4

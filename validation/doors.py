@@ -27,6 +27,7 @@ from contact1d.workflow.deck.steps import Displace, UnderLoad
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import Engine, EngineError, Session
+from contact1d.workflow.engine.worker import load_lammps
 from contact1d.workflow.errors import Contact1dError, FolderError, RunError
 from contact1d.workflow.experiments import kind_of, planned
 from contact1d.workflow.experiments.spacing import with_spacing

@@ -14,6 +14,7 @@ from tests.punch import PUNCH
 from validation import doors
 from validation.__main__ import RESULTS, ROOT, app
 from validation.age import RECORDS, Measured, today
+from validation.grains import STUDIES as GRAINS
 from validation.hard import STUDIES as HARD
 from validation.page import speed_table, summary, tables_page
 from validation.paper import STUDIES as PAPER
@@ -64,11 +65,11 @@ def test_a_folder_of_other_things_is_left_alone(tmp_path: Path) -> None:
 
 
 def test_every_study_goes_to_a_process_of_its_own() -> None:
-    for study in (*PAPER, *HARD, *SPEED):
+    for study in (*PAPER, *HARD, *SPEED, *GRAINS):
         assert pickle.loads(pickle.dumps(study)).name == study.name
 
 
-@pytest.mark.parametrize("command", ["paper", "hard", "speed"])
+@pytest.mark.parametrize("command", ["paper", "hard", "speed", "grains"])
 def test_an_unknown_study_is_told_with_the_known_ones(command: str, tmp_path: Path) -> None:
     done = CliRunner().invoke(app, [command, "--only", "fig_4", "--out", str(tmp_path / "out")])
     assert done.exit_code == 2

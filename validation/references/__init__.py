@@ -6,5 +6,5 @@ Solver (energy minimisation, no molecular dynamics): `interaction` and `model` s
 of the model: `independent_pairs`, `folded_pairs` (pairs that snap), `boltzmann_pairs` (with noise). Theory: `hertz`,
 `indenters` (JKR and other shapes), `mindlin`, `mdr` (any profile, with the adhesion rule of Heß), `axisymmetric` (with
 kinks). Under Dugdale's law: `maugis` (a paraboloid), `dugdale` (any body), `dugdale_elements` (in three dimensions).
-Motion: `slide`, `prandtl_tomlinson`, `thermal_friction`, `detachment`, `langevin_ensemble`.
+Motion: `grains` (impact), `slide`, `prandtl_tomlinson`, `thermal_friction`, `detachment`, `langevin_ensemble`.
 """

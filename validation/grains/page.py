@@ -1,0 +1,270 @@
+"""docs/grains.md from the record of the studies: its tables, between markers, and its two figures."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from validation.figures import Drawing, Panel, Series
+from validation.grains import cases
+from validation.grains.cases import OURS, SPHERES, at_number, near_name, row_name
+from validation.grains.studies import ABOUT, AGREES, LATE, LENGTH, TENSION
+from validation.page import measured, number, table
+from validation.references.grains import kelvin_voigt
+from validation.row import Row
+from validation.study import Record
+
+DENSE = 25
+"""Points of a line."""
+HEAD = ("model", "quantity", "LAMMPS", "exact", "deviation", "what to use")
+NOWHERE, STICK = "–", "they stick"
+JKR_IN_NAMES = {"jkr": "`jkr`", "dmt": "`dmt`", "nearest jkr": f"`jkr`, {cases.STRONGER:g} γ"}
+Array = NDArray[np.float64]
+
+
+class Rows(dict[str, Row]):
+    """All rows of a record by name."""
+
+    def __init__(self, record: Record) -> None:
+        """Of all studies."""
+        super().__init__({row.name: row for row in record.rows})
+
+    def ours(self, at: str, quantity: str) -> list[str]:
+        """A cell for the program's own result, or none where the record has none at all."""
+        if not any(name.startswith(OURS) for name in self):
+            return []
+        row = self.get(row_name(OURS, at, quantity))
+        if row is None:
+            return [NOWHERE]
+        return [measured(row.value, row.uncertainty, "1") if row.value else STICK]
+
+    @property
+    def our_head(self) -> list[str]:
+        """Its head."""
+        return [OURS] if any(name.startswith(OURS) for name in self) else []
+
+
+def value(number: float) -> str:
+    """Four digits, as decimals of a restitution; what is 0 within ABOUT is shown to its decimals, without a sign."""
+    text = f"{number:.3f}" if abs(number) < ABOUT or abs(number) >= 2.0 else f"{number:.4f}"
+    return text.replace("-", "−" if float(text) else "")
+
+
+def deviation(row: Row) -> str:
+    """Of LAMMPS from what is exact, in percent; 0 within what a row allows."""
+    if not row.reference.value:
+        return NOWHERE if abs(row.value) > AGREES else "0"
+    part = row.value / row.reference.value - 1.0
+    return "0" if abs(part) <= AGREES else f"{'+' if part > 0.0 else ''}{number(100.0 * part, 2)} %"
+
+
+def both(row: Row) -> str:
+    """Value and deviation."""
+    return f"{value(row.value)} ({deviation(row)})" if row.known else value(row.value)
+
+
+def blocks(record: Record) -> dict[str, str]:
+    """What stands between the markers of docs/grains.md, by their name."""
+    rows = Rows(record)
+    return {
+        "version": f"Measured {record.answers[0].date} with {version(record.versions['lammps'])}.\n",
+        "models": table(HEAD, _models(rows)),
+        "viscoelastic": _viscoelastic(rows),
+        "times": _times(rows),
+        "asked": _asked(rows),
+        "nearest": _nearest(rows),
+        "adhesive": _adhesive(rows),
+        "drawn": _drawn(rows),
+        "wall": _wall(rows),
+    }
+
+
+def version(package: str) -> str:
+    """The version of its package by LAMMPS's own name.
+
+    >>> version("2025.7.22.4.0")
+    'LAMMPS 22 Jul 2025, update 4'
+    """
+    year, month, day, update, *_ = (int(part) for part in f"{package}.0".split("."))
+    names = "JanFebMarAprMayJunJulAugSepOctNovDec"
+    return f"LAMMPS {day} {names[3 * month - 3 : 3 * month]} {year}{f', update {update}' if update else ''}"
+
+
+def _models(rows: Rows) -> Iterator[Sequence[str]]:
+    near = {name: f"{all_of[1]:g}" for name, all_of in cases.NEAREST.items()}
+    eta = f"`limit_damping` and η = {near[cases.LIMITED.name]} · 2 E* τ/m"
+    lines = (
+        ("hertz", "`hertz`, no damping", "", "restitution", "right"),
+        ("hertz", "`hertz`, no damping", "", "contact_time", "right"),
+        ("viscoelastic", "`viscoelastic`", "A = 0.3", "restitution", eta),
+        ("viscoelastic", "`viscoelastic`", "A = 0.3", "contact_time", "`limit_damping`"),
+        ("viscoelastic limit_damping", "with `limit_damping`", "A = 0.3", "restitution", eta),
+        ("coeff_restitution", "`coeff_restitution`", "e = 0.6", "restitution",
+         "right, the same at every velocity"),
+        (
+            "coeff_restitution limit_damping", "with `limit_damping`", "e = 0.6", "restitution",
+            "leave `limit_damping` out",
+        ),
+        ("tsuji", "`tsuji`", "e = 0.6", "restitution", "`coeff_restitution`, or a newer LAMMPS"),
+        ("jkr", "`jkr`", "v = 1.5 v_s", "restitution", f"{cases.STRONGER:g} γ, if e matters more than pull-off"),
+        ("jkr", "`jkr`", "", "sticking velocity", "as for the restitution"),
+        ("jkr", "`jkr`", "", "pull off", "right"),
+        ("jkr", "`jkr`", "", "dissipated", "as for the restitution"),
+        ("dmt", "`dmt`", "v = 1.5 v_s", "restitution", "right for small hard spheres (Tabor parameter far below 1)"),
+        ("wall hertz/material", "`fix wall/gran`", "", "E*", "2 E in place of E for a rigid wall"),
+    )  # fmt: skip
+    for model, shown, at, quantity, use in lines:
+        row = rows[row_name(model, at, quantity)]
+        where = f"{_quantity(quantity)}{', ' * bool(at)}{at}"
+        yield shown, where, value(row.value), value(row.reference.value), deviation(row), use
+
+
+def _quantity(name: str) -> str:
+    """As the page has it, with its unit."""
+    return {
+        "contact_time": "contact time [T]", "pull off": "pull-off force [(3/2)πWR]", "E*": "E* of a rigid wall [E]",
+        "sticking velocity": "sticking velocity [v_s]", "dissipated": "dissipated energy [(W⁵R⁴/E*²)^(1/3)]",
+    }.get(name, name)  # fmt: skip
+
+
+def _viscoelastic(rows: Rows) -> str:
+    lines = []
+    for A in cases.NUMBERS:
+        found = [rows[row_name(model.name, at_number(A), "restitution")] for model in cases.DAMPED]
+        exact = value(found[0].reference.value)
+        lines.append([f"{A:g}", exact, *rows.ours(at_number(A), "restitution"), *map(both, found)])
+    return table(["A", "exact e", *rows.our_head, "`viscoelastic`", "with `limit_damping`"], lines)
+
+
+def _times(rows: Rows) -> str:
+    lines = []
+    for A in cases.TIMED:
+        for quantity in ("contact_time", "peak_force"):
+            found = [rows[row_name(model.name, at_number(A), quantity)] for model in cases.DAMPED]
+            exact, name = value(found[0].reference.value), quantity.replace("_", " ").replace("peak", "largest")
+            lines.append([f"{A:g}", name, exact, *rows.ours(at_number(A), quantity), *map(both, found)])
+    return table(["A", "quantity", "exact", *rows.our_head, "`viscoelastic`", "with `limit_damping`"], lines)
+
+
+def _asked(rows: Rows) -> str:
+    lines = []
+    for e in cases.ASKED:
+        found = [rows[row_name(model.name, f"e = {e:g}", "restitution")] for model in cases.BY_RESTITUTION]
+        lines.append([f"{e:g}", *map(both, found)])
+    names = [f"`{model.name.replace(' ', '` with `')}`" for model in cases.BY_RESTITUTION]
+    return table(["given e", *names], lines)
+
+
+def _nearest(rows: Rows) -> str:
+    lines = []
+    for place, A in enumerate(cases.TIMED):
+        for model in cases.FITTED:
+            found = [rows[near_name(model, A, v)] for v in cases.DECADE]
+            given = cases.NEAREST[model.name][place]
+            words = f"e = {given:g}" if model is cases.RESTITUTION else f"η = {given:g} · 2 E* τ/m"
+            cells = [f"{value(row.value)} ({_signed(row.value - row.reference.value)})" for row in found]
+            lines.append([f"{A:g}", f"`{model.name.replace(' ', '` with `')}`", words, *cells])
+    return table(["A", "model", "nearest coefficient", "e at v/√10", "at v", "at √10 v"], lines)
+
+
+def _signed(error: float) -> str:
+    return f"{error:+.4f}".replace("-", "−")
+
+
+def _adhesive(rows: Rows) -> str:
+    lines = []
+    for over in cases.OVER_STICKING:
+        at = f"v = {over:g} v_s"
+        found = [rows.get(row_name(name, at, "restitution")) for name in JKR_IN_NAMES]
+        assert found[0]
+        exact = value(found[0].reference.value) if over > 1.0 else STICK
+        cells = [both(row) if row and row.reference.value else value(row.value) if row else NOWHERE for row in found]
+        lines.append([f"{over:g}", exact, *rows.ours(at, "restitution"), *cells])
+    return table(["v/v_s", "exact e, JKR", *rows.our_head, *JKR_IN_NAMES.values()], lines)
+
+
+def _drawn(rows: Rows) -> str:
+    quantities = {
+        "pull off": "pull-off force [(3/2)πWR]", "separation": "overlap at separation [(π²W²R/E*²)^(1/3)]",
+        "dissipated": "dissipated energy [(W⁵R⁴/E*²)^(1/3)]",
+    }  # fmt: skip
+    lines = []
+    for name, words in quantities.items():
+        jkr, dmt = (rows[row_name(model, "", name)] for model in ("jkr", "dmt"))
+        lines.append([words, value(jkr.reference.value), both(jkr), value(dmt.reference.value), both(dmt)])
+    return table(["quantity", "exact, JKR", "`jkr`", "exact, DMT", "`dmt`"], lines)
+
+
+def _wall(rows: Rows) -> str:
+    lines = []
+    for name, words in (
+        ("wall hertz/material", "`hertz/material E …`"), ("nearest wall hertz/material", "`hertz/material 2E …`"),
+    ):  # fmt: skip
+        row = rows[row_name(name, "", "E*")]
+        lines.append([words, value(row.value), value(row.reference.value), deviation(row)])
+    return table(["`fix wall/gran granular`", "E*/E in LAMMPS", "rigid wall", "deviation"], lines)
+
+
+def drawings(record: Record) -> Mapping[str, Drawing]:
+    """The figures of docs/grains.md, by the file's name."""
+    rows = Rows(record)
+    return {"grains_damped.png": _damped_drawing(rows), "grains_adhesive.png": _adhesive_drawing(rows)}
+
+
+def _points(rows: Rows, name: str, x: Sequence[float], names: Sequence[str]) -> Series:
+    found = [(at, rows[row].value) for at, row in zip(x, names, strict=True) if row in rows]
+    along, up = zip(*found, strict=True) if found else ((), ())
+    return Series(name, np.array(along), np.array(up))
+
+
+def _damped_drawing(rows: Rows) -> Drawing:
+    at = np.geomspace(cases.NUMBERS[0], cases.NUMBERS[-1], DENSE)
+    exact = Series("exact, Kelvin-Voigt", at, np.array([kelvin_voigt(A).restitution for A in at]))
+    shown = {"viscoelastic": "viscoelastic", "viscoelastic limit_damping": "with limit_damping", OURS: OURS}
+    names = {name: [row_name(name, at_number(A), "restitution") for A in cases.NUMBERS] for name in shown}
+    points = [_points(rows, label, cases.NUMBERS, names[name]) for name, label in shown.items()]
+    of_decade = np.geomspace(cases.DECADE[0], cases.DECADE[-1], DENSE)
+    lines = [np.array([kelvin_voigt(A * v**0.2).restitution for v in of_decade]) for A in cases.TIMED]
+    curves = Series(
+        "exact, A = 0.1, 0.3, 1 at v = 1",
+        np.concatenate([part for _ in lines for part in (of_decade, [math.nan])]),
+        np.concatenate([part for line in lines for part in (line, [math.nan])]),
+    )
+    x = [v for _ in cases.TIMED for v in cases.DECADE]
+    near = [
+        _points(rows, model.name, x, [near_name(model, A, v) for A in cases.TIMED for v in cases.DECADE])
+        for model in cases.FITTED
+    ]
+    drawn = [one for one in points if one.x.size]
+    panels = (
+        Panel("A = τ/T", "restitution", drawn, [exact], log="x", title="η = 2 E* τ/m"),
+        Panel("velocity", "restitution", near, [curves], title="the nearest coefficients", view=(0.0, 1.0)),
+    )
+    return Drawing("Restitution of a Kelvin-Voigt body", panels)
+
+
+def _adhesive_drawing(rows: Rows) -> Drawing:
+    beyond = np.linspace(0.0, math.sqrt(cases.DRAWN[0] - LATE[0]), 4 * DENSE) ** 2  # finer where the curve is steep
+    overlaps = np.concatenate([[LATE[0]], LATE[0] + 1e-9 + beyond])
+    forces = np.array([0.0] + [SPHERES.force_at(float(d) * LENGTH) / TENSION for d in overlaps[1:]])
+    loop = Series("exact, JKR", overlaps, forces)
+    pulled = _points(rows, "jkr", cases.DRAWN, [row_name("jkr", f"overlap {d:g}", "force") for d in cases.DRAWN])
+    at = np.concatenate([1.0 + np.geomspace(1e-5, 9.0, 3 * DENSE)])
+    exact = Series("exact, JKR", at, np.sqrt(1.0 - at**-2))
+    labels = {"jkr": "jkr", "nearest jkr": f"jkr, {cases.STRONGER:g} γ", "dmt": "dmt", OURS: OURS}
+    bounce = partial(row_name, quantity="restitution")
+    points = [
+        _points(rows, label, cases.OVER_STICKING, [bounce(name, f"v = {v:g} v_s") for v in cases.OVER_STICKING])
+        for name, label in labels.items()
+    ]
+    return Drawing(
+        "Adhesive spheres that are drawn apart, and that meet",
+        (
+            Panel("overlap / (π²W²R/E*²)^(1/3)", "force / pull-off force", [pulled], [loop], title="drawn apart"),
+            Panel("v / v_s", "restitution", [one for one in points if one.x.size], [exact], log="x", title="impact"),
+        ),
+    )

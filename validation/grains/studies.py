@@ -1,0 +1,183 @@
+"""What LAMMPS's granular models get wrong of two spheres that meet head-on, or are drawn apart."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from validation.grains import cases
+from validation.grains.cases import SPHERES, WORK_OF_ADHESION, Model, at_number, row_name
+from validation.grains.granular import INCREMENT, SLOW_STEP, Found, force_at, impact, variables_of
+from validation.grains.ours import impacts
+from validation.references.grains import kelvin_voigt
+from validation.row import Bound, Evidence, Known, Reference, Row
+from validation.study import Bench, Findings, Study
+
+AGREES = 1e-4
+"""A model is right within it, relative, and what it gets wrong is its own law's within it, of the order of 1."""
+ABOUT = 1e-3
+"""The same of what is drawn apart, absolute."""
+GRAINS = "Kelvin-Voigt body, its motion integrated"
+JOHNSON = "Johnson, Kendall and Roberts (1971)"
+EARLY = "it separates at the pull-off force"
+AS_SPHERE = "it acts as a body of the sphere's own material, E* = E/(2(1 − ν²))"
+DEEPEST = 0.02
+"""To which spheres are pressed, over R."""
+LENGTH, ENERGY, TENSION = (math.pi * WORK_OF_ADHESION) ** (2 / 3), WORK_OF_ADHESION ** (5 / 3), SPHERES.pull_off()
+"""(π²W²R/E*²)^(1/3), (W⁵R⁴/E*²)^(1/3), (3/2)πWR."""
+LATE = SPHERES.overlap(SPHERES.fixed_grips) / LENGTH, SPHERES.lost(SPHERES.fixed_grips) / ENERGY
+"""Overlap at which fixed grips separate, and the energy that is lost."""
+SOON = SPHERES.overlap(SPHERES.fixed_load) / LENGTH, SPHERES.lost(SPHERES.fixed_load) / ENERGY
+"""The same at the pull-off force."""
+
+
+def compared(
+    name: str, found: Found, exact: float, source: str, law: float, states: str = "–",
+    evidence: Evidence = "closed form",
+) -> Row:  # fmt: skip
+    """A row of what LAMMPS gives, what is exact, and what the model states, which it gives where it differs."""
+    known = Known(law, AGREES, states) if abs(law - exact) > AGREES * abs(exact) else None
+    reference = Reference(exact, source, evidence)
+    return Row(name, found.value, reference, Bound("relative", AGREES, "timestep"), found.change, known=known)
+
+
+def pulled(name: str, found: Found, exact: float, law: float, states: str = EARLY) -> Row:
+    """The same of what is drawn apart."""
+    known = Known(law, ABOUT, states) if abs(law - exact) > ABOUT else None
+    bound = Bound("absolute", ABOUT, "increment of the overlap")
+    return Row(name, found.value, Reference(exact, JOHNSON), bound, found.change, known=known)
+
+
+def elastic(_: Bench) -> Findings:
+    """No damping, no adhesion."""
+    exact = kelvin_voigt(0.0)
+    return Findings(
+        [
+            compared(row_name(model, "", name), one, getattr(exact, name), "Hertz (1881)", getattr(exact, name))
+            for model, words in cases.ELASTIC.items()
+            for name, one in impact(words).items()
+        ]
+    )
+
+
+def damped(_: Bench) -> Findings:
+    """Kelvin-Voigt bodies, with the coefficient that makes the force of loading exact."""
+    return Findings([row for A in cases.NUMBERS for model in cases.DAMPED for row in _damped(model, A)])
+
+
+def _damped(model: Model, A: float) -> Iterator[Row]:
+    exact, law, found = kelvin_voigt(A), model.law(2.0 * A), impact(model.words.format(round(2.0 * A, 6)))
+    for name in ("restitution", "contact_time", "peak_force") if A in cases.TIMED else ("restitution",):
+        row, states = row_name(model.name, at_number(A), name), "F = k d^1.5 + η m √(R d) d′"
+        yield compared(row, found[name], getattr(exact, name), GRAINS, getattr(law, name), states, "independent solver")
+
+
+def asked(_: Bench) -> Findings:
+    """Models that are given the coefficient of restitution."""
+    rows = []
+    for model in cases.BY_RESTITUTION:
+        for e in cases.ASKED:
+            name = row_name(model.name, f"e = {e:g}", "restitution")
+            found, law = impact(model.words.format(e))["restitution"], model.law(e).restitution
+            rows.append(compared(name, found, e, "what the model is given", law, "F = k d^1.5 + α √(m k) d^¼ d′"))
+    return Findings(rows)
+
+
+def decade(_: Bench) -> Findings:
+    """One body at velocities over a decade, with the coefficient that is nearest."""
+    return Findings([row for model in cases.FITTED for place in range(len(cases.TIMED)) for row in _near(model, place)])
+
+
+def _near(model: Model, place: int) -> Iterator[Row]:
+    given, A = cases.coefficient(model, place), cases.TIMED[place]
+    for v in cases.DECADE:
+        rate = 1.0 if model is cases.RESTITUTION else v**0.2
+        found, law = impact(model.words.format(given), v)["restitution"], model.law(given * rate).restitution
+        exact, name = kelvin_voigt(A * v**0.2).restitution, cases.near_name(model, A, v)
+        yield compared(name, found, exact, GRAINS, law, "its own law", "independent solver")
+
+
+def adhesive(_: Bench) -> Findings:
+    """Elastic spheres that adhere."""
+    sticking = SPHERES.sticking_velocity()
+    later = math.sqrt(SOON[1] / LATE[1])
+    rows = []
+    for over in cases.OVER_STICKING:
+        found = {name: impact(words, over * sticking, SLOW_STEP)["restitution"] for name, words in _bouncing(over)}
+        exact = math.sqrt(1.0 - over**-2) if over > 1.0 else 0.0
+        laws = {"jkr": math.sqrt(1.0 - (later / over) ** 2), "dmt": 1.0, "nearest jkr": exact}
+        for name, one in found.items():
+            row, true, source = row_name(name, f"v = {over:g} v_s", "restitution"), exact, "e² = 1 − (v_s/v)²"
+            if name == "dmt":
+                true, source = 1.0, "DMT has no hysteresis"
+            rows.append(compared(row, one, true, source, laws[name], EARLY))
+        if over == cases.MEASURED:
+            speed = Found(over * math.sqrt(1.0 - found["jkr"].value ** 2), found["jkr"].change / over)
+            rows.append(compared(row_name("jkr", "", "sticking velocity"), speed, 1.0, JOHNSON, later, EARLY))
+    return Findings(rows)
+
+
+def _bouncing(over: float) -> Iterator[tuple[str, str]]:
+    yield from cases.ADHESIVE.items()
+    if over > 1.0:
+        yield "nearest jkr", cases.NEAREST_JKR
+
+
+def drawn(_: Bench) -> Findings:
+    """Spheres that are pressed together and drawn apart by displacement."""
+    units = {"pull_off": TENSION, "separation": LENGTH, "dissipated": ENERGY}
+    answers = {"jkr": ((1.0, *LATE), (1.0, *SOON)), "dmt": ((4.0 / 3.0, 0.0, 0.0), (4.0 / 3.0, 0.0, 0.0))}
+    rows = []
+    for model, words in cases.ADHESIVE.items():
+        coarse, fine = (
+            variables_of("pulled", tuple(units), model=words, deepest=DEEPEST, increment=step)
+            for step in (INCREMENT, 0.5 * INCREMENT)
+        )
+        for (name, unit), exact, law in zip(units.items(), *answers[model], strict=True):
+            found = Found(fine[name] / unit, abs(fine[name] - coarse[name]) / unit)
+            rows.append(pulled(row_name(model, "", name), found, exact, law))
+    near = variables_of("pulled", ("pull_off",), model=cases.NEAREST_JKR, deepest=DEEPEST, increment=INCREMENT)
+    found = Found(near["pull_off"] / TENSION, 0.0)
+    rows.append(pulled(row_name("nearest jkr", "", "pull_off"), found, 1.0, cases.STRONGER, "proportional to W"))
+    for over in cases.DRAWN:
+        overlap = round(over * LENGTH / INCREMENT) * INCREMENT
+        exact = SPHERES.force_at(overlap) / TENSION
+        found = Found(force_at(overlap, DEEPEST, cases.ADHESIVE["jkr"]) / TENSION, 0.0)
+        rows.append(pulled(row_name("jkr", f"overlap {over:g}", "force"), found, exact, exact * (over > SOON[0])))
+    return Findings(rows)
+
+
+def wall(_: Bench) -> Findings:
+    """A sphere on `fix wall/gran`, and the deck with both deviations."""
+    modulus = 1.0 / (1.0 - 0.3**2)
+    length = (math.pi * WORK_OF_ADHESION / (0.5 * modulus)) ** (2 / 3)
+    found = {
+        "wall hertz/material": variables_of("wall", ("modulus",), increment=1e-5),
+        "nearest wall hertz/material": variables_of("wall", ("modulus",), model=cases.RIGID, increment=1e-5),
+        "deviations": variables_of("deviations", ("separation", "modulus")),
+        "wall jkr": variables_of("wall", ("separation",), model=cases.ON_WALL, increment=INCREMENT),
+    }
+    rows = []
+    for name, one in found.items():
+        if "modulus" in one:
+            law = modulus if name.startswith("nearest") else 0.5 * modulus
+            value = Found(one["modulus"], 0.0)
+            rows.append(
+                compared(row_name(name, "", "E*"), value, modulus, "E/(1 − ν²) of a rigid wall", law, AS_SPHERE)
+            )
+        if "separation" in one:
+            value = Found(one["separation"] / (LENGTH if name == "deviations" else length), 0.0)
+            rows.append(pulled(row_name(name, "", "separation"), value, LATE[0], SOON[0]))
+    return Findings(rows)
+
+
+STUDIES = (
+    Study("elastic", "Elastic spheres", "`hertz` without damping", elastic),
+    Study("damped", "Kelvin-Voigt bodies", "`damping viscoelastic` with η = 2 E* τ/m", damped),
+    Study("asked", "A given restitution", "`coeff_restitution` and `tsuji`", asked),
+    Study("decade", "The nearest coefficients", "a body at velocities over a decade", decade),
+    Study("adhesive", "Adhesive impact", "`jkr` and `dmt` without damping", adhesive),
+    Study("drawn", "Drawn apart", "`jkr` and `dmt` by displacement", drawn),
+    Study("wall", "A wall", "`fix wall/gran granular`", wall),
+    Study("impacts", "The program's own impacts", "Kelvin-Voigt bodies, and adhesive ones", impacts),
+)
