@@ -26,7 +26,7 @@ from contact1d.workflow.cli.app import app
 from tests.pages import ROOT, require_shown
 
 FOLDER = "docs/tutorials"
-PAGES = ("hertz", "adhesion", "friction", "profile", "scan", "sweep", "particle_model", "fit")
+PAGES = ("hertz", "adhesion", "friction", "profile", "scan", "sweep", "particle_model", "fit", "polymer")
 PART = re.compile(r"^```(\w*)\n(.*?)^```$|^<!-- (\w+): begin -->$", re.MULTILINE | re.DOTALL)
 LINES = {
     ("hertz", "run"): r"displacement|radius|p\(0\)|stiffness",
@@ -237,6 +237,18 @@ def test_fit(names: dict[str, Any]) -> None:
     low, high = fit["parameters"]["material.upper.youngs_modulus"]["interval"]
     assert names["high"] - names["low"] < 0.7 * (high - low)
     require_figure("fit", "colloid/fit.png")
+
+
+@one_page("polymer")
+def test_polymer(names: dict[str, Any]) -> None:
+    """The moduli are those that the table was made with; the corrected slope is 2 E* a of both bodies at once."""
+    assert names["E"] == pytest.approx(2400.0, rel=0.02)
+    assert names["moduli"][0] == pytest.approx(1680.0, rel=0.02)
+    run, e = names["run"], modulus((1e6 * names["E"], names["nu"]), (1141e9, 0.07))
+    own = run.results.creep_corrected_stiffness
+    at = [i for i, branch in enumerate(run.curve.branch) if branch == "holding"][-1]
+    assert own.value == pytest.approx(2.0 * e * run.curve.contact_radius[at], rel=2e-3)
+    require_figure("polymer")
 
 
 def require_figure(name: str, drawn: str | None = None) -> None:

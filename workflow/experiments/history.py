@@ -27,6 +27,8 @@ STEPS, FOR_TOLERANCE = 50, 1e-3
 """Load steps of a leg at a tolerance; they miss a part that goes with the square of their width."""
 SOONEST = 0.05
 """First of the load steps that become longer and longer, over the shortest time of the body."""
+NOTHING = 1e-9
+"""Force over the largest one below which it is round-off of a displacement."""
 RATES = 3
 """States on one side of a corner that give the rates there."""
 ROUNDED = 9
@@ -54,14 +56,15 @@ class HistoryExperiment(Scripted[History]):
             "displacement": Reading(float(d[last]), LENGTH, prescribed=not by_force, scale=float(np.abs(d).max())),
             "force": Reading(float(force[last]), FORCE, prescribed=by_force, scale=float(np.abs(force).max())),
         }
-        if radius := trace.radius(last):
+        parted = not touches(trace)[last]
+        if not parted and (radius := trace.radius(last)):
             found["contact_radius"] = Reading(radius, LENGTH)
             found["mean_pressure"] = Reading(float(force[last]) / (math.pi * radius**2), MEAN_PRESSURE)
         if trace.phase[-1].startswith("holding"):
             free, unit = (d, LENGTH) if by_force else (force, FORCE)
             first = next(i for i in range(last, -1, -1) if not trace.phase[i].startswith("holding"))
             found["relaxation"] = Reading(float(abs(free[last] - free[first])), unit, scale=float(np.abs(free).max()))
-        if force[last] == 0.0:
+        if parted:
             found["dissipated_energy"] = Reading(float(np.trapezoid(force, d)), ENERGY, scale=_work(d, force))
             found["contact_time"] = Reading(lost(trace) - _touched(trace), TIME)
         return found | _slopes(trace)
@@ -142,9 +145,14 @@ def _work(d: NDArray[np.float64], force: NDArray[np.float64]) -> float:
     return float(np.sum(0.5 * np.abs((force[1:] + force[:-1]) * np.diff(d))))
 
 
+def touches(trace: Trace) -> NDArray[np.bool_]:
+    """In which states the bodies press or hold each other by more than round-off."""
+    return np.abs(trace.force) > NOTHING * float(np.abs(trace.force).max())
+
+
 def _touched(trace: Trace) -> float:
     """When the bodies touch first [TU]: at d = 0, or with the first force."""
-    first = int(np.argmax(trace.force != 0.0))
+    first = int(np.argmax(touches(trace)))
     if first == 0:
         return float(trace.time[0])
     d, time = trace.displacement[first - 1 : first + 1], trace.time[first - 1 : first + 1]
@@ -153,7 +161,7 @@ def _touched(trace: Trace) -> float:
 
 def lost(trace: Trace) -> float:
     """When they part for good [TU]: the largest pressure falls to 0 evenly."""
-    last = int(np.flatnonzero(trace.force)[-1])
+    last = int(np.flatnonzero(touches(trace))[-1])
     before, here = (float(np.abs(trace.profile(i).pressure).max()) for i in (last - 1, last))
     start, time, end = trace.time[last - 1 : last + 2].tolist()
     part = here / (before - here) if before > here else 1.0

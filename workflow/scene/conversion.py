@@ -96,7 +96,7 @@ def _scales(scene: Place, texts: list[Place]) -> dict[str, Fraction] | None:
     plain = [
         place
         for place in numbers_in(scene)
-        if place.is_number and place.unit.bases & chosen and not (massless and place.absent and place.key == "mass")
+        if place.is_number and place.unit.bases & chosen and not (massless and place.path == "bodies.mass")
     ]
     if fixed and own and own.sound:
         own.report("follows from the material here", 'write "auto"')
