@@ -17,6 +17,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from contact1d.analysis.pressure import Array
 from contact1d.analysis.theory.adhesion import LENNARD_JONES_STRESS, Dmt, MaugisDugdale, Theory, of_tabor, valid_theory
 from contact1d.analysis.theory.indenters import Contact, Ellipsoid, FlatPunch, PowerLaw
@@ -26,8 +28,9 @@ from contact1d.analysis.theory.mindlin import (
     mindlin_stick_path,
     sliding_displacement,
 )
+from contact1d.analysis.theory.relaxing import Indented
 from contact1d.workflow.model.settings import interaction_law
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene import History, Scene
 from contact1d.workflow.scene.tables import SPHERES
 from contact1d.workflow.units import UNKNOWN, Quantity, Scales, scale_of
 
@@ -394,6 +397,41 @@ def _mindlin_values(case: Case) -> Values:
     return said if experiment.normal_forces() else said | {"normal_force": contact[0]}
 
 
+# Of a body that relaxes, pressed once by a given displacement: F over time, and when the contact is lost.
+
+EXPONENTS = {"parabola": 2.0, "cone": 1.0}
+MOMENTS = 200
+"""At which the largest force is looked for, beside the corners."""
+
+
+def indented(case: Case) -> Indented | None:
+    """The history of a body that relaxes; None of anything else, or where it is pressed more than once."""
+    given, law = case.scene.experiment, case.scene.viscoelasticity
+    profile: Any = case.scene.bodies.profile
+    exponent = EXPONENTS.get(case.kind, getattr(profile, "exponent", None))
+    if not isinstance(given, History) or law is None or law.terms is None or exponent is None or not given.places():
+        return None
+    force = case.body.force(case.body.radius_at(max(given.places())))
+    terms = tuple((term.share, term.time) for term in law.terms)
+    try:
+        return Indented(tuple(given.times), tuple(given.places()), force, exponent, terms)
+    except ValueError:
+        return None
+
+
+def _relaxes(case: Case) -> str:
+    return "a body that relaxes, pressed once by a given displacement" if indented(case) else ""
+
+
+def _ting_values(case: Case) -> Values:
+    history = indented(case)
+    assert history is not None
+    ends, lost = history.times, history.lost(history.times[-1])
+    forces = history.forces([*np.linspace(ends[0], ends[-1], MOMENTS), *ends])
+    said = {"peak_force": float(forces.max()), "force": float(forces[-1])}
+    return said if lost is None else said | {"contact_time": lost - history.touched}
+
+
 SNEDDON = "I. N. Sneddon, Int. J. Engng Sci. 3 (1965) 47"
 JKR = "K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. A 324 (1971) 301"
 MAUGIS = "D. Maugis, J. Colloid Interface Sci. 150 (1992) 243"
@@ -428,5 +466,7 @@ FORMS = (
     ClosedForm("DMT", DMT, _by_tabor(Theory.DMT), _dmt_values),
     ClosedForm("Cattaneo and Mindlin", "C. Cattaneo 1938; R. D. Mindlin, H. Deresiewicz, J. Appl. Mech. 20 (1953) 327",
                drawn_along, _mindlin_values),
+    ClosedForm("Ting", "T. C. T. Ting, J. Appl. Mech. 33 (1966) 845; loaded as by E. H. Lee, J. R. M. Radok 1960",
+               _relaxes, _ting_values),
 )  # fmt: skip
 """Every closed form that a run may be compared with; each has its own conditions."""

@@ -27,7 +27,7 @@ from contact1d.analysis.theory.mindlin import mindlin_path
 from contact1d.files import AnyPath
 from contact1d.workflow.body.derived import REPORTED
 from contact1d.workflow.body.reading import IMAGE, stands_for_spheres
-from contact1d.workflow.body.theory import Case, applying, drawn_along, in_words, sliding_contact
+from contact1d.workflow.body.theory import Case, applying, drawn_along, in_words, indented, sliding_contact
 from contact1d.workflow.body.traction import row_of
 from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.continuation.state import radius_rule
@@ -379,6 +379,8 @@ def _under_load(run: Run) -> Iterator[tuple[str, Chart]]:
     """Force over displacement and, where that changes, over the contact radius."""
     curve, theory, scale, tension = run.curve, _theory(run), _pull_off(run), run.results.get("adhesion_force")
     beside = figures.lines(*((name, d, force) for name, _, d, force in theory))
+    if (history := indented(Case(run.scene, run.results))) is not None:
+        beside = figures.lines(("Ting", curve.displacement, history.forces(curve.time)))
     if tension and tension.value:
         beside += figures.level(-tension.value, tension.uncertainty, f"$F_A$ = {tension.value:.4g} FU")
     yield "force_displacement", path_chart(run, {name: curve[name] for name in CURVE_COLUMNS[:2]}, force=beside)
@@ -453,6 +455,8 @@ def _theory(run: Run) -> list[tuple[str, Array, Array, Array]]:
     scene, half, case, pull_off = run.scene, run.scene.bodies.plane_radius, Case(run.scene, run.results), _pull_off(run)
     radius, forms = 2.0 * (half or 0.0), applying(case)
     body: PowerLaw | Ellipsoid
+    if scene.viscoelasticity:
+        return []
     if half is not None:
         work = scene.work_of_adhesion
         name, body = (
