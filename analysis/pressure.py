@@ -54,6 +54,12 @@ class ZonedProfile(Profile):
     reach: float
 
 
+def zoned(profile: Profile, edge: float) -> ZonedProfile:
+    """Return a profile whose contact ends at an edge [LU] and has no attraction beyond it."""
+    own = profile.x, profile.z_lower, profile.z_upper, profile.pressure, profile.shear
+    return ZonedProfile(*own, edge, edge)
+
+
 def pressure_profile(
     x_upper: ArrayLike,
     z_upper: ArrayLike,

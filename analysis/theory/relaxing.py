@@ -3,8 +3,8 @@
     F(t) = ∫₀^{t₁} φ(t − s) dP(d(s)),    ∫_{t₁}^{t} φ(t − s) d′(s) ds = 0,    φ(t) = 1 − Σ g (1 − e^(−t/τ))
 
 P(d) ∝ d^((n+1)/n) is the force of the elastic body at once. While the contact grows t₁ = t (E. H. Lee, J. R. M. Radok,
-J. Appl. Mech. 27 (1960) 438); when it shrinks, t₁ is when it was as wide before (T. C. T. Ting, J. Appl. Mech. 33 (1966)
-845).
+J. Appl. Mech. 27 (1960) 438); when it shrinks, t₁ is when it was as wide before (T. C. T. Ting, J. Appl. Mech. 33
+(1966) 845).
 """
 
 from __future__ import annotations

@@ -119,6 +119,8 @@ def radius_rule(scene: Scene, tolerance: float) -> RadiusRule:
     share = CALIBRATION.residual * tolerance
     if scene.bodies.own_count is not None:
         return ToTheEdge(scene.bodies, share, bool(scene.adhesion))
+    if scene.viscoelasticity and scene.is_stepped:
+        return Zoned(scene.bodies, share)
     if not scene.adheres:
         return Compressed(scene.bodies, share)
     if scene.adhesion and (scene.adhesion.range or scene.adhesion.rate):

@@ -10,6 +10,7 @@ from itertools import groupby
 
 import numpy as np
 
+from contact1d.analysis.pressure import zoned
 from contact1d.workflow.continuation.branch import Branch
 from contact1d.workflow.continuation.trust import DigitsError, TensionError
 from contact1d.workflow.deck.steps import Cohere, Displace, Phase, Spend
@@ -79,12 +80,21 @@ class SteppedBranch(Branch):
             )
 
     def follow(self, history: History) -> None:
-        """Load steps that take their time; those of forces are where the model carries them."""
+        """Load steps that take their time; those of forces are where the model carries them.
+
+        Where a body that relaxes ends its contact, particles that touch nothing know, and these have no force to show.
+        """
         self._turned, times = True, iter(history.time.tolist())
+        edges = None
+        if isinstance(self.model, RelaxingSprings):
+            edges = iter(self.model.edges(history.path(self.model)).tolist())
         for phase in followed(self.model, history):
             self.begin(phase.name)
             self._enter()
-            self._keep([replace(state, time=next(times)) for state in self.contact.rows(phase.rows)])
+            states = [replace(state, time=next(times)) for state in self.contact.rows(phase.rows)]
+            if edges is not None:
+                states = [replace(one, profile=zoned(one.profile, next(edges))) for one in states]
+            self._keep(states)
             if phase.name in history.marks:
                 self.mark(history.marks[phase.name])
 

@@ -62,7 +62,7 @@ class HistoryExperiment(Scripted[History]):
             found["mean_pressure"] = Reading(float(force[last]) / (math.pi * radius**2), MEAN_PRESSURE)
         if trace.phase[-1].startswith("holding"):
             free, unit = (d, LENGTH) if by_force else (force, FORCE)
-            first = next(i for i in range(last, -1, -1) if not trace.phase[i].startswith("holding"))
+            first = next((i for i in range(last, -1, -1) if not trace.phase[i].startswith("holding")), 0)
             found["relaxation"] = Reading(float(abs(free[last] - free[first])), unit, scale=float(np.abs(free).max()))
         if parted:
             found["dissipated_energy"] = Reading(float(np.trapezoid(force, d)), ENERGY, scale=_work(d, force))

@@ -517,7 +517,7 @@ class RelaxingSprings(Reduced):
         memory = Memory(self.law, heights)
 
         def force(place: float, time: float) -> float:
-            pressed = memory.pressed(place, time)
+            pressed, _ = memory.pressed(place, time)
             memory.go(place, time)
             return self.estimate.stiffness * float(pressed @ counts)
 
@@ -526,12 +526,36 @@ class RelaxingSprings(Reduced):
     def follow(self, path: Path) -> Followed:
         """A load step from each state to the next, in the time between them; see `Reduced.follow`."""
         heights, own, counts = self._heights
-        memory, each = Memory(self.law, heights), np.empty((path.displacement.size, heights.size))
+        memory = Memory(self.law, heights)
+        each, margin = np.empty((2, path.displacement.size, heights.size))
         for i, (place, time) in enumerate(zip(path.displacement.tolist(), self.spent(path.time).tolist(), strict=True)):
-            each[i] = memory.pressed(place, time)
+            each[i], margin[i] = memory.pressed(place, time)
             memory.go(place, time)
         each *= self.estimate.stiffness
-        return Followed(self.x, each @ counts, lambda state: each[state][own])
+        edge = self._edges(margin)
+        return Followed(self.x, each @ counts, lambda state: each[state][own], zone=(edge, edge))
+
+    def edges(self, path: Path) -> Array:
+        """a [LU] of each state, (m,)."""
+        zone = self.follow(path).zone
+        assert zone is not None
+        return zone[0]
+
+    def _edges(self, margin: Array) -> Array:
+        """a [LU] of states whose overlaps are (m, n) [LU], (m,): where those of the next two free particles come to 0.
+
+        Straight over x², as of a sphere; inside the contact the overlap has a kink at a.
+        """
+        heights, own, _ = self._heights
+        x = np.zeros_like(heights)
+        np.maximum.at(x, own, np.abs(self.x))
+        touching, square, end = margin > 0.0, x**2, heights.size - 1
+        last = end - np.argmax(touching[:, ::-1], axis=1)
+        rows, after, beyond = np.arange(last.size), np.minimum(last + 1, end), np.minimum(last + 2, end)
+        near, far = margin[rows, after], margin[rows, beyond]
+        slope = np.divide(near, near - far, out=np.zeros_like(near), where=near > far)
+        edge = np.sqrt(np.clip(square[after] + slope * (square[beyond] - square[after]), square[last], square[after]))
+        return np.where(touching.any(axis=1), edge, 0.0)
 
 
 def legs(displacements: Array) -> list[slice]:

@@ -51,14 +51,18 @@ class Memory:
         past = (self._share * decay) @ self._arms - float(self._share @ gain) * self.surface
         return response, -past / response, decay, gain
 
-    def pressed(self, place: float, time: float) -> Array:
-        """Forces over stiffness (n,) [LU] as the body comes to a displacement [LU] after a time [TU]."""
+    def pressed(self, place: float, time: float) -> tuple[Array, Array]:
+        """Forces over stiffness as the body comes to a displacement [LU] after a time [TU], and its overlaps.
+
+        Both (n,) [LU]; overlaps go on below 0 where nothing touches, so that they tell where the contact ends.
+        """
         response, free, *_ = self._ahead(time)
         overlap = place - self._heights
         if self._retarded:
-            rate = self._retarded * (place - self.place) / time
-            return np.where(overlap > free, np.maximum(overlap + rate, 0.0), 0.0)
-        return response * np.maximum(overlap - free, 0.0)
+            push = overlap + self._retarded * (place - self.place) / time
+            margin = np.minimum(overlap - free, push)
+            return np.where(margin > 0.0, push, 0.0), margin
+        return response * np.maximum(overlap - free, 0.0), overlap - free
 
     def under(self, load: float, counts: Array, time: float) -> float:
         """Displacement [LU] after a time [TU] at which forces over stiffness, `counts` of each, make a `load` ≥ 0 [LU].

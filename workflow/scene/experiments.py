@@ -464,7 +464,6 @@ class Impact(Kind):
         "damping": "nothing but the contact slows the body",
         "noise": "nothing but the contact slows the body",
     }
-    needs = ("plate",)
     way_is_given = True
     is_massless = True
 

@@ -205,6 +205,8 @@ def _plate(d: Draft) -> Rows:
     yield ("horizontal", not slides and "x" in (free or ()),
            'missing, needed by plate.free with "x"',
            f'write plate.free = ["z"], or add {EFFECT_TABLES["horizontal"].how}')
+    yield ("plate", d.kind == "impact",
+           "missing, needed by an impact: it has the mass of the body", "add [plate] with mass")
     yield ("plate.mass", d.kind == "impact" and d["plate.mass"] == "auto",
            "must be given in an impact (MU): it is that of the body", "give its mass")
     held = d.kind == "hold"
