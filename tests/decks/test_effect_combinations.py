@@ -259,14 +259,15 @@ def test_all_other_sets_are_refused(make_scene: MakeScene) -> None:
 def test_every_effect_and_every_pair_is_among_the_runs() -> None:
     """All pairs but those of a cantilever with a rigid plane's missing lower body are allowed somewhere.
 
-    Friction and an energy of adhesion stand alone.
+    Friction, memory and an energy of adhesion stand alone.
     """
     run = {pair for case in ALLOWED for pair in combinations(EFFECTS, 2) if set(pair) <= case[3]}
-    assert run == set(combinations([name for name in EFFECTS if name not in ("adhesion", "friction")], 2)) | {
-        ("adhesion", "damping"), ("adhesion", "plate"),
+    alone = ("adhesion", "friction", "viscoelasticity")
+    assert run == set(combinations([name for name in EFFECTS if name not in alone], 2)) | {
+        ("adhesion", "damping"), ("adhesion", "plate"), ("viscoelasticity", "plate"),
     }  # fmt: skip
-    alone = [case[3] for case in ALLOWED]
+    sets = [case[3] for case in ALLOWED]
     required = {"noise": {"damping", "plate"}, "plate": {"damping"}, "horizontal": {"interaction"}}
     for name in ("interaction", "neighbours", "horizontal", "adhesion", "friction", "damping", "noise", "plate"):
-        assert frozenset({name} | required.get(name, set())) in alone
-    assert frozenset({"interaction", "horizontal", "damping", "plate", "cantilever"}) in alone
+        assert frozenset({name} | required.get(name, set())) in sets
+    assert frozenset({"interaction", "horizontal", "damping", "plate", "cantilever"}) in sets

@@ -232,8 +232,8 @@ def test_points_without_a_smooth_curve_lie_on_chords_or_in_corners_of_neighbouri
 def test_heights_with_few_digits_may_have_their_apex_half_a_digit_lower(digits: int, scale: float) -> None:
     r = np.arange(31.0)
     rounded = np.round(r**2 / 7.0, digits)
-    *_, lower = table(r, scale * rounded).alternatives
-    assert len(table(r, scale * rounded).alternatives) == 3
+    _, _, lower, *wavy = table(r, scale * rounded).alternatives
+    assert len(wavy) == 2
     between = np.array([r[-2] + 0.5])
     own = float(table(r, scale * rounded).height(between)[0])
     assert float(lower.height(between)[0]) - own == pytest.approx(0.5 * scale * 10.0**-digits, rel=1e-6)

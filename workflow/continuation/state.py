@@ -66,14 +66,15 @@ class Held(RadiusRule):
 
 
 class Zoned(RadiusRule):
-    """Up to the edge that a load step gives; where none is known, up to the largest tension beside the axis."""
+    """Up to the edge that a load step gives; where none is known, as the pressure shows it."""
 
     def of(self, profile: Profile) -> ContactRadius | None:
         """Exact; 0 of bodies that attract each other and do not touch."""
         if not profile.pressure.any():
             return None
         if not isinstance(profile, ZonedProfile):
-            return tensile_radius(profile)
+            pulled = profile.pressure.min() < 0.0
+            return tensile_radius(profile) if pulled else compressive_radius(profile, self.share)
         return ContactRadius(profile.edge, 0.0, -profile.edge, profile.edge, reaches_end=False)
 
     def is_cut(self, profile: Profile) -> bool:

@@ -23,7 +23,7 @@ from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import History, Scene
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, MEAN_PRESSURE, TIME
 
-STEPS, FOR_TOLERANCE = 50, 1e-3
+STEPS, FOR_TOLERANCE = 70, 1e-3
 """Load steps of a leg at a tolerance; they miss a part that goes with the square of their width."""
 SOONEST = 0.05
 """First of the load steps that become longer and longer, over the shortest time of the body."""
@@ -66,7 +66,7 @@ class HistoryExperiment(Scripted[History]):
             found["relaxation"] = Reading(float(abs(free[last] - free[first])), unit, scale=float(np.abs(free).max()))
         if parted:
             found["dissipated_energy"] = Reading(float(np.trapezoid(force, d)), ENERGY, scale=_work(d, force))
-            found["contact_time"] = Reading(lost(trace) - _touched(trace), TIME)
+            found["contact_time"] = Reading(lost(trace) - _touched(trace, by_force), TIME)
         return found | _slopes(trace)
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
@@ -133,10 +133,11 @@ def _slopes(trace: Trace) -> dict[str, Reading]:
         [float(through(time[side] - time[corner], one[side])[1]) for one in (force, d)] for side in (before, after)
     ]
     (force_before, d_before), (force_after, d_after) = rates
-    found = {"unloading_stiffness": Reading(force_after / d_after, LINE_PRESSURE)} if d_after else {}
+    # Slopes are what a few states at a corner show: no tolerance is asked of them.
+    found = {"unloading_stiffness": Reading(force_after / d_after, LINE_PRESSURE, prescribed=True)} if d_after else {}
     if d_after != d_before:
         own = (force_after - force_before) / (d_after - d_before)
-        found["creep_corrected_stiffness"] = Reading(own, LINE_PRESSURE)
+        found["creep_corrected_stiffness"] = Reading(own, LINE_PRESSURE, prescribed=True)
     return found
 
 
@@ -150,13 +151,16 @@ def touches(trace: Trace) -> NDArray[np.bool_]:
     return np.abs(trace.force) > NOTHING * float(np.abs(trace.force).max())
 
 
-def _touched(trace: Trace) -> float:
-    """When the bodies touch first [TU]: at d = 0, or with the first force."""
+def _touched(trace: Trace, by_force: bool) -> float:
+    """When the bodies touch first [TU]: at d = 0, or with the first force that is given."""
     first = int(np.argmax(touches(trace)))
-    if first == 0:
+    apart = np.flatnonzero(trace.force[:first] <= 0.0 if by_force else trace.displacement[: first + 1] <= 0.0)
+    if not apart.size:
         return float(trace.time[0])
-    d, time = trace.displacement[first - 1 : first + 1], trace.time[first - 1 : first + 1]
-    return float(np.interp(0.0, d, time)) if d[0] < d[1] else float(time[0])
+    if by_force:
+        return float(trace.time[apart[-1]])
+    near = slice(int(apart[-1]), int(apart[-1]) + 2)
+    return float(np.interp(0.0, trace.displacement[near], trace.time[near]))
 
 
 def lost(trace: Trace) -> float:

@@ -92,7 +92,8 @@ class TangentialExperiment(Scripted[Tangential]):
         lost, force = error * scene.experiment.way, float(trace.force[last.state])
         is_unseen = last.dissipated <= lost
         unseen = _unseen_slip(rows, scene)[0] if is_unseen else 0.0
-        radius, narrowest = trace.radius(last.state) or 0.0, min(row.stick.value for row in rows)
+        radius = trace.radius(last.state) or 0.0
+        slid = [(trace.radius(row.state) or 0.0) - row.stick.value for row in rows]
         found = {
             "normal_force": Reading(
                 force, FORCE, {"solver": ROUND_OFF * abs(force)}, prescribed=scene.experiment.compression is not None
@@ -107,7 +108,7 @@ class TangentialExperiment(Scripted[Tangential]):
             # that has slipped between the outermost particles leaves no trace when the body goes back.
             "stick_radius": Reading(
                 last.stick.value + trace.shift_of(last.state) * last.stick.uncertainty, LENGTH,
-                {LATTICE: (last.stick.value - narrowest) * is_unseen},
+                {LATTICE: (max(slid) - slid[-1]) * is_unseen},
                 prescribed=radius == 0.0, scale=radius if last.stick.value == 0.0 else None,
             ),
             "dissipated_energy": _energy(rows, lost, scene),
