@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby, pairwise
 
@@ -25,7 +25,7 @@ from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, MEAN_
 
 STEPS, FOR_TOLERANCE = 70, 1e-3
 """Load steps of a leg at a tolerance; they miss a part that goes with the square of their width."""
-SOONEST = 0.05
+SOONEST = 0.001
 """First of the load steps that become longer and longer, over the shortest time of the body."""
 NOTHING = 1e-9
 """Force over the largest one below which it is round-off of a displacement."""
@@ -127,11 +127,13 @@ def _slopes(trace: Trace) -> dict[str, Reading]:
     first = falls.index(True) if True in falls else 0
     if first < RATES or first + RATES - 1 > len(trace) or not falls[first + RATES - 2]:
         return {}
-    corner, time, d, force = first - 1, trace.time, trace.displacement, trace.force
-    before, after = ([corner - i for i in range(RATES)], [corner + i for i in range(RATES)])
-    rates = [
-        [float(through(time[side] - time[corner], one[side])[1]) for one in (force, d)] for side in (before, after)
-    ]
+    corner, time, d = first - 1, trace.time, trace.displacement
+    near = range(corner - RATES + 1, corner + RATES)
+    force = dict(zip(near, _whole(trace, corner, near), strict=True))
+    rates = []
+    for side in (near[:RATES], near[RATES - 1 :]):
+        at = np.asarray([time[i] - time[corner] for i in side])
+        rates.append([float(through(at, np.asarray([one[i] for i in side]))[1]) for one in (force, d)])
     (force_before, d_before), (force_after, d_after) = rates
     # Slopes are what a few states at a corner show: no tolerance is asked of them.
     found = {"unloading_stiffness": Reading(force_after / d_after, LINE_PRESSURE, prescribed=True)} if d_after else {}
@@ -139,6 +141,18 @@ def _slopes(trace: Trace) -> dict[str, Reading]:
         own = (force_after - force_before) / (d_after - d_before)
         found["creep_corrected_stiffness"] = Reading(own, LINE_PRESSURE, prescribed=True)
     return found
+
+
+def _whole(trace: Trace, corner: int, states: Sequence[int]) -> list[float]:
+    """F [FU] of states with as many particles as fit into the contact of one of them, and not a whole number.
+
+    A slope counts them, while forces that fall to 0 at the edge do not show how many there are.
+    """
+    pressure = np.asarray([trace.profile(i).pressure for i in states])
+    touching = np.flatnonzero(pressure.all(axis=0))
+    missing = 2.0 * (trace.radius(corner) or 0.0) - trace.model.estimate.spacing * touching.size
+    edge = pressure[:, touching[[0, -1]]].mean(axis=1)
+    return [float(trace.force[i] + missing * one) for i, one in zip(states, edge, strict=True)]
 
 
 def _work(d: NDArray[np.float64], force: NDArray[np.float64]) -> float:
