@@ -64,16 +64,21 @@ class HistoryExperiment(Scripted[History]):
             free, unit = (d, LENGTH) if by_force else (force, FORCE)
             first = next((i for i in range(last, -1, -1) if not trace.phase[i].startswith("holding")), 0)
             found["relaxation"] = Reading(float(abs(free[last] - free[first])), unit, scale=float(np.abs(free).max()))
-        if parted:
-            found["dissipated_energy"] = Reading(float(np.trapezoid(force, d)), ENERGY, scale=_work(d, force))
+        if parted and force.any():
+            if force[0] == 0.0:
+                found["dissipated_energy"] = Reading(float(np.trapezoid(force, d)), ENERGY, scale=_work(d, force))
             found["contact_time"] = Reading(lost(trace) - _touched(trace, by_force), TIME)
         return found | _slopes(trace)
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """The time of each state."""
-        if "contact_time" not in outcome.results:
-            words = "the bodies still touch at the end, so there is neither a contact_time nor a dissipated_energy"
-            outcome = replace(outcome, warnings={**outcome.warnings, "no_contact_time": words})
+        """The time of each state, and why a number is missing."""
+        found, words = {"contact_time", "dissipated_energy"} - outcome.results.keys(), ""
+        if len(found) > 1:
+            words = "the bodies touch at the end, or never, so there is neither a contact_time nor a dissipated_energy"
+        elif found:
+            words = "the history begins in contact, and what that took is not known, so there is no dissipated_energy"
+        if words:
+            outcome = replace(outcome, warnings={**outcome.warnings, "no_energy": words})
         return replace(outcome, columns={"time": tuple(one.time for one in outcome.states)})
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
@@ -151,7 +156,7 @@ def _whole(trace: Trace, corner: int, states: Sequence[int]) -> list[float]:
     pressure = np.asarray([trace.profile(i).pressure for i in states])
     touching = np.flatnonzero(pressure.all(axis=0))
     missing = 2.0 * (trace.radius(corner) or 0.0) - trace.model.estimate.spacing * touching.size
-    edge = pressure[:, touching[[0, -1]]].mean(axis=1)
+    edge = pressure[:, touching[[0, -1]]].mean(axis=1) if touching.size else np.zeros(len(states))
     return [float(trace.force[i] + missing * one) for i, one in zip(states, edge, strict=True)]
 
 
@@ -179,7 +184,7 @@ def _touched(trace: Trace, by_force: bool) -> float:
 
 def lost(trace: Trace) -> float:
     """When they part for good [TU]: the largest pressure falls to 0 evenly."""
-    last = int(np.flatnonzero(touches(trace))[-1])
+    last = max(1, int(np.flatnonzero(touches(trace))[-1]))
     before, here = (float(np.abs(trace.profile(i).pressure).max()) for i in (last - 1, last))
     start, time, end = trace.time[last - 1 : last + 2].tolist()
     part = here / (before - here) if before > here else 1.0
