@@ -29,6 +29,7 @@ class ImpactExperiment(Scripted[Impact]):
     """e = −v′/v, the time of contact, the peaks, and ½ M (v² − v′²)."""
 
     main_results = ("restitution", "contact_time", "peak_force", "peak_displacement", "peak_contact_radius")
+    branches = {"touching": "impact"}  # noqa: RUF012
 
     def script(self, branch: Driver, scene: Scene) -> None:
         """Hit."""

@@ -37,7 +37,7 @@ from contact1d.workflow.runs.export import csv_text, dataset, kept, latex, liste
 from contact1d.workflow.runs.plausibility import IMPLAUSIBLE
 from contact1d.workflow.runs.report import COLUMN_UNITS, FILES, as_json, in_units, quantities_in, read_results
 from contact1d.workflow.runs.scales import scales_of
-from contact1d.workflow.scene import Scene, SceneError, scene_from_dict
+from contact1d.workflow.scene import History, Scene, SceneError, scene_from_dict
 from contact1d.workflow.scene.tables import SPHERES, WIDER_THAN_SPHERES
 from contact1d.workflow.units import FORCE, LENGTH, MASS, NUMBER, Quantity, Scales, scale_of
 
@@ -343,8 +343,11 @@ def _charts(run: Run) -> Iterator[tuple[str, Chart]]:
         yield "tangential", path_chart(run, tangential_force=_mindlin(run))
         yield "stick_slip", figures.stick_slip(profiles, scene.friction.coefficient, _zones(run, profiles))
     elif over != "displacement":
-        yield "friction" if run.friction else f"{up}_{over}", path_chart(run)
-    if "displacement" in (over, up) and (not scene.noise or scene.experiment.way_is_given):
+        name = "friction" if run.friction else f"{up}_{over}"
+        yield name, path_chart(run, force=_ting(run, over) if up == "force" else [])
+    if ("displacement" in (over, up) or isinstance(scene.experiment, History)) and (
+        not scene.noise or scene.experiment.way_is_given
+    ):
         yield from _under_load(run)
     if all(profile.x.size > 1 for profile in profiles.values()):  # one particle has no pressure over x
         yield "pressure", figures.pressure(profiles, radii)
@@ -379,8 +382,7 @@ def _under_load(run: Run) -> Iterator[tuple[str, Chart]]:
     """Force over displacement and, where that changes, over the contact radius."""
     curve, theory, scale, tension = run.curve, _theory(run), _pull_off(run), run.results.get("adhesion_force")
     beside = figures.lines(*((name, d, force) for name, _, d, force in theory))
-    if (history := indented(Case(run.scene, run.results))) is not None:
-        beside = figures.lines(("Ting", curve.displacement, history.forces(curve.time)))
+    beside += _ting(run, "displacement")
     if tension and tension.value:
         beside += figures.level(-tension.value, tension.uncertainty, f"$F_A$ = {tension.value:.4g} FU")
     yield "force_displacement", path_chart(run, {name: curve[name] for name in CURVE_COLUMNS[:2]}, force=beside)
@@ -396,6 +398,12 @@ def _under_load(run: Run) -> Iterator[tuple[str, Chart]]:
         return
     panel, spread = (y, curve.force / height, beside), curve.contact_radius_uncertainty / width
     yield "force_radius", figures.path(x, radius / width, legs_of(run, radius), panel, spread=spread)
+
+
+def _ting(run: Run, over: str) -> list[Series]:
+    """F of Lee, Radok and Ting over a column of the curve; nothing where they do not apply."""
+    history = indented(Case(run.scene, run.results))
+    return [] if history is None else figures.lines(("Ting", run.curve[over], history.forces(run.curve.time)))
 
 
 def _pull_off(run: Run) -> tuple[float, float] | None:

@@ -407,7 +407,7 @@ class LoadedMoment(Table):
 
 
 class History(Kind):
-    """Displacement or force over time, on a rigid plane; each load step is in equilibrium."""
+    """Displacement or force over time, on a rigid plane."""
 
     one_of = (
         (("displacement", "force"), "give displacement = [[time, displacement], …] or force = [[time, force], …]"),
@@ -454,7 +454,7 @@ class History(Kind):
 
 
 class Impact(Kind):
-    """A body that hits the rigid plane with a velocity, and rebounds or sticks; always dynamic."""
+    """A body that hits the rigid plane; always dynamic."""
 
     only_method = "dynamic"
     excludes: ClassVar[Mapping[str, str]] = {
