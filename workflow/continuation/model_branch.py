@@ -86,8 +86,8 @@ class ModelBranch:
             self._add(dense[0][:-1])
             dense[0] = dense[0][-1:]
         self._phase = own
-        for positions in dense:
-            self._add(positions)
+        if dense:
+            self._add(np.concatenate(dense))
 
     def _between(self, start: float, end: float, count: int) -> Array:
         """So many positions [LU] of a step, its end the last, and others on both sides of each jump."""
