@@ -43,13 +43,16 @@ class ImpactExperiment(Scripted[Impact]):
         d, time = trace.displacement, trace.time
         energy, parted = 0.5 * mass * velocity**2, not trace.force[-FLIGHT:].any()
         back = float((d[-2] - d[-1]) / (time[-1] - time[-2])) / velocity if parted else 0.0
-        radii = np.asarray([trace.radius(i) or 0.0 for i in range(len(trace))])
+        deepest = _top(time, d)
+        # The surface has not been touched before, so that a body that relaxes has the contact of its displacement.
+        own = settings.estimate.half_width(deepest, settings.estimate.rest) if scene.viscoelasticity else 0.0
+        widest = own or max(trace.radius(i) or 0.0 for i in range(len(trace)))
         found = {
             "restitution": Reading(back, NUMBER, scale=1.0),
             "dissipated_energy": Reading(energy * (1.0 - back**2), ENERGY, scale=energy),
             "peak_force": Reading(_top(time, trace.force), FORCE),
-            "peak_displacement": Reading(_top(time, d), LENGTH),
-            "peak_contact_radius": Reading(float(radii.max()), LENGTH),
+            "peak_displacement": Reading(deepest, LENGTH),
+            "peak_contact_radius": Reading(widest, LENGTH),
         }
         return found | ({"contact_time": Reading(lost(trace), TIME)} if parted else {})
 
