@@ -88,13 +88,11 @@ class Experiment(ABC, Generic[K]):
 
 
 class Scripted(Experiment[K]):
-    """A script over a branch, and a reader of the resulting trace.
+    """A script over a branch, and a reader of the resulting trace."""
 
-    Attributes:
-        is_sampled: whether the load steps are given, and what lies between them is an error.
-    """
-
-    is_sampled: ClassVar[bool] = False
+    def is_sampled(self, scene: Scene) -> bool:
+        """Whether the load steps are known beforehand, so that what lies between them is an error."""
+        return False
 
     @abstractmethod
     def script(self, branch: Driver, scene: Scene) -> None:
@@ -121,7 +119,7 @@ class Scripted(Experiment[K]):
         errors = force_errors(scene, settings, branch.states, branch.marked.values(), branch.unbalance)
         slower = self._slower(context, case, trace)
         length = 0.5 * settings.forces.range
-        results = budgeted(case, trace, errors, self.is_sampled, length, repeated=slower)
+        results = budgeted(case, trace, errors, self.is_sampled(scene), length, repeated=slower)
         warnings = doubts(scene, settings, tuple(branch.states))
         tables = self.tables(trace, scene, settings)
         states, moves = tuple(branch.states), case.moves

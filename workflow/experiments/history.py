@@ -40,7 +40,10 @@ class HistoryExperiment(Scripted[History]):
     """d, F and a at the end, the peaks, what is lost, and how long the bodies touch."""
 
     main_results = ("peak_force", "peak_displacement", "displacement", "force", "contact_radius")
-    is_sampled = True
+
+    def is_sampled(self, scene: Scene) -> bool:
+        """Always."""
+        return True
 
     def script(self, branch: Driver, scene: Scene) -> None:
         """All of it; the end of each leg is reported."""
@@ -183,9 +186,13 @@ def _touched(trace: Trace, by_force: bool) -> float:
 
 
 def lost(trace: Trace) -> float:
-    """When they part for good [TU]: the largest pressure falls to 0 evenly."""
+    """When they part for good [TU]: at a displacement that is known, or as the largest pressure falls to 0."""
     last = max(1, int(np.flatnonzero(touches(trace))[-1]))
-    before, here = (float(np.abs(trace.profile(i).pressure).max()) for i in (last - 1, last))
     start, time, end = trace.time[last - 1 : last + 2].tolist()
+    if (place := trace.model.parted) is not None:
+        d = trace.displacement[last : last + 2]
+        share = float((d[0] - place) / (d[0] - d[1])) if d[0] > d[1] else 0.0
+        return float(time + min(max(share, 0.0), 1.0) * (end - time))
+    before, here = (float(np.abs(trace.profile(i).pressure).max()) for i in (last - 1, last))
     part = here / (before - here) if before > here else 1.0
     return float(min(end, time + part * (time - start)))

@@ -46,10 +46,11 @@ class ImpactExperiment(Scripted[Impact]):
         deepest = _top(time, d)
         # The surface has not been touched before, so that a body that relaxes has the contact of its displacement.
         own = settings.estimate.half_width(deepest, settings.estimate.rest) if scene.viscoelasticity else 0.0
-        widest = own or max(trace.radius(i) or 0.0 for i in range(len(trace)))
+        widest = own or _top(time, np.asarray([trace.radius(i) or 0.0 for i in range(len(trace))]))
+        lossless = not (scene.viscoelasticity or scene.adhesion)
         found = {
-            "restitution": Reading(back, NUMBER, scale=1.0),
-            "dissipated_energy": Reading(energy * (1.0 - back**2), ENERGY, scale=energy),
+            "restitution": Reading(back, NUMBER, scale=None if back else 1.0),
+            "dissipated_energy": Reading(energy * (1.0 - back**2), ENERGY, scale=energy if lossless else None),
             "peak_force": Reading(_top(time, trace.force), FORCE),
             "peak_displacement": Reading(deepest, LENGTH),
             "peak_contact_radius": Reading(widest, LENGTH),

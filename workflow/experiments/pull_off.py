@@ -40,6 +40,10 @@ class PullOffExperiment(Scripted[PullOff]):
     main_results = ("adhesion_force", "zero_load_radius", "critical_radius")
     branches = {"pulling": "unloading", "separating": "unloading", "critical": "unloading"}  # noqa: RUF012
 
+    def is_sampled(self, scene: Scene) -> bool:
+        """With an edge that takes time."""
+        return bool(scene.adhesion and scene.adhesion.rate)
+
     def script(self, branch: Driver, scene: Scene) -> None:
         """Compress, unload to F = 0, retract to the force maximum, separate; as many times as there are cycles."""
         preload, model = self.given(scene).preload, branch.model

@@ -355,7 +355,7 @@ class RatedEstimate(ZonedEstimate):
         return found
 
     def pulled(self, start: float, velocity: float, count: int) -> Array:
-        """Times [TU] of a pull from rest at which the edge has gone `count` equal ways, the last when it is lost."""
+        """Times [TU] of a pull from rest at which edge or body has gone `count` equal ways, the last when it is lost."""
         edge, least = float(self.radii(np.asarray([start]))[0]), self.fixed_grips[1]
         end = (start - least) / velocity
         while True:
@@ -366,7 +366,7 @@ class RatedEstimate(ZonedEstimate):
             end *= 2.0
         held = found > 0.0
         ways = np.interp(-np.linspace(edge, found[held][-1], count), -found[held], times[held])
-        return np.append(np.unique(ways), times[~held][0])
+        return np.append(np.union1d(ways, np.linspace(0.0, ways[-1], count)), times[~held][0])
 
 
 def _half_disc(x: Array, radius: float) -> Array:
@@ -384,16 +384,16 @@ STOPPING = 200
 """Displacements at which the force is looked at up to where a body stops."""
 
 
-def stopped_at(scene: Scene, estimate: ContactEstimate) -> float:
-    """Displacement [LU] at which an elastic body that hits the plane is at rest: ∫F dd = ½ M v²; 0 without a velocity.
+def stopped_at(scene: Scene, estimate: ContactEstimate, softer: float = 1.0) -> float:
+    """Displacement [LU] at which a body that hits the plane is at rest: ∫F dd = ½ M v²; 0 without a velocity.
 
-    Infinite where that lies beyond what is known of the contact.
+    F is that of the elastic body, or so many times less. Infinite where that lies beyond what is known of the contact.
     """
     if not isinstance(scene.experiment, Impact):
         return 0.0
     assert scene.plate
     assert scene.plate.mass != "auto"
-    energy, deepest = 0.5 * scene.plate.mass * scene.experiment.velocity**2, scene.bodies.spacing
+    energy, deepest = 0.5 * softer * scene.plate.mass * scene.experiment.velocity**2, scene.bodies.spacing
     last = estimate.end[1] if isinstance(estimate, AdhesiveEstimate) else math.inf
 
     def stored(displacement: float) -> float:

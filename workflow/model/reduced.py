@@ -168,6 +168,11 @@ class Reduced(ABC):
         return force
 
     @property
+    def parted(self) -> float | None:
+        """Displacement [LU] at which a contact that is unloaded is lost; None where the history decides that."""
+        return self.apart
+
+    @property
     def limits(self) -> tuple[float, ...]:
         """Limit points [LU], at which a contact that is unloaded is lost at once; none where its force falls to 0."""
         return ()
@@ -426,6 +431,11 @@ class RatedCells(Reduced):
         """Where fixed grips would lose a contact that takes its time [LU]."""
         return self.estimate.fixed_grips[1]
 
+    @property
+    def parted(self) -> None:
+        """See `Reduced.parted`."""
+        return
+
     def held(self, displacements: Array) -> Array:
         """F [FU] at rest."""
         return self.estimate.contact_forces(displacements)
@@ -492,6 +502,11 @@ class RelaxingSprings(Reduced):
     def apart(self) -> float:
         """Where a body that is untouched feels nothing [LU]."""
         return 0.0
+
+    @property
+    def parted(self) -> None:
+        """See `Reduced.parted`."""
+        return
 
     def held(self, displacements: Array) -> Array:
         """F [FU] of a body that has had no time."""

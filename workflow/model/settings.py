@@ -54,7 +54,7 @@ from contact1d.workflow.model.pairs import (
 )
 from contact1d.workflow.model.pairs import Profile as Undeformed
 from contact1d.workflow.model.relaxing import creep
-from contact1d.workflow.scene import Interaction, Scene
+from contact1d.workflow.scene import Impact, Interaction, Scene
 from contact1d.workflow.scene.remedies import less_compression
 
 FILE = Path(__file__).with_name("calibration.json")
@@ -491,6 +491,8 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
     return chosen
 
 
+CREEPING = 4
+"""Looks for how deep a body goes that relaxes on the way, each with the time of the one before."""
 INERTIA, LONGER = 4.0, 2.0
 """Masses that the program chose, in a slower motion over the usual one; its drags, which go with the root, and the
 timesteps of a coarser one. What is of first order in these changes by its own amount at least."""
@@ -522,6 +524,15 @@ def slower(scene: Scene, settings: Settings) -> list[tuple[Scene, Settings]]:
     return [*found, (heavier, replace(settings, motion=motion))] if motion != own else found
 
 
+def _stopped(scene: Scene, estimate: ContactEstimate) -> float:
+    """Displacement [LU] at which a body that hits the plane is at rest, one that relaxes on the way deeper."""
+    found = stopped_at(scene, estimate)
+    for _ in range(CREEPING if scene.viscoelasticity and isinstance(scene.experiment, Impact) else 0):
+        assert isinstance(scene.experiment, Impact)
+        found = stopped_at(scene, estimate, creep(scene.viscoelasticity, 2.0 * found / scene.experiment.velocity))
+    return found
+
+
 def _beside_plane(stiffness: float, plane: float) -> float:
     """Stiffness of a bond [FU/LU] that in series with the plane has the particle's."""
     return 1.0 / (1.0 / stiffness - 1.0 / plane)
@@ -550,7 +561,7 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     forces, estimate = _forces(scene, tolerance, calibration)
     load = scene.experiment.compression
     if load is None:
-        largest = max(scene.experiment.places(), default=0.0) or stopped_at(scene, estimate)
+        largest = max(scene.experiment.places(), default=0.0) or _stopped(scene, estimate)
     else:
         largest = estimate.displacement_at(load * creep(scene.viscoelasticity, scene.experiment.lasts or 0.0))
     chains = _chains(scene, estimate, forces, largest, calibration.chain * tolerance)

@@ -16,6 +16,7 @@ from fractions import Fraction
 from contact1d.workflow.scene.experiments import KINDS, Kind
 from contact1d.workflow.scene.quantities import Place, numbers_in
 from contact1d.workflow.scene.si_text import UnitTextError, example, si_value
+from contact1d.workflow.scene.tables import TIMED
 from contact1d.workflow.units import SI
 
 BOLTZMANN = Fraction(1380649, 10**29)
@@ -91,8 +92,12 @@ def _scales(scene: Place, texts: list[Place]) -> dict[str, Fraction] | None:
     scales = {base: Fraction(repr(unit.value)) for base, unit in units.items() if is_positive(unit)}
     chosen = frozenset(base for base in needed if units[base].absent)
     fixed = "FU" in chosen and elastic and stiffness != "auto"
-    kind = scene.at("experiment.kind")
-    massless = kind is not None and KINDS.get(kind.value, Kind).is_massless
+    kind, method = scene.at("experiment.kind"), scene.at("experiment.method")
+    table = KINDS.get(kind.value, Kind) if kind else Kind
+    timed = {"dynamic"} & {table.only_method, method and method.value} or any(
+        not scene.inside[name].absent for name in TIMED
+    )
+    massless = table.is_massless or not timed  # the mass of a particle matters nowhere
     plain = [
         place
         for place in numbers_in(scene)
