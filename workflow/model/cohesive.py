@@ -355,7 +355,7 @@ class RatedEstimate(ZonedEstimate):
         return found
 
     def pulled(self, start: float, velocity: float, count: int) -> Array:
-        """Times [TU] of a pull from rest at which edge or body has gone `count` equal ways, the last when it is lost."""
+        """Times [TU] of a pull from rest at which edge or body has gone `count` equal ways, and when it is lost."""
         edge, least = float(self.radii(np.asarray([start]))[0]), self.fixed_grips[1]
         end = (start - least) / velocity
         while True:
