@@ -19,6 +19,7 @@ from validation.hard import (
     pressed,
     random_plane,
     random_scenes,
+    relaxing,
     scans,
     settling,
     sharp,
@@ -35,5 +36,5 @@ STUDIES: tuple[Study, ...] = (
     friction.FRICTION, similarity.SIMILARITY, forces.FORCES, motion.MOTION, modes.EQUIPARTITION, *thermal.CLASSES,
     extremes.EXTREMES, *pressed.CLASSES, plane_adhesive.ADHESIVE, slides.SLIDES, faults.FAULTS, fuzz.FUZZ,
     random_plane.RANDOM_PLANE, *kinks.CLASSES, scans.SCANS, coarse_paths.COARSE_PATHS, lateral.LATERAL,
-    transient.TRANSIENT, cohesive.COHESIVE, fits.FITS,
+    transient.TRANSIENT, cohesive.COHESIVE, fits.FITS, relaxing.RELAXING,
 )  # fmt: skip

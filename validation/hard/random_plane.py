@@ -22,14 +22,13 @@ from validation.study import Bench, Findings, Refused, Study
 NAME = "random_plane"
 SEED, QUICK, FULL = 20261201, 25, 500
 """The date as the seed."""
-REFERENCE = 1e-8
-"""Relative error of the quadratures."""
 DIMENSIONS = {
     "displacement": "L", "contact_radius": "L", "largest_radius": "L", "critical_radius": "L", "zero_load_radius": "L",
     "stick_radius": "L", "cohesive_radius": "L", "fixed_grips_displacement": "L", "adhesion_force": "F",
     "largest_force": "F", "tangential_force": "F", "mean_pressure": "P", "central_pressure": "P", "peak_pressure": "P",
     "contact_stiffness": "S", "adhesion_energy": "E", "dissipated_energy": "E", "dissipated_energy_per_cycle": "E",
-    "instability_energy": "E", "work_of_separation": "E", "tabor_parameter": "1",
+    "instability_energy": "E", "work_of_separation": "E", "tabor_parameter": "1", "peak_displacement": "L",
+    "peak_force": "F", "force": "F", "contact_time": "T",
 }  # fmt: skip
 NAMING, GONE = (
     ("lattice", "tolerance", "kink", "input"),
@@ -110,7 +109,7 @@ def judge(found: Found, name: str, one: Drawn, run: Run | Refused) -> None:
         if math.isinf(reference):
             over = far = math.inf
         else:
-            error = max(0.0, abs(value - reference) - REFERENCE * abs(reference))
+            error = max(0.0, abs(value - reference) - one.reference_error * abs(reference))
             over = error / uncertainty if uncertainty > 0.0 else (0.0 if error == 0.0 else math.inf)
             far = error / abs(reference) / tolerance if reference else 0.0
         wide = uncertainty / (abs(value) * tolerance) if value and reference else 0.0
