@@ -8,6 +8,7 @@ three arms, which may relax to nothing, or Kelvin and Voigt's.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from itertools import pairwise
 
 import numpy as np
@@ -24,8 +25,8 @@ RETARDED, FLUID = 0.15, 0.2
 """Shares of Kelvin and Voigt's material, and of those that relax to nothing."""
 WITH_UNITS, AUTOMATIC = 0.35, 0.25
 """Shares of scenes with units, and with the program's own spacing."""
-MODULUS, LENGTH, TIME = "MPa", 1e-6, 1e-3
-"""Of scenes with units: E* = 1 MPa, micrometres, milliseconds."""
+SCALES = {"L": 1e-6, "F": 1e-6, "E": 1e-12, "T": 1e-3}
+"""Of scenes with units, in SI."""
 PER_LEG, SPRINGS = 60, 1000
 """Samples of a leg, and springs, of the reference with events."""
 EXACT, SAMPLED, STEPPED = 1e-7, 1e-4, 3e-5
@@ -130,15 +131,18 @@ def scene_of(seed: int, number: int) -> Drawn | None:
     words = f"{body.exponent:.3g}, {group}, {arms}"
     spacing = radius / math.exp(rng.uniform(math.log(NARROW), math.log(WIDE)))
     tolerance = float(10.0 ** rng.uniform(-4.0, -2.0))
-    one = plain(profile_of(body, radius), spacing, tolerance)
-    one["viscoelasticity"] = terms_of(law)
-    key = "force" if group == "force" else "displacement"
-    one["experiment"] = {"kind": "history", key: [list(point) for point in legs.points]}
+    one = plain(profile_of(body, radius), spacing, tolerance) | history(law, legs, by_force=group == "force")
     free, units = rng.random() < AUTOMATIC, rng.random() < WITH_UNITS
     if free or units:
-        one = _with_units(one, free, key)
-    scales = {"L": LENGTH, "F": LENGTH**2 * 1e6, "E": LENGTH**3 * 1e6, "T": TIME}
-    return Drawn(group, words, one, exact, scales, free or units, slack)
+        return in_units(group, words, one, exact, slack, free)
+    return Drawn(group, words, one, exact, {}, False, slack)
+
+
+def history(law: Law, legs: Legs, by_force: bool = False, **more: float) -> Scene:
+    """[viscoelasticity] and [experiment]."""
+    key = "force" if by_force else "displacement"
+    points = [list(point) for point in legs.points]
+    return {"viscoelasticity": terms_of(law), "experiment": {"kind": "history", key: points} | more}
 
 
 def _has_one_maximum(one: Creeping) -> bool:
@@ -211,20 +215,19 @@ def _forces(rng: np.random.Generator, force: float, duration: float) -> Legs:
     return Legs(tuple(zip(_lengths(rng, len(values) - 1, duration), values, strict=True)))
 
 
-def _with_units(one: Scene, free: bool, key: str) -> Scene:
-    """The same in micrometres, micronewtons and milliseconds of a contact modulus of 1 MPa."""
+def in_units(group: str, words: str, one: Scene, exact: Mapping[str, float], slack: float, free: bool) -> Drawn:
+    """The same in micrometres, micronewtons and milliseconds of a contact modulus of 1 MPa; with its own spacing."""
     bodies = {name: value for name, value in one["bodies"].items() if name != "bulk_stiffness"}
     bodies["spacing"] = "auto" if free else f"{bodies['spacing']!r} µm"
     lengths = {name for name in ("radius", "height") if name in bodies["profile"]}
-    profile = {name: f"{value!r} µm" if name in lengths else value for name, value in bodies["profile"].items()}
-    bodies["profile"] = profile
-    unit = "µN" if key == "force" else "µm"
+    bodies["profile"] = {name: f"{v!r} µm" if name in lengths else v for name, v in bodies["profile"].items()}
+    key, unit = ("force", "µN") if "force" in one["experiment"] else ("displacement", "µm")
     legs = [[f"{t!r} ms", f"{value!r} {unit}"] for t, value in one["experiment"][key]]
     law = one["viscoelasticity"]
     if "terms" in law:
         law = {"terms": [term | {"time": f"{term['time']!r} ms"} for term in law["terms"]]}
     else:
         law = {"retardation_time": f"{law['retardation_time']!r} ms"}
-    material = {"contact_modulus": f"1.0 {MODULUS}"}
-    return one | {"bodies": bodies, "material": material, "viscoelasticity": law,
-                  "experiment": {"kind": "history", key: legs}}  # fmt: skip
+    tables = {"bodies": bodies, "material": {"contact_modulus": "1.0 MPa"}, "viscoelasticity": law,
+              "experiment": {"kind": "history", key: legs}}  # fmt: skip
+    return Drawn(group, words, one | tables, exact, SCALES, True, slack)

@@ -366,7 +366,9 @@ class Creeping:
             return self._held(s, t) - target
 
         start = self.force.touched(0.0)
-        return start if target <= 0.0 else float(brentq(off, start, self.turn, xtol=1e-300, rtol=1e-13))
+        if target <= 0.0 or off(self.turn) <= 0.0:  # at the turn itself by round-off
+            return start if target <= 0.0 else self.turn
+        return float(brentq(off, start, self.turn, xtol=1e-300, rtol=1e-13))
 
     def _past(self, values: Callable[[Floats], Floats], low: float, high: float, t: float) -> float:
         """int_low^high E(t - s) d values(s), by parts: the values have a steep start, and no derivative there."""
