@@ -9,6 +9,7 @@ from validation.hard import (
     forces,
     friction,
     fuzz,
+    impacts,
     kinks,
     lateral,
     loads,
@@ -37,4 +38,5 @@ STUDIES: tuple[Study, ...] = (
     extremes.EXTREMES, *pressed.CLASSES, plane_adhesive.ADHESIVE, slides.SLIDES, faults.FAULTS, fuzz.FUZZ,
     random_plane.RANDOM_PLANE, *kinks.CLASSES, scans.SCANS, coarse_paths.COARSE_PATHS, lateral.LATERAL,
     transient.TRANSIENT, cohesive.COHESIVE, fits.FITS, relaxing.RELAXING,
+    impacts.IMPACTS,
 )  # fmt: skip

@@ -154,7 +154,7 @@ class Curves:
 
     def row(self, source: str) -> Row:
         """The worst of them."""
-        label = max(self.off, key=lambda name: self.off[name])
+        label = _worst_of(self.off)
         words = f"{self.words}: {self.column} along {len(self.off)} curves over {self.scaled}"
         return at_most(words, worst(list(self.off.values())), self.bound, source, label)
 
@@ -166,9 +166,14 @@ def errors(run: Run, exact: Force, scale: float, column: str = "force") -> list[
     return [abs(float(y) - exact(float(t))) / scale for t, y, a in every if column == "force" or a >= least]
 
 
+def _worst_of(off: dict[str, float]) -> str:
+    """The name of the largest, or of one that is missing."""
+    return max(off, key=lambda name: math.inf if math.isnan(off[name]) else off[name])
+
+
 def _peak(words: str, off: dict[str, float], source: str) -> Row:
     """Of the largest force."""
-    label = max(off, key=lambda one: off[one])
+    label = _worst_of(off)
     return at_most(f"{words}: peak_force, relative", worst(list(off.values())), ALONG, source, label)
 
 

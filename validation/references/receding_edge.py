@@ -66,22 +66,25 @@ class Receding:
             change,
             (0.0, reach),
             [start],
-            method="Radau",
+            method="LSODA",
             rtol=1e-9,
             atol=1e-12 * start,
             events=small,
             dense_output=True,
         )
 
-        def tension(drawn: float) -> float:
-            return -self.force(float(found.sol(drawn)[0]), top - drawn)
+        def slope(drawn: float) -> float:
+            """Of F over the way that it is drawn, over 2 E*: -a - (d - g) (v_0/V) (G/W - 1)^(1/n)."""
+            a, d = float(found.sol(drawn)[0]), top - drawn
+            lost = self.speed / velocity * self.excess(a, d) ** (1.0 / self.exponent)
+            return float(-a + (one.body.depth(a) - d) * lost)
 
-        i = max(range(len(found.t)), key=lambda k: tension(float(found.t[k])))
+        tensions = [-self.force(float(a), top - t) for a, t in zip(found.y[0], found.t, strict=True)]
+        i = tensions.index(max(tensions))
         ends = float(found.t[max(0, i - 1)]), float(found.t[min(len(found.t) - 1, i + 1)])
-        best = minimize_scalar(
-            lambda t: -tension(t), bounds=ends, method="bounded", options={"xatol": 1e-10 * (ends[1] - ends[0])}
-        )
-        return -float(best.fun), float(found.sol(best.x)[0])
+        at = float(brentq(slope, *ends, xtol=1e-300, rtol=1e-14))
+        radius = float(found.sol(at)[0])
+        return -self.force(radius, top - at), radius
 
     def _pressed(self, force: float) -> float:
         """The radius [length] of JKR's contact under a force."""
