@@ -67,8 +67,8 @@ class Receding:
             (0.0, reach),
             [start],
             method="LSODA",
-            rtol=1e-9,
-            atol=1e-12 * start,
+            rtol=1e-12,
+            atol=1e-15 * start,
             events=small,
             dense_output=True,
         )
