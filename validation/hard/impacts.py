@@ -2,24 +2,31 @@
 
 Restitution, duration and peaks of a half-space that is elastic, of Kelvin and Voigt, relaxes, or adheres are held
 against motions of few variables that no chain takes part in; a pull-off at a velocity against the equation of its edge.
+
+python -m validation.hard.impacts SEED COUNT FOLDER      random scenes: a summary, and FOLDER/found.json
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 from validation.doors import Run
+from validation.hard.impact_draws import numbers, scene_of
 from validation.hard.kinks import Judged
 from validation.hard.plane_bodies import Scene
+from validation.hard.random_plane import Found, judge, main, outside, rows, run_of
 from validation.hard.relaxing_draws import Law, plain, profile_of, terms_of
-from validation.references.impact import Adhesive, Bounce, elastic, kelvin_voigt, relaxing
+from validation.references.impact import Adhesive, elastic, kelvin_voigt, relaxing
 from validation.references.receding_edge import Receding
 from validation.references.relaxing import KelvinVoigt, Material, Power, sphere
 from validation.row import Row, at_most, worst
 from validation.study import Bench, Findings, Refused, Study, said
 
 NAME = "impacts"
+SEED, QUICK, FULL = 20261126, 20, 200
+"""The date as the seed."""
 PARTICLES, ASKED = 40.0, 1e-3
 """In the radius of the elastic impact, and the tolerance; E* = R = m = v = 1."""
 RESTITUTION, STILL, SQUARE = 5e-4, 1e-6, 1e-3
@@ -54,19 +61,15 @@ def bodies() -> dict[str, Power]:
 
 
 def measure(bench: Bench) -> Findings:
-    """Elastic, of Kelvin and Voigt, relaxing, adhesive; then the edge."""
-    return Findings([*_elastic(bench), *_retarded(bench), *_relaxing(bench), *_adhesive(bench), *_edges(bench)])
+    """Elastic, of Kelvin and Voigt, relaxing, adhesive; then the edge; then random scenes of all."""
+    found = [*_elastic(bench), *_retarded(bench), *_relaxing(bench), *_adhesive(bench), *_edges(bench)]
+    return Findings([*found, *rows(conducted(bench, SEED, FULL if bench.full else QUICK), SEED, MOTION)])
 
 
 def hit(body: Power, spacing: float, velocity: float, **tables: Scene) -> Scene:
     """An impact of the mass 1."""
     experiment = {"kind": "impact", "velocity": velocity}
     return plain(profile_of(body, 1.0), spacing, ASKED) | {"plate": {"mass": 1.0}, "experiment": experiment} | tables
-
-
-def numbers(one: Bounce, velocity: float) -> dict[str, float]:
-    """What the program reports of it."""
-    return vars(one) | {"dissipated_energy": one.lost(1.0, velocity)}
 
 
 def _result(run: Run | Refused, name: str) -> float:
@@ -79,7 +82,7 @@ def _elastic(bench: Bench) -> list[Row]:
     for name, body in bodies().items():
         exact = elastic(body, 1.0, 1.0, 1.0)
         run = bench.run(f"elastic_{name}", hit(body, exact.peak_contact_radius / PARTICLES, 1.0))
-        judged.add(name, run, numbers(exact, 1.0), REFERENCE)
+        judged.add(name, run, numbers(exact, 1.0, 1.0), REFERENCE)
         off.append(abs(_result(run, "restitution") - 1.0))
     return [at_most("elastic impact: e − 1", worst(off), STILL, "the closed form"), *judged.rows()]
 
@@ -93,7 +96,7 @@ def _retarded(bench: Bench) -> list[Row]:
             exact = kelvin_voigt(KelvinVoigt(body, time), 1.0, 1.0)
             words = f"{name}, T = {time:g}"
             run = _lossy(bench, body, KelvinVoigt(body, time), words)
-            judged.add(words, run, numbers(exact, 1.0), PEAKS)
+            judged.add(words, run, numbers(exact, 1.0, 1.0), PEAKS)
             if name == "sphere":
                 off = abs(_result(run, "restitution") - exact.restitution)
                 found.append(at_most(f"Kelvin and Voigt, {words}: e", off, RESTITUTION, MOTION, said("issue 34", run)))
@@ -107,7 +110,7 @@ def _relaxing(bench: Bench) -> list[Row]:
         for name, body in bodies().items():
             words, exact = f"{name}, {kind}", relaxing(body, material, 1.0, 1.0)
             run = _lossy(bench, body, material, words)
-            judged.add(words, run, numbers(exact, 1.0), PEAKS)
+            judged.add(words, run, numbers(exact, 1.0, 1.0), PEAKS)
             off[words] = abs(_result(run, "restitution") - exact.restitution)
     label = max(off, key=lambda one: math.inf if math.isnan(off[one]) else off[one])
     return [
@@ -131,7 +134,7 @@ def _adhesive(bench: Bench) -> list[Row]:
             velocity, words = times * sticks, f"{name}, {times:g} v_s"
             run = bench.run(f"adhesive_{words}", hit(body, spacing, velocity, adhesion={"work_of_adhesion": WORK}))
             exact = contact.impact(1.0, velocity)
-            judged.add(words, run, numbers(exact, velocity), PEAKS)
+            judged.add(words, run, numbers(exact, 1.0, velocity), PEAKS)
             if name == "sphere":
                 off = abs(_result(run, "restitution") ** 2 - (1.0 - times**-2))
                 found.append(at_most(f"adhesive impact, {words}: e²", off, SQUARE, ENERGY, said("issue 34", run)))
@@ -161,6 +164,17 @@ def _edges(bench: Bench) -> list[Row]:
     return [*found, *judged.rows()]
 
 
+def conducted(bench: Bench, seed: int, count: int, tell: Callable[[str], None] = lambda _: None) -> Found:
+    """`count` random scenes of a seed."""
+    found = Found()
+    for number in range(count):
+        one, name = scene_of(seed, number), f"impact_{seed}_{number}"
+        judge(found, name, one, run_of(bench, name, one.scene))
+        if (number + 1) % 25 == 0:
+            tell(f"{number + 1} scenes, {len(found.numbers)} numbers, {len(outside(found))} outside")
+    return found
+
+
 IMPACTS = Study(
     NAME,
     "Impacts, and an edge with a speed",
@@ -168,3 +182,7 @@ IMPACTS = Study(
     "pull-off at a velocity from the equation of its edge. Are the chain's numbers these, within their uncertainties?",
     measure,
 )
+
+
+if __name__ == "__main__":
+    main(conducted)

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from validation.doors import Run
+from validation.hard.plane_bodies import Scene
 from validation.hard.plane_draws import Drawn, scene_of
 from validation.row import Row, at_most
 from validation.study import Bench, Findings, Refused, Study
@@ -28,7 +29,7 @@ DIMENSIONS = {
     "largest_force": "F", "tangential_force": "F", "mean_pressure": "P", "central_pressure": "P", "peak_pressure": "P",
     "contact_stiffness": "S", "adhesion_energy": "E", "dissipated_energy": "E", "dissipated_energy_per_cycle": "E",
     "instability_energy": "E", "work_of_separation": "E", "tabor_parameter": "1", "peak_displacement": "L",
-    "peak_force": "F", "force": "F", "contact_time": "T",
+    "peak_force": "F", "force": "F", "contact_time": "T", "restitution": "1", "peak_contact_radius": "L",
 }  # fmt: skip
 NAMING, GONE = (
     ("lattice", "tolerance", "kink", "input"),
@@ -116,6 +117,14 @@ def judge(found: Found, name: str, one: Drawn, run: Run | Refused) -> None:
         found.numbers.append(
             Number(name, one.group, one.words, quantity, value, uncertainty, reference, over, far, wide, named)
         )
+
+
+def run_of(bench: Bench, name: str, scene: Scene) -> Run | Refused:
+    """A run; one that ends in an error that is not for the user is refused, too."""
+    try:
+        return bench.run(name, scene)
+    except Exception as error:
+        return Refused(f"ended by {type(error).__name__}: {error}", before=False)
 
 
 def unsaid(run: Run, name: str) -> bool:

@@ -18,7 +18,7 @@ import numpy as np
 from validation.doors import Run
 from validation.hard.kinks import Judged
 from validation.hard.plane_bodies import Scene
-from validation.hard.random_plane import Found, judge, main, outside, rows
+from validation.hard.random_plane import Found, judge, main, outside, rows, run_of
 from validation.hard.relaxing_draws import (
     STEPPED,
     Law,
@@ -123,7 +123,7 @@ class Free:
         """Run and take in one."""
         name = f"{self.words}_{label}_free"
         drawn = in_units("free", label, one, exact, slack, free=True)
-        judge(self.found, name, drawn, bench.run(name, drawn.scene))
+        judge(self.found, name, drawn, run_of(bench, name, drawn.scene))
 
     def row(self) -> Row:
         """The worst; a number that is missing, or a refusal, fails."""
@@ -303,7 +303,7 @@ def conducted(bench: Bench, seed: int, count: int, tell: Callable[[str], None] =
     while made < count:
         if (one := scene_of(seed, number)) is not None:
             name, before = f"relaxing_{seed}_{number}", len(found.numbers)
-            judge(found, name, one, bench.run(name, one.scene))
+            judge(found, name, one, run_of(bench, name, one.scene))
             for i in range(before, len(found.numbers)):
                 n = found.numbers[i]
                 if peak := one.exact.get(f"peak_{n.name}"):

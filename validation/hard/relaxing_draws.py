@@ -110,7 +110,7 @@ def exact_of_creep(body: Power, material: Material, force: Legs) -> dict[str, fl
 def scene_of(seed: int, number: int) -> Drawn | None:
     """The history of that number; None where the radius has several maxima under a force."""
     rng = np.random.default_rng((seed, number))
-    body, radius = _body(rng)
+    body, radius = random_body(rng)
     group = str(rng.choice(list(GROUPS), p=list(GROUPS.values())))
     duration = float(10.0 ** rng.uniform(-1.0, 1.0))
     retarded = group != "force" and rng.random() < RETARDED
@@ -152,7 +152,7 @@ def _has_one_maximum(one: Creeping) -> bool:
     return all(x >= y for x, y in pairwise(before))
 
 
-def _body(rng: np.random.Generator) -> tuple[Power, float]:
+def random_body(rng: np.random.Generator) -> tuple[Power, float]:
     """A body, and the radius of its contact without relaxation [LU]."""
     n = float(rng.choice([2.0, 1.0, 3.0, float(rng.uniform(1.2, 4.0))]))
     radius, slope = (float(10.0 ** rng.uniform(*ends)) for ends in ((0.0, 2.0), (-4.0, -1.5)))
