@@ -107,7 +107,9 @@ def test_punch():
 def test_kelvin_and_voigt_by_springs():
     """A pressure that jumps at the edge: of first order in the springs."""
     law, body = KelvinVoigt(sphere(1.0), 0.3), sphere(1.0)
-    found = followed(Retarded(0.3), body.depth, body.radius(0.1001), TRIANGLE, evenly(TRIANGLE, 4), 20 * CELLS)
+    found = followed(Retarded(0.3), body.depth, body.radius(0.1001), TRIANGLE, evenly(TRIANGLE, 8), 20 * CELLS)
+    work = quad(lambda d: law.force(d, 0.1) - law.force(d, -0.1), 0.0, 0.1, limit=200)[0]
+    assert found.work[-1] == pytest.approx(work, rel=1e-3)
     for t, d, F in zip(found.times, found.displacement, found.force, strict=True):
         assert pytest.approx(law.force(d, 0.1 if t <= 1.0 else -0.1), abs=2e-5 * found.force.max()) == F
     assert found.last == pytest.approx(2.0 - 0.3, rel=1e-12)

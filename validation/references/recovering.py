@@ -192,8 +192,8 @@ class Springs:
         self._switched(some[found], not held, (self.time + duration - left[some])[found])
 
     def force(self, rate: float) -> float:
-        """F [force]."""
-        return float(self.weight @ np.where(self.touching, self.law.pressure(self.state, rate), 0.0))
+        """F [force] at a rate, with which a pressure that would be negative is none."""
+        return float(self.weight @ np.where(self.touching, self.law.pressure(self.state, rate), 0.0).clip(0.0))
 
 
 @dataclass(frozen=True)

@@ -221,11 +221,19 @@ class Legs:
         return math.inf
 
 
+def has_one_maximum(d: Legs) -> bool:
+    """Whether it grows, is held, and falls at one rate."""
+    signs = [(y > x) - (y < x) for x, y in pairwise(d.values)]
+    falls = signs.index(-1) if -1 in signs else len(signs)
+    return len(signs) - falls <= 1
+
+
 @dataclass(frozen=True)
 class Indentation:
-    """A body pushed in by a displacement that grows to one maximum and then falls, until contact ends.
+    """A body pushed in by a displacement that grows to one maximum and then falls at one rate, until contact ends.
 
-    Raises ValueError where the displacement falls before it has its maximum, or grows thereafter.
+    Raises ValueError where the displacement falls before it has its maximum, grows thereafter, or falls at several
+    rates: a surface that recovers faster than the body recedes would make the contact larger again.
     """
 
     body: Power
@@ -234,10 +242,8 @@ class Indentation:
 
     def __post_init__(self) -> None:
         """Refuse several maxima."""
-        values = self.d.values
-        turn = values.index(max(values))
-        if any(y < x for x, y in pairwise(values[: turn + 1])) or any(y > x for x, y in pairwise(values[turn:])):
-            raise ValueError("the displacement has several maxima")
+        if not has_one_maximum(self.d):
+            raise ValueError("the displacement has several maxima, or falls at several rates")
 
     @property
     def turn(self) -> float:
