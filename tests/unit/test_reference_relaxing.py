@@ -179,3 +179,20 @@ def test_pull_off_at_a_velocity(velocity: float, ratio: float):
     contact = Adhesive(sphere(1.0), 0.01)
     force, _ = Receding(contact, 1.0, 0.6).pull_off(0.1, velocity)
     assert force / (1.5 * math.pi * 0.01) == pytest.approx(ratio, abs=5e-5)
+
+
+def test_duration_of_an_adhesive_impact():
+    """By leap-frog in time, the radius by Newton's method."""
+    one, step = Adhesive(sphere(1.0), 1e-3), 2e-3
+    velocity = 1.5 * one.sticking_velocity(1.0)
+    d, v, a, t, least = 0.0, velocity, one.touch, 0.0, one.displacement(one.grips)
+    while d > least:
+        v -= 0.5 * step * one.force(a)
+        last, d, t = d, d + step * v, t + step
+        for _ in range(20):
+            a = max(a + (max(d, least) - one.displacement(a)) / one.slope(a), one.grips * (1.0 + 1e-9))
+        v -= 0.5 * step * one.force(a)
+    t -= step * (least - d) / (last - d)
+    exact = one.impact(1.0, velocity)
+    assert t == pytest.approx(exact.contact_time, rel=1e-6)
+    assert -v / velocity == pytest.approx(exact.restitution, rel=1e-3)

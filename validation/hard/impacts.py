@@ -40,8 +40,8 @@ MATERIALS = {
     "Maxwell": Material(((1.0, 1.0),)),
     "three arms": Material(((0.3, 0.2), (0.3, 1.0), (0.2, 10.0))),
 }
-WORK, PARTICLES_AT_REST = 0.01, 40.0
-"""W [FU/LU], and particles in the radius at d = 0."""
+WORK, WORK_OF_IMPACTS, PARTICLES_AT_REST = 1e-2, 1e-3, 40.0
+"""W of the edge and of impacts [FU/LU], with which 10 v_s does not cover the body; particles in the radius at d = 0."""
 TIMES, SLOWER = (1.1, 1.5, 3.0, 10.0), 0.9
 """Velocities over the sticking velocity."""
 SPEED, EXPONENT, PRELOAD = 1.0, 0.6, 0.1
@@ -128,17 +128,19 @@ def _adhesive(bench: Bench) -> list[Row]:
     """Johnson, Kendall and Roberts's."""
     found, judged = list[Row](), Judged("adhesive impact", ENERGY)
     for name, body in bodies().items():
-        contact = Adhesive(body, WORK)
+        contact = Adhesive(body, WORK_OF_IMPACTS)
         sticks, spacing = contact.sticking_velocity(1.0), contact.touch / PARTICLES_AT_REST
         for times in TIMES:
             velocity, words = times * sticks, f"{name}, {times:g} v_s"
-            run = bench.run(f"adhesive_{words}", hit(body, spacing, velocity, adhesion={"work_of_adhesion": WORK}))
+            run = bench.run(
+                f"adhesive_{words}", hit(body, spacing, velocity, adhesion={"work_of_adhesion": WORK_OF_IMPACTS})
+            )
             exact = contact.impact(1.0, velocity)
             judged.add(words, run, numbers(exact, 1.0, velocity), PEAKS)
             if name == "sphere":
                 off = abs(_result(run, "restitution") ** 2 - (1.0 - times**-2))
                 found.append(at_most(f"adhesive impact, {words}: e²", off, SQUARE, ENERGY, said("issue 34", run)))
-        slow = hit(body, spacing, SLOWER * sticks, adhesion={"work_of_adhesion": WORK})
+        slow = hit(body, spacing, SLOWER * sticks, adhesion={"work_of_adhesion": WORK_OF_IMPACTS})
         run = bench.run(f"adhesive_{name}_slow", slow)
         kinetic = {"restitution": 0.0, "dissipated_energy": 0.5 * (SLOWER * sticks) ** 2, "contact_time": math.inf}
         judged.add(f"{name}, {SLOWER:g} v_s", run, kinetic, PEAKS)
