@@ -9,6 +9,7 @@ from validation.hard import (
     forces,
     friction,
     fuzz,
+    impacts,
     kinks,
     lateral,
     loads,
@@ -19,6 +20,7 @@ from validation.hard import (
     pressed,
     random_plane,
     random_scenes,
+    relaxing,
     scans,
     settling,
     sharp,
@@ -35,5 +37,6 @@ STUDIES: tuple[Study, ...] = (
     friction.FRICTION, similarity.SIMILARITY, forces.FORCES, motion.MOTION, modes.EQUIPARTITION, *thermal.CLASSES,
     extremes.EXTREMES, *pressed.CLASSES, plane_adhesive.ADHESIVE, slides.SLIDES, faults.FAULTS, fuzz.FUZZ,
     random_plane.RANDOM_PLANE, *kinks.CLASSES, scans.SCANS, coarse_paths.COARSE_PATHS, lateral.LATERAL,
-    transient.TRANSIENT, cohesive.COHESIVE, fits.FITS,
+    transient.TRANSIENT, cohesive.COHESIVE, fits.FITS, relaxing.RELAXING,
+    impacts.IMPACTS,
 )  # fmt: skip

@@ -27,13 +27,15 @@ DIGITS = (None, None, 9, 7)
 POINTS = (5.0, 60.0)
 """Points of a table from the axis to the kink."""
 MOST_POINTS = 3000
+REFERENCE = 1e-8
+"""Relative error of the quadratures."""
 SAMPLED = "sampled"
 """A table of a paraboloid."""
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """A scene, its numbers [in units of its own lengths and E*], and what turns them into SI."""
+    """A scene, its numbers [in units of its own lengths and E*], what turns them into SI, and their relative error."""
 
     group: str
     words: str
@@ -41,6 +43,7 @@ class Drawn:
     exact: Mapping[str, float]
     scales: Mapping[str, float]
     in_si: bool
+    reference_error: float = REFERENCE
 
 
 def scene_of(seed: int, number: int) -> Drawn | None:

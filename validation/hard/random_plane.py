@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from validation.doors import Run
+from validation.hard.plane_bodies import Scene
 from validation.hard.plane_draws import Drawn, scene_of
 from validation.row import Row, at_most
 from validation.study import Bench, Findings, Refused, Study
@@ -22,14 +23,13 @@ from validation.study import Bench, Findings, Refused, Study
 NAME = "random_plane"
 SEED, QUICK, FULL = 20261201, 25, 500
 """The date as the seed."""
-REFERENCE = 1e-8
-"""Relative error of the quadratures."""
 DIMENSIONS = {
     "displacement": "L", "contact_radius": "L", "largest_radius": "L", "critical_radius": "L", "zero_load_radius": "L",
     "stick_radius": "L", "cohesive_radius": "L", "fixed_grips_displacement": "L", "adhesion_force": "F",
     "largest_force": "F", "tangential_force": "F", "mean_pressure": "P", "central_pressure": "P", "peak_pressure": "P",
     "contact_stiffness": "S", "adhesion_energy": "E", "dissipated_energy": "E", "dissipated_energy_per_cycle": "E",
-    "instability_energy": "E", "work_of_separation": "E", "tabor_parameter": "1",
+    "instability_energy": "E", "work_of_separation": "E", "tabor_parameter": "1", "peak_displacement": "L",
+    "peak_force": "F", "force": "F", "contact_time": "T", "restitution": "1", "peak_contact_radius": "L",
 }  # fmt: skip
 NAMING, GONE = (
     ("lattice", "tolerance", "kink", "input"),
@@ -110,13 +110,21 @@ def judge(found: Found, name: str, one: Drawn, run: Run | Refused) -> None:
         if math.isinf(reference):
             over = far = math.inf
         else:
-            error = max(0.0, abs(value - reference) - REFERENCE * abs(reference))
+            error = max(0.0, abs(value - reference) - one.reference_error * abs(reference))
             over = error / uncertainty if uncertainty > 0.0 else (0.0 if error == 0.0 else math.inf)
             far = error / abs(reference) / tolerance if reference else 0.0
         wide = uncertainty / (abs(value) * tolerance) if value and reference else 0.0
         found.numbers.append(
             Number(name, one.group, one.words, quantity, value, uncertainty, reference, over, far, wide, named)
         )
+
+
+def run_of(bench: Bench, name: str, scene: Scene) -> Run | Refused:
+    """A run; one that ends in an error that is not for the user is refused, too."""
+    try:
+        return bench.run(name, scene)
+    except Exception as error:
+        return Refused(f"ended by {type(error).__name__}: {error}", before=False)
 
 
 def unsaid(run: Run, name: str) -> bool:

@@ -1,0 +1,243 @@
+"""Random histories of bodies that relax, with their numbers: one maximum by quadrature, several by springs with events.
+
+A history of the displacement has one maximum or several, from touch or from afar, and ends in contact or not; one of
+the force rises, is held and falls. The body is a paraboloid, a cone or a power, the material a Prony series of up to
+three arms, which may relax to nothing, or Kelvin and Voigt's.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from itertools import pairwise
+
+import numpy as np
+
+from validation.hard.plane_bodies import Scene
+from validation.hard.plane_draws import Drawn
+from validation.references.recovering import Followed, Prony, Retarded, evenly, followed
+from validation.references.relaxing import (
+    Creeping,
+    Indentation,
+    KelvinVoigt,
+    Legs,
+    Material,
+    Power,
+    has_one_maximum,
+    smooth,
+)
+
+GROUPS = {"one maximum": 0.3, "sawtooth": 0.35, "force": 0.35}
+NARROW, WIDE = 8.0, 60.0
+"""Particles in the contact."""
+RETARDED, FLUID = 0.15, 0.2
+"""Shares of Kelvin and Voigt's material, and of those that relax to nothing."""
+WITH_UNITS, AUTOMATIC = 0.35, 0.25
+"""Shares of scenes with units, and with the program's own spacing."""
+SCALES = {"L": 1e-6, "F": 1e-6, "E": 1e-12, "T": 1e-3}
+"""Of scenes with units, in SI."""
+PER_LEG, SPRINGS = 60, 1000
+"""Samples of a leg, and springs, of the reference with events."""
+EXACT, SAMPLED = 1e-7, 5e-5
+"""Relative errors of a quadrature, and of ∫F dd of samples."""
+MOST_PARTS = 20
+"""Springs that many times as many where a pressure jumps at the edge."""
+Law = Material | KelvinVoigt
+
+
+def profile_of(body: Power, radius: float) -> Scene:
+    """Its table of a scene [LU]."""
+    n = body.exponent
+    if n == 2.0:
+        return {"kind": "parabola", "radius": 0.5 / body.factor}
+    if n == 1.0:
+        return {"kind": "cone", "slope": body.factor}
+    return {"kind": "power", "exponent": n, "radius": radius, "height": body.factor * radius**n}
+
+
+def terms_of(law: Law) -> Scene:
+    """[viscoelasticity]."""
+    if isinstance(law, KelvinVoigt):
+        return {"retardation_time": law.time}
+    return {"terms": [{"share": share, "time": time} for share, time in law.terms]}
+
+
+def plain(profile: Scene, spacing: float, tolerance: float) -> Scene:
+    """A scene of model units without its experiment, E* = 1 FU/LU²."""
+    bodies = {"particles": "auto", "spacing": spacing, "bulk_stiffness": spacing, "reduction": "mdr",
+              "lower": "rigid_plane", "profile": profile}  # fmt: skip
+    return {"bodies": bodies, "accuracy": {"tolerance": tolerance}}
+
+
+def exact_of_path(body: Power, law: Law, d: Legs) -> tuple[dict[str, float], float]:
+    """The numbers of a displacement over time, and their relative error."""
+    values = d.values
+    found = {"peak_displacement": max(values), "displacement": values[-1]}
+    if has_one_maximum(d) and isinstance(law, Material):
+        one = Indentation(body, law, d)
+        end, last = one.end, d.times[-1]
+        found |= {"peak_force": one.peak[1], "force": one.force(last)}
+        if last < end:
+            return found | {"contact_radius": one.radius(last)}, EXACT
+        return found | {"dissipated_energy": one.work, "contact_time": end - one.start}, EXACT
+    rule = Prony(law) if isinstance(law, Material) else Retarded(law.time, law.modulus)
+    cells, per_leg = (
+        (SPRINGS, PER_LEG) if isinstance(law, Material) else (MOST_PARTS * SPRINGS, MOST_PARTS * PER_LEG // 5)
+    )
+    path = followed(rule, body.depth, 1.0001 * body.radius(max(values)), d, evenly(d, per_leg), cells)
+    found |= {"peak_force": _top(path, d), "force": float(path.force[-1])}
+    least = SAMPLED if isinstance(law, Material) else 2.0 * SAMPLED
+    if path.radius[-1] > 0.0:
+        return found, least
+    return found | {"dissipated_energy": float(path.work[-1]), "contact_time": path.last - path.first}, least
+
+
+def _top(path: Followed, d: Legs) -> float:
+    """The largest force: a sample at a corner, or of a parabola between samples of one leg."""
+    i = int(np.argmax(path.force))
+    if i in (0, path.force.size - 1) or float(path.times[i]) in d.times:
+        return float(path.force[i])
+    before, here, after = (float(y) for y in path.force[i - 1 : i + 2])
+    bend = before - 2.0 * here + after
+    return here - (after - before) ** 2 / (8.0 * bend) if bend < 0.0 else here
+
+
+def exact_of_creep(body: Power, material: Material, force: Legs) -> dict[str, float]:
+    """The numbers of a force over time that rises, is held and falls."""
+    one, last = Creeping(body, material, force), force.times[-1]
+    end = one.displacement(last)
+    found = {"peak_force": max(force.values), "peak_displacement": one.peak_displacement, "displacement": end,
+             "force": force.values[-1]}  # fmt: skip
+    if force.values[-1] > 0.0:
+        return found | {"contact_radius": one.radius(last)}
+    corners = sorted({*force.times, one.turn})
+    lost = -sum(
+        force.rate(0.5 * (low + high)) * smooth(one.displacement, low, high, 24) for low, high in pairwise(corners)
+    )
+    return found | {"dissipated_energy": lost, "contact_time": last - force.times[0]}
+
+
+def scene_of(seed: int, number: int) -> Drawn | None:
+    """The history of that number; None where the radius has several maxima under a force."""
+    rng = np.random.default_rng((seed, number))
+    body, radius = random_body(rng)
+    group = str(rng.choice(list(GROUPS), p=list(GROUPS.values())))
+    duration = float(10.0 ** rng.uniform(-1.0, 1.0))
+    retarded = group != "force" and rng.random() < RETARDED
+    law: Law = KelvinVoigt(body, duration * float(10.0 ** rng.uniform(-2.0, 0.0))) if retarded else _material(
+        rng, duration)  # fmt: skip
+    slack = EXACT
+    if group == "force":
+        assert isinstance(law, Material)
+        legs = _forces(rng, body.volume(radius), duration)
+        if not _has_one_maximum(Creeping(body, law, legs)):
+            return None
+        exact = exact_of_creep(body, law, legs)
+    else:
+        path = _rise_and_fall if group == "one maximum" else _sawtooth
+        legs = path(rng, body.depth(radius), duration)
+        exact, slack = exact_of_path(body, law, legs)
+    arms = f"{len(law.terms)} arms" if isinstance(law, Material) else "retarded"
+    words = f"{body.exponent:.3g}, {group}, {arms}"
+    spacing = radius / math.exp(rng.uniform(math.log(NARROW), math.log(WIDE)))
+    tolerance = float(10.0 ** rng.uniform(-4.0, -2.0))
+    one = plain(profile_of(body, radius), spacing, tolerance) | history(law, legs, by_force=group == "force")
+    free, units = rng.random() < AUTOMATIC, rng.random() < WITH_UNITS
+    if free or units:
+        return in_units(group, words, one, exact, slack, free)
+    return Drawn(group, words, one, exact, {}, False, slack)
+
+
+def history(law: Law, legs: Legs, by_force: bool = False, **more: float) -> Scene:
+    """[viscoelasticity] and [experiment]."""
+    key = "force" if by_force else "displacement"
+    points = [list(point) for point in legs.points]
+    return {"viscoelasticity": terms_of(law), "experiment": {"kind": "history", key: points} | more}
+
+
+def _has_one_maximum(one: Creeping) -> bool:
+    """Whether t_1 only falls."""
+    times = np.linspace(one.turn, one.force.times[-1], 12)
+    before = [one.before(float(t)) for t in times]
+    return all(x >= y for x, y in pairwise(before))
+
+
+def random_body(rng: np.random.Generator) -> tuple[Power, float]:
+    """A body, and the radius of its contact without relaxation [LU]."""
+    n = float(rng.choice([2.0, 1.0, 3.0, float(rng.uniform(1.2, 4.0))]))
+    radius, slope = (float(10.0 ** rng.uniform(*ends)) for ends in ((0.0, 2.0), (-4.0, -1.5)))
+    return Power(n, slope * radius ** (1.0 - n) / n), radius
+
+
+def _material(rng: np.random.Generator, duration: float) -> Material:
+    arms = int(rng.integers(1, 4))
+    shares = rng.dirichlet(np.ones(arms)) * (1.0 if rng.random() < FLUID else float(rng.uniform(0.05, 0.98)))
+    times = duration * np.sort(10.0 ** rng.uniform(-1.5, 1.5, arms))
+    return Material(tuple((float(p), float(tau)) for p, tau in zip(shares, times, strict=True)))
+
+
+def _lengths(rng: np.random.Generator, count: int, duration: float) -> list[float]:
+    parts = rng.dirichlet(np.full(count, 2.0)) + 0.05
+    return [0.0, *(duration * np.cumsum(parts) / parts.sum()).tolist()]
+
+
+def _rise_and_fall(rng: np.random.Generator, depth: float, duration: float) -> Legs:
+    """One maximum, held or not, with one or two rates of rising, and an end in contact or far outside."""
+    start = 0.0 if rng.random() < 0.6 else -depth * float(rng.uniform(0.05, 0.5))
+    values = [start]
+    if rng.random() < 0.4:
+        values.append(depth * float(rng.uniform(0.2, 0.8)))
+    values.append(depth)
+    if rng.random() < 0.4:
+        values.append(depth)
+    if rng.random() < 0.85:
+        values.append(depth * float(rng.uniform(0.6, 0.9) if rng.random() < 0.25 else rng.uniform(-0.5, 0.0)))
+    times = _lengths(rng, len(values) - 1, duration)
+    return Legs(tuple(zip(times, values, strict=True)))
+
+
+def _sawtooth(rng: np.random.Generator, depth: float, duration: float) -> Legs:
+    """Several maxima, parts that are held, and an end in contact or outside."""
+    values = [0.0 if rng.random() < 0.6 else -0.3 * depth]
+    for _ in range(int(rng.integers(2, 4))):
+        values.append(depth * float(rng.uniform(0.3, 1.0)))
+        if rng.random() < 0.25:
+            values.append(values[-1])
+        values.append(depth * float(rng.uniform(-0.3, 0.6)) * min(1.0, values[-1] / depth))
+        if rng.random() < 0.25:
+            values.append(values[-1])
+    if rng.random() < 0.7:
+        values.append(-depth * float(rng.uniform(0.1, 1.0)))
+    times = _lengths(rng, len(values) - 1, duration)
+    return Legs(tuple(zip(times, values, strict=True)))
+
+
+def _forces(rng: np.random.Generator, force: float, duration: float) -> Legs:
+    """A rise of one or two rates, held or not, and a fall to nothing, to a part, or none."""
+    values = [0.0]
+    if rng.random() < 0.3:
+        values.append(force * float(rng.uniform(0.2, 0.8)))
+    values.append(force)
+    if rng.random() < 0.6:
+        values.append(force)
+    if rng.random() < 0.7 or len(values) == 2:
+        values.append(0.0 if rng.random() < 0.6 else force * float(rng.uniform(0.1, 0.9)))
+    return Legs(tuple(zip(_lengths(rng, len(values) - 1, duration), values, strict=True)))
+
+
+def in_units(group: str, words: str, one: Scene, exact: Mapping[str, float], slack: float, free: bool) -> Drawn:
+    """The same in micrometres, micronewtons and milliseconds of a contact modulus of 1 MPa; with its own spacing."""
+    bodies = {name: value for name, value in one["bodies"].items() if name != "bulk_stiffness"}
+    bodies["spacing"] = "auto" if free else f"{bodies['spacing']!r} µm"
+    lengths = {name for name in ("radius", "height") if name in bodies["profile"]}
+    bodies["profile"] = {name: f"{v!r} µm" if name in lengths else v for name, v in bodies["profile"].items()}
+    key, unit = ("force", "µN") if "force" in one["experiment"] else ("displacement", "µm")
+    legs = [[f"{t!r} ms", f"{value!r} {unit}"] for t, value in one["experiment"][key]]
+    law = one["viscoelasticity"]
+    if "terms" in law:
+        law = {"terms": [term | {"time": f"{term['time']!r} ms"} for term in law["terms"]]}
+    else:
+        law = {"retardation_time": f"{law['retardation_time']!r} ms"}
+    tables = {"bodies": bodies, "material": {"contact_modulus": "1.0 MPa"}, "viscoelasticity": law,
+              "experiment": {"kind": "history", key: legs}}  # fmt: skip
+    return Drawn(group, words, one | tables, exact, SCALES, True, slack)

@@ -1,0 +1,252 @@
+"""A body that is drawn out of a viscoelastic surface and touches it again: springs, each with events in its own time.
+
+In one dimension every spring at x has q = E_inf u + sum_j E_j s_j with s_j' = u' - s_j/tau_j (Kelvin and Voigt:
+q = E (u + A u')). In contact u = d - g(x); it leaves where q falls through 0; free, q = 0 makes of it
+
+    u' = sum_j E_j s_j/(tau_j E_0),    s_j' = u' - s_j/tau_j        (u = u_0 exp(-t/A))
+
+and it is touched again where d - g = u. With d(t) linear in pieces both are sums of exponentials, exactly: times of
+leaving and touching are roots, found by bisection, for each spring its own. The force is the integral of q over x.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from validation.references.relaxing import Legs, Material
+
+Floats = NDArray[np.float64]
+BISECTIONS = 60
+LOOKS = np.unique(np.concatenate([np.linspace(0.0, 1.0, 25)[1:], np.geomspace(1e-6, 0.03, 10)]))
+"""Shares of what is left of a leg, at which an event is looked for."""
+NEGATIVE = 1e-13
+"""Of the largest q: a pressure below - this leaves at once, where the rate has jumped."""
+
+
+@dataclass(frozen=True)
+class Prony:
+    """A Prony series, of which a state is u and s_j, one column a spring."""
+
+    material: Material
+
+    @property
+    def arms(self) -> int:
+        """How many s_j."""
+        return len(self.material.terms)
+
+    @cached_property
+    def _arms(self) -> tuple[float, Floats, Floats]:
+        shares = np.array([p for p, _ in self.material.terms])
+        times = np.array([tau for _, tau in self.material.terms])
+        return self.material.modulus * self.material.rest, self.material.modulus * shares, times
+
+    @cached_property
+    def _modes(self) -> tuple[Floats, Floats, Floats]:
+        """Rates and modes of a free surface, and the inverse of the modes; made symmetric, so that they are real."""
+        _, E, tau = self._arms
+        scale = np.sqrt(E / tau)
+        rates, vectors = np.linalg.eigh(np.outer(scale, scale) / self.material.modulus - np.diag(1.0 / tau))
+        # s = W y with W = diag(sqrt(tau/E)) makes s' = (1 (E/tau)^T/E_0 - 1/tau) s symmetric.
+        shape = np.sqrt(tau / E)
+        return rates, shape[:, None] * vectors, vectors.T / shape[None, :]
+
+    def pressure(self, state: Floats, rate: float) -> Floats:
+        """q."""
+        rest, E, _ = self._arms
+        return np.asarray(rest * state[0] + E @ state[1:])
+
+    def held(self, state: Floats, rate: float, t: Floats) -> Floats:
+        """The state after a time in contact."""
+        tau = self._arms[2][:, None]
+        fade = np.exp(-t[None] / tau)
+        return np.concatenate([(state[0] + rate * t)[None], state[1:] * fade + rate * tau * (1.0 - fade)])
+
+    def free(self, state: Floats, t: Floats) -> Floats:
+        """The state after a time without contact: u' from q' = 0, s_j by modes."""
+        rest, E, tau = self._arms
+        rates, modes, inverse = self._modes
+        s = modes @ (np.exp(rates[:, None] * t[None]) * (inverse @ state[1:]))
+        if rest > 0.0:
+            return np.concatenate([(-(E @ s) / rest)[None], s])
+        # Without a modulus at rest q = 0 says nothing of u: its rate is integrated.
+        grown = np.where(rates[:, None] * t[None] != 0.0, np.expm1(rates[:, None] * t[None]), 0.0)
+        slow = np.abs(rates) < 1e-13 * np.abs(rates).max(initial=1e-300)
+        over = np.where(slow[:, None], t[None], grown / np.where(slow, 1.0, rates)[:, None])
+        moved = (E / tau) @ (modes @ (over * (inverse @ state[1:]))) / self.material.modulus
+        return np.concatenate([(state[0] + moved)[None], s])
+
+
+@dataclass(frozen=True)
+class Retarded:
+    """Kelvin and Voigt: a state is u."""
+
+    time: float
+    modulus: float = 1.0
+    arms: int = 0
+
+    def pressure(self, state: Floats, rate: float) -> Floats:
+        """q in contact."""
+        return np.asarray(self.modulus * (state[0] + self.time * rate))
+
+    def held(self, state: Floats, rate: float, t: Floats) -> Floats:
+        """The state after a time in contact."""
+        return np.asarray((state[0] + rate * t)[None])
+
+    def free(self, state: Floats, t: Floats) -> Floats:
+        """The state after a time without contact."""
+        return np.asarray((state[0] * np.exp(-t / self.time))[None])
+
+
+Law = Prony | Retarded
+
+
+@dataclass
+class Springs:
+    """Springs under a body that moves; all begin undeformed and free.
+
+    Args:
+        law: of each.
+        depth: g(x_i) [length]; the first is at x = 0.
+        weight: of each in the integral over -a < x < a [length].
+    """
+
+    law: Law
+    depth: Floats
+    weight: Floats
+    state: Floats = field(init=False)
+    touching: NDArray[np.bool_] = field(init=False)
+    time: float = 0.0
+    first: float = math.inf
+    last: float = math.inf
+    touches: int = 0
+
+    def __post_init__(self) -> None:
+        """At rest."""
+        self.state = np.zeros((1 + self.law.arms, self.depth.size))
+        self.touching = np.zeros(self.depth.size, dtype=bool)
+
+    def move(self, start: float, stop: float, duration: float) -> None:
+        """Move the body from one displacement to another at a constant rate."""
+        rate = (stop - start) / duration
+        left = np.full(self.depth.size, duration)
+        pressure = self.law.pressure(self.state, rate)
+        at_once = self.touching & (pressure < -NEGATIVE * np.abs(pressure).max())
+        self._switched(np.flatnonzero(at_once), False, np.full(int(at_once.sum()), self.time))
+        active = np.arange(self.depth.size)
+        while active.size:
+            for held in (True, False):
+                some = active[(self.touching[active] == held) & (left[active] > 0.0)]
+                if some.size:
+                    self._one_event(some, held, start, rate, duration, left)
+            active = active[left[active] > 0.0]
+        self.time += duration
+
+    def _switched(self, some: NDArray[np.intp], touching: bool, times: Floats) -> None:
+        """Springs that are touched or left, and when."""
+        self.touching[some] = touching
+        if not some.size:
+            return
+        if touching:
+            self.first, self.last = min(self.first, float(times.min())), math.inf
+            self.touches += bool(some[0] == 0)
+        elif not self.touching.any():
+            self.last = float(times.max())
+
+    def _off(self, some: NDArray[np.intp], held: bool, d: Floats, rate: float, t: Floats) -> Floats:
+        """What has an event where it becomes negative: q in contact, the gap without."""
+        if held:
+            return self.law.pressure(self.law.held(self.state[:, some], rate, t), rate)
+        return np.asarray(self.law.free(self.state[:, some], t)[0] - (d + rate * t - self.depth[some]))
+
+    def _one_event(
+        self, some: NDArray[np.intp], held: bool, start: float, rate: float, duration: float, left: Floats
+    ) -> None:
+        """Go to the next event of each of some springs, or to the end."""
+        rest = left[some].copy()
+        d = start + rate * (duration - rest)
+        low, high, found = np.zeros(some.size), rest.copy(), np.zeros(some.size, dtype=bool)
+        for look in LOOKS:
+            t = look * rest
+            new = ~found & (self._off(some, held, d, rate, t) < 0.0)
+            high[new], found = t[new], found | new
+            low[~found] = t[~found]
+        if found.any():
+            few, a, b = some[found], low[found], high[found]
+            for _ in range(BISECTIONS):
+                middle = 0.5 * (a + b)
+                below = self._off(few, held, d[found], rate, middle) < 0.0
+                a, b = np.where(below, a, middle), np.where(below, middle, b)
+            high[found] = b
+        after = self.law.held(self.state[:, some], rate, high) if held else self.law.free(self.state[:, some], high)
+        if not held:
+            after[0][found] = (d + rate * high - self.depth[some])[found]
+        self.state[:, some] = after
+        left[some] = np.where(found, rest - high, 0.0)
+        self._switched(some[found], not held, (self.time + duration - left[some])[found])
+
+    def force(self, rate: float) -> float:
+        """F [force] at a rate, with which a pressure that would be negative is none."""
+        return float(self.weight @ np.where(self.touching, self.law.pressure(self.state, rate), 0.0).clip(0.0))
+
+
+@dataclass(frozen=True)
+class Followed:
+    """A path of the body, at the times that were asked for.
+
+    Attributes:
+        radius: of the outermost spring that touches [length].
+        work: int F dd since the start, by Simpson's rule between the times [energy].
+        first, last: when the surface is first touched, and when it is left for good; inf where it is not [time].
+        touches: how often the apex touches.
+    """
+
+    times: Floats
+    displacement: Floats
+    force: Floats
+    radius: Floats
+    work: Floats
+    first: float
+    last: float
+    touches: int
+
+
+def followed(
+    law: Law, depth: Callable[[float], float], width: float, d: Legs, times: Sequence[float], cells: int
+) -> Followed:
+    """Follow a path of springs in the middles of cells between 0 and `width`; the times begin where the path does.
+
+    At a corner of the path the force is that of the leg before.
+    """
+    x = np.concatenate([[0.0], (np.arange(cells) + 0.5) * width / cells])
+    weight = np.full(x.size, 2.0 * width / cells)
+    weight[0] = 0.0
+    springs = Springs(law, np.array([depth(float(one)) for one in x]), weight, time=d.times[0])
+    every = sorted({*times, *(t for t in d.times if t <= max(times))})
+    force, radius, work, at = {every[0]: 0.0}, {every[0]: 0.0}, {every[0]: 0.0}, 0.0
+    for t0, t1 in pairwise(every):
+        d0, d1 = d(t0), d(t1)
+        rate = (d1 - d0) / (t1 - t0)
+        before = springs.force(rate)
+        springs.move(d0, 0.5 * (d0 + d1), 0.5 * (t1 - t0))
+        middle = springs.force(rate)
+        springs.move(0.5 * (d0 + d1), d1, 0.5 * (t1 - t0))
+        force[t1] = springs.force(rate)
+        outermost = int(np.flatnonzero(springs.touching).max(initial=0))
+        radius[t1] = float(x[outermost]) + (0.5 * width / cells if outermost else 0.0)
+        at += (before + 4.0 * middle + force[t1]) * (d1 - d0) / 6.0
+        work[t1] = at
+    F, a, W = (np.array([one[t] for t in times]) for one in (force, radius, work))
+    along = np.array([d(t) for t in times])
+    return Followed(np.array(times), along, F, a, W, springs.first, springs.last, springs.touches)
+
+
+def evenly(d: Legs, per_leg: int) -> list[float]:
+    """Times that divide each leg evenly."""
+    return [a + (b - a) * i / per_leg for a, b in pairwise(d.times) for i in range(per_leg)] + [d.times[-1]]

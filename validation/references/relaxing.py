@@ -1,0 +1,476 @@
+"""Rigid bodies f(r) = c r^n on a viscoelastic half-space: Lee and Radok, Ting, creep, punch, Kelvin and Voigt.
+
+The plane-strain modulus relaxes by a Prony series of the instantaneous one, at constant Poisson's ratio,
+
+    E(t) = E_0 [1 - sum_j p_j (1 - exp(-t/tau_j))],    int_0^t E(t - s) dC(s) = 1
+
+with the creep compliance C. In the elastic contact of radius a: d = g(a) = kappa_n c a^n and
+F = 2 E* n/(n + 1) kappa_n c a^(n + 1), kappa_n = (sqrt(pi)/2) n Gamma(n/2)/Gamma((n + 1)/2). The surface at x
+is touched at the time t_0(x), d(t_0) = g(x). While a grows (Lee and Radok)
+
+    F(t) = 2 int_0^a(t) E(t - t_0(x)) x g'(x) dx,    2 n/(n + 1) kappa_n c a^(n + 1) = int_0^t C(t - s) dF(s)
+
+While it shrinks, a(t) = a(t_1) with the time t_1 < t_m before the maximum (Ting), where
+
+    int_(t_1)^t E(t - s) d'(s) ds = 0,    F(t) = 2 int_0^(t_1) E(t - s) a(s) d'(s) ds
+
+so that contact ends where t_1 = 0. Under a given F the second equation has t_1, and the first one d(t), by C.
+Kelvin-Voigt, E* and a retardation time A: F = F_el(d) + 2 E* A a d' while d grows, F_el(max(0, d + A d')) while it
+falls. Everything is by quadrature and root finding; nothing is shared with the program.
+Sources: E. H. Lee, J. R. M. Radok, J. Appl. Mech. 27 (1960) 438; T. C. T. Ting, J. Appl. Mech. 33 (1966) 845.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import quad
+from scipy.optimize import brentq, minimize_scalar
+
+ACCURACY = 1e-11
+"""Relative accuracy asked of each piece of a quadrature."""
+ROOT = 1e-14
+NO_REST = 1e-12
+"""Share of the modulus that remains below which nothing does."""
+NODES = 24
+"""Of a rule for the approach after the largest radius."""
+SCAN = 60
+"""Points of a leg at which a maximum or a turn is first searched for."""
+Floats = NDArray[np.float64]
+Function = Callable[[float], float]
+Pair = tuple[float, float]
+
+
+@cache
+def _rule(count: int) -> tuple[Floats, Floats]:
+    """Places and weights on 0 to 1, closer at its ends."""
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    angle = 0.25 * math.pi * (1.0 + nodes)
+    return np.sin(angle) ** 2, 0.25 * math.pi * np.sin(2.0 * angle) * weights
+
+
+PLACES, PARTS = _rule(80)
+
+
+def integral(function: Function, low: float, high: float) -> float:
+    """By adaptive quadrature."""
+    if not high > low:
+        return 0.0
+    return float(quad(function, low, high, epsrel=ACCURACY, epsabs=0.0, limit=400, full_output=1)[0])
+
+
+@dataclass(frozen=True)
+class Material:
+    """A Prony series of the instantaneous plane-strain modulus.
+
+    Args:
+        terms: (share p_j [1], time tau_j [time]) of each arm.
+        modulus: E_0 [stress].
+    """
+
+    terms: tuple[Pair, ...]
+    modulus: float = 1.0
+
+    @property
+    def rest(self) -> float:
+        """E(inf)/E_0."""
+        remaining = 1.0 - sum(share for share, _ in self.terms)
+        return remaining if abs(remaining) > NO_REST else 0.0
+
+    def relaxed(self, t: float) -> float:
+        """E(t) [stress]."""
+        return self.modulus * (self.rest + sum(p * math.exp(-t / tau) for p, tau in self.terms))
+
+    def impulse(self, t: float) -> float:
+        """int_0^t E [stress time]."""
+        return self.modulus * (self.rest * t - sum(p * tau * math.expm1(-t / tau) for p, tau in self.terms))
+
+    @cached_property
+    def retarded(self) -> tuple[float, float, list[Pair]]:
+        """C(0), the rate of its flow, and (compliance, rate) of each retardation: by inversion of its transform.
+
+        s times the transform of E is N(s)/D(s), D = prod_j (1 + s tau_j); that of C is D/(s N).
+        """
+        D = np.poly1d([1.0])
+        for _, tau in self.terms:
+            D *= np.poly1d([tau, 1.0])
+        N = self.rest * D
+        for j, (p, tau) in enumerate(self.terms):
+            others = np.poly1d([p * tau, 0.0])
+            for k, (_, other) in enumerate(self.terms):
+                others *= np.poly1d([other, 1.0]) if k != j else np.poly1d([1.0])
+            N += others
+        N *= self.modulus
+        flow, poles = 0.0, N
+        if self.rest == 0.0 and self.terms:
+            poles = np.poly1d(N.coeffs[:-1])
+            flow = float(1.0 / poles(0.0))
+        rates = [float(np.real(root)) for root in np.roots(poles.coeffs)]
+        slope = np.polyder(N)
+        return 1.0 / self.modulus, flow, [(float(D(s) / (s * slope(s))), s) for s in rates]
+
+    def creep(self, t: float) -> float:
+        """C(t) [1/stress]."""
+        at_once, flow, arms = self.retarded
+        return at_once + flow * t + sum(c * math.expm1(s * t) for c, s in arms)
+
+    def creep_rate(self, t: float) -> float:
+        """dC/dt [1/(stress time)]."""
+        _, flow, arms = self.retarded
+        return flow + sum(c * s * math.exp(s * t) for c, s in arms)
+
+    def yielded(self, t: float) -> float:
+        """int_0^t C [time/stress]."""
+        at_once, flow, arms = self.retarded
+        return at_once * t + 0.5 * flow * t * t + sum(c * (math.expm1(s * t) / s - t) for c, s in arms)
+
+
+@dataclass(frozen=True)
+class Power:
+    """f(r) = c r^n: a paraboloid of n = 2, c = 1/(2R), a cone of n = 1."""
+
+    exponent: float
+    factor: float
+
+    @property
+    def reduced(self) -> float:
+        """kappa_n c."""
+        n = self.exponent
+        return self.factor * 0.5 * math.sqrt(math.pi) * n * math.gamma(0.5 * n) / math.gamma(0.5 * (n + 1.0))
+
+    def depth(self, a: float) -> float:
+        """g(a) [length]."""
+        return float(self.reduced * a**self.exponent)
+
+    def radius(self, d: float) -> float:
+        """a [length] of an elastic contact at d."""
+        return float((max(0.0, d) / self.reduced) ** (1.0 / self.exponent))
+
+    def volume(self, a: float) -> float:
+        """F/E* [length^2] of an elastic contact of that radius."""
+        return 2.0 * self.exponent / (self.exponent + 1.0) * self.depth(a) * a
+
+    def of_volume(self, volume: float) -> float:
+        """The radius [length] where F/E* is that."""
+        n = self.exponent
+        return float((max(0.0, volume) * (n + 1.0) / (2.0 * n * self.reduced)) ** (1.0 / (n + 1.0)))
+
+
+def sphere(radius: float) -> Power:
+    """The paraboloid of that R."""
+    return Power(2.0, 0.5 / radius)
+
+
+@dataclass(frozen=True)
+class Legs:
+    """A function of time that is linear between points (t, value); as at its ends beyond."""
+
+    points: tuple[Pair, ...]
+
+    @property
+    def times(self) -> list[float]:
+        """Of the points."""
+        return [t for t, _ in self.points]
+
+    @property
+    def values(self) -> list[float]:
+        """At the points."""
+        return [value for _, value in self.points]
+
+    def __call__(self, t: float) -> float:
+        """The value at t."""
+        return float(np.interp(t, self.times, self.values))
+
+    def rate(self, t: float) -> float:
+        """Of the leg that begins at or before t, 0 outside."""
+        i = bisect_right(self.times, t)
+        return self._slopes[i - 1] if 0 < i < len(self.points) else 0.0
+
+    @cached_property
+    def _slopes(self) -> list[float]:
+        return [(y1 - y0) / (t1 - t0) for (t0, y0), (t1, y1) in pairwise(self.points)]
+
+    def pieces(self, low: float, high: float) -> list[tuple[float, float, float]]:
+        """(from, to, rate) of each leg between two times."""
+        found = []
+        for (a, b), rate in zip(pairwise(self.times), self._slopes, strict=True):
+            start, stop = max(a, low), min(b, high)
+            if stop > start:
+                found.append((start, stop, rate))
+        return found
+
+    def hereditary(self, impulse: Function, t: float, low: float = -math.inf) -> float:
+        """int_low^t kernel(t - s) d value(s), from the integral of the kernel; a first value that is not 0 is a jump
+        that is not counted."""
+        return sum(rate * (impulse(t - start) - impulse(t - stop)) for start, stop, rate in self.pieces(low, t))
+
+    def touched(self, depth: float) -> float:
+        """The first time at which the value is so large; inf if it never is."""
+        for (t0, y0), (t1, y1) in pairwise(self.points):
+            if y0 >= depth:
+                return t0
+            if y1 >= depth:
+                return t0 + (t1 - t0) * (depth - y0) / (y1 - y0)
+        return math.inf
+
+
+def has_one_maximum(d: Legs) -> bool:
+    """Whether it grows, is held, and falls at one rate."""
+    signs = [(y > x) - (y < x) for x, y in pairwise(d.values)]
+    falls = signs.index(-1) if -1 in signs else len(signs)
+    return len(signs) - falls <= 1
+
+
+@dataclass(frozen=True)
+class Indentation:
+    """A body pushed in by a displacement that grows to one maximum and then falls at one rate, until contact ends.
+
+    Raises ValueError where the displacement falls before it has its maximum, grows thereafter, or falls at several
+    rates: a surface that recovers faster than the body recedes would make the contact larger again.
+    """
+
+    body: Power
+    material: Material
+    d: Legs
+
+    def __post_init__(self) -> None:
+        """Refuse several maxima."""
+        if not has_one_maximum(self.d):
+            raise ValueError("the displacement has several maxima, or falls at several rates")
+
+    @property
+    def turn(self) -> float:
+        """When the displacement first begins to fall."""
+        return max(t for t, y in self.d.points if y == max(self.d.values))
+
+    @property
+    def start(self) -> float:
+        """When the surface is first touched."""
+        return self.d.touched(0.0)
+
+    @cached_property
+    def end(self) -> float:
+        """When contact ends; inf where it lasts."""
+        last = self.d.times[-1]
+        if last <= self.turn or self._carried(last, self.start) > 0.0:
+            return math.inf
+        return float(brentq(lambda t: self._carried(t, self.start), self.turn, last, xtol=1e-300, rtol=ROOT))
+
+    def _carried(self, t: float, since: float) -> float:
+        """int_since^t E(t - s) dd(s): the pressure in one dimension where touched at `since`."""
+        return self.d.hereditary(self.material.impulse, t, since)
+
+    def before(self, t: float) -> float:
+        """t_1(t), at which the contact had the same radius; t itself while it grows."""
+        if t <= self.turn:
+            return t
+        if t >= self.end:
+            return self.start
+        return float(brentq(lambda s: self._carried(t, s), self.start, self.turn, xtol=1e-300, rtol=ROOT, maxiter=500))
+
+    def radius(self, t: float) -> float:
+        """a(t) [length]."""
+        return self.body.radius(self.d(self.before(t))) if t < self.end else 0.0
+
+    def force(self, t: float) -> float:
+        """F(t) [force]."""
+        if t >= self.end or t <= self.start:
+            return 0.0
+        total, n = 0.0, self.body.exponent
+        for start, stop, rate in self.d.pieces(self.start, self.before(t)):
+            low, high = (self.body.radius(self.d(s)) for s in (start, stop))
+
+            def carried(x: float, start: float = start, low: float = low, rate: float = rate) -> float:
+                touched = start + (self.body.depth(x) - self.body.depth(low)) / rate
+                return self.material.relaxed(max(0.0, t - touched)) * n * self.body.depth(x)
+
+            total += integral(carried, low, high) if rate > 0.0 else 0.0
+        return 2.0 * total
+
+    @cached_property
+    def peak(self) -> Pair:
+        """When the force is largest, and that force."""
+        return largest(self.force, [t for t in self.d.times if t < self.end])
+
+    @cached_property
+    def work(self) -> float:
+        """int F dd to the end of the history or of contact [energy]."""
+        stop = min(self.end, self.d.times[-1])
+        pieces = self.d.pieces(self.start, stop)
+        return sum(rate * smooth(self.force, low, high) for low, high, rate in pieces if rate)
+
+
+def smooth(function: Function, low: float, high: float, count: int = 60) -> float:
+    """By one rule of Gauss, of a function that is smooth but at the ends, to which points are moved closer."""
+    places, weights = _rule(count)
+    values = [function(low + (high - low) * float(x)) for x in places]
+    return (high - low) * float(weights @ np.array(values))
+
+
+def largest(function: Function, corners: Sequence[float]) -> Pair:
+    """Where a function that is smooth between corners is largest, and its value there."""
+    points = [a + (b - a) * i / SCAN for a, b in pairwise(corners) for i in range(SCAN)] + [corners[-1]]
+    values = [function(t) for t in points]
+    i = int(np.argmax(values))
+    best = points[i], values[i]
+    for low, high in ((points[max(0, i - 1)], points[i]), (points[i], points[min(len(points) - 1, i + 1)])):
+        if high > low:
+            found = minimize_scalar(
+                lambda t: -function(t), bounds=(low, high), method="bounded", options={"xatol": 1e-9 * (high - low)}
+            )
+            best = max(best, (float(found.x), -float(found.fun)), key=lambda pair: pair[1])
+    return best
+
+
+@dataclass(frozen=True)
+class Creeping:
+    """A body under a force that grows, is held, and falls, so that the radius has one maximum."""
+
+    body: Power
+    material: Material
+    force: Legs
+
+    def _yielded(self, t: float) -> float:
+        return self.force.hereditary(self.material.yielded, t)
+
+    @cached_property
+    def turn(self) -> float:
+        """When the radius is largest."""
+        turn, _ = largest(self._yielded, self.force.times)
+
+        def rate(t: float) -> float:
+            slopes = [(low, high, slope) for low, high, slope in self.force.pieces(-math.inf, t)]
+            return sum(slope * (self.material.creep(t - a) - self.material.creep(t - b)) for a, b, slope in slopes)
+
+        for low, high in pairwise(self.force.times):
+            if low < turn < high and rate(low) > 0.0 > rate(high):
+                return float(brentq(rate, low, high, xtol=1e-300, rtol=ROOT))
+        return turn
+
+    def grown(self, t: float) -> float:
+        """a(t) [length] while the radius grows."""
+        return self.body.of_volume(self._yielded(t))
+
+    def _approach(self, t: float) -> float:
+        """d(t) [length] while the radius grows."""
+        return self.body.depth(self.grown(t))
+
+    def before(self, t: float) -> float:
+        """t_1(t)."""
+        if t <= self.turn:
+            return t
+        target = self.force(t)
+
+        def off(s: float) -> float:
+            return self._held(s, t) - target
+
+        start = self.force.touched(0.0)
+        if target <= 0.0 or off(self.turn) <= 0.0:  # at the turn itself by round-off
+            return start if target <= 0.0 else self.turn
+        return float(brentq(off, start, self.turn, xtol=1e-300, rtol=1e-13))
+
+    def _past(self, values: Callable[[Floats], Floats], low: float, high: float, t: float) -> float:
+        """int_low^high E(t - s) d values(s), by parts: the values have a steep start, and no derivative there."""
+        total, corners = 0.0, [low, *(c for c in self.force.times if low < c < high), high]
+        for start, stop in pairwise(corners):
+            s = start + (stop - start) * PLACES
+            fading = sum(p / tau * np.exp((s - t) / tau) for p, tau in self.material.terms)
+            total += (stop - start) * float(PARTS @ (values(s) * fading))
+        ends = values(np.array([low, high]))
+        relaxed = self.material.relaxed
+        return relaxed(t - high) * float(ends[1]) - relaxed(t - low) * float(ends[0]) - self.material.modulus * total
+
+    def _held(self, before: float, t: float) -> float:
+        """2 int_0^t1 E(t - s) a(s) dd(s)."""
+        return self._past(self._volumes, self.force.touched(0.0), before, t)
+
+    def _volumes(self, s: Floats) -> Floats:
+        """int C dF at many times."""
+        at_once, flow, arms = self.material.retarded
+
+        def yielded(t: Floats) -> Floats:
+            slow = sum((c * (np.expm1(k * t) / k - t) for c, k in arms), np.zeros_like(t))
+            return np.asarray(at_once * t + 0.5 * flow * t * t + slow)
+
+        pieces = self.force.pieces(-math.inf, math.inf)
+        parts = (rate * (yielded(np.maximum(s - a, 0.0)) - yielded(np.maximum(s - b, 0.0))) for a, b, rate in pieces)
+        return np.asarray(sum(parts, np.zeros_like(s)))
+
+    def _approaches(self, s: Floats) -> Floats:
+        """d at many times while the radius grows."""
+        n = self.body.exponent
+        radii = (self._volumes(s).clip(0.0) * (n + 1.0) / (2.0 * n * self.body.reduced)) ** (1.0 / (n + 1.0))
+        return np.asarray(self.body.reduced * radii**n)
+
+    def _lost(self, t: float) -> float:
+        """int_(t_1)^(t_m) E(t - s) dd(s)."""
+        return self._past(self._approaches, self.before(t), self.turn, t)
+
+    def radius(self, t: float) -> float:
+        """a(t) [length]."""
+        return self.grown(self.before(t))
+
+    def displacement(self, t: float) -> float:
+        """d(t) [length]."""
+        if t <= self.turn:
+            return self._approach(t)
+        lost, turn = self._lost, self.turn
+        corners = [turn, *(c for c in self.force.times if turn < c < t), t]
+        past = sum(
+            smooth(lambda s: self.material.creep_rate(t - s) * lost(s), low, high, 24)
+            for low, high in pairwise(corners)
+        )
+        return self._approach(turn) - self.material.retarded[0] * lost(t) - past
+
+    @cached_property
+    def peak_displacement(self) -> float:
+        """The largest d(t) [length]."""
+        times = [t for t in self.force.times if t < self.turn]
+        return largest(self._approach, [*times, self.turn])[1]
+
+
+@dataclass(frozen=True)
+class Punch:
+    """A flat punch of a radius, in contact throughout."""
+
+    radius: float
+    material: Material
+
+    def force(self, d: Legs, t: float) -> float:
+        """F(t) [force] of d(t)."""
+        return 2.0 * self.radius * d.hereditary(self.material.impulse, t)
+
+    def displacement(self, force: Legs, t: float) -> float:
+        """d(t) [length] of F(t)."""
+        return force.hereditary(self.material.yielded, t) / (2.0 * self.radius)
+
+
+@dataclass(frozen=True)
+class KelvinVoigt:
+    """A body on a half-space of Kelvin and Voigt, pushed in and drawn out once.
+
+    Args:
+        body: its profile.
+        time: A, of retardation [time].
+        modulus: E* [stress].
+    """
+
+    body: Power
+    time: float
+    modulus: float = 1.0
+
+    def radius(self, d: float, rate: float) -> float:
+        """a [length]."""
+        return self.body.radius(d if rate >= 0.0 else d + self.time * rate)
+
+    def force(self, d: float, rate: float) -> float:
+        """F [force] of displacement and rate."""
+        a = self.radius(d, rate)
+        return self.modulus * (self.body.volume(a) + (2.0 * self.time * a * rate if rate > 0.0 else 0.0))
