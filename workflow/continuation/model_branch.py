@@ -128,7 +128,7 @@ class ModelBranch:
 
     def fly(self, velocity: float) -> None:
         """See `reduced.impact`."""
-        self._phase, path = "impact", impact(self.scene, self.settings, self.model, velocity)
+        self._phase, path = "impact", impact(self.scene, self.settings, self.model, velocity, self.dense)
         self._leg += 1
         self._add(path.displacement, time=path.time.tolist())
 

@@ -69,7 +69,8 @@ class HistoryExperiment(Scripted[History]):
             found["relaxation"] = Reading(float(abs(free[last] - free[first])), unit, scale=float(np.abs(free).max()))
         if parted and force.any():
             if force[0] == 0.0:
-                found["dissipated_energy"] = Reading(float(np.trapezoid(force, d)), ENERGY, scale=_work(d, force))
+                whole = None if scene.viscoelasticity or scene.adhesion else _work(d, force)  # springs lose nothing
+                found["dissipated_energy"] = Reading(float(np.trapezoid(force, d)), ENERGY, scale=whole)
             found["contact_time"] = Reading(lost(trace) - _touched(trace, by_force), TIME)
         return found | _slopes(trace)
 

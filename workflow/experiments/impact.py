@@ -31,6 +31,10 @@ class ImpactExperiment(Scripted[Impact]):
     main_results = ("restitution", "contact_time", "peak_force", "peak_displacement", "peak_contact_radius")
     branches = {"touching": "impact"}  # noqa: RUF012
 
+    def is_sampled(self, scene: Scene) -> bool:
+        """Always: states are read at equal times."""
+        return True
+
     def script(self, branch: Driver, scene: Scene) -> None:
         """Hit."""
         branch.fly(self.given(scene).velocity)

@@ -36,7 +36,7 @@ APART = -1.0
 """Place on the curve of bodies that do not feel each other."""
 ENERGY_PLACES = 4000
 """Positions of the two integrals of an energy."""
-LOST, EXACT, FOLLOWED = 1e-3, 1e-9, 4000
+LOST, EXACT, FOLLOWED = 1e-3, 1e-11, 4000
 """Edge over that under fixed grips at which a receding one is lost; error of its motion, and times at which a pull
 looks for equal ways."""
 SAME = 1e-9

@@ -632,7 +632,7 @@ def swing(scene: Scene, settings: Settings, model: Reduced, start: float, load: 
     return path[[0, total - 1]]
 
 
-STRETCHES, COARSER = 60, 4
+STRETCHES, COARSER = 60, 16
 """States of an impact in the time of a fall to the deepest displacement; timesteps of the model in each."""
 FLIGHT = 3
 """States in free flight that show its velocity."""
@@ -650,18 +650,18 @@ def is_over(displacement: Sequence[float], force: Sequence[float]) -> bool:
     return bool(parted or np.count_nonzero(np.diff(ways[ways != 0.0])) > 1)
 
 
-def impact(scene: Scene, settings: Settings, model: Reduced, velocity: float) -> Path:
-    """The model's states of an impact, from touch on at the times of a run.
+def impact(scene: Scene, settings: Settings, model: Reduced, velocity: float, dense: int = 1) -> Path:
+    """The model's states of an impact, from touch on at the times of a run, or `dense` ones for each.
 
     It takes longer timesteps: with `feeling` F, velocity Verlet of M d″ = −F.
     """
     assert scene.plate
     assert scene.plate.mass != "auto"
-    total = stretch(settings, velocity) * settings.motion.time_step
-    step, feel, place, force, mass = total / COARSER, model.feeling(), 0.0, 0.0, scene.plate.mass
+    each, time = max(1, COARSER // dense), stretch(settings, velocity) * settings.motion.time_step / dense
+    step, feel, place, force, mass = time / each, model.feeling(), 0.0, 0.0, scene.plate.mass
     places, forces = [0.0], [0.0]
     while len(places) < FLIGHT or not is_over(places, forces):
-        for _ in range(COARSER):
+        for _ in range(each):
             velocity -= 0.5 * step * force / mass
             place += step * velocity
             force = feel(place, step)
@@ -671,4 +671,4 @@ def impact(scene: Scene, settings: Settings, model: Reduced, velocity: float) ->
         if len(places) > MOST_STEPS:
             break
     path = np.asarray(places)
-    return Path(path, np.zeros_like(path), total * np.arange(float(path.size)))
+    return Path(path, np.zeros_like(path), time * np.arange(float(path.size)))
