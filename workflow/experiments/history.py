@@ -194,6 +194,8 @@ def lost(trace: Trace) -> float:
         d = trace.displacement[last : last + 2]
         share = float((d[0] - place) / (d[0] - d[1])) if d[0] > d[1] else 0.0
         return float(time + min(max(share, 0.0), 1.0) * (end - time))
+    if trace.phase[last + 1] != trace.phase[last]:  # at a corner, where dashpots push no more
+        return float(time)
     before, here = (float(np.abs(trace.profile(i).pressure).max()) for i in (last - 1, last))
     part = here / (before - here) if before > here else 1.0
     return float(min(end, time + part * (time - start)))

@@ -556,21 +556,32 @@ class RelaxingSprings(Reduced):
         assert zone is not None
         return zone[0]
 
-    def _edges(self, margin: Array) -> Array:
-        """a [LU] of states whose overlaps are (m, n) [LU], (m,): where those of the next two free particles come to 0.
+    @cached_property
+    def _places(self) -> tuple[Array, Array]:
+        """Heights [LU], rising, and where the body has them [LU]."""
+        x = np.linspace(0.0, float(np.abs(self.x).max()), FINER * self.x.size)
+        return np.asarray(self.estimate.profile.height(x), dtype=np.float64), x
 
-        Straight over x², as of a sphere; inside the contact the overlap has a kink at a.
+    def _edges(self, margin: Array) -> Array:
+        """a [LU] of states whose overlaps are (m, n) [LU], (m,): where these fall to 0, straight over the height.
+
+        Where the contact grows the overlap has a kink at a, and only the next two free particles tell; where it
+        shrinks, the last particle and the next are nearer.
         """
-        heights, own, _ = self._heights
-        x = np.zeros_like(heights)
-        np.maximum.at(x, own, np.abs(self.x))
-        touching, square, end = margin > 0.0, x**2, heights.size - 1
+        heights, touching = self._heights[0], margin > 0.0
+        end = heights.size - 1
         last = end - np.argmax(touching[:, ::-1], axis=1)
-        rows, after, beyond = np.arange(last.size), np.minimum(last + 1, end), np.minimum(last + 2, end)
-        near, far = margin[rows, after], margin[rows, beyond]
-        slope = np.divide(near, near - far, out=np.zeros_like(near), where=near > far)
-        edge = np.sqrt(np.clip(square[after] + slope * (square[beyond] - square[after]), square[last], square[after]))
-        return np.where(touching.any(axis=1), edge, 0.0)
+        rows, after = np.arange(last.size), np.minimum(last + 1, end)
+
+        def crossing(first: NDArray[np.intp], second: NDArray[np.intp]) -> Array:
+            one, other = margin[rows, first], margin[rows, second]
+            share = np.divide(one, one - other, out=np.zeros_like(one), where=one > other)
+            place = heights[first] + share * (heights[second] - heights[first])
+            return np.interp(np.clip(place, heights[last], heights[after]), *self._places)
+
+        ahead, across = crossing(after, np.minimum(last + 2, end)), crossing(last, after)
+        shrinks = np.append(False, ahead[1:] < ahead[:-1])
+        return np.where(touching.any(axis=1), np.where(shrinks, across, ahead), 0.0)
 
 
 def legs(displacements: Array) -> list[slice]:
@@ -604,6 +615,8 @@ def reduced(scene: Scene, settings: Settings) -> Reduced:
     return Sliding(estimate, x, deepest, sliders_of(scene, x)) if scene.friction else Springs(estimate, x, deepest)
 
 
+FINER = 20
+"""Places of a body for each of its particles, between which its heights are straight."""
 MOST_STEPS = 20_000
 """Timesteps of a swing that is followed; a longer one ends in equilibrium."""
 
