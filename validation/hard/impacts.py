@@ -62,7 +62,8 @@ def bodies() -> dict[str, Power]:
 
 def measure(bench: Bench) -> Findings:
     """Elastic, of Kelvin and Voigt, relaxing, adhesive; then the edge; then random scenes of all."""
-    found = [*_elastic(bench), *_retarded(bench), *_relaxing(bench), *_adhesive(bench), *_edges(bench)]
+    impacts = [*_elastic(bench), *_retarded(bench), *_relaxing(bench), *_adhesive(bench)]
+    found = [*impacts, *_edges(bench), *_histories(bench)]
     return Findings([*found, *rows(conducted(bench, SEED, FULL if bench.full else QUICK), SEED, MOTION)])
 
 
@@ -158,12 +159,43 @@ def _edges(bench: Bench) -> list[Row]:
             force, radius = edge.pull_off(PRELOAD, velocity)
             pull = {"kind": "pull_off", "preload": PRELOAD, "velocity": velocity}
             tables = plain(profile_of(body, 1.0), contact.touch / PARTICLES_AT_REST, ASKED)
-            words = f"{name}, V/v₀ = {velocity:g}"
+            words = f"{name}, V = {velocity:g} v₀"
             run = bench.run(f"edge_{words}", tables | {"adhesion": rate, "experiment": pull})
             judged.add(words, run, {"adhesion_force": force, "critical_radius": radius}, PEAKS)
             off = abs(_result(run, "adhesion_force") / force - 1.0)
             found.append(at_most(f"pull-off at a velocity, {words}: F_A", off, TENSION, EDGE, said("issue 34", run)))
     return [*found, *judged.rows()]
+
+
+def _histories(bench: Bench) -> list[Row]:
+    """Pressed in at equilibrium, then drawn off at a velocity, as a history."""
+    judged, off = Judged("history of an edge with a speed", EDGE), {}
+    for name, body in bodies().items():
+        contact = Adhesive(body, WORK_OF_IMPACTS)
+        edge, deepest = Receding(contact, SPEED, EXPONENT), body.depth(2.5 * contact.touch)
+        start = edge.at(deepest)
+        for velocity in VELOCITIES[1:]:
+            path, words = edge.drawn(start, velocity), f"{name}, V = {velocity:g} v₀"
+            last = float(path.t[-1])
+            lasts = 1.5 * last / velocity
+            rate = {"work_of_adhesion": WORK_OF_IMPACTS, "rate": {"velocity": SPEED, "exponent": EXPONENT}}
+            points = [[0.0, -deepest], [2.0, deepest], [2.0 + lasts, deepest - 1.5 * last]]
+            tables = plain(profile_of(body, 1.0), contact.touch / PARTICLES_AT_REST, ASKED)
+            history = {"kind": "history", "displacement": points}
+            run = bench.run(f"history_{words}", tables | {"adhesion": rate, "experiment": history})
+            judged.add(words, run, {"peak_force": contact.force(start), "contact_time": 1.0 + last / velocity}, 1e-4)
+            off[words] = math.nan
+            if isinstance(run, Refused):
+                continue
+            tension, each = edge.largest(start, velocity)[0], [0.0]
+            for t, d, F in zip(*(run.curve[key] for key in ("time", "displacement", "force")), strict=True):
+                if (drawn := (float(t) - 2.0) * velocity) > 0.0:
+                    exact = edge.force(float(path.sol(drawn)[0]), float(d)) if drawn < last else 0.0
+                    each.append(abs(float(F) - exact) / tension)
+            off[words] = max(each)
+    label = max(off, key=lambda one: math.inf if math.isnan(off[one]) else off[one])
+    words = f"history of an edge with a speed: force along {len(off)} curves over the largest tension"
+    return [at_most(words, worst(list(off.values())), TENSION, EDGE, label), *judged.rows()]
 
 
 def conducted(bench: Bench, seed: int, count: int, tell: Callable[[str], None] = lambda _: None) -> Found:

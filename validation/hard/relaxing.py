@@ -20,7 +20,7 @@ from validation.hard.kinks import Judged
 from validation.hard.plane_bodies import Scene
 from validation.hard.random_plane import Found, judge, main, outside, rows, run_of
 from validation.hard.relaxing_draws import (
-    SAMPLED,
+    JUMPING,
     Law,
     exact_of_creep,
     exact_of_path,
@@ -278,7 +278,7 @@ def _retarded(bench: Bench) -> list[Row]:
 
             particle = 2.0 * time * DEPTH * RADIUS / PARTICLES
             curves.add(words, run, force, ALONG * force(1.0) + particle)
-            judged.add(words, run, exact_of_path(body, law, TRIANGLE)[0], 2.0 * SAMPLED)
+            judged.add(words, run, exact_of_path(body, law, TRIANGLE)[0], JUMPING)
     return [curves.row("the closed form"), *judged.rows()]
 
 

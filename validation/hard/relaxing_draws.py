@@ -38,10 +38,10 @@ SCALES = {"L": 1e-6, "F": 1e-6, "E": 1e-12, "T": 1e-3}
 """Of scenes with units, in SI."""
 PER_LEG, SPRINGS = 60, 1000
 """Samples of a leg, and springs, of the reference with events."""
-EXACT, SAMPLED = 1e-7, 5e-5
-"""Relative errors of a quadrature, and of ∫F dd of samples."""
-MOST_PARTS = 20
-"""Springs that many times as many where a pressure jumps at the edge."""
+EXACT, SAMPLED, JUMPING = 1e-7, 5e-5, 2e-4
+"""Relative errors of a quadrature, of ∫F dd of samples, and of that where a pressure jumps at the edge."""
+MORE, OFTENER = 5, 2
+"""Springs and samples that many times as many where a pressure jumps at the edge."""
 Law = Material | KelvinVoigt
 
 
@@ -81,12 +81,11 @@ def exact_of_path(body: Power, law: Law, d: Legs) -> tuple[dict[str, float], flo
             return found | {"contact_radius": one.radius(last)}, EXACT
         return found | {"dissipated_energy": one.work, "contact_time": end - one.start}, EXACT
     rule = Prony(law) if isinstance(law, Material) else Retarded(law.time, law.modulus)
-    cells, per_leg = (
-        (SPRINGS, PER_LEG) if isinstance(law, Material) else (MOST_PARTS * SPRINGS, MOST_PARTS * PER_LEG // 5)
-    )
+    jumps = not isinstance(law, Material)
+    cells, per_leg = (MORE * SPRINGS, OFTENER * PER_LEG) if jumps else (SPRINGS, PER_LEG)
     path = followed(rule, body.depth, 1.0001 * body.radius(max(values)), d, evenly(d, per_leg), cells)
     found |= {"peak_force": _top(path, d), "force": float(path.force[-1])}
-    least = SAMPLED if isinstance(law, Material) else 2.0 * SAMPLED
+    least = JUMPING if jumps else SAMPLED
     if path.radius[-1] > 0.0:
         return found, least
     return found | {"dissipated_energy": float(path.work[-1]), "contact_time": path.last - path.first}, least

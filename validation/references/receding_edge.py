@@ -48,10 +48,9 @@ class Receding:
         rate = one.modulus * (one.body.depth(a) - d) ** 2 / (2.0 * math.pi * a)
         return max(0.0, rate / one.work - 1.0) if d < one.body.depth(a) else 0.0
 
-    def pull_off(self, preload: float, velocity: float) -> tuple[float, float]:
-        """The largest tension [force] of a body drawn off with a velocity, and the radius there [length]."""
+    def drawn(self, start: float, velocity: float) -> Any:
+        """The solution a over the way that the body is drawn from the equilibrium of that radius [length]."""
         one = self.contact
-        start = self._pressed(preload)
 
         def change(drawn: float, y: Any) -> list[float]:
             return [-self.speed / velocity * self.excess(float(y[0]), top - drawn) ** (1.0 / self.exponent)]
@@ -62,16 +61,17 @@ class Receding:
         small.terminal = True  # type: ignore[attr-defined]
         top = one.displacement(start)
         reach = 100.0 * (top - one.displacement(one.grips)) * (1.0 + (velocity / self.speed) ** self.exponent)
-        found = solve_ivp(
-            change,
-            (0.0, reach),
-            [start],
-            method="LSODA",
-            rtol=1e-12,
-            atol=1e-15 * start,
-            events=small,
-            dense_output=True,
-        )
+        accuracy = {"method": "LSODA", "rtol": 1e-12, "atol": 1e-15 * start}
+        return solve_ivp(change, (0.0, reach), [start], events=small, dense_output=True, **accuracy)
+
+    def pull_off(self, preload: float, velocity: float) -> tuple[float, float]:
+        """The largest tension [force] of a body drawn off with a velocity, and the radius there [length]."""
+        return self.largest(self._pressed(preload), velocity)
+
+    def largest(self, start: float, velocity: float) -> tuple[float, float]:
+        """The same from the equilibrium of a radius."""
+        one = self.contact
+        top, found = one.displacement(start), self.drawn(start, velocity)
 
         def slope(drawn: float) -> float:
             """Of F over the way that it is drawn, over 2 E*: -a - (d - g) (v_0/V) (G/W - 1)^(1/n)."""
@@ -85,6 +85,14 @@ class Receding:
         at = float(brentq(slope, *ends, xtol=1e-300, rtol=1e-14))
         radius = float(found.sol(at)[0])
         return -self.force(radius, top - at), radius
+
+    def at(self, displacement: float) -> float:
+        """The radius [length] of the equilibrium at a displacement of at least 0."""
+        high = 2.0 * self.contact.touch
+        while self.contact.displacement(high) < displacement:
+            high *= 2.0
+        low = self.contact.touch
+        return float(brentq(lambda a: self.contact.displacement(a) - displacement, low, high, xtol=1e-300, rtol=1e-14))
 
     def _pressed(self, force: float) -> float:
         """The radius [length] of JKR's contact under a force."""

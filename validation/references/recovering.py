@@ -122,15 +122,22 @@ class Springs:
     weight: Floats
     state: Floats = field(init=False)
     touching: NDArray[np.bool_] = field(init=False)
+    left_at: Floats = field(init=False)
     time: float = 0.0
     first: float = math.inf
-    last: float = math.inf
     touches: int = 0
 
     def __post_init__(self) -> None:
         """At rest."""
         self.state = np.zeros((1 + self.law.arms, self.depth.size))
         self.touching = np.zeros(self.depth.size, dtype=bool)
+        self.left_at = np.full(self.depth.size, -math.inf)
+
+    @property
+    def last(self) -> float:
+        """When the last spring was left; inf while one touches, and before."""
+        latest = float(self.left_at.max())
+        return math.inf if self.touching.any() or latest < self.first else latest
 
     def move(self, start: float, stop: float, duration: float) -> None:
         """Move the body from one displacement to another at a constant rate."""
@@ -154,10 +161,10 @@ class Springs:
         if not some.size:
             return
         if touching:
-            self.first, self.last = min(self.first, float(times.min())), math.inf
+            self.first = min(self.first, float(times.min()))
             self.touches += bool(some[0] == 0)
-        elif not self.touching.any():
-            self.last = float(times.max())
+        else:
+            self.left_at[some] = times
 
     def _off(self, some: NDArray[np.intp], held: bool, d: Floats, rate: float, t: Floats) -> Floats:
         """What has an event where it becomes negative: q in contact, the gap without."""
