@@ -194,7 +194,7 @@ def _entry(form: ClosedForm, case: Case, scales: Scales) -> dict[str, Any]:
             continue
         ours = case.quantities[name]
         values[name] = {"value": value, "unit": ours.unit}
-        if scales.known:
+        if scales.know(ours.unit):
             si = scales.in_si(value, 0.0, ours.unit)
             values[name]["si"] = {"value": si["value"], "unit": si["unit"]}
         values[name]["deviation"] = ours.value / value - 1.0 if value else None

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.polynomial import through
+from contact1d.workflow.continuation.budget import MARGIN
 from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.outcome import Outcome, Reading
 from contact1d.workflow.continuation.stepped import followed
@@ -71,7 +72,7 @@ class HistoryExperiment(Scripted[History]):
             if force[0] == 0.0:
                 whole = None if scene.viscoelasticity or scene.adhesion else _work(d, force)  # springs lose nothing
                 found["dissipated_energy"] = Reading(float(np.trapezoid(force, d)), ENERGY, scale=whole)
-            found["contact_time"] = Reading(lost(trace) - _touched(trace, by_force), TIME)
+            found["contact_time"] = lost(trace, _touched(trace, by_force))
         return found | _slopes(trace)
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
@@ -186,16 +187,21 @@ def _touched(trace: Trace, by_force: bool) -> float:
     return float(np.interp(0.0, trace.displacement[near], trace.time[near]))
 
 
-def lost(trace: Trace) -> float:
-    """When they part for good [TU]: at a displacement that is known, or as the largest pressure falls to 0."""
+def lost(trace: Trace, touched: float = 0.0) -> Reading:
+    """How long after a moment they part for good [TU]: at a displacement that is known, or as the pressure falls to 0.
+
+    A tension ends somewhere in its load step.
+    """
     last = max(1, int(np.flatnonzero(touches(trace))[-1]))
     start, time, end = trace.time[last - 1 : last + 2].tolist()
+    part, doubt = 0.0, 0.0
     if (place := trace.model.parted) is not None:
         d = trace.displacement[last : last + 2]
-        share = float((d[0] - place) / (d[0] - d[1])) if d[0] > d[1] else 0.0
-        return float(time + min(max(share, 0.0), 1.0) * (end - time))
-    if trace.phase[last + 1] != trace.phase[last]:  # at a corner, where dashpots push no more
-        return float(time)
-    before, here = (float(np.abs(trace.profile(i).pressure).max()) for i in (last - 1, last))
-    part = here / (before - here) if before > here else 1.0
-    return float(min(end, time + part * (time - start)))
+        part = float((d[0] - place) / (d[0] - d[1])) if d[0] > d[1] else 0.0
+    elif trace.force[last] < 0.0:
+        part = doubt = 0.5
+    elif trace.phase[last + 1] == trace.phase[last]:  # else at a corner, where dashpots push no more
+        before, here = (float(np.abs(trace.profile(i).pressure).max()) for i in (last - 1, last))
+        part = here / (before - here) * (time - start) / (end - time) if before > here else 1.0
+    found = time + min(max(part, 0.0), 1.0) * (end - time)
+    return Reading(found - touched, TIME, {"sampling": MARGIN * doubt * (end - time)})

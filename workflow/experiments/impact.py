@@ -18,7 +18,7 @@ from contact1d.workflow.experiments.history import lost
 from contact1d.workflow.model.reduced import FLIGHT, impact, reduced, stretch
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Impact, Plate, Scene
-from contact1d.workflow.units import ENERGY, FORCE, LENGTH, NUMBER, TIME
+from contact1d.workflow.units import ENERGY, FORCE, LENGTH, NUMBER
 
 Array = NDArray[np.float64]
 NEAR = 2
@@ -59,7 +59,7 @@ class ImpactExperiment(Scripted[Impact]):
             "peak_displacement": Reading(deepest, LENGTH),
             "peak_contact_radius": Reading(widest, LENGTH),
         }
-        return found | ({"contact_time": Reading(lost(trace), TIME)} if parted else {})
+        return found | ({"contact_time": lost(trace)} if parted else {})
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
         """The time of each state."""

@@ -71,8 +71,8 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
     for name, one in outcome.results.items():
         if one.given and name in quantities:
             quantities[name]["errors"] = {"input": one.given}
-    if scales.known:
-        for entry in quantities.values():
+    for entry in quantities.values():
+        if scales.know(entry["unit"]):  # of a time without a mass nothing is
             entry["si"] = scales.in_si(entry["value"], entry["uncertainty"], entry["unit"])
     for name in quantities.keys() - found.keys():
         for part in (quantities[name], quantities[name].get("si", {})):
