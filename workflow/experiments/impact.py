@@ -55,7 +55,7 @@ class ImpactExperiment(Scripted[Impact]):
         found = {
             "restitution": Reading(back, NUMBER, scale=None if back else 1.0),
             "dissipated_energy": Reading(energy * (1.0 - back**2), ENERGY, scale=energy if lossless else None),
-            "peak_force": Reading(_top(time, trace.force), FORCE),
+            "peak_force": Reading(_top(time, _forces(trace, scene, settings)), FORCE),
             "peak_displacement": Reading(deepest, LENGTH),
             "peak_contact_radius": Reading(widest, LENGTH),
         }
@@ -79,6 +79,23 @@ class ImpactExperiment(Scripted[Impact]):
     def advice(self, scene: Scene) -> str:
         """What is left is the lattice's."""
         return f"Use {FINER_SPACING}"
+
+
+def _forces(trace: Trace, scene: Scene, settings: Settings) -> Array:
+    """F [FU] of each state, of dashpots on the way in with as many particles as fit into the contact.
+
+    They push at the edge, too, so that a whole number of particles shows.
+    """
+    if not (scene.viscoelasticity and scene.viscoelasticity.retardation_time):
+        return trace.force
+    found, deepest = trace.force.copy(), int(trace.displacement.argmax())
+    wide = settings.estimate.half_widths(trace.displacement, settings.estimate.rest)
+    for i in range(deepest):
+        pressure = trace.profile(i).pressure
+        if (touching := np.flatnonzero(pressure)).size:
+            missing = 2.0 * float(wide[i]) - trace.model.estimate.spacing * touching.size
+            found[i] += missing * float(pressure[touching[[0, -1]]].mean())
+    return found
 
 
 def _top(time: Array, column: Array) -> float:
