@@ -69,7 +69,7 @@ class HistoryExperiment(Scripted[History]):
             first = next((i for i in range(last, -1, -1) if not trace.phase[i].startswith("holding")), 0)
             found["relaxation"] = Reading(float(abs(free[last] - free[first])), unit, scale=float(np.abs(free).max()))
         if parted and force.any():
-            if force[0] == 0.0:
+            if not touches(trace)[0]:
                 whole = None if scene.viscoelasticity or scene.adhesion else _work(d, force)  # springs lose nothing
                 found["dissipated_energy"] = Reading(float(np.trapezoid(force, d)), ENERGY, scale=whole)
             found["contact_time"] = lost(trace, _touched(trace, by_force))
@@ -192,12 +192,13 @@ def lost(trace: Trace, touched: float = 0.0) -> Reading:
 
     A tension ends somewhere in its load step.
     """
-    last = max(1, int(np.flatnonzero(touches(trace))[-1]))
+    last, place, d = max(1, int(np.flatnonzero(touches(trace))[-1])), trace.model.parted, trace.displacement
+    if place is not None:  # the particles next to the axis may be lost before
+        last += int(np.argmax(d[last + 1 :] <= place))
     start, time, end = trace.time[last - 1 : last + 2].tolist()
     part, doubt = 0.0, 0.0
-    if (place := trace.model.parted) is not None:
-        d = trace.displacement[last : last + 2]
-        part = float((d[0] - place) / (d[0] - d[1])) if d[0] > d[1] else 0.0
+    if place is not None:
+        part = float((d[last] - place) / (d[last] - d[last + 1])) if d[last] > d[last + 1] else 0.0
     elif trace.force[last] < 0.0:
         part = doubt = 0.5
     elif trace.phase[last + 1] == trace.phase[last]:  # else at a corner, where dashpots push no more

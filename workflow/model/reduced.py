@@ -656,10 +656,10 @@ def stretch(settings: Settings, velocity: float) -> int:
     return max(1, round(settings.largest_displacement / velocity / STRETCHES / settings.motion.time_step))
 
 
-def is_over(displacement: Sequence[float], force: Sequence[float]) -> bool:
-    """Whether a body that has hit flies off, or comes down again without having parted: it sticks."""
+def is_over(displacement: Sequence[float], force: Sequence[float], flight: int = FLIGHT) -> bool:
+    """Whether a body that has hit flies off, so many states long, or comes down again without having parted."""
     ways = np.sign(np.diff(displacement))
-    parted = not any(force[-FLIGHT:]) and ways[-1] < 0.0
+    parted = not any(force[-flight:]) and ways[-1] < 0.0
     return bool(parted or np.count_nonzero(np.diff(ways[ways != 0.0])) > 1)
 
 
@@ -673,7 +673,7 @@ def impact(scene: Scene, settings: Settings, model: Reduced, velocity: float, de
     each, time = max(1, COARSER // dense), stretch(settings, velocity) * settings.motion.time_step / dense
     step, feel, place, force, mass = time / each, model.feeling(), 0.0, 0.0, scene.plate.mass
     places, forces = [0.0], [0.0]
-    while len(places) < FLIGHT or not is_over(places, forces):
+    while len(places) < FLIGHT * dense or not is_over(places, forces, FLIGHT * dense):
         for _ in range(each):
             velocity -= 0.5 * step * force / mass
             place += step * velocity
