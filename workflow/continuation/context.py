@@ -210,7 +210,7 @@ class ContactBranch:
             self.begin(name)
             self._enter()
             self._keep(self.contact.rows([row], moving=True))
-        while not is_over(*zip(*((state.displacement, state.force) for state in self.states), strict=True)):
+        while not is_over([one.displacement for one in self.states], [one.force for one in self.states]):
             if len(self.states) > MOST_STRETCHES * STRETCHES:
                 raise UntrustedError("the body has not come to an end of its impact: use a shorter retardation_time")
             self._keep(self.contact.rows([Fly(steps)] * FLIGHT, moving=True))
