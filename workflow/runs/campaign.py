@@ -36,6 +36,8 @@ from contact1d.workflow.scene import AnyScene, Scene, read_scene, scene_to_toml
 from contact1d.workflow.units import Scales
 
 LOCK = ".running"
+ENDING = 1.0
+"""How long a run that was killed may need to end its children [s]."""
 TIME_LIMIT = 3600.0
 """Wall time after which LAMMPS is stopped, for each pass of a search [s]."""
 
@@ -214,12 +216,17 @@ def prepare(folder: Path) -> Path:
 
 @contextmanager
 def alone(folder: Path, busy: str = "another run is active in") -> Iterator[None]:
-    """Lock the folder; the system releases it whatever happens to this process."""
+    """Lock the folder; the system releases it whatever happens to this process, when its children have ended, too."""
+    until = time.monotonic() + ENDING
     with (folder / LOCK).open("w") as lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            raise FolderError(f"{busy} {folder}; choose another folder") from None
+        while True:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                break
+            except OSError:
+                if time.monotonic() > until:
+                    raise FolderError(f"{busy} {folder}; choose another folder") from None
+                time.sleep(0.05)
         try:
             yield
         finally:
