@@ -59,7 +59,7 @@ LOOKS: dict[str, tuple[int, tuple[str, ...]]] = {
     "Series": (3, ("width", "opacity")), "Panel": (5, ("height",)), "apart": (2, ()), "digits_apart": (2, ()),
     "dumps": (1, ("indent",)),
 }  # fmt: skip
-"""What is called for a drawing or a message: from which argument on, and by which names, it is told how to look."""
+"""What is called for a drawing or a message: from which argument on, and by which names, its look is given."""
 SIZES = ("[inch]", "[1/inch]", "[pt]")
 """Units of a constant of drawings."""
 SKIPPED = (ast.Assert, ast.Raise, ast.JoinedStr, ast.Import, ast.ImportFrom)

@@ -91,7 +91,7 @@ class HistoryExperiment(Scripted[History]):
         return followed(reduced(scene, settings), _moments(scene))
 
     def advice(self, scene: Scene) -> str:
-        """What is left is the lattice's, and that of the load steps."""
+        """Lattice and load steps limit it."""
         return f"Use more experiment.steps, or {FINER_SPACING}"
 
 

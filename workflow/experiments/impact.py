@@ -77,12 +77,12 @@ class ImpactExperiment(Scripted[Impact]):
         return first, Phase("impact", (Fly(steps),) * (count - 2), state=True)
 
     def advice(self, scene: Scene) -> str:
-        """What is left is the lattice's."""
+        """The lattice limits it."""
         return f"Use {FINER_SPACING}"
 
 
 def _forces(trace: Trace, scene: Scene, settings: Settings) -> Array:
-    """F [FU] of each state, of dashpots on the way in with as many particles as fit into the contact.
+    """F [FU] of each state, while dashpots are loaded with as many particles as fit into the contact.
 
     They push at the edge, too, so that a whole number of particles shows.
     """

@@ -492,7 +492,7 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
 
 
 CREEPING = 4
-"""Looks for how deep a body goes that relaxes on the way, each with the time of the one before."""
+"""Looks for how deep a body goes that relaxes meanwhile, each with the time of the one before."""
 INERTIA, LONGER = 4.0, 2.0
 """Masses that the program chose, in a slower motion over the usual one; its drags, which go with the root, and the
 timesteps of a coarser one. What is of first order in these changes by its own amount at least."""
@@ -525,7 +525,7 @@ def slower(scene: Scene, settings: Settings) -> list[tuple[Scene, Settings]]:
 
 
 def _stopped(scene: Scene, estimate: ContactEstimate) -> float:
-    """Displacement [LU] at which a body that hits the plane is at rest, one that relaxes on the way deeper."""
+    """Displacement [LU] at which a body that hits the plane is at rest, one that relaxes meanwhile deeper."""
     found = stopped_at(scene, estimate)
     for _ in range(CREEPING if scene.viscoelasticity and isinstance(scene.experiment, Impact) else 0):
         assert isinstance(scene.experiment, Impact)
