@@ -197,6 +197,8 @@ def _values(table: Table, scales: Scales, within: str = "") -> Iterator[tuple[st
 
 
 def _shown(value: Any, unit: str, scales: Scales) -> str:
+    if isinstance(value, Table):
+        return f"({', '.join(text for _, text in _values(value, scales))})"
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):
