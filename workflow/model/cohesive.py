@@ -36,9 +36,9 @@ APART = -1.0
 """Place on the curve of bodies that do not feel each other."""
 ENERGY_PLACES = 4000
 """Positions of the two integrals of an energy."""
-LOST, EXACT, FOLLOWED = 1e-3, 1e-11, 4000
-"""Edge over that under fixed grips at which a receding one is lost; error of its motion, and times at which a pull
-looks for equal ways."""
+LOST, SLOWING, EXACT, FOLLOWED = 1e-3, 12, 1e-11, 4000
+"""Edge over that under fixed grips at which a receding one is lost, and the power with which it slows down beyond; the
+error of its motion, and times at which a pull looks for equal ways."""
 SAME = 1e-9
 """Fall of d over its range that is one: others are round-off."""
 
@@ -327,18 +327,13 @@ class RatedEstimate(ZonedEstimate):
 
         least = LOST * self.fixed_grips[0]
 
-        def gone(_: float, log: Array) -> float:
-            return float(log[0]) - math.log(least)
-
-        gone.terminal = True  # type: ignore[attr-defined]
-
         def change(time: float, log: Array) -> list[float]:
-            radius = math.exp(float(log[0]))
-            return [self._recedes(radius, place(time)) / radius]
+            radius = math.exp(float(log[0]))  # a lost edge slows down: an end of the motion would not be found surely
+            return [self._recedes(radius, place(time)) / radius / (1.0 + (0.5 * least / radius) ** SLOWING)]
 
         ends, start = (float(times[0]), float(times[-1])), [math.log(edge)]
-        found = solve_ivp(change, ends, start, "LSODA", times, events=gone, rtol=EXACT, atol=EXACT)
-        return np.append(np.exp(found.y[0]), np.zeros(times.size - found.t.size))
+        found = np.exp(solve_ivp(change, ends, start, "LSODA", times, rtol=EXACT, atol=EXACT).y[0])
+        return np.where(np.maximum.accumulate(found <= least), 0.0, found)
 
     def edges(self, times: Array, displacements: Array) -> Array:
         """a [LU] at times (m,) [TU] along displacements (m,) [LU], straight between them, from apart on."""
