@@ -25,7 +25,7 @@ from validation.references.relaxing import Legs, Material
 Floats = NDArray[np.float64]
 BISECTIONS = 60
 LOOKS = np.unique(np.concatenate([np.linspace(0.0, 1.0, 25)[1:], np.geomspace(1e-6, 0.03, 10)]))
-"""Shares of what is left of a leg, at which an event is looked for."""
+"""Fractions of the time that remains of a leg, at which an event is looked for."""
 NEGATIVE = 1e-13
 """Of the largest q: a pressure below - this leaves at once, where the rate has jumped."""
 

@@ -212,7 +212,7 @@ class ContactBranch:
             self._keep(self.contact.rows([row], moving=True))
         while not is_over([one.displacement for one in self.states], [one.force for one in self.states]):
             if len(self.states) > MOST_STRETCHES * STRETCHES:
-                raise UntrustedError("the body has not come to an end of its impact: use a shorter retardation_time")
+                raise UntrustedError("the body does not end its impact: use shorter times of [viscoelasticity]")
             self._keep(self.contact.rows([Fly(steps)] * FLIGHT, moving=True))
 
     def mark(self, name: str) -> None:
