@@ -145,8 +145,8 @@ def phases_of(kind: str, method: str, relaxes: bool) -> tuple[Phase, ...]:
         return Phase("touching", (Launch(0.1, STEPS),)), Phase("impact", (Fly(STEPS),) * 3, state=True)
     if relaxes:
         return (
-            Phase("loading", (Spend(0.0, 0.1), Spend(0.02, 0.5), Spend(0.05, 2.0)), state=True),
-            Phase("unloading", (Spend(0.01, 1.0), Spend(-0.02, 0.3)), state=True),
+            Phase("loading", (Spend(0.0, 0.1, 0.0), Spend(0.02, 0.5, 0.04), Spend(0.05, 2.0, 0.015)), state=True),
+            Phase("unloading", (Spend(0.01, 1.0, -0.04), Spend(-0.02, 0.3, -0.1)), state=True),
         )
     if method == "quasistatic":
         return (

@@ -42,8 +42,7 @@ PHASES = (0.25, 0.0)
 UNEVEN = (0.93, 0.86)
 """Spacings over the own one that put a kink of the profile elsewhere between particles, on both sides alike."""
 MORE_PHASES = (0.375, 0.25, 0.125, 0.0)
-"""Such positions where friction makes several edges, the errors of which may cancel at two positions, or where dashpots
-give forces to the particles at an edge."""
+"""Such positions where friction makes several edges, the errors of which may cancel at two positions."""
 SHIFTS = (0.0, 0.25, 0.5, 0.75)
 """Shifts of a path's steps over their width, of which the worst counts where the model is no copy of the deck."""
 FEWEST = 200
@@ -97,7 +96,7 @@ class Reduction:
 
         Whole particles touch or don't, and what they miss goes up and down with the spacing.
         """
-        return bool(self.scene.adhesion) and self.settings.estimate.attracts
+        return self.model.shares_edges
 
     @cached_property
     def model(self) -> Reduced:
@@ -123,8 +122,7 @@ class Reduction:
         kinks = self.scene.bodies.profile.kinks
         beside = [model.resized(factor) for factor in UNEVEN if kinks]
         if not self.converges or kinks:
-            retarded = self.scene.viscoelasticity and self.scene.viscoelasticity.retardation_time
-            phases = MORE_PHASES if self.scene.friction or retarded or kinks else PHASES
+            phases = MORE_PHASES if self.scene.friction or kinks else PHASES
             beside += [model.shifted(phase) for phase in phases]
         found = self._apart(beside)
         if self.converges:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
@@ -32,13 +33,14 @@ UNSEEN = ""
 
 
 class Row(NamedTuple):
-    """A position of the plate: its phase and leg, displacement and position along x [LU], time [TU]."""
+    """A position of the plate: its phase and leg, displacement and position along x [LU], time [TU], velocity [LU/TU]."""
 
     phase: str
     leg: int
     displacement: float
     along: float
     time: float
+    velocity: float
 
 
 class ModelBranch:
@@ -121,16 +123,14 @@ class ModelBranch:
     def follow(self, history: History) -> None:
         """Displacements or forces over time, and others between them."""
         history = history.denser(self.dense)
-        path = history.path(self.model)
         self._leg += 1
-        rows = zip(history.phases, path.displacement.tolist(), path.time.tolist(), strict=True)
-        self._rows += [Row(name, self._leg, displacement, 0.0, time) for name, displacement, time in rows]
+        self._add_path(history.phases, history.path(self.model))
 
     def fly(self, velocity: float) -> None:
         """See `reduced.impact`."""
-        self._phase, path = "impact", impact(self.scene, self.settings, self.model, velocity, self.dense)
+        path = impact(self.scene, self.settings, self.model, velocity, self.dense)
         self._leg += 1
-        self._add(path.displacement, time=path.time.tolist())
+        self._add_path(["impact"] * path.time.size, path)
 
     def maximum(self) -> None:
         """Pass the force maximum, densely about it."""
@@ -157,7 +157,8 @@ class ModelBranch:
     def trace(self) -> Trace:
         """What a reader sees."""
         phases, legs, *columns = zip(*self._rows, strict=True)
-        path = Path(*(np.asarray(column, dtype=np.float64) for column in columns))
+        *path, velocity = (np.asarray(column, dtype=np.float64) for column in columns)
+        path = Path(*path, None if np.isnan(velocity).any() else velocity)
         rule = radius_rule(self.scene, self.settings.tolerance)
         whole = of_model(phases, legs, path, self.model.follow(path), rule, self.model)
         return whole.chosen([i for i, name in enumerate(phases) if name != UNSEEN])
@@ -172,4 +173,11 @@ class ModelBranch:
     ) -> None:
         none = np.zeros(len(positions))
         columns = (positions, none if along is None else along, none if time is None else time)
-        self._rows += [Row(self._phase, self._leg, *map(float, row)) for row in zip(*columns, strict=True)]
+        self._rows += [Row(self._phase, self._leg, *map(float, row), math.nan) for row in zip(*columns, strict=True)]
+
+    def _add_path(self, phases: Sequence[str], path: Path) -> None:
+        """States in time."""
+        unknown = np.full(path.time.size, math.nan)
+        columns = path.displacement, path.along, path.time, unknown if path.velocity is None else path.velocity
+        rows = zip(*(column.tolist() for column in columns), strict=True)
+        self._rows += [Row(phase, self._leg, *row) for phase, row in zip(phases, rows, strict=True)]

@@ -121,8 +121,8 @@ def _timed(model: Reduced, path: Path) -> list[Displace]:
         return [Cohere(*numbers) for numbers in zip(*columns, strict=True)]
     if not isinstance(model, RelaxingSprings):
         return [Displace(place) for place in path.displacement.tolist()]
-    spent = model.spent(path.time).tolist()
-    return [Spend(place, time) for place, time in zip(path.displacement.tolist(), spent, strict=True)]
+    columns = (path.displacement, model.spent(path.time), model.velocities(path))
+    return [Spend(*numbers) for numbers in zip(*(one.tolist() for one in columns), strict=True)]
 
 
 def curve_steps(settings: Settings) -> int:

@@ -35,7 +35,8 @@ def standing(scene: Scene, settings: Settings) -> list[Contribution]:
     if not scene.is_stepped:
         clock = Contribution("dynamic", Stage.MOTION, ("clock",), {"time_step": number(settings.motion.time_step)})
         body = Contribution("bodies", Stage.BODIES, ("standing_plate",))
-        return [body, _plane("rigid_plane", scene, settings), clock]
+        measured = Contribution("contact", Stage.MEASURED, ("contact_force",))
+        return [body, _plane("rigid_plane", scene, settings), measured, clock]
     steps = ("sweep", "along") if scene.experiment.goes_along else ("sweep",)
     motion = Contribution("quasistatic", Stage.MOTION, steps)
     return [Contribution("bodies", Stage.BODIES, ("standing",)), _plane("standing_plane", scene, settings), motion]

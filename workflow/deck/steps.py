@@ -71,10 +71,11 @@ class Cohere(Displace):
 
 @dataclass(frozen=True)
 class Spend(Displace):
-    """The same, reached evenly over a duration [TU]."""
+    """The same, reached after a duration [TU] with a velocity [LU/TU]."""
 
     step: ClassVar[str] = "sweep_timed"
     duration: float
+    velocity: float
 
 
 @dataclass(frozen=True)

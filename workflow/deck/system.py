@@ -9,7 +9,7 @@ and other writers round positions: hence this small one.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TextIO
@@ -26,8 +26,10 @@ from contact1d.workflow.deck.parts import margins
 from contact1d.workflow.model.adhesion import cells_of
 from contact1d.workflow.model.cohesive import ZonedEstimate
 from contact1d.workflow.model.motion import inertia
+from contact1d.workflow.model.relaxing import edges_of
 
-CELLS = "adhesion.cells"
+CELLS, EDGES = "adhesion.cells", "retardation.cells"
+"""What each particle has of an adhesive contact, and of one with dashpots."""
 Integers = NDArray[np.int64]
 CHUNK = 100_000
 FAR_MASS = 1e-12
@@ -175,23 +177,29 @@ def write_system(deck: Deck, folder: Path) -> None:
     write_data(replace(system, radius=sphere_radius(scene, settings)), scene.title, folder / "system.data")
     if settings.forces.table:
         write_table(settings.forces.table, settings.forces.table_from, folder / "interaction.table")
+    x, unit = bodies(deck.scene, deck.settings)[0].particles[:, 0], deck.units.to_deck(1.0, "LU")
     if scene.adhesion:
-        _write_cells(deck, folder / CELLS)
+        _write_columns(_adhesive_cells(deck, x, unit), folder / CELLS)
+    if scene.viscoelasticity and scene.viscoelasticity.retardation_time:
+        edges = edges_of(deck.settings.estimate.profile, x, deck.settings.estimate.spacing)
+        _write_columns({"width": unit * edges.widths, "rise": unit * edges.rises}, folder / EDGES)
 
 
-def _write_cells(deck: Deck, path: Path) -> None:
-    """The columns of `Cells` of `model.adhesion` or `model.cohesive` below each other, for `variable atomfile`."""
-    x, estimate = bodies(deck.scene, deck.settings)[0].particles[:, 0], deck.settings.estimate
-    unit = deck.units.to_deck(1.0, "LU")
+def _adhesive_cells(deck: Deck, x: NDArray[np.float64], unit: float) -> dict[str, NDArray[np.float64]]:
+    """The columns of `Cells` of `model.adhesion` or `model.cohesive`; `unit` in place of 1 LU."""
+    estimate = deck.settings.estimate
     if isinstance(estimate, ZonedEstimate):
         zones = estimate.zones(x)
         powers = {"inner": 1, "outer": 1, "below": 2, "above": 2, "sides": 0}
-        columns = {name: unit**power * getattr(zones, name) for name, power in powers.items()}
-    else:
-        cells = cells_of(deck.scene, estimate, x)
-        columns = {name: unit * getattr(cells, name) for name in ("hold", "width", "fall")} | {"bend": cells.bend}
+        return {name: unit**power * getattr(zones, name) for name, power in powers.items()}
+    cells = cells_of(deck.scene, estimate, x)
+    return {name: unit * getattr(cells, name) for name in ("hold", "width", "fall")} | {"bend": cells.bend}
+
+
+def _write_columns(columns: Mapping[str, NDArray[np.float64]], path: Path) -> None:
+    """Numbers of each particle, the columns below each other, for `variable atomfile`."""
     blocks = []
     for name, column in columns.items():
         rows = "".join(f"{i} {number(value)}\n" for i, value in enumerate(column, 1))
-        blocks.append(f"# {name}\n{len(x)}\n{rows}")
+        blocks.append(f"# {name}\n{len(column)}\n{rows}")
     write_whole(path, "\n".join(blocks))

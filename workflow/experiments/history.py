@@ -73,7 +73,12 @@ class HistoryExperiment(Scripted[History]):
                 whole = None if scene.viscoelasticity or scene.adhesion else _work(d, force)  # springs lose nothing
                 found["dissipated_energy"] = Reading(float(np.trapezoid(force, d)), ENERGY, scale=whole)
             found["contact_time"] = lost(trace, _touched(trace, by_force))
-        return found | _slopes(trace)
+        return found if self._is_stiff(scene) else found | _slopes(trace)
+
+    @staticmethod
+    def _is_stiff(scene: Scene) -> bool:
+        """Whether a change of the velocity needs a jump of the force."""
+        return scene.viscoelasticity is not None and scene.viscoelasticity.resists_jumps
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
         """The time of each state, and why a number is missing."""
@@ -82,8 +87,13 @@ class HistoryExperiment(Scripted[History]):
             words = "the bodies touch at the end, or never, so there is neither a contact_time nor a dissipated_energy"
         elif found:
             words = "the history begins in contact, and what that took is not known, so there is no dissipated_energy"
-        if words:
-            outcome = replace(outcome, warnings={**outcome.warnings, "no_energy": words})
+        missing = {"no_energy": words} if words else {}
+        if self._is_stiff(scene) and any(name.startswith("unloading") for name in _moments(scene).phases):
+            missing["no_slope"] = (
+                "the force of a dashpot jumps where the unloading begins, so there is neither an unloading_stiffness "
+                "nor a creep_corrected_stiffness"
+            )
+        outcome = replace(outcome, warnings={**outcome.warnings, **missing})
         return replace(outcome, columns={"time": tuple(one.time for one in outcome.states)})
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:

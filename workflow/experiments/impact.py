@@ -47,15 +47,15 @@ class ImpactExperiment(Scripted[Impact]):
         d, time = trace.displacement, trace.time
         energy, parted = 0.5 * mass * velocity**2, not trace.force[-FLIGHT:].any()
         back = float((d[-2] - d[-1]) / (time[-1] - time[-2])) / velocity if parted else 0.0
-        deepest = _top(time, d)
+        deepest = _top(trace, d)
         # The surface has not been touched before, so that a body that relaxes has the contact of its displacement.
         own = settings.estimate.half_width(deepest, settings.estimate.rest) if scene.viscoelasticity else 0.0
-        widest = own or _top(time, np.asarray([trace.radius(i) or 0.0 for i in range(len(trace))]))
+        widest = own or _top(trace, np.asarray([trace.radius(i) or 0.0 for i in range(len(trace))]))
         lossless = not (scene.viscoelasticity or scene.adhesion)
         found = {
             "restitution": Reading(back, NUMBER, scale=None if back else 1.0),
             "dissipated_energy": Reading(energy * (1.0 - back**2), ENERGY, scale=energy if lossless else None),
-            "peak_force": Reading(_top(time, _forces(trace, scene, settings)), FORCE),
+            "peak_force": Reading(_top(trace, trace.force), FORCE),
             "peak_displacement": Reading(deepest, LENGTH),
             "peak_contact_radius": Reading(widest, LENGTH),
         }
@@ -81,28 +81,14 @@ class ImpactExperiment(Scripted[Impact]):
         return f"Use {FINER_SPACING}"
 
 
-def _forces(trace: Trace, scene: Scene, settings: Settings) -> Array:
-    """F [FU] of each state, while dashpots are loaded with as many particles as fit into the contact.
-
-    They push at the edge, too, so that a whole number of particles shows.
-    """
-    if not (scene.viscoelasticity and scene.viscoelasticity.retardation_time):
-        return trace.force
-    found, deepest = trace.force.copy(), int(trace.displacement.argmax())
-    wide = settings.estimate.half_widths(trace.displacement, settings.estimate.rest)
-    for i in range(deepest):
-        pressure = trace.profile(i).pressure
-        if (touching := np.flatnonzero(pressure)).size:
-            missing = 2.0 * float(wide[i]) - trace.model.estimate.spacing * touching.size
-            found[i] += missing * float(pressure[touching[[0, -1]]].mean())
-    return found
-
-
-def _top(time: Array, column: Array) -> float:
-    """The largest value of a column over time, by a polynomial through the states about it."""
+def _top(trace: Trace, column: Array) -> float:
+    """The largest value of a column, by a polynomial through the states about it: it may lie where the bodies touch."""
+    first = int(np.flatnonzero(trace.force)[0])
+    time, column = trace.time[first:], column[first:]
     at = min(max(int(column.argmax()), NEAR), column.size - 1 - NEAR)
     near = slice(at - NEAR, at + NEAR + 1)
     width = float(time[at + NEAR] - time[at])
     loss = through((time[near] - time[at]) / width, -column[near])
     top, _ = lowest_minimum(loss, -1.0, 1.0)
-    return float(column.max() if np.isnan(top) else -value(loss, top))
+    ends = [value(loss, -float(time[at]) / width)] if at == NEAR else []
+    return float(max(column.max(), *(-one for one in ends), 0.0 if np.isnan(top) else -value(loss, top)))

@@ -30,7 +30,7 @@ from contact1d.workflow.model.dugdale import Zone
 from contact1d.workflow.model.friction import Sliders, sliders_of
 from contact1d.workflow.model.motion import inertia
 from contact1d.workflow.model.pairs import ContactEstimate, places_within
-from contact1d.workflow.model.relaxing import SUDDEN, Memory
+from contact1d.workflow.model.relaxing import SUDDEN, Edges, Memory, edges_of
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene, Viscoelasticity
 
@@ -59,11 +59,13 @@ class Path:
     Attributes:
         displacement, along: [LU].
         time: [TU]; 0 where the states are equilibria.
+        velocity: at the end of each load step [LU/TU]; None: displacements are straight between the states.
     """
 
     displacement: Array
     along: Array
     time: Array
+    velocity: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -92,8 +94,8 @@ class History:
 
     def path(self, model: Reduced) -> Path:
         """The displacements of the body [LU]."""
-        found = model.carrying(self.time, self.values) if self.by_force else self.values
-        return Path(found, np.zeros_like(found), self.time)
+        found, velocity = model.carrying(self.time, self.values) if self.by_force else (self.values, None)
+        return Path(found, np.zeros_like(found), self.time, velocity)
 
 
 def path_of(displacement: Array) -> Path:
@@ -138,6 +140,11 @@ class Reduced(ABC):
     dense: ClassVar[int] = 16
     """Positions in one step of a path that show what its steps miss."""
 
+    @property
+    def shares_edges(self) -> bool:
+        """Whether the cells at an edge of the contact have the part of its load that is inside of it."""
+        return False
+
     @abstractmethod
     def follow(self, path: Path) -> Followed:
         """Forces along a path that begins apart."""
@@ -151,16 +158,18 @@ class Reduced(ABC):
     def apart(self) -> float:
         """Displacement [LU] below which nothing is felt."""
 
-    def carrying(self, times: Array, forces: Array) -> Array:
-        """Displacements [LU] of load steps at times (m,) [TU] that carry forces (m,) [FU] ≥ 0."""
+    def carrying(self, times: Array, forces: Array) -> tuple[Array, Array | None]:
+        """Displacements [LU] of load steps at times (m,) [TU] that carry forces (m,) [FU] ≥ 0; velocities, see `Path`."""
         found = {force: self.displacement_at(force) if force > 0.0 else 0.0 for force in np.unique(forces).tolist()}
-        return np.asarray([found[force] for force in forces.tolist()])
+        return np.asarray([found[force] for force in forces.tolist()]), None
 
-    def feeling(self) -> Callable[[float, float], float]:
-        """F [FU] of a body that has just touched, by its next displacement [LU] and the time until then [TU]."""
+    def feeling(self) -> Callable[[float, float, float], float]:
+        """F [FU] of a body that has just touched, by its next displacement [LU], the time until then [TU] and its
+        velocity there [LU/TU].
+        """
         is_lost = False
 
-        def force(place: float, time: float) -> float:
+        def force(place: float, time: float, velocity: float) -> float:
             nonlocal is_lost
             is_lost = place < self.apart or (is_lost and place < 0.0)
             return 0.0 if is_lost else float(self.held(np.asarray([place]))[0])
@@ -310,6 +319,11 @@ class AdheringCells(Reduced):
 
     estimate: AdhesiveEstimate
 
+    @property
+    def shares_edges(self) -> bool:
+        """Always."""
+        return True
+
     @cached_property
     def _cells(self) -> Cells:
         return self.estimate.cells(self.x, self.estimate.profile)
@@ -361,6 +375,11 @@ class CohesiveCells(Reduced):
     """The cells of a chain on a rigid plane that attracts over a range."""
 
     estimate: CohesiveEstimate
+
+    @property
+    def shares_edges(self) -> bool:
+        """Always."""
+        return True
 
     @property
     def apart(self) -> float:
@@ -425,6 +444,11 @@ class RatedCells(Reduced):
     estimate: RatedEstimate
 
     dense: ClassVar[int] = 4
+
+    @property
+    def shares_edges(self) -> bool:
+        """Always."""
+        return True
 
     @property
     def apart(self) -> float:
@@ -492,11 +516,17 @@ class RelaxingSprings(Reduced):
 
     dense: ClassVar[int] = 4
 
+    @property
+    def shares_edges(self) -> bool:
+        """With dashpots; the line load of others falls to 0 at an edge."""
+        return bool(self.law.retardation_time)
+
     @cached_property
-    def _heights(self) -> tuple[Array, NDArray[np.intp], Array]:
-        """Undeformed heights [LU], each once, which is whose, and how many there are of each."""
-        found, own = np.unique(self.estimate.profile.height(np.abs(self.x)), return_inverse=True)
-        return np.asarray(found, dtype=np.float64), own, np.bincount(own).astype(np.float64)
+    def _cells(self) -> tuple[Edges, NDArray[np.intp], Array]:
+        """Cells that come to touch alike, each once, by rising height, which is whose, and how many there are of each."""
+        every = vars(edges_of(self.estimate.profile, self.x, self.estimate.spacing))
+        found, own = np.unique(np.stack([*every.values()]), axis=1, return_inverse=True)
+        return Edges(*found), own, np.bincount(own).astype(np.float64)
 
     @property
     def apart(self) -> float:
@@ -510,42 +540,52 @@ class RelaxingSprings(Reduced):
 
     def held(self, displacements: Array) -> Array:
         """F [FU] of a body that has had no time."""
-        heights, _, counts = self._heights
-        return np.asarray(self.estimate.stiffness * (np.maximum(displacements[:, None] - heights, 0.0) @ counts))
+        cells, _, counts = self._cells
+        return np.asarray(self.estimate.stiffness * (np.maximum(displacements[:, None] - cells.heights, 0.0) @ counts))
 
     def spent(self, times: Array) -> Array:
         """Durations (m,) [TU] of load steps that end at times (m,) [TU]; the first happens at once."""
         return np.diff(times, prepend=times[0] - SUDDEN * self.law.shortest_time)
 
-    def carrying(self, times: Array, forces: Array) -> Array:
+    def carrying(self, times: Array, forces: Array) -> tuple[Array, Array]:
         """See `Reduced.carrying`; each follows from those before."""
-        heights, _, counts = self._heights
-        memory, found = Memory(self.law, heights), np.zeros_like(times)
-        for i, (force, time) in enumerate(zip(forces.tolist(), self.spent(times).tolist(), strict=True)):
-            found[i] = memory.under(force / self.estimate.stiffness, counts, time)
-            memory.go(float(found[i]), time)
-        return found
+        cells, _, counts = self._cells
+        memory, before, found = Memory(self.law, cells), 0.0, []
+        for force, time in zip((forces / self.estimate.stiffness).tolist(), self.spent(times).tolist(), strict=True):
+            place, velocity = memory.under(force, before, counts, time)
+            memory.go(place, time, velocity)
+            found.append((place, velocity))
+            before = force
+        places, velocities = zip(*found, strict=True)
+        return np.asarray(places), np.asarray(velocities)
 
-    def feeling(self) -> Callable[[float, float], float]:
+    def feeling(self) -> Callable[[float, float, float], float]:
         """See `Reduced.feeling`."""
-        heights, _, counts = self._heights
-        memory = Memory(self.law, heights)
+        cells, _, counts = self._cells
+        memory = Memory(self.law, cells)
 
-        def force(place: float, time: float) -> float:
-            pressed, _ = memory.pressed(place, time)
-            memory.go(place, time)
+        def force(place: float, time: float, velocity: float) -> float:
+            pressed, _ = memory.pressed(place, time, velocity)
+            memory.go(place, time, velocity)
             return self.estimate.stiffness * float(pressed @ counts)
 
         return force
 
+    def velocities(self, path: Path) -> Array:
+        """Of the body at the end of each load step, (m,) [LU/TU]."""
+        if path.velocity is not None:
+            return path.velocity
+        return np.diff(path.displacement, prepend=0.0) / self.spent(path.time)
+
     def follow(self, path: Path) -> Followed:
         """A load step from each state to the next, in the time between them; see `Reduced.follow`."""
-        heights, own, counts = self._heights
-        memory = Memory(self.law, heights)
-        each, margin = np.empty((2, path.displacement.size, heights.size))
-        for i, (place, time) in enumerate(zip(path.displacement.tolist(), self.spent(path.time).tolist(), strict=True)):
-            each[i], margin[i] = memory.pressed(place, time)
-            memory.go(place, time)
+        cells, own, counts = self._cells
+        memory = Memory(self.law, cells)
+        each, margin = np.empty((2, path.displacement.size, counts.size))
+        columns = (path.displacement, self.spent(path.time), self.velocities(path))
+        for i, (place, time, velocity) in enumerate(zip(*(one.tolist() for one in columns), strict=True)):
+            each[i], margin[i] = memory.pressed(place, time, velocity)
+            memory.go(place, time, velocity)
         each *= self.estimate.stiffness
         edge = self._edges(margin)
         return Followed(self.x, each @ counts, lambda state: each[state][own], zone=(edge, edge))
@@ -568,7 +608,7 @@ class RelaxingSprings(Reduced):
         Where the contact grows the overlap has a kink at a, and only the next two free particles tell; where it
         shrinks, the last particle and the next are nearer.
         """
-        heights, touching = self._heights[0], margin > 0.0
+        heights, touching = self._cells[0].heights, margin > 0.0
         end = heights.size - 1
         last = end - np.argmax(touching[:, ::-1], axis=1)
         rows, after = np.arange(last.size), np.minimum(last + 1, end)
@@ -639,7 +679,7 @@ def swing(scene: Scene, settings: Settings, model: Reduced, start: float, load: 
     for i in range(total):
         velocity += 0.5 * step * force / mass
         place += step * velocity
-        force = load - drag * velocity - feel(place, step)
+        force = load - drag * velocity - feel(place, step, velocity + 0.5 * step * force / mass)
         velocity += 0.5 * step * force / mass
         path[i] = place
     return path[[0, total - 1]]
@@ -672,16 +712,17 @@ def impact(scene: Scene, settings: Settings, model: Reduced, velocity: float, de
     assert scene.plate.mass != "auto"
     each, time = max(1, COARSER // dense), stretch(settings, velocity) * settings.motion.time_step / dense
     step, feel, place, force, mass = time / each, model.feeling(), 0.0, 0.0, scene.plate.mass
-    places, forces = [0.0], [0.0]
+    places, forces, velocities = [0.0], [0.0], [velocity]
     while len(places) < FLIGHT * dense or not is_over(places, forces, FLIGHT * dense):
         for _ in range(each):
             velocity -= 0.5 * step * force / mass
             place += step * velocity
-            force = feel(place, step)
+            force = feel(place, step, velocity - 0.5 * step * force / mass)
             velocity -= 0.5 * step * force / mass
         places.append(place)
         forces.append(force)
+        velocities.append(velocity)
         if len(places) > MOST_STEPS:
             break
     path = np.asarray(places)
-    return Path(path, np.zeros_like(path), time * np.arange(float(path.size)))
+    return Path(path, np.zeros_like(path), time * np.arange(float(path.size)), np.asarray(velocities))

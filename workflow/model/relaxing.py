@@ -9,19 +9,59 @@ be touched again. Over a load step of the time Δ along which u changes evenly
 
     s_j ← s_j e^(−Δ/τ) + Δu τ/Δ (1 − e^(−Δ/τ))
 
+A dashpot pushes at the edge of the contact, too, so that a particle has the force of the part φ of its cell that touches.
+With w = g(x + s/2) − g(x − s/2), the height over which a cell of the length s comes to touch, and r = g(x) − g(x − s/2)
+
+    φ = (r + min(overlap, u + T u′))/w within 0…1,    f = k φ [u + T u′ + (1 − φ) r]
+
 Exact for one circular contact of a body with a constant Poisson's ratio (Lee and Radok 1960, Ting 1966).
 """
 
 from __future__ import annotations
 
+import math
+from bisect import bisect_left
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
+from contact1d.workflow.model.pairs import Profile
 from contact1d.workflow.scene import Viscoelasticity
 
 Array = NDArray[np.float64]
+NARROWEST = 1e-12
+"""Height over which a cell comes to touch at once, over the spacing: no formula may divide by 0."""
+STAGE = 1.0 - 0.5**0.5
+"""Part of a step at which the first of its two stages is."""
 SUDDEN, MOMENTS = 1e-6, 200
 """Time over the shortest one of a body in which something happens at once; steps of the creep of one spring."""
+
+
+@dataclass(frozen=True)
+class Edges:
+    """How the cells of particles come to touch a plane; arrays (n,).
+
+    Attributes:
+        heights: g(x) of the particle, undeformed [LU].
+        widths: w, height over which its cell comes to touch [LU].
+        rises: r, how much of that lies nearer to the axis than the particle [LU].
+    """
+
+    heights: Array
+    widths: Array
+    rises: Array
+
+
+def edges_of(profile: Profile, x: Array, spacing: float) -> Edges:
+    """The cells of particles at positions x, (n,) [LU], of a body; it ends where the last of its cells does."""
+    at, half = np.abs(x), 0.5 * spacing
+    inner, heights, outer = (
+        profile.height(np.minimum(np.maximum(at + part * half, 0.0), profile.reach)) for part in (-1.0, 0.0, 1.0)
+    )
+    least = NARROWEST * spacing
+    flat = outer - inner < least  # touches as a whole, with its first touch
+    return Edges(heights, np.where(flat, least, outer - inner), np.where(flat, least, heights - inner))
 
 
 class Memory:
@@ -30,60 +70,99 @@ class Memory:
     Attributes:
         place: displacement of the body [LU].
         surface: u of each particle, (n,) [LU].
+        outer: u where its cell is untouched, so that the contact may grow into it, (n,) [LU].
+        arms: s_j, (arms, n) [LU].
     """
 
-    def __init__(self, law: Viscoelasticity, heights: Array) -> None:
-        """Untouched, above particles at undeformed heights (n,) [LU]."""
+    def __init__(self, law: Viscoelasticity, cells: Edges) -> None:
+        """Untouched, above particles at undeformed heights."""
         terms = law.terms or ()
-        self._lasting, self._retarded, self._heights = law.lasting, law.retardation_time or 0.0, heights
+        self._lasting, self._retarded, self._cells = law.lasting, law.retardation_time or 0.0, cells
         self._share, self._time = (np.asarray([getattr(term, key) for term in terms]) for key in ("share", "time"))
-        self._arms = np.zeros((len(terms), heights.size))
-        self.place, self.surface = 0.0, np.zeros_like(heights)
+        self.arms = np.zeros((len(terms), cells.heights.size))
+        self.place, self.surface, self.outer = 0.0, *np.zeros((2, cells.heights.size))
 
     def _ahead(self, time: float) -> tuple[float, Array, Array, Array]:
         """Response, free surfaces (n,) [LU], decay and gain of each arm after a time [TU]."""
         if self._retarded:
             none = np.empty(0)
-            return 1.0, self.surface * np.exp(-time / self._retarded), none, none
+            return 1.0, self.outer * np.exp(-time / self._retarded), none, none
         age = time / self._time
         decay, gain = np.exp(-age), -np.expm1(-age) / age
         response = self._lasting + float(self._share @ gain)
-        past = (self._share * decay) @ self._arms - float(self._share @ gain) * self.surface
+        past = (self._share * decay) @ self.arms - float(self._share @ gain) * self.surface
         return response, -past / response, decay, gain
 
-    def pressed(self, place: float, time: float) -> tuple[Array, Array]:
-        """Forces over stiffness as the body comes to a displacement [LU] after a time [TU], and its overlaps.
+    def pressed(self, place: float, time: float, velocity: float) -> tuple[Array, Array]:
+        """Forces over stiffness as the body comes to a displacement [LU] after a time [TU], with a velocity [LU/TU].
 
-        Both (n,) [LU]; overlaps go on below 0 where nothing touches, so that they tell where the contact ends.
+        And its overlaps, which go on below 0 where nothing touches, so that they tell where the contact ends. Both (n,)
+        [LU].
         """
         response, free, *_ = self._ahead(time)
-        overlap = place - self._heights
-        if self._retarded:
-            push = overlap + self._retarded * (place - self.place) / time
-            margin = np.minimum(overlap - free, push)
-            return np.where(margin > 0.0, push, 0.0), margin
-        return response * np.maximum(overlap - free, 0.0), overlap - free
+        return self._forces(place, self._retarded * velocity, response, free)
 
-    def under(self, load: float, counts: Array, time: float) -> float:
-        """Displacement [LU] after a time [TU] at which forces over stiffness, `counts` of each, make a `load` ≥ 0 [LU].
+    def _forces(self, place: float, drag: float, response: float, free: Array) -> tuple[Array, Array]:
+        overlap = place - self._cells.heights
+        if not self._retarded:
+            return response * np.maximum(overlap - free, 0.0), overlap - free
+        push, rise = overlap + drag, self._cells.rises
+        margin = np.minimum(overlap - free, push)
+        part = np.clip((rise + margin) / self._cells.widths, 0.0, 1.0)
+        return part * (push + (1.0 - part) * rise), margin
 
-        Each is straight, slope (place − base), beyond where it is touched.
+    def under(self, load: float, before: float, counts: Array, time: float) -> tuple[float, float]:
+        """Displacement [LU] and velocity [LU/TU] after a time [TU] in which a load ≥ 0 over stiffness [LU] changes evenly.
+
+        `before`: the load until now; `counts`: particles of each kind. Dashpots follow it in two implicit stages, of the
+        second order and stable for steps of any length (R. Alexander, SIAM J. Numer. Anal. 14 (1977) 1006).
         """
-        slope, free, *_ = self._ahead(time)
-        rate = self._retarded / time
-        slope, base = slope + rate, (self._heights + (rate * self.place if rate else free)) / (1.0 + rate)
-        touch = np.maximum(base, self._heights + free)
-        order = np.argsort(touch)
-        starts, slopes = touch[order], slope * np.cumsum(counts[order])
-        wanted = (load + slope * np.cumsum((counts * base)[order])) / slopes
-        last = int(np.argmax(wanted <= np.append(starts[1:], np.inf)))
-        return float(max(wanted[last], starts[last]))
+        if not self._retarded:
+            place = self._carrying(load, counts, time, self.place, time)
+            return place, (place - self.place) / time
+        part = STAGE * time
+        first = self._carrying(before + STAGE * (load - before), counts, part, self.place, part)
+        start = self.place + (time - part) * (first - self.place) / part
+        place = self._carrying(load, counts, time, start, part)
+        return place, (place - start) / part
 
-    def go(self, place: float, time: float) -> None:
-        """Bring the body to a displacement [LU], evenly over a time [TU]."""
+    def _carrying(self, load: float, counts: Array, time: float, start: float, way_time: float) -> float:
+        """The displacement [LU] that carries a load after a time [TU], with the velocity from `start` on in `way_time`.
+
+        Forces rise with it, and are a parabola from where a cell begins or ends to touch to the next.
+        """
+        response, free, *_ = self._ahead(time)
+        rate, cells = self._retarded / way_time, self._cells
+
+        def excess(place: float) -> float:
+            return float(self._forces(place, rate * (place - start), response, free)[0] @ counts) - load
+
+        ends = cells.heights + free
+        if self._retarded:  # either of overlap and push may decide
+            over = [part * cells.widths - cells.rises for part in (0.0, 1.0)]
+            pushed = [(cells.heights + rate * start + one) / (1.0 + rate) for one in over]
+            ends = np.concatenate([*(ends + one for one in over), *pushed, start - free / rate])
+        ends = np.unique(ends)
+        first = bisect_left(ends, 0.0, key=excess)
+        if first == 0:
+            return float(ends[0])
+        low = float(ends[first - 1])
+        high = float(ends[first]) if first < ends.size else low + load / response
+        begin, middle, end = (excess(low + part * (high - low)) for part in (0.0, 0.5, 1.0))
+        bend, slope = 2.0 * (begin - 2.0 * middle + end), 4.0 * middle - 3.0 * begin - end
+        root = math.sqrt(max(slope * slope - 4.0 * bend * begin, 0.0))
+        return low + (high - low) * min(max(-2.0 * begin / (slope + root), 0.0), 1.0)
+
+    def go(self, place: float, time: float, velocity: float) -> None:
+        """Bring the body to a displacement [LU] with a velocity [LU/TU], evenly over a time [TU]."""
         _, free, decay, gain = self._ahead(time)
-        after = np.maximum(place - self._heights, free)
-        self._arms = decay[:, None] * self._arms + gain[:, None] * (after - self.surface)
+        if self._retarded:
+            held = self._forces(place, self._retarded * velocity, 1.0, free)[1] > 0.0
+            recovered = self.surface * np.exp(-time / self._retarded)
+            after, self.outer = np.where(held, place - self._cells.heights, recovered), np.where(held, free, recovered)
+        else:
+            after = np.maximum(place - self._cells.heights, free)
+            self.arms = decay[:, None] * self.arms + gain[:, None] * (after - self.surface)
         self.place, self.surface = place, after
 
 
@@ -91,8 +170,10 @@ def creep(law: Viscoelasticity | None, time: float) -> float:
     """Displacement of a spring after a time [TU] under a load, over that at once; 1 of one that is elastic."""
     if law is None or law.retardation_time or time <= 0.0:
         return 1.0
-    spring, alone = Memory(law, np.zeros(1)), np.ones(1)
+    alone = np.ones(1)
+    spring = Memory(law, Edges(0.0 * alone, alone, 0.0 * alone))
     moments = time * np.geomspace(SUDDEN * min(1.0, law.shortest_time / time), 1.0, MOMENTS)
     for step in np.diff(moments, prepend=0.0).tolist():
-        spring.go(spring.under(1.0, alone, step), step)
+        place, velocity = spring.under(1.0, 1.0, alone, step)
+        spring.go(place, step, velocity)
     return spring.place

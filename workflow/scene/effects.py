@@ -207,6 +207,11 @@ class Viscoelasticity(Effect):
         return max(0.0, 1.0 - math.fsum(term.share for term in self.terms or ()))
 
     @property
+    def resists_jumps(self) -> bool:
+        """Whether a jump of the displacement takes a force without bound, so that no stiffness belongs to it."""
+        return self.retardation_time is not None
+
+    @property
     def shortest_time(self) -> float:
         """The shortest of its times [TU]."""
         return self.retardation_time or min(term.time for term in self.terms or ())

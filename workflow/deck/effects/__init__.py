@@ -26,11 +26,14 @@ class Stage(IntEnum):
 
     BODIES = 0
     SPRINGS = 1
-    DRAG = 2
-    GUIDE = 3
-    PULL = 4
-    PLATE = 5
-    MOTION = 6
+    CONTACT = 2
+    """what the opposite body does to particles"""
+    MEASURED = 3
+    DRAG = 4
+    GUIDE = 5
+    PULL = 6
+    PLATE = 7
+    MOTION = 8
 
 
 @dataclass(frozen=True)

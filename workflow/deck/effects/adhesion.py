@@ -18,10 +18,10 @@ def adhesion(scene: Scene, settings: Settings) -> Contribution:
     if own.range or own.rate:
         modulus, stress = scene.bulk_stiffness / scene.bodies.spacing, own.work / own.range if own.range else 0.0
         stiffness |= {"adhesion_modulus": number(modulus), "adhesion_stress": number(stress)}
-        return Contribution("adhesion", Stage.DRAG, ("cohesion",), stiffness)
+        return Contribution("adhesion", Stage.CONTACT, ("cohesion",), stiffness)
     last = settings.estimate.parted(0.0) / settings.estimate.spacing
     variables = stiffness | {
         "adhesion_touch": number(-TOUCH * scene.bodies.spacing),
         "adhesion_last": number(last * scene.bodies.spacing),
     }
-    return Contribution("adhesion", Stage.DRAG, ("adhesion",), variables)
+    return Contribution("adhesion", Stage.CONTACT, ("adhesion",), variables)

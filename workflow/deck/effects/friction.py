@@ -13,4 +13,4 @@ def friction(scene: Scene, settings: Settings) -> Contribution:
         "friction_coefficient": number(scene.the(Friction).coefficient),
         "friction_level": number(-sphere_radius(scene, settings)),
     }
-    return Contribution("friction", Stage.DRAG, ("friction",), variables, atom_style="sphere")
+    return Contribution("friction", Stage.CONTACT, ("friction",), variables, atom_style="sphere")

@@ -17,7 +17,7 @@ def viscoelasticity(scene: Scene, settings: Settings) -> Contribution:
         variables["elapsed_step"] = number(settings.motion.time_step)
     if own.retardation_time:
         variables["retardation_time"] = number(own.retardation_time)
-        return Contribution("viscoelasticity", Stage.DRAG, (*fragments, "retardation", "relaxed"), variables)
+        return Contribution("viscoelasticity", Stage.CONTACT, (*fragments, "retardation", "relaxed"), variables)
     variables["viscoelasticity_part"] = number(own.lasting)
     fragments.append("viscoelasticity")
     for arm, term in enumerate(own.terms or (), 1):
@@ -27,4 +27,4 @@ def viscoelasticity(scene: Scene, settings: Settings) -> Contribution:
     arms = range(1, len(own.terms or ()) + 1)
     fragments += [f"decayed:{len(arms)}"] * rows + [f"relaxing:{len(arms)}"]
     fragments += [*(f"relaxed_arm:{arm}" for arm in arms), "relaxed"]
-    return Contribution("viscoelasticity", Stage.DRAG, tuple(fragments), variables)
+    return Contribution("viscoelasticity", Stage.CONTACT, tuple(fragments), variables)
