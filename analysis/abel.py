@@ -15,15 +15,17 @@ at Hertz's edge, the pole at a punch's and the logarithm at a cone's tip are exa
 Independent springs on a plane have the body's own shape, q(x) = c (d − h(x)), whose x^n no polynomial follows at the
 axis unless n is even. There polynomials are put through q + c h alone, and
 
-    p(r) = … + (c/π) ∫_0^√(a² − r²) h′(x)/x dt,   x² = r² + t²
+    p(r) = … + (c/π) ∫ dh/t,   x² = r² + t²,  0 < t < √(a² − r²)
 
-whose integrand grows as t^(n − 2) on the axis, over intervals that halve towards it.
+over intervals that halve towards the axis, and on both sides towards a kink, where h rises as a root.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -40,10 +42,10 @@ SAME = 1e-6
 """Of a spacing: positions so alike on both sides of the axis are the same."""
 AT_ONCE = 100
 """Distances from the axis that are worked out at once, to bound the memory."""
-HALVINGS, NODES = 40, 8
-"""Intervals of an integral that halve towards the axis, and Gauss's positions in each."""
-DIFFERENCE = 1e-5
-"""Of a position, up to which a slope is a difference: exact to some 1e-10."""
+HALVINGS, NODES = 20, 16
+"""Intervals of an integral that halve towards each end, and Gauss's positions in each: to 1e-12 of it."""
+EPSILON = 1e-9
+"""Of a power above 1, whose integral has a bound."""
 Body = Callable[[Array], Array]
 FEWEST = 3
 """Positions on one side that determine a shape."""
@@ -57,6 +59,7 @@ class LineLoad:
         breaks: 0 = x₀ < x₁ < … < x_n = edge, shape (n + 1,) [length].
         coefficients: of q = Σ_k coefficients[k] x^k between them, shape (4, n); with a `body` of q + c h.
         body: c h(x) of positions x of any shape [force/length], where it is known.
+        kinks: positions at which its slope jumps [length].
         jump: q just inside the edge [force/length], where it is known; None: that of the polynomials.
         apex: whether the body's slope does not vanish on the axis.
     """
@@ -64,6 +67,7 @@ class LineLoad:
     breaks: Array
     coefficients: Array
     body: Body | None = None
+    kinks: Sequence[float] = ()
     jump: float | None = None
     apex: bool = False
 
@@ -110,39 +114,66 @@ class LineLoad:
         total[on] += np.sum(c_0[1:] * np.diff(np.log(self.breaks[1:])))
         found = (self.at_edge / root[:, -1] - total) / np.pi
         if self.body is not None:
-            found += _of_body(self.body, r[:, 0], self.edge)
+            beyond = np.searchsorted(np.sort(self.kinks), r[:, 0], side="right")
+            for count in np.unique(beyond):
+                own, kinks = beyond == count, [kink for kink in sorted(self.kinks)[count:] if kink < self.edge]
+                found[own] += _of_body(self.body, r[own, 0], [*kinks, self.edge])
         if self.has_apex:
             found[on] = np.inf if self.apex else np.copysign(np.inf, -c_0[0])
         return np.asarray(found)
 
 
-def _of_body(body: Body, r: Array, edge: float) -> Array:
-    """(c/π) ∫_0^s h′(x)/x dt at distances r < edge, s² = edge² − r²; its remainder at 0 as a power of t."""
+@cache
+def _differences() -> Array:
+    """M of ∫ w dh = w·M h over an interval, of values w and h at Gauss's positions in it; (NODES, NODES)."""
     node, weight = gauss(NODES)
-    ends = 0.5 ** np.arange(HALVINGS + 1.0)
-    middle, half = 0.5 * (ends[:-1] + ends[1:]), 0.5 * (ends[:-1] - ends[1:])
-    share = (middle[:, None] + half[:, None] * node).ravel()
-    width = np.sqrt((edge - r) * (edge + r))
+    powers = np.polynomial.legendre.legvander(node, NODES - 1)
+    slopes = np.polynomial.legendre.legvander(node, NODES - 2) @ np.polynomial.legendre.legder(np.eye(NODES))
+    return np.asarray(weight[:, None] * np.linalg.solve(powers.T, slopes.T).T)
 
-    def slope(x: Array) -> Array:
-        return (body(x * (1.0 + DIFFERENCE)) - body(x * (1.0 - DIFFERENCE))) / (2.0 * DIFFERENCE * x)
 
-    x, near = np.hypot(r[:, None], width[:, None] * share), width * ends[-1]
-    inner = width * ((slope(x) / x) @ (half[:, None] * weight).ravel())
-    first, second = slope(np.hypot(r, near)), slope(np.hypot(r, 2.0 * near))
-    ratio = np.divide(second, first, out=np.full_like(first, 2.0), where=first > 0.0)
-    power = np.maximum(np.log2(ratio), np.finfo(np.float64).tiny)  # h′ ∝ t^power on the axis
-    left = first * np.where(r > 0.0, near / np.hypot(r, near), 1.0 / power)
-    return np.asarray((inner + left) / np.pi)
+@cache
+def _graded() -> tuple[Array, Array]:
+    """Middles and half widths of intervals of 0…1 that halve towards both ends; the first one is left out."""
+    down = 0.5 ** np.arange(HALVINGS, 0.0, -1.0)
+    ends = np.concatenate([down, 1.0 - down[-2::-1], [1.0]])
+    return 0.5 * (ends[1:] + ends[:-1]), 0.5 * np.diff(ends)
+
+
+def _of_body(body: Body, r: Array, places: Sequence[float]) -> Array:
+    """(1/π) ∫ dh/t at distances r, (n,), below all the places: kinks, and the edge; its remainder at 0 as a power of t."""
+    node, _ = gauss(NODES)
+    middle, half = _graded()
+    ends = np.stack([np.zeros_like(r), *(np.sqrt((place - r) * (place + r)) for place in places)], axis=1)
+    start, width = ends[:, :-1, None], np.diff(ends, axis=1)[:, :, None]
+    t = (start + width * middle)[..., None] + (width * half)[..., None] * node
+
+    def height(t: Array) -> Array:
+        return body(np.hypot(r.reshape(-1, *(1,) * (t.ndim - 1)), t))
+
+    total = np.sum((height(t) @ _differences().T) / t, axis=(1, 2, 3))
+    # Up to the first interval of a piece h rises as a root at most, which 1/t knows nothing of but at the axis.
+    near = (start + width * (middle[:1] - half[:1]))[:, :, 0]
+    rise = height(near) - height(ends[:, :-1])
+    total += np.sum(rise[:, 1:] / near[:, 1:], axis=1)
+    ratio = np.divide(
+        height(2.0 * near[:, :1]) - height(ends[:, :1]),
+        rise[:, :1],
+        out=np.full_like(rise[:, :1], 4.0),
+        where=rise[:, :1] > 0.0,
+    )
+    power = np.maximum(np.log2(np.maximum(ratio, 1.0)), 1.0 + EPSILON)  # h − h(r) ∝ t^power
+    return np.asarray((total + (power / (power - 1.0) * rise[:, :1] / near[:, :1])[:, 0]) / np.pi)
 
 
 def line_load(
     x: ArrayLike,
     load: ArrayLike,
     edge: float | None = None,
-    ends_at_zero: bool = True,
+    jump: float | None = 0.0,
     apex: bool = False,
     body: Body | None = None,
+    kinks: Sequence[float] = (),
 ) -> LineLoad:
     """Return the even line load through values at positions, a cubic through the four nearest; of both sides the mean.
 
@@ -153,23 +184,24 @@ def line_load(
         x: positions, rising and the same on both sides of 0, shape (n,) [length].
         load: q there, shape (n,) [force/length].
         edge: a, where it ends [length]; None: it fades out, and ends at 0 at the last position.
-        ends_at_zero: whether q(a) = 0; else the last piece goes on to the edge, where q jumps to 0.
+        jump: q just inside the edge [force/length], whence it jumps to 0; None: the last piece goes on to the edge.
         apex: whether q has a kink on the axis, as under a cone; else it is smooth there, an even function.
-        body: c h(x) of the body, where q = c (d − h) with nothing else.
+        body: c h(x), of which and a smooth function of h q is made.
+        kinks: positions at which its slope jumps [length].
 
     Raises:
         ValueError: fewer than FEWEST places on a side within the edge, or places that are not the same on both sides.
     """
     right, mean, spacing = of_both_sides(x, load)
     end = float(right[-1]) if edge is None else edge
-    inside = right <= end - (NEAR if ends_at_zero else WHOLE) * spacing
+    inside = right <= end - (NEAR if jump == 0.0 else WHOLE) * spacing
     right, mean = right[inside], mean[inside]
     if right.size < FEWEST:
         raise ValueError(f"a pressure needs {FEWEST} positions on each side of the axis, got {right.size}")
+    if jump is not None:
+        right, mean = np.append(right, end), np.append(mean, jump)
     if body is not None:
         mean = mean + body(right)
-    elif ends_at_zero:
-        right, mean = np.append(right, end), np.append(mean, 0.0)
     if apex and body is None:
         return _cubics(right, mean, end)
     own = slice(None) if right[0] > 0.0 else slice(1, None)
@@ -178,7 +210,7 @@ def line_load(
         even.coefficients[1, 0] = 0.0  # by symmetry, but for round-off
     else:  # the four nearest are not the same on both sides of the axis
         even.coefficients[:, 0] = (mean[0], 0.0, (mean[1] - mean[0]) / right[1] ** 2, 0.0)
-    return even if body is None else replace(even, body=body, jump=0.0 if ends_at_zero else None, apex=apex)
+    return even if body is None else replace(even, body=body, kinks=kinks, jump=jump, apex=apex)
 
 
 def of_both_sides(x: ArrayLike, load: ArrayLike) -> tuple[Array, Array, float]:

@@ -47,17 +47,19 @@ class Profile:
 class ZonedProfile(Profile):
     """A profile of which it is known where the contact ends.
 
-    edge: contact radius a [LU]; reach: how far an attraction with a range goes beyond, c [LU].
+    edge: contact radius a [LU]; reach: how far an attraction with a range goes beyond, c [LU]; jump: the line load just
+    inside of a without what it is just outside [FU/LU].
     """
 
     edge: float
     reach: float
+    jump: float
 
 
-def zoned(profile: Profile, edge: float) -> ZonedProfile:
-    """Return a profile whose contact ends at an edge [LU] and has no attraction beyond it."""
+def zoned(profile: Profile, edge: float, jump: float) -> ZonedProfile:
+    """Return a profile whose contact ends at an edge [LU] by a jump [FU/LU] and has no attraction beyond it."""
     own = profile.x, profile.z_lower, profile.z_upper, profile.pressure, profile.shear
-    return ZonedProfile(*own, edge, edge)
+    return ZonedProfile(*own, edge, edge, jump)
 
 
 def pressure_profile(

@@ -66,7 +66,7 @@ def test_cone(count: int) -> None:
 @pytest.mark.parametrize("count", [6, 41, 200])
 def test_flat_punch_ends_in_a_pole(count: int) -> None:
     x, a = places(count), 0.5 * count
-    found = line_load(x, np.full(count, 2.0), a, ends_at_zero=False)
+    found = line_load(x, np.full(count, 2.0), a, jump=None)
     r = radii(a)
     assert found.pressure(r) == pytest.approx(2.0 / (math.pi * np.sqrt(a**2 - r**2)), rel=POWERS)
 
@@ -74,7 +74,7 @@ def test_flat_punch_ends_in_a_pole(count: int) -> None:
 def test_jkr_ends_in_a_pole_of_tension() -> None:
     """Springs E* stretched by Δl at the edge: Hertz and a punch's tension."""
     x, a, stretch = places(61), 24.37, 1.3
-    found = line_load(x, np.where(np.abs(x) < a, E * ((a**2 - x**2) / R - stretch), 0.0), a, ends_at_zero=False)
+    found = line_load(x, np.where(np.abs(x) < a, E * ((a**2 - x**2) / R - stretch), 0.0), a, jump=None)
     r = radii(a)
     root = np.sqrt(a**2 - r**2)
     exact = E / math.pi * (2.0 * root / R - stretch / root)
@@ -151,7 +151,7 @@ def test_residual_forces_move_the_pressure_by_as_little() -> None:
 )
 def test_what_is_no_line_load_is_refused(x: Array, q: Array, words: str) -> None:
     with pytest.raises(ValueError, match=words):
-        line_load(x, q, 3.0, ends_at_zero=False)
+        line_load(x, q, 3.0, jump=None)
 
 
 @pytest.mark.parametrize("spacing", [2.0**-20, 1.0, 2.0**20])

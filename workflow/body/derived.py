@@ -37,7 +37,7 @@ from contact1d.workflow.units import ENERGY, FORCE, LINE_PRESSURE, MEAN_PRESSURE
 REPORTED = ("deepest", "final", "zero_load")
 """States whose pressure is a result, the first that a run has."""
 RADII = ("contact_radius", "largest_radius", "zero_load_radius")
-ERRORS = ("displacement", "largest_force", *RADII)
+ERRORS = ("displacement", "force", "largest_force", *RADII)
 """Results whose relative uncertainty, that of the lattice included, is the pressure's, too; of springs on a plane,
 whose pressure is a function of the radius, that of the radius alone."""
 WIDER = {"mdr": 1.0, "geike_popov": 4.0}
@@ -177,9 +177,18 @@ def with_body(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressu
                 key: (replace(one, uncertainty=one.uncertainty - given[key] + left), given[key])
                 for key, one in pressure.results.items()
             }
+    if is_at_rest(scene):
+        for name in reported_state(outcome):
+            if (pressure := pressures.get(name)) and pressure.stiffness:
+                of_pressure["contact_stiffness"] = (pressure.stiffness, share * pressure.stiffness.value)
     makers = (_of_the_contact, _adhesion_energy, _tabor)
     made = {name: one for make in makers for name, one in outcome.made(scene, make).items()}
     return _with(outcome, of_pressure | made)
+
+
+def is_at_rest(scene: Scene) -> bool:
+    """Whether springs on a plane are in equilibrium and have no attraction, so that dF/dd is theirs."""
+    return not (scene.interaction or scene.adheres or scene.viscoelasticity or scene.noise)
 
 
 def reported_state(outcome: Outcome) -> list[str]:
@@ -188,7 +197,7 @@ def reported_state(outcome: Outcome) -> list[str]:
 
 
 def _of_the_contact(scene: Scene, found: Mapping[str, Quantity]) -> dict[str, Quantity]:
-    """F/πa² where the experiment has none, and dF/dd = 2E*a of elastic bodies."""
+    """F/πa² where the experiment has none, and dF/dd = 2E*a of elastic bodies; see `_Loaded` of others."""
     force, radius = first_of(found, "force", "largest_force"), first_of(found, "contact_radius", "largest_radius")
     made: dict[str, Quantity] = {}
     if radius is None or force is None or not radius.value > 0.0:

@@ -106,9 +106,8 @@ class Case:
 
     @property
     def is_elastic(self) -> bool:
-        """Whether springs under the profile are all there is: no attraction, neighbour springs, noise or memory."""
-        scene = self.scene
-        return not (scene.adheres or scene.neighbours or scene.noise or scene.viscoelasticity)
+        """Whether springs under the profile are all there is: no attraction, no memory, nothing that a closed form lacks."""
+        return self.scene.keeps_springs and not (self.scene.adheres or self.scene.viscoelasticity)
 
     @property
     def sphere(self) -> tuple[float, float, float]:

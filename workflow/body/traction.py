@@ -6,7 +6,9 @@ curves through fewer of them. Whether a pressure has a bound is decided by conve
 every fourth particle; where the differences do not shrink there is no number. Where the contact is too narrow for that,
 a largest pressure off the axis is none.
 
-Under springs E* per length on a plane, of a shape g and with a jump J ∝ √a of the line load at the edge (JKR),
+The line load ends at an edge e by a jump q(e⁻) that the law of the contact gives: 0 of springs that are pressed or relax,
+what dashpots push where a contact grows, E* (d − g(a)) of an edge that is held. Under elastic springs E* per length on a
+plane, of a shape g and with a jump J ∝ √a,
 
     p(r) = (1/π) [E* ∫_r^a g′(x)/√(x² − r²) dx + J/s],   ∂p/∂a = (1/πs) [E* g′(a) + J (1/2a − a/s²)],   s² = a² − r²
 """
@@ -15,13 +17,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from operator import itemgetter
 from typing import Any
 
 import numpy as np
 
 from contact1d.analysis.abel import FEWEST, LineLoad, line_load
+from contact1d.analysis.polynomial import gauss
 from contact1d.analysis.pressure import Array, Profile, ZonedProfile
 from contact1d.analysis.radius import ContactRadius, whole_cells
 from contact1d.analysis.shear import kinks_of, shear_load
@@ -29,12 +33,16 @@ from contact1d.workflow.body.reading import stands_for_spheres
 from contact1d.workflow.continuation.state import radius_rule
 from contact1d.workflow.scene import Scene, Shape
 from contact1d.workflow.scene.tables import WIDER_THAN_SPHERES
-from contact1d.workflow.units import MEAN_PRESSURE, Quantity
+from contact1d.workflow.units import LINE_PRESSURE, MEAN_PRESSURE, Quantity
 
 MOST = 1000
 """Particles on a side that are used, and radii that p is given at; of more, every second, third …"""
 RADII = 100
 """Evenly from 0 to the contact radius, at which q is given, and at its kinks besides."""
+ANGLES = 32
+"""Positions of Gauss's at which p(r) is added up to a force."""
+INNER = 6
+"""Part of the particles in a contact that show the slope of its load at the axis."""
 BETWEEN = 101
 """Radii between two particles at which the largest pressure is searched."""
 TIP, KNOWN_TIP, KINK = 1e-3, 1e-9, 0.5
@@ -66,6 +74,8 @@ class BodyPressure:
         contact_radius: of the body [LU]; where bodies attract, tension reaches beyond it.
         results: `central_pressure`, p(0), and `peak_pressure`, the largest one [FU/LU²]; without one that has no bound,
             as at a cone's tip, a punch's edge or a rim; with an infinite uncertainty where that is open.
+        force: ∫ p dA of the body [FU], a ring of attraction beyond the contact radius included.
+        stiffness: dF/dd [FU/LU] of particles that are alone, whatever their springs; None of others.
     """
 
     r: Array
@@ -73,6 +83,8 @@ class BodyPressure:
     uncertainty: Array
     contact_radius: float
     results: Mapping[str, Quantity]
+    force: float
+    stiffness: Quantity | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,108 +122,254 @@ def body_pressures(
     Args:
         scene: what ran.
         profiles: of the reported states.
-        of_radius: relative uncertainty of the contact radius, of which the pressure under springs is a function.
+        of_radius: relative uncertainty of the contact radius, of which the pressure under elastic springs is a function.
         of_all: the sum of those of all results, for the pressure under others.
         given: of pressures, by the numbers of the scene that are uncertain.
     """
     if not is_of_a_body(scene):
         return {}
-    rule, bodies = radius_rule(scene, scene.accuracy.tolerance), scene.bodies
-    alone = bodies.lower == "rigid_plane" and scene.neighbours is None and not bodies.profile.has_edge
-    share = of_radius if alone else of_all
-    return {
-        name: one
-        for name, profile in profiles.items()
-        if (radius := rule.of(profile))
-        and radius.value > 0.0
-        and (one := _pressure(scene, profile, radius, alone, share, given))
-    }
+    rule, found = radius_rule(scene, scene.accuracy.tolerance), {}
+    for name, profile in profiles.items():
+        if (radius := rule.of(profile)) and radius.value > 0.0:
+            state = _Loaded(scene, profile, radius)
+            share = of_radius if state.is_elastic and not scene.bodies.profile.has_edge else of_all
+            if one := _pressure(state, share, given):
+                found[name] = one
+    return found
 
 
-def _pressure(
-    scene: Scene, profile: Profile, radius: ContactRadius, alone: bool, share: float, given: float
-) -> BodyPressure | None:
+@dataclass(frozen=True)
+class _Loaded:
+    """The line load of a state, of which p(r) is made; that of the paper's spheres as half as wide.
+
+    Attributes:
+        scene: what ran.
+        profile, radius: of the state.
+    """
+
+    scene: Scene
+    profile: Profile
+    radius: ContactRadius
+
+    @cached_property
+    def wider(self) -> float:
+        """Image over body."""
+        return WIDER_THAN_SPHERES if stands_for_spheres(self.scene) else 1.0
+
+    @property
+    def shape(self) -> Shape:
+        """Of the body."""
+        return self.scene.bodies.profile
+
+    @property
+    def zone(self) -> ZonedProfile | None:
+        """The profile, where its law tells where the contact ends."""
+        return self.profile if isinstance(self.profile, ZonedProfile) else None
+
+    @property
+    def is_alone(self) -> bool:
+        """Whether particles on a plane carry by themselves, so that their load is a function of the body's height."""
+        return self.scene.bodies.lower == "rigid_plane" and self.scene.neighbours is None
+
+    @property
+    def is_elastic(self) -> bool:
+        """Whether that function is a straight line of the springs' own slope."""
+        return self.is_alone and self.scene.keeps_springs
+
+    @cached_property
+    def x(self) -> Array:
+        """Positions [LU], (n,)."""
+        return self.profile.x / self.wider
+
+    @property
+    def layer(self) -> float:
+        """Stiffness of the springs [FU/LU²]."""
+        return self.scene.bulk_stiffness / self.scene.bodies.spacing
+
+    def heights(self, x: Array, shape: Shape | None = None) -> Array:
+        """c h(x) of the body [FU/LU], or of another one."""
+        bodies = self.scene.bodies
+        return self.layer * (bodies if shape is None else bodies.model_copy(update={"profile": shape})).height(x)
+
+    @cached_property
+    def held(self) -> bool:
+        """Whether the edge leaves a particle a share of its cell, and nothing beside the particles knows where it is."""
+        return self.scene.adhesion is not None and self.scene.adheres and self.zone is None
+
+    @cached_property
+    def edge(self) -> float | None:
+        """Where the load of the contact ends [LU]; None where it fades out."""
+        if self.zone:
+            return self.zone.edge
+        return (
+            self.radius.value / self.wider if self.shape.has_edge or self.held or not self.scene.interaction else None
+        )
+
+    @cached_property
+    def jump(self) -> float | None:
+        """The load just inside the edge [FU/LU]; None where the particles show it: at the end of a body, and of JKR."""
+        if self.zone:
+            return self.zone.jump
+        return None if self.shape.has_edge or self.held else 0.0
+
+    @cached_property
+    def load(self) -> Array:
+        """q [FU/LU] of the particles, (n,); of springs with a straight load what the edge and the jump there say."""
+        if self.zone and self.is_elastic:
+            edge = self.heights(np.asarray([self.zone.edge]))
+            return np.where(np.abs(self.x) < self.zone.edge, self.zone.jump + edge - self.heights(self.x), 0.0)
+        return self.wider * (whole_cells(self.profile, self.radius) if self.held else self.profile.pressure)
+
+    @cached_property
+    def body(self) -> Callable[[Array], Array] | None:
+        """κ h(x) [FU/LU] with κ = −dq/dh at the axis; None where the shape of a body is open, or springs are not alone."""
+        if not self.is_alone or self.shape.has_edge or self.shape.alternatives or self.shape.deviations:
+            return None
+        if self.is_elastic:
+            return self.heights
+        inside = np.flatnonzero((self.x > 0.0) & (self.load != 0.0))
+        if inside.size < FEWEST:
+            return None
+        near = inside[[0, max(1, inside.size // INNER)]]
+        fall, rise = self.load[near[0]] - self.load[near[1]], np.diff(self.heights(self.x[near]))[0]
+        slope = float(fall / rise) if rise > 0.0 else 1.0
+        return lambda x: slope * self.heights(x)
+
+    def through(self, load: Array, stride: int) -> LineLoad | None:
+        """The line load through every `stride`-th particle."""
+        apex = _has_apex(self.scene, TIP if self.body is None else KNOWN_TIP)
+
+        def of(chosen: Array) -> LineLoad:
+            return line_load(self.x[chosen], load[chosen], self.edge, self.jump, apex, self.body, self.shape.kinks)
+
+        return _through(self.x.size, stride, of)
+
+
+def _pressure(state: _Loaded, share: float, given: float) -> BodyPressure | None:
     """p(r) of a state; None where too few particles carry it, or they are not alike on both sides.
 
-    `alone`: springs are all that carries, on a plane; `share`: by how much results are off, relative to `_moves`;
-    `given`: relative to p.
+    `share`: by how much results are off, relative to `_moves`; `given`: relative to p.
     """
-    wider = WIDER_THAN_SPHERES if stands_for_spheres(scene) else 1.0
-    zone = profile if isinstance(profile, ZonedProfile) else None
-    held = scene.adhesion is not None and scene.adheres and zone is None
-    x, q = profile.x / wider, wider * (whole_cells(profile, radius) if held else profile.pressure)
-    shape, layer = scene.bodies.profile, scene.bulk_stiffness / scene.bodies.spacing
-    jumps = shape.has_edge or held
-    edge = radius.value / wider if jumps or scene.interaction is None else None
-    pulled = _attraction(scene, zone)
-    if zone:  # of d and the jump at the edge, where the attraction goes on, no pressure depends
-        edge, q = zone.edge, layer * (scene.bodies.height(np.asarray([zone.edge])) - scene.bodies.height(x))
+    scene, shape, x, zone = state.scene, state.shape, state.x, state.zone
     own = -(-(x.size - x.size // 2) // MOST)
-
-    def heights(x: Array, one: Shape = shape) -> Array:
-        return layer * scene.bodies.model_copy(update={"profile": one}).height(x)
-
-    unsure = bool(shape.alternatives or shape.deviations)
-    body = heights if alone and not unsure else None
-    apex = _has_apex(scene, TIP if body is None else KNOWN_TIP)
-
-    def through(line: Array, stride: int) -> LineLoad | None:
-        def load(chosen: Array) -> LineLoad:
-            return line_load(x[chosen], line[chosen], edge, not jumps, apex, body)
-
-        return _through(x.size, own * stride, load)
-
-    levels = [one for stride in (1, 2, 4) if (one := through(q, stride))]
+    levels = [one for stride in (1, 2, 4) if (one := state.through(state.load, own * stride))]
     if not levels:
         return None
-    fine, side = levels[0], x[x.size // 2 :][::own]
+    fine, side, pulled = levels[0], x[x.size // 2 :][::own], _attraction(scene, zone)
     inside = side[(side > 0.0) & (side < fine.edge * INSIDE)]
     r = inside if fine.has_apex else np.append(0.0, inside)
     p, *coarser = (one.pressure(r) - pulled(r) for one in levels)
     # Where g is flat up to an edge that lies between two particles, p is that of a punch, ∝ 1/a.
-    moves = np.maximum(np.abs(p), _moves(fine, heights, r) if alone else 0.0)
+    moves = np.maximum(np.abs(p), _moves(fine, fine.body or state.heights, r) if state.is_alone else 0.0)
     if zone:  # the attraction's edge goes with that of the contact
         moves += np.abs(_attraction(scene, zone, STEP)(r) - pulled(r)) / STEP
-    spread = radius.uncertainty / radius.value * moves + given * np.abs(p)
+    spread = state.radius.uncertainty / state.radius.value * moves + given * np.abs(p)
     # Of a known shape nothing lies between the particles: where they are too few to show it, its edge alone is open.
-    if coarser or body is None:
+    if coarser or state.body is None:
         spread += _spread(p, *coarser)
-    at = np.clip(x, -fine.edge, fine.edge)
+    by_shape = _by_shape(state, own, r, p, pulled)
+    within = np.count_nonzero(side < state.radius.value / state.wider)
+    told = [one for i, one in enumerate((p, *coarser)) if within >= FEWEST * 2**i]
+    error = spread + share * moves + ROUND_OFF * state.layer
+    results = _largest(state, fine, r, told, lambda r: fine.pressure(r) - pulled(r))
+    results = {
+        name: replace(one, uncertainty=one.uncertainty or float(error[place] + by_shape(read)))
+        for name, (one, place, read) in results.items()
+    }
+    total = _total(fine, state.shape.kinks, pulled) + _ring(scene, zone)
+    return BodyPressure(
+        r, p, spread + by_shape(np.asarray), state.radius.value / state.wider, results, total, _stiffness(state, share)
+    )
+
+
+def _stiffness(state: _Loaded, share: float) -> Quantity | None:
+    """dF/dd = −∫ (dq/dh) dx of springs whose forces are functions of d − h, which is 2E*a of linear ones.
+
+    Between two particles the slope is that of the straight line; `share`: what the results are off, relatively.
+    """
+    edge = state.edge
+    if not state.is_alone or edge is None or state.jump != 0.0 or state.shape.has_edge:
+        return None
+    sides = []
+    for stride in (1, 2):
+        right = np.flatnonzero((state.x >= 0.0) & (state.x < edge * INSIDE))[::stride]
+        x, q = np.append(state.x[right], edge), np.append(state.load[right], 0.0)
+        rise, fall = np.diff(state.heights(x) / state.layer), -np.diff(q)
+        slope = np.divide(fall, rise, out=np.zeros_like(fall), where=rise > 0.0)
+        sides.append(float(2.0 * np.sum(slope * np.diff(x, prepend=0.0)[1:]) + 2.0 * slope[0] * x[0]) if fall.size else 0.0)
+    fine, coarse = sides
+    return Quantity(fine, abs(fine - coarse) + share * fine, LINE_PRESSURE)
+
+
+def _by_shape(
+    state: _Loaded, stride: int, r: Array, p: Array, pulled: Callable[[Array], Array]
+) -> Callable[[Callable[[Array], Any]], Any]:
+    """What the bodies that this one may be change of what is read off p(r), the independent ones in squares."""
+    shape, at = state.shape, state.x if state.edge is None else np.clip(state.x, -state.edge, state.edge)
 
     def on(bodies: Sequence[Shape]) -> list[Array]:
         """p(r) of other bodies under as much."""
-        less = [heights(at) - heights(at, one) for one in bodies]
-        return [one.pressure(r) - pulled(r) for line in less if (one := through(q + line - line[0], 1))]
+        less = [state.heights(at) - state.heights(at, one) for one in bodies]
+        return [
+            one.pressure(r) - pulled(r) for line in less if (one := state.through(state.load + line - line[0], stride))
+        ]
 
     others, ways = on(shape.coarser), [on(both) for both in shape.deviations]
 
-    def by_shape(read: Callable[[Array], Any]) -> Any:
-        """What the other bodies change of what is read off p, the independent ones in squares."""
+    def change(read: Callable[[Array], Any]) -> Any:
         each = [[abs(read(one) - read(p)) for one in both] for both in ways if both]
         return sum(abs(read(one) - read(p)) for one in others) + np.sqrt(
             sum(np.max(both, axis=0) ** 2 for both in each)
         )
 
-    within = np.count_nonzero(side < radius.value / wider)
-    told = [one for i, one in enumerate((p, *coarser)) if within >= FEWEST * 2**i]
-    noise, top = NOISE * scene.accuracy.tolerance, int(p.argmax())
+    return change
+
+
+def _largest(
+    state: _Loaded, fine: LineLoad, r: Array, levels: Sequence[Array], pressure: Callable[[Array], Array]
+) -> dict[str, tuple[Quantity, int, Callable[[Array], Any]]]:
+    """p(0) and the largest pressure where they have a bound, each with the radius and the reader of its error.
+
+    An uncertainty is 0 where it is to be found so, infinite where nothing shows that there is a bound.
+    """
+    scene, shape, p = state.scene, state.shape, levels[0] if levels else pressure(r)
+    noise, top, unsure = NOISE * scene.accuracy.tolerance, int(p.argmax()), bool(shape.alternatives or shape.deviations)
     # A jump at the edge is a pole, and where the slope jumps inside p is a logarithm.
-    smooth = p[top] > 0.0 and not (shape.has_edge or any(kink < radius.value for kink in shape.kinks))
-    smooth &= top == 0 or (len(told) == 3 and fine.at_edge <= noise * p[top] * fine.edge)
+    smooth = p[top] > 0.0 and not (shape.has_edge or any(kink < state.radius.value for kink in shape.kinks))
+    smooth &= (top == 0 and state.jump is None) or fine.at_edge <= noise * p[top] * fine.edge
+    smooth &= top == 0 or len(levels) == 3
     near = np.linspace(r[max(0, top - 1)], r[min(top + 1, r.size - 1)], BETWEEN)
-    around = fine.pressure(near) - pulled(near)
-    hidden = any(kink < radius.value for one in shape.alternatives for kink in one.kinks)
-    error, results = spread + share * moves + ROUND_OFF * layer, {}
+    hidden = any(kink < state.radius.value for one in shape.alternatives for kink in one.kinks)
+    found: dict[str, tuple[Quantity, int, Callable[[Array], Any]]] = {}
     for name, place, read, value, is_open, may_have in (
         ("central_pressure", 0, itemgetter(0), p[0], False, True),
-        ("peak_pressure", top, np.max, around.max(), hidden, smooth),
+        ("peak_pressure", top, np.max, pressure(near).max(), hidden, smooth),
     ):
-        known = _converges([read(one) for one in told], noise)
+        known = _converges([read(one) for one in levels], noise)
         if may_have and not fine.has_apex and (known or unsure):
-            known &= not is_open
-            off = error[place] + by_shape(read) if known else np.inf
-            results[name] = Quantity(float(value), float(off), MEAN_PRESSURE)
-    return BodyPressure(r, p, spread + by_shape(np.asarray), radius.value / wider, results)
+            off = 0.0 if known and not is_open else np.inf
+            found[name] = Quantity(float(value), off, MEAN_PRESSURE), place, read
+    return found
+
+
+def _total(fine: LineLoad, kinks: Sequence[float], pulled: Callable[[Array], Array]) -> float:
+    """∫ p dA [FU] over the contact by quadrature of p(r), r = a sin θ, between kinks."""
+    node, weight = gauss(ANGLES)
+    share = 0.5 * (node + 1.0)
+    ends = np.arcsin([0.0, *sorted(kink / fine.edge for kink in kinks if kink < fine.edge), 1.0])
+    width = np.diff(ends)[:, None]
+    angle = (ends[:-1, None] + width * share * share * (3.0 - 2.0 * share)).ravel()  # dense at both ends of a piece
+    step = (0.5 * width * weight * 6.0 * share * (1.0 - share)).ravel()
+    r = fine.edge * np.sin(angle)
+    p = fine.pressure(r) - pulled(r)
+    return float(2.0 * np.pi * np.sum(p * r * fine.edge * np.cos(angle) * step))
+
+
+def _ring(scene: Scene, zone: ZonedProfile | None) -> float:
+    """The force [FU] of an attraction beyond the edge, −σ₀ π (c² − a²); else 0."""
+    if zone is None or scene.adhesion is None or not scene.adhesion.range:
+        return 0.0
+    return -scene.adhesion.work / scene.adhesion.range * math.pi * (zone.reach - zone.edge) * (zone.reach + zone.edge)
 
 
 def _attraction(scene: Scene, zone: ZonedProfile | None, wider: float = 0.0) -> Callable[[Array], Array]:

@@ -160,11 +160,16 @@ class Contact:
             self._unfinished = self.deck.row_end(type(row))
         names = self._values()
         readings = self.session.measure_rows(texts, tuple(names), tuple(ATOM_UNITS), meanwhile=self._look_back)
-        units, phase, states = self.deck.units, self._phases[-1].name, []
-        for number, reading in enumerate(readings, first):
+        units, phase, settings, states = self.deck.units, self._phases[-1].name, self.settings, list[State]()
+        for number, (row, reading) in enumerate(zip(rows, readings, strict=True), first):
             numbers = {name: units.from_deck(v, names[name]) for name, v in zip(names, reading.values, strict=True)}
             atoms = {n: units.from_deck(rows, ATOM_UNITS.get(n, "1")) for n, rows in reading.atoms.items()}
-            states.append(self._state(phase, numbers, atoms, number))
+            state = self._state(phase, numbers, atoms, number)
+            if self.scene.plate and self.scene.stands:
+                drag = settings.drag(getattr(row, "damping", None)) * state.plate_velocity
+                pushed = state.force - getattr(row, "load", 0.0) + drag
+                state = replace(state, missing=numbers["plate_force"] - pushed)
+            states.append(state)
         return states
 
     def _steps(self, rows: Sequence[Row], first: int) -> list[State]:
@@ -217,8 +222,13 @@ class Contact:
         surface = np.maximum(heights + profile.pressure * self.scene.bodies.spacing / self.scene.bulk_stiffness, 0.0)
         return ZonedProfile(
             profile.x, profile.z_lower, np.where(np.abs(self._x) < row.edge, 0.0, surface), profile.pressure,
-            profile.shear, row.edge, row.reach,
+            profile.shear, row.edge, row.reach, self._jump(row),
         )  # fmt: skip
+
+    def _jump(self, row: Cohere) -> float:
+        """The line load at the edge of a contact [FU/LU], beside which there is nothing; without one where it goes on."""
+        opened = row.displacement - float(self.scene.bodies.height(np.asarray([row.edge]))[0])
+        return self.scene.bulk_stiffness / self.scene.bodies.spacing * opened if row.reach == row.edge > 0.0 else 0.0
 
     def _look_back(self) -> None:
         """Work out the radii of the load steps before, which their states keep: LAMMPS is busy with the next ones."""
@@ -230,7 +240,7 @@ class Contact:
         """What is measured beside the atoms, and its unit."""
         names = {"plate_displacement": "LU", "step": "1"}
         if self.scene.plate:
-            names["plate_velocity"] = "LU/TU"
+            names |= {"plate_velocity": "LU/TU", "plate_force": "FU"}
         if self.scene.cantilever:
             names |= {"cantilever_plate": "LU", "cantilever_force": "FU"} | MOTION
             if self._heat_is_reported:

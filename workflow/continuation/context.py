@@ -181,6 +181,10 @@ class ContactBranch:
         """The force maximum that is expected [FU]."""
         return self.settings.estimate.pull_off_force()
 
+    def by_model(self) -> Array | None:
+        """Forces [FU] of the model in all states, (m,); None where it is no copy of the deck."""
+        return None
+
     def trace(self) -> Trace:
         """What a reader sees."""
         step = self.settings.motion.time_step if self.moves else 0.0

@@ -154,11 +154,16 @@ class ModelBranch:
         """Pull the bodies apart."""
         self._add(np.asarray([self.model.apart - self.settings.estimate.spacing]))
 
+    @property
+    def path(self) -> Path:
+        """All states, also those that no reader sees."""
+        *path, velocity = (np.asarray(column, dtype=np.float64) for column in list(zip(*self._rows, strict=True))[2:])
+        return Path(*path, None if np.isnan(velocity).any() else velocity)
+
     def trace(self) -> Trace:
         """What a reader sees."""
-        phases, legs, *columns = zip(*self._rows, strict=True)
-        *path, velocity = (np.asarray(column, dtype=np.float64) for column in columns)
-        path = Path(*path, None if np.isnan(velocity).any() else velocity)
+        phases, legs = list(zip(*self._rows, strict=True))[:2]
+        path = self.path
         rule = radius_rule(self.scene, self.settings.tolerance)
         whole = of_model(phases, legs, path, self.model.follow(path), rule, self.model)
         return whole.chosen([i for i, name in enumerate(phases) if name != UNSEEN])

@@ -87,6 +87,26 @@ class Result:
 
 
 @dataclass(frozen=True)
+class Agreement:
+    """Two numbers of a run that must be one.
+
+    Attributes:
+        difference: of them, relative.
+        allowed: how large it may be.
+        words: both numbers, in units of the model.
+    """
+
+    difference: float
+    allowed: float
+    words: str
+
+    @property
+    def holds(self) -> bool:
+        """Whether they are; a number that is none never agrees."""
+        return self.difference <= self.allowed
+
+
+@dataclass(frozen=True)
 class Move:
     """An input of a scene at an end of what it may be.
 
@@ -132,6 +152,7 @@ class Outcome:
         tables: columns of further files, by the names of these.
         refinement: None where the settings were given, or are not refined.
         moves: what the scene leaves open.
+        consistency: whether the run contradicts itself, by the name of the check; without one that says nothing here.
     """
 
     results: Mapping[str, Result]
@@ -143,6 +164,7 @@ class Outcome:
     tables: Mapping[str, Mapping[str, tuple[float, ...]]] = field(default_factory=dict)
     refinement: Refinement | None = None
     moves: tuple[Move, ...] = ()
+    consistency: Mapping[str, Agreement] = field(default_factory=dict)
 
     @property
     def quantities(self) -> dict[str, Quantity]:

@@ -147,6 +147,7 @@ class State:
         pushed: force of other effects that presses the upper body onto the lower one [FU].
         plate_velocity: [LU/TU], 0 where the plate's position is prescribed.
         cantilever_force: [FU].
+        missing: force that LAMMPS adds up on a plate that moves beside contact, load and drag [FU]; None: it is not told.
         time: of a history [TU].
         motion: of a slide, what `contact.MOTION` and `contact.HEAT` name.
         number: of its row, over all phases.
@@ -165,6 +166,7 @@ class State:
     pushed: float = 0.0
     plate_velocity: float = 0.0
     cantilever_force: float = 0.0
+    missing: float | None = None
     time: float = 0.0
     motion: Mapping[str, float] = field(default_factory=dict, compare=False)
     number: int = field(default=0, compare=False)

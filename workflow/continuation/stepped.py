@@ -5,17 +5,21 @@ The reduced model of such a contact is identical to the deck, so that its limit 
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import groupby
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contact1d.analysis.pressure import zoned
 from contact1d.workflow.continuation.branch import Branch
+from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trust import DigitsError, TensionError
 from contact1d.workflow.deck.steps import Cohere, Displace, Phase, Spend
-from contact1d.workflow.model.reduced import History, Path, RatedCells, Reduced, RelaxingSprings
+from contact1d.workflow.model.reduced import History, Path, RatedCells, Reduced, RelaxingSprings, path_of
 from contact1d.workflow.model.settings import Settings
+from contact1d.workflow.scene import Scene
 
 LOADING_STEPS = 24
 """Load steps up to a force that is known beforehand."""
@@ -34,6 +38,12 @@ BEYOND_LIMIT = 1.05
 
 class SteppedBranch(Branch):
     """States on a rigid plane."""
+
+    _history: Path | None = None
+
+    def by_model(self) -> NDArray[np.float64] | None:
+        """See `by_model`."""
+        return by_model(self.scene, self.model, self.states, self._history)
 
     def _first_rows(self, force: float, direction: int) -> None:
         """Load steps up to where the model has the force [FU].
@@ -84,16 +94,17 @@ class SteppedBranch(Branch):
 
         Where a body that relaxes ends its contact, particles that touch nothing know, and these have no force to show.
         """
-        self._turned, times = True, iter(history.time.tolist())
-        edges = None
+        self._turned, times, self._history = True, iter(history.time.tolist()), history.path(self.model)
+        edges: Iterator[tuple[float, float]] | None = None
         if isinstance(self.model, RelaxingSprings):
-            edges = iter(self.model.edges(history.path(self.model)).tolist())
+            edge, _, jump = self.model.follow(self._history).zone or ()
+            edges = zip(edge.tolist(), jump.tolist(), strict=True)
         for phase in followed(self.model, history):
             self.begin(phase.name)
             self._enter()
             states = [replace(state, time=next(times)) for state in self.contact.rows(phase.rows)]
             if edges is not None:
-                states = [replace(one, profile=zoned(one.profile, next(edges))) for one in states]
+                states = [replace(one, profile=zoned(one.profile, *next(edges))) for one in states]
             self._keep(states)
             if phase.name in history.marks:
                 self.mark(history.marks[phase.name])
@@ -101,6 +112,15 @@ class SteppedBranch(Branch):
     def open(self) -> None:
         """Load steps over the limit point."""
         self._visit(np.linspace(self._last.displacement, BEYOND_LIMIT * self.model.apart, LOADING_STEPS + 1)[1:])
+
+
+def by_model(
+    scene: Scene, model: Reduced, states: Sequence[State], history: Path | None = None
+) -> NDArray[np.float64] | None:
+    """Forces [FU] of the model in all states of a path, (m,); None where it is no copy of the deck."""
+    if not (scene.is_stepped and scene.is_modelled):
+        return None
+    return model.follow(history or path_of(np.asarray([state.displacement for state in states]))).total
 
 
 def followed(model: Reduced, history: History) -> tuple[Phase, ...]:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import ClassVar, Generic, TypeVar, cast
 
+from contact1d.workflow.continuation import consistency
 from contact1d.workflow.continuation.branch import Branch, SecondMaximumError
 from contact1d.workflow.continuation.budget import (
     Reduction,
@@ -16,8 +17,9 @@ from contact1d.workflow.continuation.budget import (
 from contact1d.workflow.continuation.context import ContactBranch, RunContext
 from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.load_control import LoadBranch
-from contact1d.workflow.continuation.outcome import Outcome, Reading
+from contact1d.workflow.continuation.outcome import Agreement, Outcome, Reading
 from contact1d.workflow.continuation.replayed import ReplayedBranch
+from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.stepped import SteppedBranch
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.continuation.trust import ThroughError, doubts
@@ -123,8 +125,20 @@ class Scripted(Experiment[K]):
         warnings = doubts(scene, settings, tuple(branch.states))
         tables = self.tables(trace, scene, settings)
         states, moves = tuple(branch.states), case.moves
-        outcome = Outcome(results, states, branch.marked, branch.phases, warnings, tables=tables, moves=moves)
+        checks = consistency.plan(scene, states, branch.by_model()) | consistency.balance(states)
+        checks |= consistency.asked(scene, self.asked(trace, scene), states) | self.energy(case, states)
+        outcome = Outcome(
+            results, states, branch.marked, branch.phases, warnings, tables=tables, moves=moves, consistency=checks
+        )
         return self.finish(outcome, scene, settings)
+
+    def asked(self, trace: Trace, scene: Scene) -> Sequence[tuple[float, float]]:
+        """Forces [FU] that the scene asks for, each with that of the state that has it."""
+        return ()
+
+    def energy(self, case: Reduction, states: Sequence[State]) -> dict[str, Agreement]:
+        """The check of the energy, of a contact on a plane along its whole path."""
+        return consistency.energy(case) if case.scene.is_stepped and case.scene.is_modelled else {}
 
     def _driven(self, context: RunContext, case: Reduction) -> tuple[ContactBranch, Trace]:
         """The script on a new contact, and its trace."""

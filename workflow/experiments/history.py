@@ -80,6 +80,14 @@ class HistoryExperiment(Scripted[History]):
         """Whether a change of the velocity needs a jump of the force."""
         return scene.viscoelasticity is not None and scene.viscoelasticity.resists_jumps
 
+    def asked(self, trace: Trace, scene: Scene) -> Sequence[tuple[float, float]]:
+        """The force of each load step."""
+        given = self.given(scene)
+        if not given.force:
+            return ()
+        wanted = np.interp(trace.time, given.times, [point.force for point in given.force])
+        return list(zip(wanted.tolist(), trace.force.tolist(), strict=True))
+
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
         """The time of each state, and why a number is missing."""
         found, words = {"contact_time", "dissipated_energy"} - outcome.results.keys(), ""

@@ -2,25 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.polynomial import lowest_minimum, through, value
+from contact1d.workflow.continuation import consistency
+from contact1d.workflow.continuation.budget import Reduction
 from contact1d.workflow.continuation.driver import Driver
-from contact1d.workflow.continuation.outcome import Outcome, Reading
+from contact1d.workflow.continuation.outcome import Agreement, Outcome, Reading
+from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.deck.steps import Fly, Launch, Phase
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
 from contact1d.workflow.experiments.history import lost
-from contact1d.workflow.model.reduced import FLIGHT, impact, reduced, stretch
+from contact1d.workflow.model.reduced import FLIGHT, Path, impact, reduced, stretch
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Impact, Plate, Scene
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH, NUMBER
 
 Array = NDArray[np.float64]
+FINER = 4
+"""Positions for each state of the path along which the contact's energy is followed."""
 NEAR = 2
 """States on both sides of a maximum that its polynomial goes through."""
 
@@ -60,6 +65,27 @@ class ImpactExperiment(Scripted[Impact]):
             "peak_contact_radius": Reading(widest, LENGTH),
         }
         return found | ({"contact_time": lost(trace)} if parted else {})
+
+    def energy(self, case: Reduction, states: Sequence[State]) -> dict[str, Agreement]:
+        """The kinetic energy that is gone, beside what the contact stores and loses along the path of the body.
+
+        Between two states it is the cubic of their displacements and velocities.
+        """
+        velocity, mass = self.given(case.scene).velocity, case.scene.the(Plate).mass
+        assert mass != "auto"
+        if not case.scene.is_modelled:
+            return {}
+        from scipy.interpolate import CubicHermiteSpline
+
+        step = case.settings.motion.time_step
+        time = np.asarray([0.0, *(state.step * step for state in states)])
+        moved = CubicHermiteSpline(
+            time, [0.0, *(state.displacement for state in states)], [velocity, *(state.plate_velocity for state in states)]
+        )
+        dense = np.interp(np.arange(0.0, len(time) - 1 + 1e-9, 1.0 / FINER), np.arange(len(time)), time)
+        path = Path(moved(dense), np.zeros_like(dense), dense, moved(dense, 1))
+        first, left = (0.5 * mass * one**2 for one in (velocity, states[-1].plate_velocity))
+        return consistency.energy(case, (path, first, first - left))
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
         """The time of each state."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import ClassVar
 
@@ -87,6 +87,10 @@ class LoadExperiment(Scripted[Load]):
                 errors = {"solver": off / area}
                 found["mean_pressure"] = Reading(carried / area, MEAN_PRESSURE, errors, prescribed=force == 0.0)
         return found
+
+    def asked(self, trace: Trace, scene: Scene) -> Sequence[tuple[float, float]]:
+        """The load."""
+        return [(self.given(scene).force, float(trace.force[-1]))]
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The schedule by the model."""

@@ -11,6 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from contact1d.analysis.curve_marks import closes, work_of
+from contact1d.workflow.continuation import consistency
 from contact1d.workflow.continuation.budget import ForceErrors, Reduction, budgeted, force_errors
 from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.context import RunContext
@@ -19,6 +20,7 @@ from contact1d.workflow.continuation.marks import unloading
 from contact1d.workflow.continuation.model_branch import UNSEEN
 from contact1d.workflow.continuation.outcome import LOSSES, Outcome, Reading, Result
 from contact1d.workflow.continuation.state import State
+from contact1d.workflow.continuation.stepped import by_model
 from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import doubts, require_trust
 from contact1d.workflow.deck.steps import Displace, DisplaceInTime, Phase, Row, displacements
@@ -66,7 +68,8 @@ class PathExperiment(Scripted[Path]):
         results = budgeted(case, trace, errors, sampled=not self.is_statistical, repeated=repeated)
         warnings = self._missing(results, case, phases) | doubts(scene, settings, tuple(reported))
         warnings |= _buckling(trace, other, settings)
-        return Outcome(results, tuple(reported), ends, phases, warnings, moves=case.moves)
+        checks = consistency.plan(scene, states, by_model(scene, case.model, states)) | self.energy(case, states)
+        return Outcome(results, tuple(reported), ends, phases, warnings, moves=case.moves, consistency=checks)
 
     def states(self, contact: Contact, positions: Positions) -> list[State]:
         """A state at each of the positions; in time when particles are at rest."""

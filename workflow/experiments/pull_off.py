@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -72,6 +72,10 @@ class PullOffExperiment(Scripted[PullOff]):
         if len(falls) > 1:
             found["adhesion_force_first"] = _marks(falls[0], scene, settings, preload)["adhesion_force"]
         return found
+
+    def asked(self, trace: Trace, scene: Scene) -> Sequence[tuple[float, float]]:
+        """The preload, of each cycle."""
+        return [(self.given(scene).preload, float(leg.force[-1])) for leg in trace.phases("loading").legs]
 
     def tables(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Mapping[str, tuple[float, ...]]]:
         """cycles: the force maximum of each."""

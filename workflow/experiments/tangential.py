@@ -74,7 +74,15 @@ class TangentialExperiment(Scripted[Tangential]):
         warnings = doubts(scene, settings, tuple(reported))
         farthest = int(np.argmax([abs(row.position) for row in kept]))
         marked = {"farthest": reported[farthest], "final": reported[-1]}
-        return Outcome(results, tuple(reported), marked, phases, warnings, columns=_columns(kept), moves=case.moves)
+        path = Path(trace.displacement, trace.along, trace.time)
+        checks = consistency.plan(scene, states, case.model.follow(path).total) if scene.is_modelled else {}
+        checks |= self.energy(case, states)
+        loads = self.given(scene).normal_forces()
+        checks |= consistency.asked(scene, list(zip(loads, (row.normal for row in kept), strict=False)), states)
+        columns = _columns(kept)
+        return Outcome(
+            results, tuple(reported), marked, phases, warnings, columns, moves=case.moves, consistency=checks
+        )
 
     def script(self, branch: Driver, scene: Scene) -> None:
         """The stops of the model's particles, those that change nothing left out."""

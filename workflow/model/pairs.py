@@ -413,9 +413,13 @@ def _row_over(law: DoubleExponential, spacing: float, cutoff: float, points: int
     return r, force
 
 
+TOUCHING, DECADES = 1e-16, 60
+"""Overlap over the largest one up to which that of a spring on a plane keeps its digits, and over how many gaps."""
+
+
 @lru_cache(maxsize=16)  # as particles_estimate
 def plane_estimate(profile: Profile, spacing: float, stiffness: float) -> ContactEstimate:
     """The predictor for one chain on a rigid plane: one-sided springs `stiffness` [FU/LU]."""
     deepest = 1e6 * spacing
-    gap = np.asarray([-deepest, 0.0])
+    gap = np.append(-np.geomspace(deepest, TOUCHING * deepest, DECADES), 0.0)  # straight lines keep their digits
     return ContactEstimate(gap, -stiffness * gap, 0.0, profile, spacing, stiffness)

@@ -13,6 +13,7 @@ depends on it: it is a predictor, and it gives the discretisation error (`shifte
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -48,6 +49,8 @@ SIDES, LOOKS = np.asarray([-0.5, -0.1, -0.01, -1e-4, 0.0, 1e-4, 0.01, 0.1, 0.5])
 """Looks for where a force is carried, each beside the secant's place by so much of the bracket, and how many."""
 NEAREST = 1e-9
 """Distance from the limit point, over that to the largest displacement, from which positions are examined."""
+JUMPS = 1e-6
+"""Least overlap at an edge over the displacement that makes a jump there: less is round-off of the edge."""
 TOUCH = 1e-9
 """Distance over the spacing at which bodies touch: round-off of a displacement of 0."""
 
@@ -113,14 +116,15 @@ class Followed:
         total: force of all, (m,) [FU].
         force: of each at one of the displacements, by its number, (n,) [FU].
         shear: the same along x; None where nothing is prescribed there.
-        zone: a and c of an attraction with a range, (m,) [LU]; None of others.
+        zone: a and c [LU], and the jump of the line load at a [FU/LU], (m,), see `ZonedProfile`; None where particles
+            tell where they end.
     """
 
     x: Array
     total: Array
     force: Callable[[int], Array]
     shear: Callable[[int], Array] | None = None
-    zone: tuple[Array, Array] | None = None
+    zone: tuple[Array, Array, Array] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,6 +161,13 @@ class Reduced(ABC):
     @abstractmethod
     def apart(self) -> float:
         """Displacement [LU] below which nothing is felt."""
+
+    def energies(self, path: Path) -> tuple[float, float] | None:
+        """What springs and surfaces store at the end of a path on a rigid plane, and what was lost on it [FU·LU].
+
+        Found without a force. None where this is not known.
+        """
+        return None
 
     def carrying(self, times: Array, forces: Array) -> tuple[Array, Array | None]:
         """Displacements [LU] of load steps at times (m,) [TU] that carry forces (m,) [FU] ≥ 0; velocities, see `Path`."""
@@ -304,6 +315,12 @@ class Springs(Reduced):
 
         return Followed(self.x, total, force)
 
+    def energies(self, path: Path) -> tuple[float, float]:
+        """½ k Σ u²; nothing is lost."""
+        heights, own = self.heights
+        pressed = np.maximum(path.displacement[-1] - heights, 0.0)
+        return 0.5 * self.estimate.stiffness * float(pressed**2 @ np.bincount(own)), 0.0
+
     def _forces(self, gaps: Array, joined: NDArray[np.bool_]) -> Array:
         estimate = self.estimate
         inner = np.interp(gaps, estimate.gap, estimate.force, right=0.0)
@@ -354,13 +371,30 @@ class AdheringCells(Reduced):
         """There, and at touch."""
         return (self.apart, 0.0)
 
-    def follow(self, path: Path) -> Followed:
-        """Nothing is felt before touch; see `Reduced.follow`."""
-        displacements = path.displacement
+    def _holds(self, displacements: Array) -> NDArray[np.bool_]:
+        """Whether there is a contact at each of the displacements of a path, (m,)."""
         held, now, apart = np.zeros(displacements.size, dtype=bool), False, self.apart
         for i, displacement in enumerate(displacements.tolist()):
             now = displacement >= -TOUCH * self.estimate.spacing or (now and displacement >= apart)
             held[i] = now
+        return held
+
+    def energies(self, path: Path) -> tuple[float, float]:
+        """U(d, a) of JKR; what it jumps by where the contact is made or lost."""
+        d, held = path.displacement, self._holds(path.displacement)
+
+        def energy(state: int) -> float:
+            if state < 0 or not held[state]:
+                return 0.0
+            return self.estimate.energy(float(d[state]), float(self.estimate.radii(d[state : state + 1])[0])) or 0.0
+
+        jumps = np.flatnonzero(np.diff(held, prepend=False)).tolist()
+        return energy(d.size - 1), sum(energy(at - 1) - energy(at) for at in jumps)
+
+    def follow(self, path: Path) -> Followed:
+        """Nothing is felt before touch; see `Reduced.follow`."""
+        displacements = path.displacement
+        held = self._holds(displacements)
         total = np.where(held, self.held(displacements), 0.0)
 
         def force(state: int) -> Array:
@@ -429,12 +463,12 @@ class CohesiveCells(Reduced):
     def follow(self, path: Path) -> Followed:
         """From limit point to limit point of the curve; see `Reduced.follow`."""
         estimate = self.estimate
-        zone = estimate.at(estimate.places(path.displacement))
-        zone = replace(zone, displacement=path.displacement)
+        zone = estimate.solved(path.displacement, estimate.places(path.displacement))
         cells = estimate.zones(self.x)
         return Followed(
-            self.x, zone.force, lambda state: estimate.loads(cells, zone, state), zone=(zone.edge, zone.reach)
-        )
+            self.x, zone.force, lambda state: estimate.loads(cells, zone, state),
+            zone=(zone.edge, zone.reach, np.zeros_like(zone.edge)),
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -462,7 +496,9 @@ class RatedCells(Reduced):
 
     def held(self, displacements: Array) -> Array:
         """F [FU] at rest."""
-        return self.estimate.contact_forces(displacements)
+        edge = self.estimate.radii(displacements)
+        forces = self.estimate.law.forces(edge, np.zeros_like(edge), displacements)
+        return np.where(displacements >= self.apart, forces, 0.0)
 
     def zone(self, path: Path) -> Zone:
         """The edge and F of each state."""
@@ -470,12 +506,25 @@ class RatedCells(Reduced):
         none = np.zeros_like(edge)
         return Zone(edge, edge, path.displacement, self.estimate.law.forces(edge, none, path.displacement))
 
+    def energies(self, path: Path) -> tuple[float, float]:
+        """U(d, a) of JKR; ∫ (G − W) 2πa da where the edge recedes, and what U jumps by at touch and with the last of it."""
+        estimate, zone = self.estimate, self.zone(path)
+        a, d = zone.edge, zone.displacement
+        opened = estimate.profile.height(a) - d
+        excess = estimate.modulus * opened**2 - 2.0 * math.pi * a * estimate.work
+        fell = np.minimum(np.diff(a), 0.0) * (a[1:] > 0.0)
+        lost = -float(np.sum(0.5 * (excess[1:] + excess[:-1]) * fell))
+        energies = [0.0, *(estimate.energy(float(d[i]), float(a[i])) or 0.0 for i in range(a.size))]
+        jumps = np.flatnonzero(np.diff(a > 0.0, prepend=False))
+        return energies[-1], lost + sum(energies[at] - energies[at + 1] for at in jumps.tolist())
+
     def follow(self, path: Path) -> Followed:
         """See `Reduced.follow`."""
         zone, cells = self.zone(path), self.estimate.zones(self.x)
         return Followed(
-            self.x, zone.force, lambda state: self.estimate.loads(cells, zone, state), zone=(zone.edge, zone.reach)
-        )
+            self.x, zone.force, lambda state: self.estimate.loads(cells, zone, state),
+            zone=(zone.edge, zone.reach, self.estimate.modulus * (zone.displacement - self.estimate.profile.height(zone.edge))),
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -491,21 +540,32 @@ class Sliding(Springs):
         heights = np.asarray(self.estimate.profile.height(np.abs(self.x)), dtype=np.float64)
         return replace(self.sliders, x=self.x, heights=heights)
 
+    def energies(self, path: Path) -> tuple[float, float]:
+        """½ Σ (k u² + s²/k_t); the work of slip."""
+        forces, lost = self._slid(path)
+        return super().energies(path)[0] + 0.5 * float(np.sum(forces[-1] ** 2)) / self.chain.tangential, lost
+
     def follow(self, path: Path) -> Followed:
         """Straight from one state to the next; see `Reduced.follow`."""
+        forces, _ = self._slid(path)
+        normal = [self.chain.normal_forces(depth) for depth in path.displacement.tolist()]
+        total = np.asarray([each.sum() for each in normal])
+        return Followed(self.x, total, normal.__getitem__, lambda state: -forces[state])
+
+    def _slid(self, path: Path) -> tuple[list[Array], float]:
+        """Tangential forces of the particles in each state [FU], and what slip has lost [FU·LU]."""
         chain, stops = self.chain, list(zip(path.displacement.tolist(), path.along.tolist(), strict=True))
         force = np.zeros_like(chain.heights)
-        shears, normal = [force], [chain.normal_forces(stops[0][0])]
+        shears, lost = [force], 0.0
         for (before, start), (after, position) in pairwise(stops):
             old, new = (np.maximum(depth - chain.heights, 0.0) for depth in (before, after))
             touched = np.where(old > 0.0, 1.0, 0.0) if after == before else (new - old) / (after - before)
             limit, next_limit = (chain.coefficient * chain.normal * overlap for overlap in (old, new))
             pushed = chain.tangential * (position - start) * touched
-            force = slip(force, pushed, limit, next_limit, chain.tangential).force
+            row = slip(force, pushed, limit, next_limit, chain.tangential)
+            force, lost = row.force, lost + float(row.work.sum())
             shears.append(force)
-            normal.append(chain.normal * new)
-        total = np.asarray([forces.sum() for forces in normal])
-        return Followed(self.x, total, normal.__getitem__, lambda state: -shears[state])
+        return shears, lost
 
 
 @dataclass(frozen=True, eq=False)
@@ -588,13 +648,26 @@ class RelaxingSprings(Reduced):
             memory.go(place, time, velocity)
         each *= self.estimate.stiffness
         edge = self._edges(margin)
-        return Followed(self.x, each @ counts, lambda state: each[state][own], zone=(edge, edge))
+        zone = (edge, edge, self._jumps(edge, path.displacement, columns[2]))
+        return Followed(self.x, each @ counts, lambda state: each[state][own], zone=zone)
 
-    def edges(self, path: Path) -> Array:
-        """a [LU] of each state, (m,)."""
-        zone = self.follow(path).zone
-        assert zone is not None
-        return zone[0]
+    def energies(self, path: Path) -> tuple[float, float]:
+        """Of springs and arms, those included whose particles have left; what dashpots lose."""
+        cells, _, counts = self._cells
+        memory, lost = Memory(self.law, cells), 0.0
+        columns = (path.displacement, self.spent(path.time), self.velocities(path))
+        for place, time, velocity in zip(*(one.tolist() for one in columns), strict=True):
+            lost += float(memory.losing(place, time, velocity) @ counts)
+            memory.go(place, time, velocity)
+        stiffness = self.estimate.stiffness
+        return stiffness * float(memory.stored @ counts), stiffness * lost
+
+    def _jumps(self, edge: Array, displacement: Array, velocity: Array) -> Array:
+        """The line load at an edge [FU/LU]: what dashpots push as long as it does not recede; it recedes where that is 0."""
+        retarded, estimate = self.law.retardation_time or 0.0, self.estimate
+        push = displacement - estimate.profile.height(edge) + retarded * velocity
+        grows = (edge > 0.0) & (velocity >= 0.0) & (push > JUMPS * np.abs(displacement)) & (retarded > 0.0)
+        return np.where(grows, estimate.stiffness / estimate.spacing * push, 0.0)
 
     @cached_property
     def _places(self) -> tuple[Array, Array]:

@@ -32,6 +32,8 @@ from contact1d.workflow.scene import Viscoelasticity
 Array = NDArray[np.float64]
 NARROWEST = 1e-12
 """Height over which a cell comes to touch at once, over the spacing: no formula may divide by 0."""
+SHORT = 1e-4
+"""Time over that of an arm in which its length is straight: the digits of an exponential are lost."""
 STAGE = 1.0 - 0.5**0.5
 """Part of a step at which the first of its two stages is."""
 SUDDEN, MOMENTS = 1e-6, 200
@@ -108,8 +110,12 @@ class Memory:
             return response * np.maximum(overlap - free, 0.0), overlap - free
         push, rise = overlap + drag, self._cells.rises
         margin = np.minimum(overlap - free, push)
-        part = np.clip((rise + margin) / self._cells.widths, 0.0, 1.0)
+        part = self._part(margin)
         return part * (push + (1.0 - part) * rise), margin
+
+    def _part(self, margin: Array) -> Array:
+        """φ of the module's docstring, (n,)."""
+        return np.clip((self._cells.rises + margin) / self._cells.widths, 0.0, 1.0)
 
     def under(self, load: float, before: float, counts: Array, time: float) -> tuple[float, float]:
         """Displacement [LU] and velocity [LU/TU] after a time [TU] in which a load ≥ 0 over stiffness [LU] changes evenly.
@@ -164,6 +170,33 @@ class Memory:
             after = np.maximum(place - self._cells.heights, free)
             self.arms = decay[:, None] * self.arms + gain[:, None] * (after - self.surface)
         self.place, self.surface = place, after
+
+
+    @property
+    def stored(self) -> Array:
+        """½ (part u² + Σ share_j s_j²), (n,) [LU²]: energies over the stiffness."""
+        return np.asarray(0.5 * (self._lasting * self.surface**2 + self._share @ self.arms**2))
+
+    def losing(self, place: float, time: float, velocity: float) -> Array:
+        """What dashpots lose as `go` does that, over the stiffness, (n,) [LU²].
+
+        Of an arm ∫ share s²/τ dt with s = α + (s₀ − α) e^(−t/τ), α = u′τ. Beside a spring T ∫ u′² dt: of the part of a
+        cell that touches at the velocity of the body, of a free surface what its spring gives.
+        """
+        _, free, decay, gain = self._ahead(time)
+        if self._retarded:
+            margins = [self._forces(at, self._retarded * velocity, 1.0, free)[1] for at in (self.place, place)]
+            before, part = (self._part(margin) for margin in margins)
+            recovered = self.surface * np.exp(-time / self._retarded)
+            given = np.where(margins[1] > 0.0, 0.0, 0.5 * (self.surface**2 - recovered**2))
+            return np.asarray(self._retarded * velocity**2 * time * 0.5 * (before + part) + given)
+        age = (time / self._time)[:, None]
+        steady = (np.maximum(place - self._cells.heights, free) - self.surface) / age
+        start, faded = self.arms - steady, gain[:, None] * age
+        exact = steady**2 * age + 2.0 * steady * start * faded + 0.5 * start**2 * faded * (1.0 + decay[:, None])
+        after = decay[:, None] * self.arms + gain[:, None] * steady * age
+        short = age / 3.0 * (self.arms**2 + self.arms * after + after**2)
+        return np.asarray(self._share @ np.where(age < SHORT, short, exact))
 
 
 def creep(law: Viscoelasticity | None, time: float) -> float:

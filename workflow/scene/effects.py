@@ -65,10 +65,14 @@ class Effect(Table):
         excludes: effects that it cannot have beside it, and why.
         needs_bonds: it acts on particles apart from their body, so that on a rigid plane each has a spring of its own;
             where no effect does, particles are fixed in their body and the plane has their springs.
+        is_modelled: the reduced model has it, so that a plan on a rigid plane is that of the deck.
+        keeps_springs: the line load inside of a contact stays that of linear springs, q = E* (const − g).
     """
 
     timed: ClassVar[bool] = False
     needs_bonds: ClassVar[bool] = False
+    is_modelled: ClassVar[bool] = False
+    keeps_springs: ClassVar[bool] = False
     how: ClassVar[str] = ""
     excludes: ClassVar[Mapping[str, str]] = {}
 
@@ -88,6 +92,8 @@ class Effect(Table):
 
 class Interaction(Effect):
     """Effect: V(r) = A exp(−r/a) − B exp(−r/b) between opposite bodies."""
+
+    is_modelled = keeps_springs = True
 
     how = "[interaction] with its repulsion"
 
@@ -116,11 +122,15 @@ class Neighbours(Effect):
 class Horizontal(Effect):
     """Effect: particles may also move along x. It has no keys."""
 
+    is_modelled = keeps_springs = True
+
     how = "[horizontal], an empty table: without it particles cannot follow a plate along x"
 
 
 class Friction(Effect):
     """Effect: Coulomb's friction of every particle on a rigid plane."""
+
+    is_modelled = keeps_springs = True
 
     how = "[friction] with its coefficient"
 
@@ -139,6 +149,8 @@ class Rate(Table):
 
 class Adhesion(Effect):
     """Effect: adhesion to a rigid plane, JKR's, or with a range that of Maugis and Dugdale. W or γ is given."""
+
+    is_modelled = keeps_springs = True
 
     one_of = (
         (("work_of_adhesion", "surface_energy"), "give W, or with surface_energy γ of one side, half of it; not both"),
@@ -185,6 +197,8 @@ class Viscoelasticity(Effect):
     Poisson's ratio is constant, so that each spring has the function of the material.
     """
 
+    is_modelled = True
+
     one_of = ((("terms", "retardation_time"), "give the terms of a Prony series, or one retardation_time; not both"),)
     how = "[viscoelasticity] with terms = [{ share, time }, …]"
     excludes: ClassVar[Mapping[str, str]] = {
@@ -219,6 +233,8 @@ class Viscoelasticity(Effect):
 
 class Damping(Effect):
     """Effect: viscous damping of particles."""
+
+    is_modelled = keeps_springs = True
 
     timed = True
     how = '[damping] with coefficient = "auto"'
@@ -258,6 +274,8 @@ Free = Annotated[Listed[Literal["x", "z"]], AfterValidator(_free_directions)]
 class Plate(Effect):
     """Effect: the upper plate is a rigid body with inertia, loaded by a force. Absent: its position is prescribed."""
 
+    is_modelled = keeps_springs = True
+
     timed = True
     how = '[plate] with mass = "auto"'
 
@@ -271,6 +289,8 @@ class Plate(Effect):
 
 class Cantilever(Effect):
     """Effect: the plate is pulled along x through a spring whose far end moves steadily."""
+
+    is_modelled = keeps_springs = True
 
     timed = True
     how = "[cantilever] with stiffness and velocity"

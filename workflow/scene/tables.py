@@ -332,6 +332,16 @@ class Tables(Table):
         """These effects."""
         return tuple(getattr(self, name) for name in self.effects)
 
+    @property
+    def is_modelled(self) -> bool:
+        """Whether the reduced model has all of them."""
+        return all(effect.is_modelled for effect in self.present)
+
+    @property
+    def keeps_springs(self) -> bool:
+        """Whether the line load inside of a contact is that of linear springs, whatever happens at its edge."""
+        return all(effect.keeps_springs for effect in self.present)
+
     def the(self, kind: type[E]) -> E:
         """The effect of this kind, which a rule or the experiment needs."""
         return next(effect for effect in self.present if isinstance(effect, kind))

@@ -1,0 +1,136 @@
+"""Whether a run contradicts itself: each check compares two numbers that are found in ways that share nothing.
+
+    plan      forces of LAMMPS and of the reduced model along the same load steps on a rigid plane
+    asked     the force that the scene asks for and that of the state that has it
+    balance   the force of the contact and what LAMMPS adds up on the plate
+    energy    the work of the plate, and what springs store and contacts, dashpots and sliders lose
+
+The pressure of the body and closed forms are checked where these are made (`body.consistency`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from contact1d.workflow.continuation.budget import Reduction
+from contact1d.workflow.continuation.model_branch import ModelBranch
+from contact1d.workflow.continuation.outcome import Agreement
+from contact1d.workflow.continuation.state import State
+from contact1d.workflow.model.reduced import Array, Path, Reduced, legs
+from contact1d.workflow.scene import Scene
+
+PLAN, ABSOLUTE = 1e-9, 1e-5
+"""Difference of two forces of a load step over the sum of all loads in it; share of the largest sum of the run that is
+added to that, for a step that carries nothing. Measured on right runs: 4e-14 to 8e-11."""
+AT_REST, MOVING = 1e-8, 1e-4
+"""Force that is missing, over the forces of a state in equilibrium, and over those of a motion."""
+ENERGY, LEAST_LOSS = 1e-3, 0.05
+"""Energy that is missing over what is lost, or over all work where that is less than this share of it."""
+DENSE, EACH_LEG, BESIDE, NEAREST = 2, 400, 60, 1e-9
+"""Positions in a step of a history, and in a leg of other paths, between which forces are straight lines; on both sides of
+a jump, the nearest of them over the spacing."""
+
+
+def plan(scene: Scene, states: Sequence[State], forces: Array | None) -> dict[str, Agreement]:
+    """LAMMPS's forces beside those of the model, (m,) [FU], of all load steps in order; nothing without these.
+
+    Each may be off by the round-off of the particles that carry.
+    """
+    if forces is None or not states:
+        return {}
+    spacing = scene.bodies.own_spacing
+    sizes = np.asarray([spacing * float(np.abs(state.profile.pressure).sum()) for state in states])
+    counts = np.asarray([np.count_nonzero(state.profile.pressure) for state in states])
+    measured, residual = (np.asarray([getattr(state, name) for state in states]) for name in ("force", "residual"))
+    missed = np.maximum(np.abs(measured - forces) - counts * residual, 0.0)
+    off = missed / (sizes + ABSOLUTE * max(float(sizes.max()), np.finfo(float).tiny))
+    worst = int(off.argmax())
+    words = (
+        f"LAMMPS has {measured[worst]:.10g} FU at displacement {states[worst].displacement:.6g} LU (phase "
+        f"{states[worst].phase}), and the model of the same contact {forces[worst]:.10g} FU"
+    )
+    return {"plan": Agreement(float(off[worst]), PLAN, words)}
+
+
+def asked(scene: Scene, pairs: Sequence[tuple[float, float]], states: Sequence[State]) -> dict[str, Agreement]:
+    """Forces [FU] that the scene asks for beside those of the states that have them; a search stops within a tolerance."""
+    if not pairs:
+        return {}
+    largest = max([abs(state.force) for state in states] + [abs(wanted) for wanted, _ in pairs])
+    wanted, found = max(pairs, key=lambda pair: abs(pair[0] - pair[1]))
+    words = f"the scene asks for {wanted:.10g} FU, and the state that has it carries {found:.10g} FU"
+    allowed = AT_REST if scene.is_stepped else scene.accuracy.tolerance
+    return {"asked": Agreement(abs(wanted - found) / largest if largest else 0.0, allowed, words)}
+
+
+def balance(states: Sequence[State]) -> dict[str, Agreement]:
+    """The contact's force on the plate beside what LAMMPS adds up on it, in states that tell."""
+    told = [state for state in states if state.missing is not None]
+    if not told:
+        return {}
+    size = max(abs(state.force) for state in states)
+    worst = max(told, key=lambda state: abs(state.missing or 0.0))
+    words = (
+        f"the contact has {worst.force:.10g} FU at displacement {worst.displacement:.6g} LU (phase {worst.phase}), and "
+        f"LAMMPS's sum on the plate differs by {worst.missing:.3g} FU from that of the contact, the load and the drag"
+    )
+    return {"balance": Agreement(abs(worst.missing or 0.0) / size if size else 0.0, MOVING, words)}
+
+
+def energy(case: Reduction, motion: tuple[Path, float, float] | None = None) -> dict[str, Agreement]:
+    """Work beside what is stored and lost; nothing where the model of a contact does not tell.
+
+    `motion`: of a body that flies, its path in LAMMPS, its first kinetic energy and what is gone of it [FU·LU].
+    """
+    found = _missing(case, case.model, 1, motion)
+    if found is None:
+        return {}
+    missing, work, spent, size = found
+    allowed = ENERGY
+    if abs(missing) > ENERGY * size and (finer := _missing(case, case.model.resized(0.5), 2, motion)):
+        allowed += 2.0 * abs(missing / size - finer[0] / finer[3])  # of cells and steps
+    words = f"the work of the plate is {work:.6g} FU·LU, and {spent:.6g} FU·LU are stored or lost"
+    return {"energy": Agreement(abs(missing) / size if size else 0.0, allowed, words)}
+
+
+def _missing(
+    case: Reduction, model: Reduced, finer: int, motion: tuple[Path, float, float] | None
+) -> tuple[float, float, float, float] | None:
+    """Work that is neither stored nor lost, the work, what is stored and lost, and the size of it [FU·LU]."""
+    path = _dense(case, model, finer) if motion is None else motion[0]
+    if (found := model.energies(path)) is None:
+        return None
+    stored, lost = found
+    if motion is None:
+        followed = model.follow(path)
+        parts = 0.5 * (followed.total[1:] + followed.total[:-1]) * np.diff(path.displacement)
+        if followed.shear is not None:
+            shears = np.asarray([-followed.shear(state).sum() for state in range(path.along.size)])
+            parts += 0.5 * (shears[1:] + shears[:-1]) * np.diff(path.along)
+        work, whole = float(parts.sum()), float(np.abs(parts).sum())
+    else:
+        whole, work = motion[1:]
+        return work - stored - lost, work, stored + lost, whole
+    size = lost if lost > LEAST_LOSS * whole else whole
+    return work - stored - lost, work, stored + lost, max(size, abs(stored))
+
+
+def _dense(case: Reduction, model: Reduced, finer: int) -> Path:
+    """The path of the script, with as many states as the work along it needs."""
+    branch = ModelBranch(case.scene, case.settings, model, DENSE * finer, 0.0)
+    case.script(branch)
+    path = branch.path
+    if path.time.any() or path.along.any():
+        return path
+    ends = [path.displacement[:1]]
+    near = model.estimate.spacing * np.geomspace(NEAREST, 1.0, BESIDE)
+    beside = np.asarray([jump + side for jump in model.jumps for side in (-near, near)]).ravel()
+    for leg in legs(path.displacement):
+        start, end = ends[-1][-1], path.displacement[leg.stop - 1]
+        between = beside[(beside > min(start, end)) & (beside < max(start, end))]
+        places = np.unique(np.concatenate([np.linspace(start, end, EACH_LEG * finer + 1), between]))
+        ends.append(places[places != start] if end > start else places[places != start][::-1])
+    places = np.concatenate(ends)
+    return Path(places, np.zeros_like(places), np.zeros_like(places))
