@@ -44,6 +44,8 @@ AT_ONCE = 100
 """Distances from the axis that are worked out at once, to bound the memory."""
 HALVINGS, NODES = 20, 16
 """Intervals of an integral that halve towards each end, and Gauss's positions in each: to 1e-12 of it."""
+LEAST = 0.5**HALVINGS
+"""Width of the first of them over that of all, at least."""
 EPSILON = 1e-9
 """Of a power above 1, whose integral has a bound."""
 Body = Callable[[Array], Array]
@@ -114,10 +116,11 @@ class LineLoad:
         total[on] += np.sum(c_0[1:] * np.diff(np.log(self.breaks[1:])))
         found = (self.at_edge / root[:, -1] - total) / np.pi
         if self.body is not None:
-            beyond = np.searchsorted(np.sort(self.kinks), r[:, 0], side="right")
+            kinks = sorted(kink for kink in self.kinks if kink < self.edge)
+            beyond = np.searchsorted(kinks, r[:, 0], side="right")
             for count in np.unique(beyond):
-                own, kinks = beyond == count, [kink for kink in sorted(self.kinks)[count:] if kink < self.edge]
-                found[own] += _of_body(self.body, r[own, 0], [*kinks, self.edge])
+                own, before = beyond == count, kinks[count - 1] if count else 0.0
+                found[own] += _of_body(self.body, r[own, 0], [*kinks[count:], self.edge], before)
         if self.has_apex:
             found[on] = np.inf if self.apex else np.copysign(np.inf, -c_0[0])
         return np.asarray(found)
@@ -132,38 +135,45 @@ def _differences() -> Array:
     return np.asarray(weight[:, None] * np.linalg.solve(powers.T, slopes.T).T)
 
 
-@cache
-def _graded() -> tuple[Array, Array]:
-    """Middles and half widths of intervals of 0…1 that halve towards both ends; the first one is left out."""
-    down = 0.5 ** np.arange(HALVINGS, 0.0, -1.0)
-    ends = np.concatenate([down, 1.0 - down[-2::-1], [1.0]])
-    return 0.5 * (ends[1:] + ends[:-1]), 0.5 * np.diff(ends)
+def _graded(start: Array, end: Array, near: Array) -> Array:
+    """Ends of intervals from `start` (…) to `end` that halve towards both; the first is `near` at most, (…, m)."""
+    share = np.arange(HALVINGS + 1) / HALVINGS
+    half = 0.5 * (end - start)[..., None]
+    up = start[..., None] + near[..., None] * (half / near[..., None]) ** share
+    down = end[..., None] - half * 0.5 ** np.arange(1, HALVINGS + 1)
+    return np.concatenate([up, down, end[..., None]], axis=-1)
 
 
-def _of_body(body: Body, r: Array, places: Sequence[float]) -> Array:
-    """(1/π) ∫ dh/t at distances r, (n,), below all the places: kinks, and the edge; its remainder at 0 as a power of t."""
+def _of_body(body: Body, r: Array, places: Sequence[float], before: float) -> Array:
+    """(1/π) ∫ dh/t at distances r, (n,), below all the places: kinks, and the edge.
+
+    h is smooth in t up to √(r² − before²), of the kink before; on the axis the remainder at 0 is that of a power of t.
+    """
     node, _ = gauss(NODES)
-    middle, half = _graded()
     ends = np.stack([np.zeros_like(r), *(np.sqrt((place - r) * (place + r)) for place in places)], axis=1)
-    start, width = ends[:, :-1, None], np.diff(ends, axis=1)[:, :, None]
-    t = (start + width * middle)[..., None] + (width * half)[..., None] * node
+    width = np.diff(ends, axis=1)
+    smooth = 0.5 * np.sqrt((r - before) * (r + before))
+    near = np.maximum(np.minimum(np.append(smooth[:, None], 0.0 * width[:, 1:], axis=1), 0.5 * width), LEAST * width)
+    graded = _graded(ends[:, :-1], ends[:, 1:], near)
 
     def height(t: Array) -> Array:
         return body(np.hypot(r.reshape(-1, *(1,) * (t.ndim - 1)), t))
 
-    total = np.sum((height(t) @ _differences().T) / t, axis=(1, 2, 3))
+    def integral(low: Array, high: Array) -> Array:
+        t = 0.5 * ((low + high)[..., None] + (high - low)[..., None] * node)
+        return np.sum((height(t) @ _differences().T) / t, axis=-1)
+
+    total = np.sum(integral(graded[..., :-1], graded[..., 1:]), axis=(1, 2))
     # Up to the first interval of a piece h rises as a root at most, which 1/t knows nothing of but at the axis.
-    near = (start + width * (middle[:1] - half[:1]))[:, :, 0]
-    rise = height(near) - height(ends[:, :-1])
-    total += np.sum(rise[:, 1:] / near[:, 1:], axis=1)
-    ratio = np.divide(
-        height(2.0 * near[:, :1]) - height(ends[:, :1]),
-        rise[:, :1],
-        out=np.full_like(rise[:, :1], 4.0),
-        where=rise[:, :1] > 0.0,
-    )
-    power = np.maximum(np.log2(np.maximum(ratio, 1.0)), 1.0 + EPSILON)  # h − h(r) ∝ t^power
-    return np.asarray((total + (power / (power - 1.0) * rise[:, :1] / near[:, :1])[:, 0]) / np.pi)
+    first = graded[..., 0]
+    rise = height(first) - height(ends[:, :-1])
+    total += np.sum(rise[:, 1:] / first[:, 1:], axis=1)
+    start, up = first[:, 0], rise[:, 0]
+    twice = (height(2.0 * first[:, :1]) - height(ends[:, :1]))[:, 0]
+    ratio = np.divide(twice, up, out=np.full_like(up, 4.0), where=up > 0.0)
+    power = np.maximum(np.log2(np.maximum(ratio, 1.0)), 1.0 + EPSILON)  # h − h(0) ∝ t^power
+    inner = integral(ends[:, :1], first[:, :1])[:, 0]
+    return np.asarray((total + np.where(start <= smooth, inner, power / (power - 1.0) * up / start)) / np.pi)
 
 
 def line_load(

@@ -154,6 +154,17 @@ class Case:
         return punch, max(self.displacement or 0.0, 0.0) if self.force is None else self.force / punch.stiffness
 
 
+def _on_plane(case: Case) -> bool:
+    """Whether the springs of a chain on a plane are those of the method of dimensionality reduction alone."""
+    scene, adhesion = case.scene, case.scene.adhesion
+    known = scene.is_modelled and scene.bodies.lower == "rigid_plane" and scene.bodies.reduction == "mdr"
+    return known and scene.is_stepped and not (adhesion and (adhesion.rate or (adhesion.range and case.work)))
+
+
+def _never(case: Case) -> bool:
+    return False
+
+
 @dataclass(frozen=True)
 class ClosedForm:
     """One theory.
@@ -165,6 +176,7 @@ class ClosedForm:
         values: its predictions, by the names of results, in their model units, to compare the run with.
         pressure: p(r) [FU/LU²] at r [LU] in the reported state, if it predicts that.
         has_range: whether the predictions depend on the Tabor parameter.
+        is_exact: whether they are those of the chain of a case, but for its discretisation.
     """
 
     name: str
@@ -173,6 +185,7 @@ class ClosedForm:
     values: Callable[[Case], Values]
     pressure: Callable[[Case, Array], Array] | None = None
     has_range: bool = False
+    is_exact: Callable[[Case], bool] = _on_plane
 
 
 def applying(case: Case) -> list[ClosedForm]:
@@ -458,11 +471,12 @@ FORMS = (
                _adheres("circle", "a whole sphere that adheres, without a range"), _adhesive_values),
     ClosedForm("Kendall, flat punch", "K. Kendall, J. Phys. D 4 (1971) 1186",
                _adheres("flat_punch", "a flat punch that adheres, without a range"), _adhesive_punch_values),
-    ClosedForm("Maugis and Dugdale", MAUGIS, _with_a_range(True), _maugis_values, has_range=True),
-    ClosedForm("DMT", DMT, _with_a_range(False), _dmt_values),
-    ClosedForm("JKR", JKR, _by_tabor(Theory.JKR), _jkr_values),
-    ClosedForm("Maugis-Dugdale", MAUGIS, _by_tabor(Theory.MAUGIS), _maugis_values, has_range=True),
-    ClosedForm("DMT", DMT, _by_tabor(Theory.DMT), _dmt_values),
+    ClosedForm("Maugis and Dugdale", MAUGIS, _with_a_range(True), _maugis_values, has_range=True,
+               is_exact=lambda case: case.scene.adhesion is not None and bool(case.scene.adhesion.range)),
+    ClosedForm("DMT", DMT, _with_a_range(False), _dmt_values, is_exact=_never),
+    ClosedForm("JKR", JKR, _by_tabor(Theory.JKR), _jkr_values, is_exact=_never),
+    ClosedForm("Maugis-Dugdale", MAUGIS, _by_tabor(Theory.MAUGIS), _maugis_values, has_range=True, is_exact=_never),
+    ClosedForm("DMT", DMT, _by_tabor(Theory.DMT), _dmt_values, is_exact=_never),
     ClosedForm("Cattaneo and Mindlin", "C. Cattaneo 1938; R. D. Mindlin, H. Deresiewicz, J. Appl. Mech. 20 (1953) 327",
                drawn_along, _mindlin_values),
     ClosedForm("Ting", "T. C. T. Ting, J. Appl. Mech. 33 (1966) 845; loaded as by E. H. Lee, J. R. M. Radok 1960",

@@ -71,19 +71,22 @@ class BodyPressure:
         r: from 0 (under an apex, where p has no bound, from the first particle) to the last particle inside [LU].
         pressure: compression positive [FU/LU²].
         uncertainty: of it [FU/LU²].
+        doubt: of the force of the state, relative.
         contact_radius: of the body [LU]; where bodies attract, tension reaches beyond it.
         results: `central_pressure`, p(0), and `peak_pressure`, the largest one [FU/LU²]; without one that has no bound,
             as at a cone's tip, a punch's edge or a rim; with an infinite uncertainty where that is open.
-        force: ∫ p dA of the body [FU], a ring of attraction beyond the contact radius included.
+        force, size: ∫ p dA and ∫ |p| dA of the body [FU], a ring of attraction beyond the contact radius included.
         stiffness: dF/dd [FU/LU] of particles that are alone, whatever their springs; None of others.
     """
 
     r: Array
     pressure: Array
     uncertainty: Array
+    doubt: float
     contact_radius: float
     results: Mapping[str, Quantity]
     force: float
+    size: float
     stiffness: Quantity | None = None
 
 
@@ -134,7 +137,7 @@ def body_pressures(
             state = _Loaded(scene, profile, radius)
             share = of_radius if state.is_elastic and not scene.bodies.profile.has_edge else of_all
             if one := _pressure(state, share, given):
-                found[name] = one
+                found[name] = replace(one, doubt=of_all)
     return found
 
 
@@ -276,9 +279,10 @@ def _pressure(state: _Loaded, share: float, given: float) -> BodyPressure | None
         name: replace(one, uncertainty=one.uncertainty or float(error[place] + by_shape(read)))
         for name, (one, place, read) in results.items()
     }
-    total = _total(fine, state.shape.kinks, pulled) + _ring(scene, zone)
+    force, size = _total(fine, state.shape.kinks, pulled)
+    ring = _ring(scene, zone)
     return BodyPressure(
-        r, p, spread + by_shape(np.asarray), state.radius.value / state.wider, results, total, _stiffness(state, share)
+        r, p, error + by_shape(np.asarray), share, state.radius.value / state.wider, results, force + ring, size - ring, _stiffness(state, share)
     )
 
 
@@ -352,8 +356,8 @@ def _largest(
     return found
 
 
-def _total(fine: LineLoad, kinks: Sequence[float], pulled: Callable[[Array], Array]) -> float:
-    """∫ p dA [FU] over the contact by quadrature of p(r), r = a sin θ, between kinks."""
+def _total(fine: LineLoad, kinks: Sequence[float], pulled: Callable[[Array], Array]) -> tuple[float, float]:
+    """∫ p dA and ∫ |p| dA [FU] over the contact by quadrature of p(r), r = a sin θ, between kinks."""
     node, weight = gauss(ANGLES)
     share = 0.5 * (node + 1.0)
     ends = np.arcsin([0.0, *sorted(kink / fine.edge for kink in kinks if kink < fine.edge), 1.0])
@@ -361,8 +365,8 @@ def _total(fine: LineLoad, kinks: Sequence[float], pulled: Callable[[Array], Arr
     angle = (ends[:-1, None] + width * share * share * (3.0 - 2.0 * share)).ravel()  # dense at both ends of a piece
     step = (0.5 * width * weight * 6.0 * share * (1.0 - share)).ravel()
     r = fine.edge * np.sin(angle)
-    p = fine.pressure(r) - pulled(r)
-    return float(2.0 * np.pi * np.sum(p * r * fine.edge * np.cos(angle) * step))
+    each = 2.0 * np.pi * (fine.pressure(r) - pulled(r)) * r * fine.edge * np.cos(angle) * step
+    return float(each.sum()), float(np.abs(each).sum())
 
 
 def _ring(scene: Scene, zone: ZonedProfile | None) -> float:

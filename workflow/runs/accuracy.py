@@ -7,6 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from contact1d.workflow.body.consistency import closed_form, pressure
+from contact1d.workflow.body.traction import BodyPressure
 from contact1d.workflow.continuation.outcome import LATTICE, LOSSES, MODEL, Outcome, Result, in_words, unmet
 from contact1d.workflow.continuation.trust import UntrustedError
 from contact1d.workflow.experiments import kind_of
@@ -89,6 +91,22 @@ def require_results(scene: Scene, outcome: Outcome) -> None:
     main = main_results(scene, outcome.results)
     if main and not main.keys() - unknown(scene, outcome).keys():
         raise UntrustedError(accuracy_warnings(scene, outcome)["unknown"])
+
+
+def with_checks(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressure]) -> Outcome:
+    """The outcome with the checks of the body's results."""
+    checks = pressure(scene, outcome.marked, pressures) | closed_form(scene, reported(scene, outcome).exact)
+    return replace(outcome, consistency={**outcome.consistency, **checks})
+
+
+def require_consistency(outcome: Outcome) -> None:
+    """Raise UntrustedError where a run contradicts itself."""
+    for name, check in outcome.consistency.items():
+        if not check.holds:
+            raise UntrustedError(
+                f"the run contradicts itself ({name}): {check.words}, a relative difference of {check.difference:.2g} "
+                f"where {check.allowed:.2g} is allowed. This is an error of the program: please report the scene"
+            )
 
 
 def reported(scene: Scene, outcome: Outcome) -> Outcome:

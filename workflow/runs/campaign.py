@@ -25,7 +25,7 @@ from contact1d.workflow.experiments.spacing import with_spacing
 from contact1d.workflow.model.chain import MIX_UP, SettingsError, in_words, require_steps
 from contact1d.workflow.model.motion import require_way
 from contact1d.workflow.model.settings import Settings, settings_for
-from contact1d.workflow.runs.accuracy import reported, require_results
+from contact1d.workflow.runs.accuracy import reported, require_consistency, require_results, with_checks
 from contact1d.workflow.runs.finished import Run, draw
 from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.processors import cores, require_ranks
@@ -114,6 +114,11 @@ def _run(context: RunContext, started: float, figures: bool | str, refine: bool)
         last = refined(context, outcome) if refine else Refined(context.deck, outcome)
         context.left = last.outcome
         require_results(scene, last.outcome)
+        outcome = with_implied(scene, last.deck.settings, last.outcome)
+        pressures = pressures_of(scene, outcome)
+        outcome = with_checks(scene, with_body(scene, outcome, pressures), pressures)
+        context.left = outcome
+        require_consistency(outcome)
     except (EngineError, UntrustedError) as error:
         error.message = scales.in_words(error.message)
         if isinstance(error, UntrustedError):
@@ -125,12 +130,9 @@ def _run(context: RunContext, started: float, figures: bool | str, refine: bool)
         }
         if context.left is not None:
             _write_what_is_left(context.left, scene, folder, figures)
-        write_results(folder, failure(scene, facts, timing()))
+        write_results(folder, failure(scene, facts, timing(), context.left))
         where = f" [phase {context.phase}, step {context.timestep}]"
         raise RunError(f"{facts['message']}{_hint(str(facts['message']))}{where}", folder) from error
-    outcome = with_implied(scene, last.deck.settings, last.outcome)
-    pressures = pressures_of(scene, outcome)
-    outcome = with_body(scene, outcome, pressures)
     write_whole(folder / "in.lammps", last.deck.text(outcome.phases))
     tables = tables_of(scene, reported(scene, outcome), pressures)
     write_tables(folder, scene, outcome, tables)

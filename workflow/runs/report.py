@@ -97,13 +97,25 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
     beside = {"theory": theory(scene, found, scales), "validity": [one.entry() for one in checked]}
     if table := inputs_of(scene, known):
         beside["inputs"] = entries(table)
-    return quantities | beside | {"accuracy": accuracy} | _frame(scene, "done", doubts, scales, timing)
+    return quantities | beside | {"accuracy": accuracy} | checked_for(outcome) | _frame(scene, "done", doubts, scales, timing)
 
 
-def failure(scene: Scene, error: Mapping[str, object], timing: Mapping[str, float]) -> dict[str, Any]:
-    """What results.json holds after a run that failed: no numbers."""
+CHECKS = ("plan", "pressure", "asked", "balance", "energy", "closed_form")
+
+
+def checked_for(outcome: Outcome | None) -> dict[str, Any]:
+    """What results.json has as `consistency`; null of a check that does not apply."""
+    found = {} if outcome is None else outcome.consistency
+    entries = {name: {"difference": one.difference, "allowed": one.allowed} for name, one in found.items()}
+    return {"consistency": {name: entries.get(name) for name in CHECKS}}
+
+
+def failure(
+    scene: Scene, error: Mapping[str, object], timing: Mapping[str, float], outcome: Outcome | None = None
+) -> dict[str, Any]:
+    """What results.json holds after a run that failed: no numbers but those of its checks."""
     scales = scales_of(scene, {})
-    return {"error": dict(error)} | _frame(scene, "failed", implausible(scene, scales, {}), scales, timing)
+    return {"error": dict(error)} | checked_for(outcome) | _frame(scene, "failed", implausible(scene, scales, {}), scales, timing)
 
 
 def _frame(
