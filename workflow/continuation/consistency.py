@@ -11,6 +11,7 @@ The pressure of the body and closed forms are checked where these are made (`bod
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from contact1d.workflow.continuation.budget import Reduction
 from contact1d.workflow.continuation.model_branch import ModelBranch
 from contact1d.workflow.continuation.outcome import Agreement
 from contact1d.workflow.continuation.state import State
-from contact1d.workflow.model.reduced import Array, Path, Reduced, legs
+from contact1d.workflow.model.reduced import Array, Path, Reduced, legs, path_of
 from contact1d.workflow.scene import Scene
 
 PLAN, ABSOLUTE = 1e-9, 1e-5
@@ -28,9 +29,9 @@ AT_REST, MOVING = 1e-8, 1e-4
 """Force that is missing, over the forces of a state in equilibrium, and over those of a motion."""
 ENERGY, LEAST_LOSS = 1e-3, 0.05
 """Energy that is missing over what is lost, or over all work where that is less than this share of it."""
-DENSE, EACH_LEG, BESIDE, NEAREST = 2, 400, 60, 1e-9
-"""Positions in a step of a history, and in a leg of other paths, between which forces are straight lines; on both sides of
-a jump, the nearest of them over the spacing."""
+DENSE, EACH_STEP, EACH_LEG, BESIDE, NEAREST = 2, 16, 400, 60, 1e-9
+"""Positions in a step of a history and of a tangential path, and in a leg of others, between which forces are straight
+lines; on both sides of a jump, the nearest of them over the spacing."""
 
 
 def plan(scene: Scene, states: Sequence[State], forces: Array | None) -> dict[str, Agreement]:
@@ -65,18 +66,19 @@ def asked(scene: Scene, pairs: Sequence[tuple[float, float]], states: Sequence[S
     return {"asked": Agreement(abs(wanted - found) / largest if largest else 0.0, allowed, words)}
 
 
-def balance(states: Sequence[State]) -> dict[str, Agreement]:
-    """The contact's force on the plate beside what LAMMPS adds up on it, in states that tell."""
-    told = [state for state in states if state.missing is not None]
+def balance(scene: Scene, states: Sequence[State]) -> dict[str, Agreement]:
+    """The contact's force on the plate beside what LAMMPS adds up on it, in states that tell; residual forces are known."""
+    told = [(max(abs(one.missing) - one.profile.x.size * one.residual, 0.0), one) for one in states if one.missing is not None]
     if not told:
         return {}
-    size = max(abs(state.force) for state in states)
-    worst = max(told, key=lambda state: abs(state.missing or 0.0))
+    size = max(scene.bodies.own_spacing * float(np.abs(state.profile.pressure).sum()) for state in states)
+    missed, worst = max(told, key=lambda pair: pair[0])
     words = (
         f"the contact has {worst.force:.10g} FU at displacement {worst.displacement:.6g} LU (phase {worst.phase}), and "
-        f"LAMMPS's sum on the plate differs by {worst.missing:.3g} FU from that of the contact, the load and the drag"
+        f"what LAMMPS adds up on the plate differs by {missed:.3g} FU from that"
     )
-    return {"balance": Agreement(abs(worst.missing or 0.0) / size if size else 0.0, MOVING, words)}
+    allowed = AT_REST if scene.method == "quasistatic" else MOVING
+    return {"balance": Agreement(missed / size if size else 0.0, allowed, words)}
 
 
 def energy(case: Reduction, motion: tuple[Path, float, float] | None = None) -> dict[str, Agreement]:
@@ -119,18 +121,23 @@ def _missing(
 
 def _dense(case: Reduction, model: Reduced, finer: int) -> Path:
     """The path of the script, with as many states as the work along it needs."""
-    branch = ModelBranch(case.scene, case.settings, model, DENSE * finer, 0.0)
+    along = case.scene.experiment.goes_along
+    branch = ModelBranch(case.scene, case.settings, model, 1 if along else DENSE * finer, 0.0)
     case.script(branch)
     path = branch.path
-    if path.time.any() or path.along.any():
+    if path.time.any():
         return path
-    ends = [path.displacement[:1]]
+    ends = [0, *(leg.stop - 1 for leg in legs(path.displacement))]
+    places, count = np.append(0.0, path.displacement), EACH_STEP * finer
+    if along:
+        at = np.arange(0.0, places.size - 1.0 + 0.5 / count, 1.0 / count)
+        columns = (np.interp(at, np.arange(places.size), one) for one in (places, np.append(0.0, path.along)))
+        return Path(*columns, np.zeros_like(at))
     near = model.estimate.spacing * np.geomspace(NEAREST, 1.0, BESIDE)
     beside = np.asarray([jump + side for jump in model.jumps for side in (-near, near)]).ravel()
-    for leg in legs(path.displacement):
-        start, end = ends[-1][-1], path.displacement[leg.stop - 1]
+    found = [path.displacement[:1]]
+    for start, end in pairwise(path.displacement[ends].tolist()):
         between = beside[(beside > min(start, end)) & (beside < max(start, end))]
         places = np.unique(np.concatenate([np.linspace(start, end, EACH_LEG * finer + 1), between]))
-        ends.append(places[places != start] if end > start else places[places != start][::-1])
-    places = np.concatenate(ends)
-    return Path(places, np.zeros_like(places), np.zeros_like(places))
+        found.append((places if end > start else places[::-1])[1:])
+    return path_of(np.concatenate(found))

@@ -22,7 +22,7 @@ from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.lattice import bodies, period
 from contact1d.workflow.deck.parts import PLANE_DEPTH
 from contact1d.workflow.deck.steps import Cohere, Displace, Draw, Phase, Row
-from contact1d.workflow.deck.system import PARTICLES
+from contact1d.workflow.deck.system import ANCHORS, PARTICLES
 from contact1d.workflow.engine.failure import NOT_FINITE
 from contact1d.workflow.engine.frames import last_frames
 from contact1d.workflow.engine.session import EngineError, Session
@@ -258,7 +258,8 @@ class Contact:
             # LAMMPS looks for lost atoms when it makes a new neighbour list, and a row may end before.
             raise self._lost(f"atoms are missing: only {here} particles are left in the box", int(numbers["step"]))
         position, force = atoms["x"], atoms["f"]
-        x, z = position[upper, 0], position[upper, 2]
+        x, z_held = position[upper, 0], position[upper, 2]
+        z = z_held
         if lower.any():
             x_low, z_low = self._surface(position[lower, 0], position[lower, 2])
             closest = smallest_distance(x, z, x_low, z_low)
@@ -274,6 +275,10 @@ class Contact:
         profile = pressure_profile(
             x, z, z_below, atoms["v_opposite_x"][upper], atoms["v_opposite_z"][upper], self.scene.bodies.own_spacing
         )
+        missing, springs = None, atoms["type"] == ANCHORS["upper"]
+        if springs.any() and self.scene.method == "quasistatic" and not self.settings.chains.far:
+            pulled = self.settings.forces.bulk_stiffness * float(np.sum(position[springs, 2] - z_held))
+            missing = float(atoms["v_opposite_z"][upper].sum()) + pulled
         free = [0, 2] if self.scene.horizontal else [2]
         moving = upper if self.scene.bodies.lower == "rigid_chain" else upper | lower
         return State(
@@ -285,6 +290,7 @@ class Contact:
             smallest_distance=closest,
             depth=depth,
             residual=float(np.abs(force[moving][:, free]).max()),
+            missing=missing,
             pushed=float(sum(numbers[name] for name in self._pushes)),
             plate_velocity=-numbers.get("plate_velocity", 0.0),
             plate_x=numbers.get("cantilever_plate", 0.0),

@@ -125,7 +125,7 @@ class Scripted(Experiment[K]):
         warnings = doubts(scene, settings, tuple(branch.states))
         tables = self.tables(trace, scene, settings)
         states, moves = tuple(branch.states), case.moves
-        checks = consistency.plan(scene, states, branch.by_model()) | consistency.balance(states)
+        checks = consistency.plan(scene, states, branch.by_model()) | consistency.balance(scene, states)
         checks |= consistency.asked(scene, self.asked(trace, scene), states) | self.energy(case, states)
         outcome = Outcome(
             results, states, branch.marked, branch.phases, warnings, tables=tables, moves=moves, consistency=checks

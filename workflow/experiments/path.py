@@ -69,6 +69,7 @@ class PathExperiment(Scripted[Path]):
         warnings = self._missing(results, case, phases) | doubts(scene, settings, tuple(reported))
         warnings |= _buckling(trace, other, settings)
         checks = consistency.plan(scene, states, by_model(scene, case.model, states)) | self.energy(case, states)
+        checks |= {} if self.is_statistical else consistency.balance(scene, states)
         return Outcome(results, tuple(reported), ends, phases, warnings, moves=case.moves, consistency=checks)
 
     def states(self, contact: Contact, positions: Positions) -> list[State]:

@@ -17,10 +17,8 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.radius import ContactRadius
 from contact1d.analysis.shear import slip, stick_margin, stick_radius
-from contact1d.workflow.continuation.budget import (
-    budgeted,
-    force_errors,
-)
+from contact1d.workflow.continuation import consistency
+from contact1d.workflow.continuation.budget import budgeted, force_errors
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.outcome import LATTICE, Outcome, Reading
@@ -30,7 +28,7 @@ from contact1d.workflow.deck.lattice import places
 from contact1d.workflow.deck.steps import Draw, Phase
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
 from contact1d.workflow.model.friction import Sliders, Stop, sliders_of, stops, without_rests
-from contact1d.workflow.model.reduced import Sliding, reduced
+from contact1d.workflow.model.reduced import Path, Sliding, reduced
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Friction, Scene, Tangential
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH
@@ -77,8 +75,8 @@ class TangentialExperiment(Scripted[Tangential]):
         path = Path(trace.displacement, trace.along, trace.time)
         checks = consistency.plan(scene, states, case.model.follow(path).total) if scene.is_modelled else {}
         checks |= self.energy(case, states)
-        loads = self.given(scene).normal_forces()
-        checks |= consistency.asked(scene, list(zip(loads, (row.normal for row in kept), strict=False)), states)
+        loads = zip(self.given(scene).normal_forces(), (state.force for state in reported), strict=False)
+        checks |= consistency.asked(scene, list(loads), states)
         columns = _columns(kept)
         return Outcome(
             results, tuple(reported), marked, phases, warnings, columns, moves=case.moves, consistency=checks

@@ -280,11 +280,14 @@ class CohesiveEstimate(ZonedEstimate):
         """Nothing: where the edge would jump, the curve has a limit point."""
 
     def energy(self, displacement: float, radius: float) -> float | None:
+        """See `energy_of`, of a contact that is unloaded from the widest."""
+        width = (float(self.profile.height(np.asarray([radius]))[0]) - displacement) / self.law.ratio
+        c = math.hypot(radius, width) if radius > 0.0 else float(self.reaches(np.asarray([displacement]))[0])
+        return 0.0 if displacement < self.held.displacement[0] else self.energy_of(radius, c, displacement)
+
+    def energy_of(self, a: float, c: float, d: float) -> float:
         """E* ∫₀ᵃ (d−g)² dx − (4σ₀²/E*) ∫ₐᶜ (c²−x²) dx + 4σ₀ ∫ₐᶜ (g−d) √(c²−x²) dx − πc²W [FU·LU], 0 of bodies apart."""
-        law, d, a = self.law, displacement, radius
-        width = (float(self.profile.height(np.asarray([a]))[0]) - d) / law.ratio
-        c = math.hypot(a, width) if a > 0.0 else float(self.reaches(np.asarray([d]))[0])
-        if d < self.held.displacement[0]:
+        if c == 0.0:
             return 0.0
         inner, outer = (
             np.linspace(0.0, a, ENERGY_PLACES),
@@ -292,9 +295,35 @@ class CohesiveEstimate(ZonedEstimate):
         )
         pressed = self.modulus * float(np.trapezoid((d - self.profile.height(inner)) ** 2, inner))
         root = np.sqrt((c - outer) * (c + outer))
-        drawn = 4.0 * law.stress * float(np.trapezoid((self.profile.height(outer) - d) * root, outer))
+        drawn = 4.0 * self.law.stress * float(np.trapezoid((self.profile.height(outer) - d) * root, outer))
         disc = c * c * (c - a) - (c**3 - a**3) / 3.0
-        return pressed - 4.0 * law.stress**2 / self.modulus * disc + drawn - math.pi * c * c * self.work
+        return pressed - 4.0 * self.law.stress**2 / self.modulus * disc + drawn - math.pi * c * c * self.work
+
+    def energy_at(self, place: float) -> float:
+        """The same at a place of the curve."""
+        zone = self.at(np.asarray([place]))
+        return self.energy_of(*(float(one[0]) for one in (zone.edge, zone.reach, zone.displacement)))
+
+    @cached_property
+    def snaps_in(self) -> list[float]:
+        """Displacements [LU] at which a contact that is loaded jumps, rising."""
+        d = self.curve.displacement
+        passed = np.flatnonzero(d >= np.maximum.accumulate(d))
+        return [float(d[a]) for a, b in pairwise(passed) if d[a + 1 : b].min(initial=np.inf) < d[a] - SAME * np.ptp(d)]
+
+    def lost_between(self, before: float, after: float) -> float:
+        """Energy [FU·LU] that a contact loses as it jumps on its way from one place of the curve to another."""
+        low, high = sorted((math.ceil(max(before, 0.0)), math.ceil(max(after, 0.0))))
+        way = 1 if after > before else -1
+        d = way * self.curve.displacement[low : high + 1][::way]
+        least = SAME * float(np.ptp(self.curve.displacement))
+        passed = np.maximum.accumulate(d)
+        if d.size < 2 or (passed - d).max() < least:
+            return 0.0
+        top = int(np.argmax(passed == passed[int(np.argmax(passed - d >= least))]))
+        place = float(low + top if way > 0 else high - top)
+        beyond = self.places(np.asarray([way * (float(d[top]) + least)]), place)
+        return self.energy_at(place) - self.energy_at(float(beyond[0]))
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.shear import slip
 from contact1d.workflow.model.adhesion import AdhesiveEstimate, Cells
-from contact1d.workflow.model.cohesive import CohesiveEstimate, RatedEstimate
+from contact1d.workflow.model.cohesive import APART, CohesiveEstimate, RatedEstimate
 from contact1d.workflow.model.dugdale import Zone
 from contact1d.workflow.model.friction import Sliders, sliders_of
 from contact1d.workflow.model.motion import inertia
@@ -457,8 +457,14 @@ class CohesiveCells(Reduced):
 
     @property
     def jumps(self) -> tuple[float, ...]:
-        """There, and where the attraction begins."""
-        return (*self.limits, -self.estimate.range)
+        """There, where a contact that is loaded jumps, and where the attraction begins."""
+        return (*self.limits, *self.estimate.snaps_in, -self.estimate.range)
+
+    def energies(self, path: Path) -> tuple[float, float]:
+        """U(a, c, d) of Maugis; what it jumps by from one place of the curve to another."""
+        places = self.estimate.places(path.displacement).tolist()
+        lost = sum(self.estimate.lost_between(*way) for way in pairwise([APART, *places]))
+        return self.estimate.energy_at(places[-1]), lost
 
     def follow(self, path: Path) -> Followed:
         """From limit point to limit point of the curve; see `Reduced.follow`."""
@@ -538,7 +544,9 @@ class Sliding(Springs):
         """The sliders of these particles."""
         assert self.sliders is not None
         heights = np.asarray(self.estimate.profile.height(np.abs(self.x)), dtype=np.float64)
-        return replace(self.sliders, x=self.x, heights=heights)
+        scaled = self.estimate.stiffness / self.sliders.normal  # of a finer chain
+        springs = {"normal": self.estimate.stiffness, "tangential": scaled * self.sliders.tangential}
+        return replace(self.sliders, x=self.x, heights=heights, **springs)
 
     def energies(self, path: Path) -> tuple[float, float]:
         """½ Σ (k u² + s²/k_t); the work of slip."""
