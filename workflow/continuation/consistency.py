@@ -62,7 +62,7 @@ def asked(scene: Scene, pairs: Sequence[tuple[float, float]], states: Sequence[S
     largest = max([abs(state.force) for state in states] + [abs(wanted) for wanted, _ in pairs])
     wanted, found = max(pairs, key=lambda pair: abs(pair[0] - pair[1]))
     words = f"the scene asks for {wanted:.10g} FU, and the state that has it carries {found:.10g} FU"
-    allowed = AT_REST if scene.is_stepped else scene.accuracy.tolerance
+    allowed = AT_REST if scene.is_stepped and scene.is_modelled else scene.accuracy.tolerance
     return {"asked": Agreement(abs(wanted - found) / largest if largest else 0.0, allowed, words)}
 
 
@@ -107,6 +107,8 @@ def _missing(
     stored, lost = found
     if motion is None:
         followed = model.follow(path)
+        if followed.total[0] != 0.0:  # what came before is not known
+            return None
         parts = 0.5 * (followed.total[1:] + followed.total[:-1]) * np.diff(path.displacement)
         if followed.shear is not None:
             shears = np.asarray([-followed.shear(state).sum() for state in range(path.along.size)])
@@ -127,16 +129,17 @@ def _dense(case: Reduction, model: Reduced, finer: int) -> Path:
     path = branch.path
     if path.time.any():
         return path
-    ends = [0, *(leg.stop - 1 for leg in legs(path.displacement))]
-    places, count = np.append(0.0, path.displacement), EACH_STEP * finer
+    start = min(0.0, model.apart, float(path.displacement[0])) - model.estimate.spacing
+    places, count = np.append(start, path.displacement), EACH_STEP * finer
     if along:
         at = np.arange(0.0, places.size - 1.0 + 0.5 / count, 1.0 / count)
-        columns = (np.interp(at, np.arange(places.size), one) for one in (places, np.append(0.0, path.along)))
+        columns = (np.interp(at, np.arange(places.size), one) for one in (places, np.append(path.along[:1], path.along)))
         return Path(*columns, np.zeros_like(at))
+    ends = places[[0, *(leg.stop - 1 for leg in legs(places))]]
     near = model.estimate.spacing * np.geomspace(NEAREST, 1.0, BESIDE)
     beside = np.asarray([jump + side for jump in model.jumps for side in (-near, near)]).ravel()
-    found = [path.displacement[:1]]
-    for start, end in pairwise(path.displacement[ends].tolist()):
+    found = [places[:1]]
+    for start, end in pairwise(ends.tolist()):
         between = beside[(beside > min(start, end)) & (beside < max(start, end))]
         places = np.unique(np.concatenate([np.linspace(start, end, EACH_LEG * finer + 1), between]))
         found.append((places if end > start else places[::-1])[1:])
