@@ -107,7 +107,7 @@ def _missing(
     stored, lost = found
     if motion is None:
         followed = model.follow(path)
-        if followed.total[0] != 0.0:  # what came before is not known
+        if path.displacement[0] > 0.0 and followed.total[0] != 0.0:  # what came before is not known
             return None
         parts = 0.5 * (followed.total[1:] + followed.total[:-1]) * np.diff(path.displacement)
         if followed.shear is not None:

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contact1d.analysis.polynomial import through
 from contact1d.workflow.continuation.context import RunContext
@@ -30,6 +31,8 @@ UNLOADING_STEPS, TENSIONS = 80, 12
 """Load steps of a planned unloading, and tensions of a planned pull, where a run would search."""
 RATED_STEPS = 120
 """Load steps of a pull whose edge recedes at a finite speed."""
+NEAR_ZERO = 3
+"""Load steps on both sides of F = 0 that tell when it is."""
 LARGEST_TENSION = 1.2
 """The last of these tensions over the expected pull-off force."""
 
@@ -121,17 +124,27 @@ def _pulled(model: RatedCells, given: PullOff) -> History:
     """Down to the preload and back at the velocity, with load steps at equal ways of the edge."""
     assert given.velocity is not None
     deepest = model.displacement_at(given.preload)
-    back = model.estimate.pulled(deepest, given.velocity, RATED_STEPS)[1:]
     down = np.linspace(0.0, 1.0, LOADING_STEPS + 1)
-    time = np.append(deepest / given.velocity * (down - 1.0), back)
-    places = np.append(deepest * down, deepest - given.velocity * back)
-    force = model.follow(Path(places, np.zeros_like(places), time)).total[down.size :]
+
+    def pull(back: NDArray[np.float64]) -> tuple[NDArray[np.float64], Path]:
+        """F [FU] at times after the preload [TU], and the whole path."""
+        time = np.append(deepest / given.velocity * (down - 1.0), back)
+        places = np.append(deepest * down, deepest - given.velocity * back)
+        path = Path(places, np.zeros_like(places), time)
+        return model.follow(path).total[down.size :], path
+
+    back = model.estimate.pulled(deepest, given.velocity, RATED_STEPS)[1:]
+    force, _ = pull(back)
+    first = max(NEAR_ZERO, int(np.argmax(force < 0.0)))
+    near = slice(first - NEAR_ZERO, first + NEAR_ZERO)  # a load step at F = 0, by t(F)
+    back = np.unique(np.append(back, np.polynomial.Polynomial.fit(force[near], back[near], 2 * NEAR_ZERO - 1)(0.0)))
+    force, path = pull(back)
     top = int(np.argmin(force))
     zero = int(np.argmin(np.abs(force[: top + 1])))
     counts = {"loading": down.size, "unloading": zero + 1, "pulling": top - zero, "separating": back.size - top - 1}
     phases = tuple(name for name, count in counts.items() for _ in range(count))
     marks = {"unloading": "zero_load", "pulling": "critical"}
-    return History(phases, time, places, by_force=False, marks=marks)
+    return History(phases, path.time, path.displacement, by_force=False, marks=marks)
 
 
 class ThermalPullOff(PullOffExperiment):
