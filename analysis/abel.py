@@ -22,7 +22,6 @@ over intervals that halve towards the axis, and on both sides towards a kink, wh
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
@@ -161,7 +160,7 @@ def _of_body(body: Body, r: Array, places: Sequence[float], before: float) -> Ar
 
     def integral(low: Array, high: Array) -> Array:
         t = 0.5 * ((low + high)[..., None] + (high - low)[..., None] * node)
-        return np.sum((height(t) @ _differences().T) / t, axis=-1)
+        return np.asarray(np.sum((height(t) @ _differences().T) / t, axis=-1))
 
     total = np.sum(integral(graded[..., :-1], graded[..., 1:]), axis=(1, 2))
     # Up to the first interval of a piece h rises as a root at most, which 1/t knows nothing of but at the axis.

@@ -8,10 +8,9 @@ import numpy as np
 
 from contact1d.workflow.body.theory import Case, applying
 from contact1d.workflow.body.traction import BodyPressure
-from contact1d.workflow.continuation.outcome import Agreement
-from contact1d.workflow.continuation.state import State
+from contact1d.workflow.continuation.outcome import Agreement, Outcome
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.units import Quantity
+from contact1d.workflow.units import FORCE, Quantity
 
 PRESSURE, OPEN_PRESSURE = 1e-4, 1e-3
 """Difference of ∫ p dA from the force over ∫ |p| dA, by springs under a formula, and under a table or a scan."""
@@ -21,24 +20,32 @@ FEWEST, WIDEST = 10.0, 0.9
 """Contact radii over the spacing from which on closed forms are compared, and up to which over the half-width."""
 
 
-def pressure(
-    scene: Scene, states: Mapping[str, State], pressures: Mapping[str, BodyPressure]
-) -> dict[str, Agreement]:
-    """∫ p dA of each reported state beside the force; nothing of particles that interact."""
+def pressure(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressure]) -> dict[str, Agreement]:
+    """∫ p dA of each reported state beside the force, which is as uncertain as the forces of the run.
+
+    Nothing of particles that interact.
+    """
     if scene.interaction is not None:
         return {}
     found, shape = [], scene.bodies.profile
+    known = max((one.uncertainty for one in outcome.exact.values() if one.unit == FORCE), default=0.0)
     least = OPEN_PRESSURE if shape.alternatives or shape.deviations or shape.slow else PRESSURE
     for name, one in pressures.items():
-        force, size = states[name].force, float(np.trapezoid(np.abs(one.pressure) * one.r, one.r))
+        force, size = outcome.marked[name].force, float(np.trapezoid(np.abs(one.pressure) * one.r, one.r))
         stated = float(np.trapezoid(one.uncertainty * one.r, one.r)) / size if size else 0.0
         words = f"the pressure of the state {name!r} adds up to {one.force:.8g} FU, and its force is {force:.8g} FU"
-        found.append(Agreement(abs(one.force - force) / (one.size or 1.0), max(least, stated + one.doubt), words))
+        found.append(
+            Agreement(
+                abs(one.force - force) / (one.size or 1.0),
+                max(least, stated + one.doubt + known / (one.size or 1.0)),
+                words,
+            )
+        )
     return {"pressure": max(found, key=lambda one: one.difference / one.allowed)} if found else {}
 
 
 def closed_form(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Agreement]:
-    """The results beside each closed form that is exact for the run; `quantities`: as if its numbers were known exactly."""
+    """The results beside each closed form that is exact for the run; `quantities`: as if its inputs were exact."""
     radius = max((one.value for name, one in quantities.items() if name.endswith("radius")), default=0.0)
     reach = scene.bodies.profile.reach
     if radius < FEWEST * scene.bodies.spacing or (radius > WIDEST * reach and not scene.bodies.profile.has_edge):

@@ -106,7 +106,7 @@ class Case:
 
     @property
     def is_elastic(self) -> bool:
-        """Whether springs under the profile are all there is: no attraction, no memory, nothing that a closed form lacks."""
+        """Whether springs under the profile are all there is: no attraction, no memory, no effect of other kinds."""
         return self.scene.keeps_springs and not (self.scene.adheres or self.scene.viscoelasticity)
 
     @property

@@ -6,8 +6,8 @@ curves through fewer of them. Whether a pressure has a bound is decided by conve
 every fourth particle; where the differences do not shrink there is no number. Where the contact is too narrow for that,
 a largest pressure off the axis is none.
 
-The line load ends at an edge e by a jump q(e⁻) that the law of the contact gives: 0 of springs that are pressed or relax,
-what dashpots push where a contact grows, E* (d − g(a)) of an edge that is held. Under elastic springs E* per length on a
+The line load ends at an edge by a jump that the law of the contact gives: 0 of springs that are pressed or relax, what
+dashpots push where a contact grows, E* (d − g(a)) of an edge that is held. Under elastic springs E* per length on a
 plane, of a shape g and with a jump J ∝ √a,
 
     p(r) = (1/π) [E* ∫_r^a g′(x)/√(x² − r²) dx + J/s],   ∂p/∂a = (1/πs) [E* g′(a) + J (1/2a − a/s²)],   s² = a² − r²
@@ -125,7 +125,7 @@ def body_pressures(
     Args:
         scene: what ran.
         profiles: of the reported states.
-        of_radius: relative uncertainty of the contact radius, of which the pressure under elastic springs is a function.
+        of_radius: relative uncertainty of the contact radius, of which pressures under elastic springs are functions.
         of_all: the sum of those of all results, for the pressure under others.
         given: of pressures, by the numbers of the scene that are uncertain.
     """
@@ -196,7 +196,7 @@ class _Loaded:
 
     @cached_property
     def held(self) -> bool:
-        """Whether the edge leaves a particle a share of its cell, and nothing beside the particles knows where it is."""
+        """Whether the edge leaves a particle a share of its cell, and only the particles show where it is."""
         return self.scene.adhesion is not None and self.scene.adheres and self.zone is None
 
     @cached_property
@@ -225,7 +225,7 @@ class _Loaded:
 
     @cached_property
     def body(self) -> Callable[[Array], Array] | None:
-        """κ h(x) [FU/LU] with κ = −dq/dh at the axis; None where the shape of a body is open, or springs are not alone."""
+        """κ h(x) [FU/LU], κ = −dq/dh at the axis; None where the shape of a body is open, or springs are not alone."""
         if not self.is_alone or self.shape.has_edge or self.shape.alternatives or self.shape.deviations:
             return None
         if self.is_elastic:
@@ -253,7 +253,7 @@ def _pressure(state: _Loaded, share: float, given: float) -> BodyPressure | None
 
     `share`: by how much results are off, relative to `_moves`; `given`: relative to p.
     """
-    scene, shape, x, zone = state.scene, state.shape, state.x, state.zone
+    scene, x, zone = state.scene, state.x, state.zone
     own = -(-(x.size - x.size // 2) // MOST)
     levels = [one for stride in (1, 2, 4) if (one := state.through(state.load, own * stride))]
     if not levels:
@@ -274,16 +274,16 @@ def _pressure(state: _Loaded, share: float, given: float) -> BodyPressure | None
     within = np.count_nonzero(side < state.radius.value / state.wider)
     told = [one for i, one in enumerate((p, *coarser)) if within >= FEWEST * 2**i]
     error = spread + share * moves + ROUND_OFF * state.layer
-    results = _largest(state, fine, r, told, lambda r: fine.pressure(r) - pulled(r))
     results = {
         name: replace(one, uncertainty=one.uncertainty or float(error[place] + by_shape(read)))
-        for name, (one, place, read) in results.items()
+        for name, (one, place, read) in _largest(state, fine, r, told, lambda r: fine.pressure(r) - pulled(r)).items()
     }
     force, size = _total(fine, state.shape.kinks, pulled)
     ring = _ring(scene, zone)
+    edge, stiffness = state.radius.value / state.wider, _stiffness(state, share)
     return BodyPressure(
-        r, p, error + by_shape(np.asarray), share, state.radius.value / state.wider, results, force + ring, size - ring, _stiffness(state, share)
-    )
+        r, p, error + by_shape(np.asarray), share, edge, results, force + ring, size - ring, stiffness
+    )  # fmt: skip
 
 
 def _stiffness(state: _Loaded, share: float) -> Quantity | None:
@@ -300,7 +300,9 @@ def _stiffness(state: _Loaded, share: float) -> Quantity | None:
         x, q = np.append(state.x[right], edge), np.append(state.load[right], 0.0)
         rise, fall = np.diff(state.heights(x) / state.layer), -np.diff(q)
         slope = np.divide(fall, rise, out=np.zeros_like(fall), where=rise > 0.0)
-        sides.append(float(2.0 * np.sum(slope * np.diff(x, prepend=0.0)[1:]) + 2.0 * slope[0] * x[0]) if fall.size else 0.0)
+        sides.append(
+            float(2.0 * np.sum(slope * np.diff(x, prepend=0.0)[1:]) + 2.0 * slope[0] * x[0]) if fall.size else 0.0
+        )
     fine, coarse = sides
     return Quantity(fine, abs(fine - coarse) + share * fine, LINE_PRESSURE)
 

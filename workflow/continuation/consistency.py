@@ -56,7 +56,7 @@ def plan(scene: Scene, states: Sequence[State], forces: Array | None) -> dict[st
 
 
 def asked(scene: Scene, pairs: Sequence[tuple[float, float]], states: Sequence[State]) -> dict[str, Agreement]:
-    """Forces [FU] that the scene asks for beside those of the states that have them; a search stops within a tolerance."""
+    """Forces [FU] that the scene asks for beside those of the states that have them; a search has a tolerance."""
     if not pairs:
         return {}
     largest = max([abs(state.force) for state in states] + [abs(wanted) for wanted, _ in pairs])
@@ -67,8 +67,12 @@ def asked(scene: Scene, pairs: Sequence[tuple[float, float]], states: Sequence[S
 
 
 def balance(scene: Scene, states: Sequence[State]) -> dict[str, Agreement]:
-    """The contact's force on the plate beside what LAMMPS adds up on it, in states that tell; residual forces are known."""
-    told = [(max(abs(one.missing) - one.profile.x.size * one.residual, 0.0), one) for one in states if one.missing is not None]
+    """The contact's force on the plate beside what LAMMPS adds up on it, but for residual forces."""
+    told = [
+        (max(abs(one.missing) - one.profile.x.size * one.residual, 0.0), one)
+        for one in states
+        if one.missing is not None
+    ]
     if not told:
         return {}
     size = max(scene.bodies.own_spacing * float(np.abs(state.profile.pressure).sum()) for state in states)
@@ -133,8 +137,8 @@ def _dense(case: Reduction, model: Reduced, finer: int) -> Path:
     places, count = np.append(start, path.displacement), EACH_STEP * finer
     if along:
         at = np.arange(0.0, places.size - 1.0 + 0.5 / count, 1.0 / count)
-        columns = (np.interp(at, np.arange(places.size), one) for one in (places, np.append(path.along[:1], path.along)))
-        return Path(*columns, np.zeros_like(at))
+        steps, moved = np.arange(places.size), np.append(path.along[:1], path.along)
+        return Path(np.interp(at, steps, places), np.interp(at, steps, moved), np.zeros_like(at))
     ends = places[[0, *(leg.stop - 1 for leg in legs(places))]]
     near = model.estimate.spacing * np.geomspace(NEAREST, 1.0, BESIDE)
     beside = np.asarray([jump + side for jump in model.jumps for side in (-near, near)]).ravel()

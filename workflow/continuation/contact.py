@@ -226,7 +226,7 @@ class Contact:
         )  # fmt: skip
 
     def _jump(self, row: Cohere) -> float:
-        """The line load at the edge of a contact [FU/LU], beside which there is nothing; without one where it goes on."""
+        """The line load just inside an edge beyond which there is none [FU/LU]; 0 where the attraction goes on."""
         opened = row.displacement - float(self.scene.bodies.height(np.asarray([row.edge]))[0])
         return self.scene.bulk_stiffness / self.scene.bodies.spacing * opened if row.reach == row.edge > 0.0 else 0.0
 

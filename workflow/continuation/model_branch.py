@@ -33,7 +33,7 @@ UNSEEN = ""
 
 
 class Row(NamedTuple):
-    """A position of the plate: its phase and leg, displacement and position along x [LU], time [TU], velocity [LU/TU]."""
+    """A position of the plate: phase, leg, displacement and position along x [LU], time [TU], velocity [LU/TU]."""
 
     phase: str
     leg: int
@@ -157,8 +157,9 @@ class ModelBranch:
     @property
     def path(self) -> Path:
         """All states, also those that no reader sees."""
-        *path, velocity = (np.asarray(column, dtype=np.float64) for column in list(zip(*self._rows, strict=True))[2:])
-        return Path(*path, None if np.isnan(velocity).any() else velocity)
+        columns = list(zip(*self._rows, strict=True))[2:]
+        d, along, time, velocity = (np.asarray(column, dtype=np.float64) for column in columns)
+        return Path(d, along, time, None if np.isnan(velocity).any() else velocity)
 
     def trace(self) -> Trace:
         """What a reader sees."""
@@ -178,7 +179,8 @@ class ModelBranch:
     ) -> None:
         none = np.zeros(len(positions))
         columns = (positions, none if along is None else along, none if time is None else time)
-        self._rows += [Row(self._phase, self._leg, *map(float, row), math.nan) for row in zip(*columns, strict=True)]
+        rows = zip(*columns, strict=True)
+        self._rows += [Row(self._phase, self._leg, float(d), float(x), float(t), math.nan) for d, x, t in rows]
 
     def _add_path(self, phases: Sequence[str], path: Path) -> None:
         """States in time."""

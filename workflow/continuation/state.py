@@ -147,7 +147,7 @@ class State:
         pushed: force of other effects that presses the upper body onto the lower one [FU].
         plate_velocity: [LU/TU], 0 where the plate's position is prescribed.
         cantilever_force: [FU].
-        missing: force that LAMMPS adds up on a plate that moves beside contact, load and drag [FU]; None: it is not told.
+        missing: force that LAMMPS adds up on the plate beside those that are known [FU]; None: it tells none.
         time: of a history [TU].
         motion: of a slide, what `contact.MOTION` and `contact.HEAT` name.
         number: of its row, over all phases.

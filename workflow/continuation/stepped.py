@@ -97,8 +97,9 @@ class SteppedBranch(Branch):
         self._turned, times, self._history = True, iter(history.time.tolist()), history.path(self.model)
         edges: Iterator[tuple[float, float]] | None = None
         if isinstance(self.model, RelaxingSprings):
-            edge, _, jump = self.model.follow(self._history).zone or ()
-            edges = zip(edge.tolist(), jump.tolist(), strict=True)
+            zone = self.model.follow(self._history).zone
+            assert zone
+            edges = zip(zone[0].tolist(), zone[2].tolist(), strict=True)
         for phase in followed(self.model, history):
             self.begin(phase.name)
             self._enter()
@@ -141,8 +142,8 @@ def _timed(model: Reduced, path: Path) -> list[Displace]:
         return [Cohere(*numbers) for numbers in zip(*columns, strict=True)]
     if not isinstance(model, RelaxingSprings):
         return [Displace(place) for place in path.displacement.tolist()]
-    columns = (path.displacement, model.spent(path.time), model.velocities(path))
-    return [Spend(*numbers) for numbers in zip(*(one.tolist() for one in columns), strict=True)]
+    numbers = (path.displacement, model.spent(path.time), model.velocities(path))
+    return [Spend(*row) for row in zip(*(one.tolist() for one in numbers), strict=True)]
 
 
 def curve_steps(settings: Settings) -> int:

@@ -80,7 +80,9 @@ class ImpactExperiment(Scripted[Impact]):
         step = case.settings.motion.time_step
         time = np.asarray([0.0, *(state.step * step for state in states)])
         moved = CubicHermiteSpline(
-            time, [0.0, *(state.displacement for state in states)], [velocity, *(state.plate_velocity for state in states)]
+            time,
+            [0.0, *(state.displacement for state in states)],
+            [velocity, *(state.plate_velocity for state in states)],
         )
         dense = np.interp(np.arange(0.0, len(time) - 1 + 1e-9, 1.0 / FINER), np.arange(len(time)), time)
         path = Path(moved(dense), np.zeros_like(dense), dense, moved(dense, 1))

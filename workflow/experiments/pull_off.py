@@ -126,10 +126,12 @@ def _pulled(model: RatedCells, given: PullOff) -> History:
     deepest = model.displacement_at(given.preload)
     down = np.linspace(0.0, 1.0, LOADING_STEPS + 1)
 
+    velocity = given.velocity
+
     def pull(back: NDArray[np.float64]) -> tuple[NDArray[np.float64], Path]:
         """F [FU] at times after the preload [TU], and the whole path."""
-        time = np.append(deepest / given.velocity * (down - 1.0), back)
-        places = np.append(deepest * down, deepest - given.velocity * back)
+        time = np.append(deepest / velocity * (down - 1.0), back)
+        places = np.append(deepest * down, deepest - velocity * back)
         path = Path(places, np.zeros_like(places), time)
         return model.follow(path).total[down.size :], path
 

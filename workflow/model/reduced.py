@@ -170,7 +170,7 @@ class Reduced(ABC):
         return None
 
     def carrying(self, times: Array, forces: Array) -> tuple[Array, Array | None]:
-        """Displacements [LU] of load steps at times (m,) [TU] that carry forces (m,) [FU] ≥ 0; velocities, see `Path`."""
+        """Displacements [LU] of load steps at times (m,) [TU] under forces (m,) [FU] ≥ 0; velocities, see `Path`."""
         found = {force: self.displacement_at(force) if force > 0.0 else 0.0 for force in np.unique(forces).tolist()}
         return np.asarray([found[force] for force in forces.tolist()]), None
 
@@ -513,7 +513,7 @@ class RatedCells(Reduced):
         return Zone(edge, edge, path.displacement, self.estimate.law.forces(edge, none, path.displacement))
 
     def energies(self, path: Path) -> tuple[float, float]:
-        """U(d, a) of JKR; ∫ (G − W) 2πa da where the edge recedes, and what U jumps by at touch and with the last of it."""
+        """U(d, a) of JKR; ∫ (G − W) 2πa da where the edge recedes, and what U jumps by at touch and separation."""
         estimate, zone = self.estimate, self.zone(path)
         a, d = zone.edge, zone.displacement
         opened = estimate.profile.height(a) - d
@@ -527,9 +527,10 @@ class RatedCells(Reduced):
     def follow(self, path: Path) -> Followed:
         """See `Reduced.follow`."""
         zone, cells = self.zone(path), self.estimate.zones(self.x)
+        jumps = self.estimate.modulus * (zone.displacement - self.estimate.profile.height(zone.edge))
         return Followed(
             self.x, zone.force, lambda state: self.estimate.loads(cells, zone, state),
-            zone=(zone.edge, zone.reach, self.estimate.modulus * (zone.displacement - self.estimate.profile.height(zone.edge))),
+            zone=(zone.edge, zone.reach, jumps),
         )  # fmt: skip
 
 
@@ -591,7 +592,7 @@ class RelaxingSprings(Reduced):
 
     @cached_property
     def _cells(self) -> tuple[Edges, NDArray[np.intp], Array]:
-        """Cells that come to touch alike, each once, by rising height, which is whose, and how many there are of each."""
+        """Cells that come to touch alike, each once, by rising height, which is whose, and how many of each."""
         every = vars(edges_of(self.estimate.profile, self.x, self.estimate.spacing))
         found, own = np.unique(np.stack([*every.values()]), axis=1, return_inverse=True)
         return Edges(*found), own, np.bincount(own).astype(np.float64)
@@ -671,7 +672,7 @@ class RelaxingSprings(Reduced):
         return stiffness * float(memory.stored @ counts), stiffness * lost
 
     def _jumps(self, edge: Array, displacement: Array, velocity: Array) -> Array:
-        """The line load at an edge [FU/LU]: what dashpots push as long as it does not recede; it recedes where that is 0."""
+        """The line load at an edge [FU/LU], what dashpots push where it does not recede."""
         retarded, estimate = self.law.retardation_time or 0.0, self.estimate
         push = displacement - estimate.profile.height(edge) + retarded * velocity
         grows = (edge > 0.0) & (velocity >= 0.0) & (push > JUMPS * np.abs(displacement)) & (retarded > 0.0)

@@ -9,8 +9,8 @@ be touched again. Over a load step of the time Δ along which u changes evenly
 
     s_j ← s_j e^(−Δ/τ) + Δu τ/Δ (1 − e^(−Δ/τ))
 
-A dashpot pushes at the edge of the contact, too, so that a particle has the force of the part φ of its cell that touches.
-With w = g(x + s/2) − g(x − s/2), the height over which a cell of the length s comes to touch, and r = g(x) − g(x − s/2)
+A dashpot pushes at the edge of the contact, too: a particle has the force of the part φ of its cell that touches. With
+w = g(x + s/2) − g(x − s/2), the height over which a cell of the length s comes to touch, and r = g(x) − g(x − s/2)
 
     φ = (r + min(overlap, u + T u′))/w within 0…1,    f = k φ [u + T u′ + (1 − φ) r]
 
@@ -118,10 +118,10 @@ class Memory:
         return np.clip((self._cells.rises + margin) / self._cells.widths, 0.0, 1.0)
 
     def under(self, load: float, before: float, counts: Array, time: float) -> tuple[float, float]:
-        """Displacement [LU] and velocity [LU/TU] after a time [TU] in which a load ≥ 0 over stiffness [LU] changes evenly.
+        """Displacement [LU] and velocity [LU/TU] after a time [TU] in which a load ≥ 0 over stiffness changes evenly.
 
-        `before`: the load until now; `counts`: particles of each kind. Dashpots follow it in two implicit stages, of the
-        second order and stable for steps of any length (R. Alexander, SIAM J. Numer. Anal. 14 (1977) 1006).
+        `before`: the load until now [LU]; `counts`: particles of each kind. Dashpots follow in two implicit stages, of
+        the second order and stable for any step (R. Alexander, SIAM J. Numer. Anal. 14 (1977) 1006).
         """
         if not self._retarded:
             place = self._carrying(load, counts, time, self.place, time)
@@ -170,7 +170,6 @@ class Memory:
             after = np.maximum(place - self._cells.heights, free)
             self.arms = decay[:, None] * self.arms + gain[:, None] * (after - self.surface)
         self.place, self.surface = place, after
-
 
     @property
     def stored(self) -> Array:

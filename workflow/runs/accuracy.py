@@ -95,7 +95,7 @@ def require_results(scene: Scene, outcome: Outcome) -> None:
 
 def with_checks(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressure]) -> Outcome:
     """The outcome with the checks of the body's results."""
-    checks = pressure(scene, outcome.marked, pressures) | closed_form(scene, reported(scene, outcome).exact)
+    checks = pressure(scene, outcome, pressures) | closed_form(scene, reported(scene, outcome).exact)
     return replace(outcome, consistency={**outcome.consistency, **checks})
 
 

@@ -51,8 +51,8 @@ FORMATS = ("png", "svg", "pdf")
 FILES = (
     RESULTS, "curve.csv", "profile.csv", "pressure_3d.csv", "shear_3d.csv", "friction.csv", "slips.csv",
     "detachments.csv", "cycles.csv", "means.csv", "samples.csv", "inputs.csv", "scene.toml",
-    "system.data", "interaction.table", "adhesion.cells", "retardation.cells", "in.lammps", "log.lammps", "curve.txt", "rows.bin",
-    "states.lammpstrj",
+    "system.data", "interaction.table", "adhesion.cells", "retardation.cells", "in.lammps", "log.lammps",
+    "curve.txt", "rows.bin", "states.lammpstrj",
     "states.npz", "way.gif", "way.mp4", "view_in_ovito.py", "way.ovito", "way.png",
     *(f"{name}.{form}" for name in FIGURES for form in FORMATS),
 )  # fmt: skip
@@ -97,7 +97,13 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
     beside = {"theory": theory(scene, found, scales), "validity": [one.entry() for one in checked]}
     if table := inputs_of(scene, known):
         beside["inputs"] = entries(table)
-    return quantities | beside | {"accuracy": accuracy} | checked_for(outcome) | _frame(scene, "done", doubts, scales, timing)
+    return (
+        quantities
+        | beside
+        | {"accuracy": accuracy}
+        | checked_for(outcome)
+        | _frame(scene, "done", doubts, scales, timing)
+    )
 
 
 CHECKS = ("plan", "pressure", "asked", "balance", "energy", "closed_form")
@@ -115,7 +121,11 @@ def failure(
 ) -> dict[str, Any]:
     """What results.json holds after a run that failed: no numbers but those of its checks."""
     scales = scales_of(scene, {})
-    return {"error": dict(error)} | checked_for(outcome) | _frame(scene, "failed", implausible(scene, scales, {}), scales, timing)
+    return (
+        {"error": dict(error)}
+        | checked_for(outcome)
+        | _frame(scene, "failed", implausible(scene, scales, {}), scales, timing)
+    )
 
 
 def _frame(
