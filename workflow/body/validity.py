@@ -137,8 +137,8 @@ def _tabor(case: Case) -> Iterator[Check]:
 
 def _yield(case: Case) -> Iterator[Check]:
     material, scales = case.scene.material, case.scales
-    bodies = () if material is None else (material.upper, material.lower)
-    strength = min((body.yield_strength or math.inf for body in bodies if body is not None), default=math.inf)
+    bodies = () if material is None else material.elastic.values()
+    strength = min((body.yield_strength or math.inf for body in bodies), default=math.inf)
     if math.isinf(strength) or not scales.known:
         return
     pressures = [case.quantities[name].value for name in PRESSURES if name in case.quantities]

@@ -459,10 +459,9 @@ def estimate_on_plane(scene: Scene, profile: Profile) -> ContactEstimate:
         estimate = RatedEstimate(**own, surface=bodies.profile, rate=scene.adhesion.rate)
     if bodies.own_count is None:
         widest = float(estimate.radii(np.asarray([max(wanted, estimate.displacement_at(load))]))[0])
-        limit = min(profile.reach, bodies.profile.steepest.curvature_radius or math.inf)
-        if widest > SPANNED * limit:
+        if widest > SPANNED * profile.reach:
             raise SettingsError(
-                f"the adhesive contact would cover the body, which ends at {limit:.6g} LU: JKR's theory is for a "
+                f"the adhesive contact would cover the body, which ends at {profile.reach:.6g} LU: JKR's theory is for a "
                 "contact much smaller than the body. Lower adhesion.work_of_adhesion, the load or the displacement"
             )
     estimate.require_one_edge()
