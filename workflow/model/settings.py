@@ -54,7 +54,7 @@ from contact1d.workflow.model.pairs import (
 )
 from contact1d.workflow.model.pairs import Profile as Undeformed
 from contact1d.workflow.model.relaxing import creep
-from contact1d.workflow.scene import Impact, Interaction, Scene
+from contact1d.workflow.scene import Impact, Interaction, Plate, Scene
 from contact1d.workflow.scene.remedies import less_compression
 
 FILE = Path(__file__).with_name("calibration.json")
@@ -493,6 +493,8 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
 
 CREEPING = 4
 """Looks for how deep a body goes that relaxes meanwhile, each with the time of the one before."""
+LEAST_BACK = 1e-5
+"""Restitution that is followed: with less a body creeps out for so long that it counts as stuck."""
 INERTIA, LONGER = 4.0, 2.0
 """Masses that the program chose, in a slower motion over the usual one; its drags, which go with the root, and the
 timesteps of a coarser one. What is of first order in these changes by its own amount at least."""
@@ -525,11 +527,25 @@ def slower(scene: Scene, settings: Settings) -> list[tuple[Scene, Settings]]:
 
 
 def _stopped(scene: Scene, estimate: ContactEstimate) -> float:
-    """Displacement [LU] at which a body that hits the plane is at rest, one that relaxes meanwhile deeper."""
-    found = stopped_at(scene, estimate)
-    for _ in range(CREEPING if scene.viscoelasticity and isinstance(scene.experiment, Impact) else 0):
-        assert isinstance(scene.experiment, Impact)
-        found = stopped_at(scene, estimate, creep(scene.viscoelasticity, 2.0 * found / scene.experiment.velocity))
+    """Displacement [LU] at which a body that hits the plane is at rest, one that relaxes meanwhile deeper.
+
+    Raises:
+        SettingsError: dashpots, T dF/dd, stop it by themselves, where F = M v/T, and it creeps out with d/T: it sticks.
+    """
+    found, given, law = stopped_at(scene, estimate), scene.experiment, scene.viscoelasticity
+    for _ in range(CREEPING if law and isinstance(given, Impact) else 0):
+        assert isinstance(given, Impact)
+        found = stopped_at(scene, estimate, creep(law, 2.0 * found / given.velocity))
+    if law and law.retardation_time and isinstance(given, Impact):
+        time, mass = law.retardation_time, scene.the(Plate).mass
+        assert mass != "auto"
+        back = estimate.displacement_at(mass * given.velocity / time) / time / given.velocity
+        if back < LEAST_BACK:
+            less, least = apart(back, LEAST_BACK, 2)
+            raise SettingsError(
+                f"the body sticks: dashpots of a viscoelasticity.retardation_time of {time:.4g} TU stop it, and it "
+                f"creeps out with {less} of its velocity, at least {least} are followed: give a shorter time"
+            )
     return found
 
 
