@@ -3,8 +3,8 @@
 Slope of the profile at the contact edge: the half-space theory is for small slopes (K. L. Johnson, Contact Mechanics,
 1985, section 4.1), and a paraboloid is a ball for a << R only. Tabor parameter: JKR has no range of the attraction
 (D. Maugis, 1992). Pressure: a ball yields where p(0) exceeds 1.60 Y (Johnson, section 6.1; ν = 0.3), a cone and a punch
-at once. Contact radius over the half-width of the body. Of every run the widest state is checked, and the pressure where
-the force is largest.
+at once. Contact radius over the half-width of the body. Of every run the widest state is checked, and the
+pressure where the force is largest.
 """
 
 from __future__ import annotations

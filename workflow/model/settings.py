@@ -495,6 +495,8 @@ CREEPING = 4
 """Looks for how deep a body goes that relaxes meanwhile, each with the time of the one before."""
 LEAST_BACK = 1e-5
 """Restitution that is followed: with less a body creeps out for so long that it counts as stuck."""
+FLOWS = 1.96
+"""Creep over that of half the time, up to which a body comes back: 2 of a fluid. Measured of a sphere: 1.95 does."""
 INERTIA, LONGER = 4.0, 2.0
 """Masses that the program chose, in a slower motion over the usual one; its drags, which go with the root, and the
 timesteps of a coarser one. What is of first order in these changes by its own amount at least."""
@@ -530,22 +532,29 @@ def _stopped(scene: Scene, estimate: ContactEstimate) -> float:
     """Displacement [LU] at which a body that hits the plane is at rest, one that relaxes meanwhile deeper.
 
     Raises:
-        SettingsError: dashpots, T dF/dd, stop it by themselves, where F = M v/T, and it creeps out with d/T: it sticks.
+        SettingsError: it sticks. Dashpots, T dF/dd, stop a body by themselves, where F = M v/T, and it creeps out with
+            d/T; and one that flows, so that twice the time is twice the creep, loses what would bring it back.
     """
     found, given, law = stopped_at(scene, estimate), scene.experiment, scene.viscoelasticity
-    for _ in range(CREEPING if law and isinstance(given, Impact) else 0):
-        assert isinstance(given, Impact)
-        found = stopped_at(scene, estimate, creep(law, 2.0 * found / given.velocity))
-    if law and law.retardation_time and isinstance(given, Impact):
-        time, mass = law.retardation_time, scene.the(Plate).mass
+    if law is None or not isinstance(given, Impact):
+        return found
+    for _ in range(CREEPING):
+        found = stopped_at(scene, estimate, creep(law, time := 2.0 * found / given.velocity))
+    if retarded := law.retardation_time:
+        mass = scene.the(Plate).mass
         assert mass != "auto"
-        back = estimate.displacement_at(mass * given.velocity / time) / time / given.velocity
+        back = estimate.displacement_at(mass * given.velocity / retarded) / retarded / given.velocity
         if back < LEAST_BACK:
             less, least = apart(back, LEAST_BACK, 2)
             raise SettingsError(
-                f"the body sticks: dashpots of a viscoelasticity.retardation_time of {time:.4g} TU stop it, and it "
+                f"the body sticks: dashpots of a viscoelasticity.retardation_time of {retarded:.4g} TU stop it, and it "
                 f"creeps out with {less} of its velocity, at least {least} are followed: give a shorter time"
             )
+    elif creep(law, 2.0 * time) > FLOWS * creep(law, time):
+        raise SettingsError(
+            f"the body sticks: its viscoelasticity.terms flow within the impact, which takes some {time:.4g} TU: give "
+            "longer times, or shares that leave more of the modulus"
+        )
     return found
 
 

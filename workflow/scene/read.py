@@ -83,7 +83,8 @@ class Scene(Tables):
 
     def moved(self, key: str, factor: float) -> Scene:
         """The scene with the number at a dotted key times a factor; a punch keeps its number of particles."""
-        scene, bodies = moved(self, keys_in(key), factor), self.bodies
+        bodies = self.bodies
+        scene: Scene = moved(self, keys_in(key), factor)
         if key == "bodies.profile.radius" and bodies.profile.has_edge and bodies.given_spacing != "auto":
             scene = moved(scene, ["bodies", "spacing"], factor)
             if bodies.bulk_stiffness != "auto":

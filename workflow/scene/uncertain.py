@@ -11,12 +11,10 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from copy import copy
 from fractions import Fraction
-from functools import reduce
-from operator import getitem
-from typing import Any, TypeVar
+from typing import Any
 
 from contact1d.workflow.scene.problems import keys_in
-from contact1d.workflow.scene.quantities import Place, keys_of, numbers_in
+from contact1d.workflow.scene.quantities import Place, Table, keys_of, numbers_in
 from contact1d.workflow.scene.si_text import NUMBER, UnitTextError, quantity, si_value, split
 
 SIGN = re.compile(r"\s*(?:±|\+/?-)\s*")
@@ -29,8 +27,6 @@ EXACT = (
     "material.length_unit", "material.force_unit", "material.mass_unit", "bodies.profile.scale",
 )  # fmt: skip
 """Numbers that choose how a contact is calculated or written, and are no property of it."""
-
-T = TypeVar("T", bound=Any)
 
 
 def take_shares(scene: Place) -> dict[str, float]:
@@ -102,18 +98,21 @@ def with_shares(tables: dict[str, Any], shares: Mapping[str, float]) -> dict[str
     """The tables of a scene with ± at these keys, in units of the model, as `take_shares` reads them; in place."""
     for path, share in shares.items():
         *above, key = keys_in(path)
+        table: Any = tables
         with suppress(LookupError):
-            table = reduce(getitem, above, tables)
+            for one in above:
+                table = table[one]
             table[key] = f"{table[key]!r} ± {100.0 * share!r} %"
     return tables
 
 
-def moved(part: T, keys: Sequence[Any], factor: float) -> T:
+def moved(part: Any, keys: Sequence[Any], factor: float) -> Any:
     """The table, list of tables or number with the number at these keys times a factor."""
     if not keys:
         return factor * part
     first, *rest = keys
     if isinstance(part, tuple):
         return tuple(moved(one, rest, factor) if i == first else one for i, one in enumerate(part))
-    field = keys_of(type(part))[first].field
+    kind: type[Table] = type(part)
+    field = keys_of(kind)[first].field
     return part.model_copy(update={field: moved(getattr(part, field), rest, factor)})
