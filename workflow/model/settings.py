@@ -543,17 +543,14 @@ def _stopped(scene: Scene, estimate: ContactEstimate) -> float:
     if retarded := law.retardation_time:
         mass = scene.the(Plate).mass
         assert mass != "auto"
-        back = estimate.displacement_at(mass * given.velocity / retarded) / retarded / given.velocity
-        if back < LEAST_BACK:
-            less, least = apart(back, LEAST_BACK, 2)
-            raise SettingsError(
-                f"the body sticks: dashpots of a viscoelasticity.retardation_time of {retarded:.4g} TU stop it, and it "
-                f"creeps out with {less} of its velocity, at least {least} are followed: give a shorter time"
-            )
-    elif creep(law, 2.0 * time) > FLOWS * creep(law, time):
+        out = estimate.displacement_at(mass * given.velocity / retarded) / retarded
+        sticks = "creeps out on its dashpots", out < LEAST_BACK * given.velocity, "a shorter retardation_time"
+    else:
+        sticks = "flows", creep(law, 2.0 * time) > FLOWS * creep(law, time), "longer times of terms"
+    if sticks[1]:
         raise SettingsError(
-            f"the body sticks: its viscoelasticity.terms flow within the impact, which takes some {time:.4g} TU: give "
-            "longer times, or shares that leave more of the modulus"
+            f"the body sticks: it {sticks[0]}, for longer than is followed, where an impact of the elastic body takes "
+            f"some {time:.4g} TU: give {sticks[2]} in [viscoelasticity]"
         )
     return found
 
