@@ -213,6 +213,7 @@ class Scales:
         mass: one MU [kg]; None: not known, and with it no time.
         length_uncertainty, force_uncertainty: of these; 0 where they are given.
         known: whether they stand for anything; see UNKNOWN.
+        ends: pairs of what they may be instead, one for each number with ± that they are made of.
     """
 
     length: float
@@ -221,6 +222,7 @@ class Scales:
     force_uncertainty: float = 0.0
     mass: float | None = None
     known: bool = True
+    ends: tuple[tuple[Scales, ...], ...] = ()
 
     def know(self, unit: str) -> bool:
         """Whether one `unit` is known in SI."""
@@ -263,10 +265,14 @@ class Scales:
         return IN_WORDS.sub(shown, text)
 
     def in_si(self, value: float, uncertainty: float, unit: str) -> dict[str, float | str]:
-        """The quantity in SI: value, uncertainty, unit. Relative uncertainties of the scales are added to its own."""
+        """The quantity in SI: value, uncertainty, unit. Relative uncertainties of the scales are added to its own.
+
+        Independent changes of a scale add up in squares.
+        """
         factor, own = self.factor(unit), SI[unit]
         scales = abs(own.length) * self.length_uncertainty / self.length
         scales += abs(own.force) * self.force_uncertainty / self.force
+        scales += math.hypot(*(max(abs(one.factor(unit) / factor - 1.0) for one in both) for both in self.ends))
         spread = uncertainty * factor + abs(value * factor) * scales
         return {"value": value * factor, "uncertainty": spread, "unit": own.si}
 

@@ -280,10 +280,12 @@ class Ellipsoid(Contact):
         return self.half_axis / c * (math.atanh(x / c) + x * c / (c**2 - x**2))
 
     def central_pressure(self, contact_radius: float) -> float:
-        """Return p(0) = (E*/pi) int_0^a g'/x dx - sqrt(2 E* W/pi a) [stress]; 0 < a < c [length].
+        """Return p(0) = (E*/pi) int_0^a g'/x dx - sqrt(2 E* W/pi a) [stress]; 0 <= a < c [length].
 
         By quadrature: the first part has no elementary form.
         """
+        if not contact_radius:
+            return 0.0
         nodes, weights = gauss(POINTS)
         half, a = 0.5 * contact_radius, contact_radius
         places = half * (nodes + 1.0)

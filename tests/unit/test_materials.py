@@ -85,7 +85,7 @@ def test_every_material_is_one_of_a_scene_and_has_a_source(name: str) -> None:
     ("upper", "words"),
     [
         ("stele", 'did you mean "steel"? names: steel, stainless_steel, aluminium'),
-        ("kryptonite", 'name such as "steel"; names: steel, stainless_steel'),
+        ("kryptonite", 'name such as "steel", or "rigid"; names: steel, stainless_steel'),
         ("210 GPa", 'must be a table with youngs_modulus, poisson_ratio, yield_strength, or a name such as "steel"'),
         (5, "material.upper = 5: must be a table with youngs_modulus, poisson_ratio, yield_strength, or a name"),
     ],

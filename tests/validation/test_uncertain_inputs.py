@@ -1,6 +1,8 @@
 """Numbers with ±: what they change of each result is that of the closed forms, and draws from them are inside."""
 
 import math
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -143,3 +145,131 @@ def test_a_scene_keeps_its_uncertainties_when_it_is_written_and_changed() -> Non
     assert contact1d.read_scene(str(scene)).shares == scene.shares
     assert scene.with_({"bodies.profile.radius": "20 mm"}).shares == {"material.contact_modulus": 0.02}
     assert scene.with_({"experiment.force": "2 N"}).shares == scene.shares
+
+
+SOFT, HARD = (
+    {"youngs_modulus": "5 ± 0.5 MPa", "poisson_ratio": "0.45 ± 0.02"},
+    {"youngs_modulus": "9 ± 0.9 MPa", "poisson_ratio": 0.4},
+)
+"""± 10 % of E, and 0.02 of ν."""
+
+
+def compliance(modulus: float, ratio: float) -> float:
+    return (1.0 - ratio**2) / modulus
+
+
+def ends(of: Callable[..., float], *numbers: tuple[float, float]) -> float:
+    """What independent numbers, value and ±, change of a result, over that; of each the larger way."""
+    own = of(*(value for value, _ in numbers))
+    changes = []
+    for i, (value, off) in enumerate(numbers):
+        both = (
+            [one for one, _ in numbers[:i]] + [value + way * off] + [one for one, _ in numbers[i + 1 :]]
+            for way in (-1, 1)
+        )
+        changes.append(max(abs(of(*moved) / own - 1.0) for moved in both))
+    return math.hypot(*changes)
+
+
+def test_a_rigid_body_leaves_the_other_one_its_uncertainty() -> None:
+    """a₀ ∝ E*^(−1/3) of JKR."""
+    given = {"radius": "1 mm", "work_of_adhesion": "50 mJ/m²"}
+    soft = (5e6, 0.5e6), (0.45, 0.02)
+    alone = ends(lambda e, nu: compliance(e, nu) ** (1 / 3), *soft)
+    both = ends(lambda e, nu, f: (compliance(e, nu) + compliance(f, 0.4)) ** (1 / 3), *soft, (9e6, 0.9e6))
+    for bodies, share in (
+        ({"upper": SOFT, "lower": "rigid"}, alone),
+        ({"upper": "rigid", "lower": SOFT}, alone),
+        ({"upper": SOFT, "lower": HARD}, both),
+    ):
+        found = contact1d.sphere(**given, **bodies).pull_off()
+        radius = found.results.zero_load_radius
+        modulus = 1.0 / (compliance(5e6, 0.45) + (compliance(9e6, 0.4) if HARD in bodies.values() else 0.0))
+        assert radius.value == pytest.approx((9.0 * math.pi * 0.05 * 1e-6 / (2.0 * modulus)) ** (1 / 3), rel=1e-3)
+        assert radius.uncertainty / radius.value == pytest.approx(share, rel=NONLINEAR)
+
+
+def test_units_that_follow_from_a_material_have_its_uncertainty() -> None:
+    """LU ∝ γ/E* and FU ∝ γ²/E* of JKR's units, of a given length FU ∝ E*: in pressures γ is not."""
+    bodies = {
+        "particles": "auto", "spacing": 1.0, "lower": "rigid_plane", "bulk_stiffness": 0.9, "reduction": "mdr",
+        "profile": {"kind": "parabola", "radius": 800.0},
+    }  # fmt: skip
+    tables = {
+        "title": "units",
+        "bodies": bodies,
+        "adhesion": {"work_of_adhesion": 0.01},
+        "experiment": {"kind": "pull_off", "preload": 1.0},
+    }
+    elastic = {"upper": {"youngs_modulus": "5 ± 0.5 MPa", "poisson_ratio": 0.45}, "lower": "rigid"}
+    energy, modulus = (1.0, 0.05), (1.0, 0.1)
+    jkr_units = {
+        "adhesion_force": ends(lambda w, e: w**2 / e, energy, modulus),
+        "zero_load_radius": ends(lambda w, e: w / e, energy, modulus),
+        "central_pressure": 0.1,
+    }
+    of_length = {"adhesion_force": 0.1, "zero_load_radius": 0.0, "central_pressure": 0.1}
+    for unit, shares in (({"surface_energy": "20 ± 1 mJ/m²"}, jkr_units), ({"length_unit": 1e-6}, of_length)):
+        results = contact1d.run(tables | {"material": elastic | unit}).results
+        found = {name: results[name].uncertainty / results[name].value for name in shares}
+        assert found == pytest.approx(shares, rel=NONLINEAR, abs=1e-3)
+
+
+def relaxing(share: object, time: str, points: list[list[str]]) -> dict[str, Any]:
+    bodies = {
+        "particles": "auto",
+        "spacing": "auto",
+        "lower": "rigid_plane",
+        "profile": {"kind": "parabola", "radius": "2 mm"},
+    }
+    return {
+        "title": "relaxes", "bodies": bodies, "material": {"contact_modulus": "3 MPa"},
+        "viscoelasticity": {"terms": [{"share": share, "time": time}, {"share": 0.1, "time": "20 s"}]},
+        "experiment": {"kind": "history", "displacement": points},
+    }  # fmt: skip
+
+
+def lee_and_radok(share: float, time: float, depth: float, end: float = 3.0) -> float:
+    """F/E*√R of a paraboloid pressed evenly to a depth in 0.5 s and held: (4/3) ∫ E(t − s) d(δ^(3/2))."""
+    s = np.linspace(0.0, 1.0, 20001)
+    age = end - 0.5 * 0.5 * (s[1:] + s[:-1])
+    left = 1.0 - share * (1.0 - np.exp(-age / time)) - 0.1 * (1.0 - np.exp(-age / 20.0))
+    return 4.0 / 3.0 * depth**1.5 * float(left @ np.diff(s**1.5))
+
+
+def test_terms_and_points_of_a_list_have_uncertainties() -> None:
+    points = [["0 s", "0 µm"], ["0.5 s", "8 ± 0.4 µm"], ["3 s", "8 µm"]]
+    known = [[t, d.replace(" ± 0.4", "")] for t, d in points]
+    exact = contact1d.run(relaxing(0.5, "1.5 s", known))
+    terms = contact1d.run(relaxing("0.5 ± 0.05", "1.5 ± 0.3 s", known))
+    share = ends(lambda share, time: lee_and_radok(share, time, 1.0), (0.5, 0.05), (1.5, 0.3))
+    assert exact.results.force.value == pytest.approx(3e6 * math.sqrt(2e-3) * lee_and_radok(0.5, 1.5, 8e-6), rel=1e-3)
+    assert terms.results.force.value == exact.results.force.value
+    own = exact.results.force.uncertainty / exact.results.force.value
+    assert terms.results.force.uncertainty / terms.results.force.value - own == pytest.approx(share, rel=NONLINEAR)
+    assert [one["input"] for one in terms.document["inputs"]] == [
+        "viscoelasticity.terms[0].share",
+        "viscoelasticity.terms[0].time",
+    ]
+    assert contact1d.read_scene(str(terms.scene)).shares == pytest.approx(dict(terms.scene.shares))
+    deeper = contact1d.run(relaxing(0.5, "1.5 s", points)).results
+    peak = deeper.peak_force.uncertainty / deeper.peak_force.value
+    assert peak == pytest.approx(1.05**1.5 - 1.0, rel=NONLINEAR)
+    assert deeper.peak_displacement.uncertainty == pytest.approx(0.4e-6)
+
+
+@pytest.mark.parametrize(
+    ("share", "time", "said"),
+    [
+        ("0.8 ± 0.2", "0.5 s", "viscoelasticity.terms[0].share: at an end of its ±: the shares"),
+        (0.5, "0.5 ± 0.3 s", 'viscoelasticity.terms[0].time = "0.5 ± 0.3 s": must have an uncertainty'),
+    ],
+)
+def test_a_number_of_a_list_that_is_none_at_an_end_of_its_uncertainty_is_refused(
+    share: object, time: str, said: str
+) -> None:
+    with pytest.raises(SceneError) as caught:
+        contact1d.read_scene(relaxing(share, time, [["0 s", "0 µm"], ["1 s", "8 µm"]]))
+    assert str(caught.value).startswith(said)
+    with pytest.raises(SceneError, match="at an end of its ±: times must rise"):
+        contact1d.read_scene(relaxing(0.5, "1 s", [["0 s", "0 µm"], ["1 ± 0.3 s", "8 µm"], ["1.2 s", "7 µm"]]))

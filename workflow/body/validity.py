@@ -3,14 +3,15 @@
 Slope of the profile at the contact edge: the half-space theory is for small slopes (K. L. Johnson, Contact Mechanics,
 1985, section 4.1), and a paraboloid is a ball for a << R only. Tabor parameter: JKR has no range of the attraction
 (D. Maugis, 1992). Pressure: a ball yields where p(0) exceeds 1.60 Y (Johnson, section 6.1; ν = 0.3), a cone and a punch
-at once. Contact radius over the half-width of the body.
+at once. Contact radius over the half-width of the body. Of every run the widest state is checked, and the
+pressure where the force is largest.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -18,9 +19,13 @@ import numpy as np
 from contact1d.analysis.theory.adhesion import JKR_TABOR, MaugisDugdale, Theory, of_tabor
 from contact1d.analysis.theory.indenters import Ellipsoid, PowerLaw
 from contact1d.digits import apart, digits_apart
+from contact1d.workflow.body.derived import pressures_of
+from contact1d.workflow.body.reading import stands_for_spheres
 from contact1d.workflow.body.theory import ASSUMED_RANGE, Case
 from contact1d.workflow.body.traction import is_of_a_body
+from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene.tables import WIDER_THAN_SPHERES
 from contact1d.workflow.units import MEAN_PRESSURE, Quantity, Scales, prefixed
 
 SLOPE, HALF_WIDTH = 0.1, 0.5
@@ -29,7 +34,7 @@ YIELD = 1.6
 """Pressure on the axis over the yield strength at which a ball begins to yield below the surface."""
 STEP = 1e-6
 """Relative, for the slope of a profile."""
-RADII = ("contact_radius", "largest_radius", "zero_load_radius", "critical_radius")
+RADII = ("contact_radius", "largest_radius", "zero_load_radius", "critical_radius", "peak_contact_radius")
 SINGULAR = ("cone", "flat_punch")
 """Profiles under which a pressure has no bound."""
 PRESSURES = ("central_pressure", "peak_pressure")
@@ -60,13 +65,17 @@ class Check:
         return {"name": self.name, "quantity": self.quantity, "value": value, "limit": self.limit, "holds": self.holds}
 
 
-def checks(scene: Scene, found: Mapping[str, Quantity], scales: Scales) -> list[Check]:
-    """The checks that a run allows; `found`: its results, of the body."""
-    radius = max((found[name].value for name in RADII if name in found), default=0.0)
-    if not is_of_a_body(scene) or radius <= 0.0:
+def checks(scene: Scene, outcome: Outcome, found: Mapping[str, Quantity], scales: Scales) -> list[Check]:
+    """The checks that a run allows, of its largest state; `found`: its results, of the body."""
+    if not is_of_a_body(scene):
+        return []
+    wider = WIDER_THAN_SPHERES if stands_for_spheres(scene) else 1.0
+    radii = [state.radius.value / wider for state in outcome.states if state.radius]
+    radius = max([*radii, *(found[name].value for name in RADII if name in found)], default=0.0)
+    if radius <= 0.0:
         return []
     case = Case(scene, found, scales)
-    return [*_slope(case, radius), *_half_width(case, radius), *_tabor(case), *_yield(case)]
+    return [*_slope(case, radius), *_half_width(case, radius), *_tabor(case), *_yield(case, outcome)]
 
 
 def _slope(case: Case, radius: float) -> Iterator[Check]:
@@ -102,9 +111,10 @@ def _beside_a_ball(case: Case, radius: float) -> str:
 
 def _half_width(case: Case, radius: float) -> Iterator[Check]:
     profile = case.scene.bodies.profile
-    if not np.isfinite(profile.reach) or profile.has_edge:
+    width = profile.reach if math.isfinite(profile.reach) else profile.curvature_radius  # of a paraboloid its ball's
+    if width is None or profile.has_edge:
         return
-    share = radius / profile.reach
+    share = radius / width
     found, limit = apart(share, HALF_WIDTH)
     message = (
         f"the contact radius is {found} of the half-width of the body, and the theory of the elastic half-space is "
@@ -135,13 +145,16 @@ def _tabor(case: Case) -> Iterator[Check]:
         yield Check("tabor", "Tabor parameter", sphere.tabor, JKR_TABOR, not message, message)
 
 
-def _yield(case: Case) -> Iterator[Check]:
+def _yield(case: Case, outcome: Outcome) -> Iterator[Check]:
     material, scales = case.scene.material, case.scales
-    bodies = () if material is None else (material.upper, material.lower)
-    strength = min((body.yield_strength or math.inf for body in bodies if body is not None), default=math.inf)
+    bodies = () if material is None else material.elastic.values()
+    strength = min((body.yield_strength or math.inf for body in bodies), default=math.inf)
     if math.isinf(strength) or not scales.known:
         return
-    pressures = [case.quantities[name].value for name in PRESSURES if name in case.quantities]
+    largest = {"largest": max(outcome.states, key=lambda state: state.force)}
+    deepest = pressures_of(case.scene, replace(outcome, marked=largest)).get("largest")
+    found = [deepest.results, case.quantities] if deepest else [case.quantities]
+    pressures = [results[name].value for results in found for name in PRESSURES if name in results]
     if case.radius is not None and "preload" in case.quantities:
         pressures.append(case.body.central_pressure(case.body.contact_radius(case.quantities["preload"].value)))
     pressure = max(pressures, default=0.0) * scales.factor(MEAN_PRESSURE)

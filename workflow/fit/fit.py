@@ -7,6 +7,7 @@ import time
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
+from glob import glob
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -82,7 +83,7 @@ def files_of(plan: FitPlan) -> list[Path]:
     if place.is_dir():
         found = sorted(place.glob(PATTERN))
     elif any(sign in plan.fit.data for sign in "*?["):
-        found = sorted(plan.folder.glob(plan.fit.data))
+        found = sorted(plan.folder / name for name in glob(plan.fit.data, root_dir=plan.folder, recursive=True))
     else:
         found = [place]
     if not found or not all(map(Path.is_file, found)):

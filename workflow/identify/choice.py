@@ -88,8 +88,6 @@ def usual_preload(contact: AskedContact) -> float:
 def on_plane(contact: AskedContact, experiment: Any, **tables: Any) -> Scene:
     """The contact's scene with an experiment and further tables, on a rigid plane. Raises SceneError."""
     data = contact.scene.given
-    if contact.is_rigid:
-        data["material"] = {"contact_modulus": contact.contact_modulus, "length_unit": 1.0, "force_unit": 1.0}
     if not contact.work_of_adhesion:
         data.pop("adhesion", None)
     return scene_from_dict(data | tables | {"experiment": experiment})

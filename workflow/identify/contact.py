@@ -66,15 +66,10 @@ class AskedContact:
         return self.shape.curvature_radius if self.shape.kind in SPHERES else None
 
     @property
-    def is_rigid(self) -> bool:
-        """Whether one of the bodies is, so that the scene has the other one twice."""
-        return RIGID in (self.given.get("upper"), self.given.get("lower"))
-
-    @property
     def contact_modulus(self) -> float:
         """E* [Pa]."""
         assert self.scene.material is not None
-        return self.scene.material.effective_modulus() * (2.0 if self.is_rigid else 1.0)
+        return self.scene.material.effective_modulus()
 
     @property
     def work_of_adhesion(self) -> float:
@@ -176,15 +171,14 @@ def _without_unit(data: Mapping[str, Any], folder: Path) -> Iterator[Problem]:
 def _as_scene(data: Mapping[str, Any]) -> dict[str, Any]:
     """A chain on a rigid plane with what is given; what is missing, or no scene has, stands in."""
     profile = data.get("profile", {"kind": "parabola", "radius": data.get("radius", 1.0)})
-    elastic = {name: data[name] for name in ("upper", "lower") if data.get(name, RIGID) != RIGID}
-    one = next(iter(elastic.values()), None)
-    bodies = {} if one is None else {"upper": one, "lower": one} | elastic
-    modulus = {"contact_modulus": data.get("contact_modulus", 1.0)} if one is None else {}
+    bodies = {name: data[name] for name in ("upper", "lower") if name in data}
+    elastic = dict.fromkeys(("upper", "lower"), RIGID) | bodies if bodies else {}
+    modulus = {} if bodies else {"contact_modulus": data.get("contact_modulus", 1.0)}
     tables: dict[str, Any] = {
         "title": data.get("title", "A contact"),
         "bodies": {"particles": "auto", "spacing": "auto", "profile": profile, "reduction": "mdr",
                    "lower": "rigid_plane", "bulk_stiffness": "auto"},
-        "material": {**bodies, **modulus, "length_unit": 1.0, "force_unit": 1.0},
+        "material": {**elastic, **modulus, "length_unit": 1.0, "force_unit": 1.0},
         "accuracy": {"tolerance": data.get("tolerance", DEFAULT_TOLERANCE)},
         "experiment": {"kind": "load", "force": data.get("load", 0.0) or 1.0},
     }  # fmt: skip
@@ -200,8 +194,7 @@ def _as_given(problem: Problem, data: Mapping[str, Any]) -> Problem:
     keys = [key for key in PLACES if key in data]
     own = next((key for key in keys if problem.path.startswith(PLACES[key])), problem.path)
     path = problem.path.replace(PLACES.get(own, own), own, 1)
-    message = problem.message + (', or "rigid"' if path in ("upper", "lower") else "")
-    return Problem(path, message, problem.given, problem.hint)
+    return Problem(path, problem.message, problem.given, problem.hint)
 
 
 def _rank(problem: Problem, data: Mapping[str, Any]) -> int:

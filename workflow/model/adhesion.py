@@ -37,7 +37,7 @@ FIRST = 1e-3
 BEYOND = 1.2
 """Width of what is known of the contact over what the experiment needs."""
 SPANNED = 0.9
-"""Radius of a contact over where its body ends, or over the radius of its curvature, from which it spans the body."""
+"""Radius of a contact over where its body ends, from which it spans the body."""
 RISE = 1e-9
 """Rise of h before its least value over its depth that counts as one."""
 NARROWEST = 1e-12

@@ -19,6 +19,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from contact1d.digits import apart
 from contact1d.workflow.model.adhesion import SPANNED, AdhesiveEstimate
 from contact1d.workflow.model.chain import SettingsError
 from contact1d.workflow.model.dugdale import DOUBLINGS, TINY, Dugdale, Zone, covered
@@ -39,6 +40,11 @@ ENERGY_PLACES = 4000
 LOST, SLOWING, EXACT, FOLLOWED = 1e-3, 12, 1e-11, 4000
 """Edge over that under fixed grips at which a receding one is lost, and the power with which it slows down beyond; the
 error of its motion, and times at which a pull looks for equal ways."""
+RESOLVED = 1e-9
+"""Least way of the attraction beyond the contact over the radius under fixed grips. Measured: at 1e-10 forces are off
+by 4e-7, and below that the curve is no longer monotonic."""
+SLOWEST = 1e-8
+"""Least (v/v₀)ⁿ of a pull."""
 SAME = 1e-9
 """Fall of d over its range that is one: others are round-off."""
 
@@ -357,7 +363,8 @@ class RatedEstimate(ZonedEstimate):
         least = LOST * self.fixed_grips[0]
 
         def change(time: float, log: Array) -> list[float]:
-            radius = math.exp(float(log[0]))  # a lost edge slows down: an end of the motion would not be found surely
+            # A lost edge slows down: an end of the motion would not be found surely; a trial step may go far beyond.
+            radius = max(math.exp(float(log[0])), LOST * least)
             return [self._recedes(radius, place(time)) / radius / (1.0 + (0.5 * least / radius) ** SLOWING)]
 
         ends, start = (float(times[0]), float(times[-1])), [math.log(edge)]
@@ -430,7 +437,8 @@ def stopped_at(scene: Scene, estimate: ContactEstimate, softer: float = 1.0) -> 
         if deepest >= last:
             return math.inf
         deepest *= 2.0
-    return float(brentq(lambda d: stored(d) - energy, 0.0, min(deepest, last)))
+    deepest = min(deepest, last)  # a share of it, since the root is found to an absolute error
+    return deepest * float(brentq(lambda share: stored(share * deepest) - energy, 0.0, 1.0))
 
 
 def estimate_on_plane(scene: Scene, profile: Profile) -> ContactEstimate:
@@ -454,16 +462,21 @@ def estimate_on_plane(scene: Scene, profile: Profile) -> ContactEstimate:
         known *= 2.0
     if reach and work:
         estimate = _with_range(estimate, reach, bodies.profile, wanted, load)
-    elif scene.adhesion.rate and work:
+    elif (rate := scene.adhesion.rate) and work:
+        speed = getattr(scene.experiment, "velocity", None) or rate.velocity
+        if (more := (speed / rate.velocity) ** rate.exponent) < SLOWEST:
+            raise SettingsError(
+                f"the contact is JKR's within {more:.1g}: an adhesion.rate whose velocity is so far above "
+                f"experiment.velocity, {speed:.4g} LU/TU, changes nothing that is resolved: leave it out"
+            )
         own = {one.name: getattr(estimate, one.name) for one in fields(estimate)}
-        estimate = RatedEstimate(**own, surface=bodies.profile, rate=scene.adhesion.rate)
+        estimate = RatedEstimate(**own, surface=bodies.profile, rate=rate)
     if bodies.own_count is None:
         widest = float(estimate.radii(np.asarray([max(wanted, estimate.displacement_at(load))]))[0])
-        limit = min(profile.reach, bodies.profile.steepest.curvature_radius or math.inf)
-        if widest > SPANNED * limit:
+        if widest > SPANNED * profile.reach:
             raise SettingsError(
-                f"the adhesive contact would cover the body, which ends at {limit:.6g} LU: JKR's theory is for a "
-                "contact much smaller than the body. Lower adhesion.work_of_adhesion, the load or the displacement"
+                f"the adhesive contact would cover the body, which ends at {profile.reach:.6g} LU: JKR's theory is for "
+                "a contact much smaller than the body. Lower adhesion.work_of_adhesion, the load or the displacement"
             )
     estimate.require_one_edge()
     return estimate
@@ -473,8 +486,16 @@ def _with_range(jkr: AdhesiveEstimate, reach: float, surface: Profile, wanted: f
     """The predictor of a contact whose attraction has a range [LU], known as far as an experiment needs.
 
     Raises:
-        SettingsError: the attraction would reach past the body.
+        SettingsError: the attraction would reach past the body, or so little beyond the contact, by c − a = πE*h₀²/4W,
+            that no digits show it.
     """
+    least = math.sqrt(4.0 * RESOLVED * jkr.fixed_grips[0] * jkr.work / (math.pi * jkr.modulus))
+    if reach < least:
+        given, most = apart(reach, least)
+        raise SettingsError(
+            f"an adhesion.range of {given} LU is too short to be resolved beside this contact, at least {most} LU are "
+            "needed: the contact is JKR's, which has none: leave adhesion.range out"
+        )
     own = {one.name: getattr(jkr, one.name) for one in fields(jkr)} | {"range": reach, "surface": surface}
     end = CohesiveEstimate(**own | {"known": jkr.profile.reach}).law.widest()
     known = min(jkr.known, end)

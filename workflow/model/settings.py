@@ -54,7 +54,7 @@ from contact1d.workflow.model.pairs import (
 )
 from contact1d.workflow.model.pairs import Profile as Undeformed
 from contact1d.workflow.model.relaxing import creep
-from contact1d.workflow.scene import Impact, Interaction, Scene
+from contact1d.workflow.scene import Impact, Interaction, Plate, Scene
 from contact1d.workflow.scene.remedies import less_compression
 
 FILE = Path(__file__).with_name("calibration.json")
@@ -493,6 +493,10 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
 
 CREEPING = 4
 """Looks for how deep a body goes that relaxes meanwhile, each with the time of the one before."""
+LEAST_BACK = 1e-5
+"""Restitution that is followed: with less a body creeps out for so long that it counts as stuck."""
+FLOWS = 1.96
+"""Creep over that of half the time, up to which a body comes back: 2 of a fluid. Measured of a sphere: 1.95 does."""
 INERTIA, LONGER = 4.0, 2.0
 """Masses that the program chose, in a slower motion over the usual one; its drags, which go with the root, and the
 timesteps of a coarser one. What is of first order in these changes by its own amount at least."""
@@ -525,11 +529,29 @@ def slower(scene: Scene, settings: Settings) -> list[tuple[Scene, Settings]]:
 
 
 def _stopped(scene: Scene, estimate: ContactEstimate) -> float:
-    """Displacement [LU] at which a body that hits the plane is at rest, one that relaxes meanwhile deeper."""
-    found = stopped_at(scene, estimate)
-    for _ in range(CREEPING if scene.viscoelasticity and isinstance(scene.experiment, Impact) else 0):
-        assert isinstance(scene.experiment, Impact)
-        found = stopped_at(scene, estimate, creep(scene.viscoelasticity, 2.0 * found / scene.experiment.velocity))
+    """Displacement [LU] at which a body that hits the plane is at rest, one that relaxes meanwhile deeper.
+
+    Raises:
+        SettingsError: it sticks. Dashpots, T dF/dd, stop a body by themselves, where F = M v/T, and it creeps out with
+            d/T; and one that flows, so that twice the time is twice the creep, loses what would bring it back.
+    """
+    found, given, law = stopped_at(scene, estimate), scene.experiment, scene.viscoelasticity
+    if law is None or not isinstance(given, Impact):
+        return found
+    for _ in range(CREEPING):
+        found = stopped_at(scene, estimate, creep(law, time := 2.0 * found / given.velocity))
+    if retarded := law.retardation_time:
+        mass = scene.the(Plate).mass
+        assert mass != "auto"
+        out = estimate.displacement_at(mass * given.velocity / retarded) / retarded
+        sticks = "creeps out on its dashpots", out < LEAST_BACK * given.velocity, "a shorter retardation_time"
+    else:
+        sticks = "flows", creep(law, 2.0 * time) > FLOWS * creep(law, time), "longer times of terms"
+    if sticks[1]:
+        raise SettingsError(
+            f"the body sticks: it {sticks[0]}, for longer than is followed, where an impact of the elastic body takes "
+            f"some {time:.4g} TU: give {sticks[2]} in [viscoelasticity]"
+        )
     return found
 
 

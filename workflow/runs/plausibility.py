@@ -70,8 +70,8 @@ def _moduli(scene: Scene) -> Iterator[tuple[str, str]]:
     material = scene.material
     if material is None:
         return
-    bodies = {"material.upper": material.upper, "material.lower": material.lower}
-    moduli = {f"{name}.youngs_modulus": body.youngs_modulus for name, body in bodies.items() if body is not None}
+    bodies = {f"material.{name}": body for name, body in material.elastic.items()}
+    moduli = {f"{name}.youngs_modulus": body.youngs_modulus for name, body in bodies.items()}
     if material.contact_modulus is not None:
         moduli["material.contact_modulus"] = material.contact_modulus
     for key, modulus in moduli.items():
@@ -82,7 +82,7 @@ def _moduli(scene: Scene) -> Iterator[tuple[str, str]]:
         least = f"{min(moduli.values()):g} Pa"
         yield f"{IMPLAUSIBLE}_modulus", f"{' and '.join(moduli)}: {least} is stiffer than diamond: check its unit"
     for name, body in bodies.items():
-        if body is not None and body.poisson_ratio < 0.0:
+        if body.poisson_ratio < 0.0:
             ratio = f"{name}.poisson_ratio is {body.poisson_ratio:g}"
             yield f"{IMPLAUSIBLE}_poisson_ratio", f"{ratio}, and few materials have one below 0: check its sign"
 

@@ -82,7 +82,7 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
             unit: scales.in_si(1.0, 0.0, unit) for unit in (LENGTH, FORCE, MASS, TIME) if scales.know(unit)
         }
     doubts = dict(outcome.warnings) | misfit(scene) | doubt_of_the_image(scene) | implausible(scene, scales, found)
-    checked = checks(scene, found, scales)
+    checked = checks(scene, outcome, found, scales)
     doubts |= {one.name: one.message for one in checked if not one.holds} | accuracy_warnings(scene, outcome)
     if missing := unfound(scene, known.quantities):
         doubts["no_units"] = (

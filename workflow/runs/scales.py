@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import UNKNOWN, Quantity, Scales
@@ -19,7 +20,20 @@ UNIT_FIXING_RESULTS = ("adhesion_force", "zero_load_radius")
 
 
 def scales_of(scene: Scene, quantities: Mapping[str, Quantity]) -> Scales:
-    """The scales of a run; UNKNOWN without a [material], and where results that fix them (`unfound`) are missing."""
+    """The scales of a run; UNKNOWN without a [material], and where results that fix them (`unfound`) are missing.
+
+    A material's numbers with ± that are no part of the model, as with its own stiffness, are part of them.
+    """
+    ends = tuple(
+        tuple(_scales(scene.moved(key, 1.0 + way * share), quantities) for way in (-1.0, 1.0))
+        for key, share in scene.shares.items()
+        if key.startswith("material.")
+    )
+    return replace(_scales(scene, quantities), ends=ends)
+
+
+def _scales(scene: Scene, quantities: Mapping[str, Quantity]) -> Scales:
+    """The same, of the numbers alone."""
     material = scene.material
     if material is None or unfound(scene, quantities):
         return UNKNOWN

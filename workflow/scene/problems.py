@@ -118,6 +118,11 @@ def path_of(keys: Iterable[str | int]) -> str:
     return path
 
 
+def keys_in(path: str) -> list[str | int]:
+    """The keys of a dotted path, as `path_of` writes it."""
+    return [int(key) if key.isdecimal() else key for key in re.sub(r"\[(\d+)\]", r".\1", path).split(".")]
+
+
 def nearest(word: str, allowed: Iterable[str]) -> str | None:
     """The one of `allowed` that a person who wrote `word` most likely meant, or None."""
     known, meant = list(allowed), plain(word)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from os import PathLike, fspath
 from pathlib import Path as FilePath
@@ -15,7 +15,7 @@ from pydantic import ConfigDict, PrivateAttr, ValidationError
 from contact1d.files import UnreadableError, read_text
 from contact1d.workflow.scene.check import mend_words, report_faults
 from contact1d.workflow.scene.conversion import UNIT_KEYS, convert
-from contact1d.workflow.scene.problems import BARE, Problem, SceneError, shown, suggestion, tables_as_toml
+from contact1d.workflow.scene.problems import BARE, Problem, SceneError, keys_in, shown, suggestion, tables_as_toml
 from contact1d.workflow.scene.profile_file import put_points, take_points
 from contact1d.workflow.scene.quantities import Place, Table, keys_of
 from contact1d.workflow.scene.rules import check_fit
@@ -83,7 +83,8 @@ class Scene(Tables):
 
     def moved(self, key: str, factor: float) -> Scene:
         """The scene with the number at a dotted key times a factor; a punch keeps its number of particles."""
-        scene, bodies = moved(self, key.split("."), factor), self.bodies
+        bodies = self.bodies
+        scene: Scene = moved(self, keys_in(key), factor)
         if key == "bodies.profile.radius" and bodies.profile.has_edge and bodies.given_spacing != "auto":
             scene = moved(scene, ["bodies", "spacing"], factor)
             if bodies.bulk_stiffness != "auto":
@@ -202,10 +203,22 @@ def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -
             path = next(iter(shares))
             known = "a result over time has no uncertainty from its inputs: write the value alone"
             tables.problems.append(Problem(path, known))
+        if not tables.problems:
+            tables.problems += _at_ends(scene)
     problems += sorted(_in_si(tables, has_texts), key=_rank)
     if problems or scene is None:
         raise SceneError(problems)
     return scene
+
+
+def _at_ends(scene: Scene) -> Iterator[Problem]:
+    """What is wrong where a number with ± in a list is at an end of it: times must rise, shares add up to 1 there."""
+    for path, share in scene.shares.items():
+        for way in (-1.0, 1.0) if "[" in path else ():
+            end = Place(plain_data(scene.moved(path, 1.0 + way * share)), WHOLE)
+            check_fit(end)
+            for one in end.problems[:1]:
+                yield Problem(path, f"at an end of its ±: {one.message}", hint=one.hint)
 
 
 def _in_si(tables: Place, has_texts: bool) -> list[Problem]:

@@ -326,6 +326,8 @@ def _material(d: Draft) -> Rows:
     for body, needed in (("upper", not modulus), ("lower", upper and not modulus)):
         yield (f"material.{body}", needed,
                "missing", "write upper and lower, each with youngs_modulus and poisson_ratio, or contact_modulus")
+    yield ("material.upper", d["material.upper"] == d["material.lower"] == "rigid",
+           "one of the two bodies must be elastic", 'give its E and ν, or its name, "steel"')
     for unit in ("length_unit", "force_unit"):
         yield (f"material.{unit}", energy,
                "not together with surface_energy, with which both units follow from F_A and a₀ of the run",

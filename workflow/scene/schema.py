@@ -91,7 +91,7 @@ def _nodes(allowed: Allowed) -> Node:
         nodes.insert(0, {"anyOf": [number, text]} if allowed.quantity and text_of(allowed) else number)
     if allowed.words:
         nodes.append({"type": "string", "enum": [*allowed.words]})
-    return nodes[0] if len(nodes) == 1 else {"oneOf": nodes}
+    return nodes[0] if len(nodes) == 1 else {"anyOf": nodes}
 
 
 def _bounds(allowed: Allowed, names: Mapping[Any, str]) -> Node:

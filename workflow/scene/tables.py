@@ -113,9 +113,9 @@ class Elastic(Table):
 class Material(Table):
     """The material in SI: elasticity, and either the units or the surface energy."""
 
-    upper: Elastic | None = None
-    """the upper body"""
-    lower: Elastic | None = None
+    upper: Elastic | Literal["rigid"] | None = None
+    """the upper body; "rigid", or the lower one: of infinite modulus"""
+    lower: Elastic | Literal["rigid"] | None = None
     """the lower body"""
     contact_modulus: Pascal | None = None
     """E*, in place of the two bodies"""
@@ -128,20 +128,21 @@ class Material(Table):
     surface_energy: SurfaceEnergy | None = None
     """γ of one side, half the work of adhesion: both units then follow from the run by JKR (Eq. 9)"""
 
+    @property
+    def elastic(self) -> dict[str, Elastic]:
+        """Those of the two bodies that are given and not rigid, which alone have a compliance, by name."""
+        bodies = {"upper": self.upper, "lower": self.lower}
+        return {name: body for name, body in bodies.items() if isinstance(body, Elastic)}
+
     def effective_modulus(self) -> float:
         """E* [Pa]."""
-        if self.contact_modulus is not None:
-            return self.contact_modulus
-        assert self.upper is not None
-        assert self.lower is not None
-        return 1.0 / (self.upper.compliance + self.lower.compliance)
+        return self.contact_modulus or 1.0 / sum(body.compliance for body in self.elastic.values())
 
     def tangential_share(self) -> float:
         """G*/E*; 1 where only E* is known, so that the bulk springs are the same in both directions."""
-        if self.upper is None or self.lower is None:
-            return 1.0
-        normal = self.upper.compliance + self.lower.compliance
-        return normal / (self.upper.tangential_compliance + self.lower.tangential_compliance)
+        bodies = self.elastic.values()
+        tangential = sum(body.tangential_compliance for body in bodies)
+        return sum(body.compliance for body in bodies) / tangential if bodies else 1.0
 
     def layer_stiffness(self, reduction: Reduction) -> float:
         """Stiffness per length of the layer that both chains make [Pa]."""

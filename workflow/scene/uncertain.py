@@ -7,11 +7,13 @@ the error budget then moves each such number both ways (`continuation.budget`).
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from copy import copy
 from fractions import Fraction
-from typing import Any, TypeVar
+from typing import Any
 
+from contact1d.workflow.scene.problems import keys_in
 from contact1d.workflow.scene.quantities import Place, Table, keys_of, numbers_in
 from contact1d.workflow.scene.si_text import NUMBER, UnitTextError, quantity, si_value, split
 
@@ -25,8 +27,6 @@ EXACT = (
     "material.length_unit", "material.force_unit", "material.mass_unit", "bodies.profile.scale",
 )  # fmt: skip
 """Numbers that choose how a contact is calculated or written, and are no property of it."""
-
-T = TypeVar("T", bound=Table)
 
 
 def take_shares(scene: Place) -> dict[str, float]:
@@ -97,17 +97,22 @@ def _plain(value: Any) -> Fraction | None:
 def with_shares(tables: dict[str, Any], shares: Mapping[str, float]) -> dict[str, Any]:
     """The tables of a scene with ± at these keys, in units of the model, as `take_shares` reads them; in place."""
     for path, share in shares.items():
-        *above, key = path.split(".")
+        *above, key = keys_in(path)
         table: Any = tables
-        for one in above:
-            table = table.get(one, {})
-        if key in table:
+        with suppress(LookupError):
+            for one in above:
+                table = table[one]
             table[key] = f"{table[key]!r} ± {100.0 * share!r} %"
     return tables
 
 
-def moved(table: T, keys: list[str], factor: float) -> T:
-    """The table with the number at these keys times a factor."""
-    field = keys_of(type(table))[keys[0]].field
-    own = getattr(table, field)
-    return table.model_copy(update={field: moved(own, keys[1:], factor) if keys[1:] else factor * own})
+def moved(part: Any, keys: Sequence[Any], factor: float) -> Any:
+    """The table, list of tables or number with the number at these keys times a factor."""
+    if not keys:
+        return factor * part
+    first, *rest = keys
+    if isinstance(part, tuple):
+        return tuple(moved(one, rest, factor) if i == first else one for i, one in enumerate(part))
+    kind: type[Table] = type(part)
+    field = keys_of(kind)[first].field
+    return part.model_copy(update={field: moved(getattr(part, field), rest, factor)})
