@@ -119,6 +119,7 @@ class Branch(ContactBranch):
         """
         # Where pairs snap the force at a displacement is known no better.
         near = (0.5 if self.settings.is_smooth else 1.0) * FORCE_ACCURACY * self.settings.tolerance * scale
+        near = self._nearest(near, scale)
         rises = not self.states or force - self._last.carried > near
         direction = 1 if rises else -1
         self._turn(rises)
@@ -146,6 +147,10 @@ class Branch(ContactBranch):
             self._require_within_reach(force, rises, before, beyond)
             step = self.settings.increment(last.smallest_distance if rises else math.inf)
             self._at(self._towards(before, beyond, force, direction * step))
+
+    def _nearest(self, near: float, scale: float) -> float:
+        """How near to a force a search comes [FU], of `near`."""
+        return near
 
     def _first_rows(self, force: float, direction: int) -> None:
         """The first load steps of a leg towards a force [FU]: the position where it begins."""

@@ -30,6 +30,8 @@ PULLING_STEPS = 48
 """Load steps from F = 0 to the limit point, where it is known."""
 NEARLY = 1.0 + 1e-6
 """Load steps that are even but for round-off are so."""
+EXACT = 1e-9
+"""How near to a wanted force a load step comes, over its scale."""
 LAST = 1e-9
 """How much of that is left before it."""
 BEYOND_LIMIT = 1.05
@@ -44,6 +46,11 @@ class SteppedBranch(Branch):
     def by_model(self) -> NDArray[np.float64] | None:
         """See `by_model`."""
         return by_model(self.scene, self.model, self.states, self._history)
+
+    def _nearest(self, near: float, scale: float) -> float:
+        """Up to the round-off of the particles: the next load step costs next to nothing."""
+        round_off = self.settings.chains.upper * max((state.residual for state in self.states[-1:]), default=near)
+        return min(near, max(EXACT * scale, round_off))
 
     def _first_rows(self, force: float, direction: int) -> None:
         """Load steps up to where the model has the force [FU].
@@ -121,7 +128,8 @@ def by_model(
     """Forces [FU] of the model in all states of a path, (m,); None where it is no copy of the deck."""
     if not (scene.is_stepped and scene.is_modelled):
         return None
-    return model.follow(history or path_of(np.asarray([state.displacement for state in states]))).total
+    path = history or path_of(np.asarray([state.displacement for state in states]))
+    return model.planned(path, lambda i: states[i].profile)
 
 
 def followed(model: Reduced, history: History) -> tuple[Phase, ...]:

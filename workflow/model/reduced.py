@@ -24,6 +24,7 @@ from typing import Any, ClassVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from contact1d.analysis.pressure import Profile
 from contact1d.analysis.shear import slip
 from contact1d.workflow.model.adhesion import AdhesiveEstimate, Cells
 from contact1d.workflow.model.cohesive import APART, CohesiveEstimate, RatedEstimate
@@ -161,6 +162,10 @@ class Reduced(ABC):
     @abstractmethod
     def apart(self) -> float:
         """Displacement [LU] below which nothing is felt."""
+
+    def planned(self, path: Path, profiles: Callable[[int], Profile]) -> Array:
+        """Forces along a path [FU], (m,), to compare a deck with; `profiles` of its states."""
+        return self.follow(path).total
 
     def energies(self, path: Path) -> tuple[float, float] | None:
         """What springs and surfaces store at the end of a path on a rigid plane, and what was lost on it [FU·LU].
@@ -459,6 +464,12 @@ class CohesiveCells(Reduced):
     def jumps(self) -> tuple[float, ...]:
         """There, where a contact that is loaded jumps, and where the attraction begins."""
         return (*self.limits, *self.estimate.snaps_in, -self.estimate.range)
+
+    def planned(self, path: Path, profiles: Callable[[int], Profile]) -> Array:
+        """By the edges that the load steps of a deck have: beside each other their digits are few."""
+        ends = np.asarray([[getattr(profiles(i), key) for key in ("edge", "reach")] for i in range(path.time.size)])
+        edge, reach = ends.T
+        return self.estimate.law.forces(edge, np.sqrt((reach - edge) * (reach + edge)), path.displacement)
 
     def energies(self, path: Path) -> tuple[float, float]:
         """U(a, c, d) of Maugis; what it jumps by from one place of the curve to another."""
