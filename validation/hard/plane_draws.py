@@ -7,8 +7,8 @@ taken from. In a part of the scenes everything is given with units, and compared
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
@@ -29,13 +29,17 @@ POINTS = (5.0, 60.0)
 MOST_POINTS = 3000
 REFERENCE = 1e-8
 """Relative error of the quadratures."""
+Pressure = Callable[[float], float]
 SAMPLED = "sampled"
 """A table of a paraboloid."""
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """A scene, its numbers [in units of its own lengths and E*], what turns them into SI, and their relative error."""
+    """A scene, its numbers [in units of its own lengths and E*], what turns them into SI, and their relative error.
+
+    `pressures` are p(r) by the name of the state; numbers that are inf must be absent.
+    """
 
     group: str
     words: str
@@ -44,6 +48,8 @@ class Drawn:
     scales: Mapping[str, float]
     in_si: bool
     reference_error: float = REFERENCE
+    pressures: Mapping[str, Pressure] = field(default_factory=dict)
+    pressure_error: float = REFERENCE
 
 
 def scene_of(seed: int, number: int) -> Drawn | None:

@@ -1,0 +1,130 @@
+"""Random scenes of every law and experiment on the plane, each number and some points of p(r) beside an oracle.
+
+python -m validation.hard.any_law SEED COUNT FOLDER [LAW ...]     a summary, and FOLDER/scenes.jsonl, found.json
+
+Laws are elastic, JKR, Maugis, rate, Prony, Kelvin–Voigt, friction; naming some draws these alone. The generators are
+those of the studies beside, and `any_law_draws`; the judge is that of `random_plane`.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+import time
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from validation.hard import any_law_draws, cohesive_draws, impact_draws, plane_draws, relaxing_draws
+from validation.hard.plane_bodies import Scene
+from validation.hard.plane_draws import Drawn
+from validation.hard.random_plane import Found, Number, judge, outside, run_of, unnamed
+from validation.study import Bench
+
+GENERATORS = (
+    (any_law_draws.scene_of, 0.3), (relaxing_draws.scene_of, 0.25), (plane_draws.scene_of, 0.2),
+    (impact_draws.scene_of, 0.15), (cohesive_draws.scene_of, 0.1),
+)  # fmt: skip
+FAR, CLOSE = 3.0, 0.1
+"""Uncertainties beyond which a number is wrong; error over the uncertainty of one that may be too wide."""
+
+
+def law_of(scene: Scene) -> str:
+    """The law of a scene."""
+    adhesion, relaxing = scene.get("adhesion", {}), scene.get("viscoelasticity", {})
+    if relaxing:
+        return "Prony" if "terms" in relaxing else "Kelvin–Voigt"
+    if adhesion:
+        return "rate" if "rate" in adhesion else "Maugis" if "range" in adhesion else "JKR"
+    return "friction" if "friction" in scene else "elastic"
+
+
+def drawn(seed: int, number: int) -> Drawn | None:
+    """The scene of that number, by its law and experiment; None where its generator has none."""
+    shares = [share for _, share in GENERATORS]
+    i = int(np.random.default_rng((seed, number, 1)).choice(len(GENERATORS), p=shares))
+    try:
+        one = GENERATORS[i][0](seed, number)
+    except ValueError:
+        return None
+    if one is None:
+        return None
+    kind = one.scene["experiment"]["kind"]
+    more = f" {next(iter(set(one.scene['experiment']) & {'force', 'displacement'}), '')}" if kind == "history" else ""
+    return replace(one, group=f"{law_of(one.scene)}, {kind}{more}")
+
+
+def draws(seed: int, count: int, laws: list[str]) -> Iterator[tuple[str, Drawn]]:
+    """So many scenes, those of some laws alone."""
+    number, made = 0, 0
+    while made < count:
+        one = drawn(seed, number)
+        if one is not None and (not laws or one.group.split(",")[0] in laws):
+            made += 1
+            yield f"{seed}_{number}", one
+        number += 1
+
+
+def conducted(scenes: Iterator[tuple[str, Drawn]], folder: Path) -> Found:
+    """Run and judge; each scene is a line of scenes.jsonl."""
+    folder.mkdir(parents=True, exist_ok=True)
+    bench, found = Bench(folder, folder), Found()
+    with (folder / "scenes.jsonl").open("w", encoding="utf-8") as lines:
+        for name, one in scenes:
+            before, begun = len(found.numbers), time.perf_counter()
+            judge(found, name, one, run_of(bench, name, one.scene))
+            of_it = [vars(n) for n in found.numbers[before:]]
+            line = {"name": name, "group": one.group, "words": one.words, "scene": one.scene, "numbers": of_it,
+                    "refused": found.refused.get(name), "seconds": time.perf_counter() - begun}  # fmt: skip
+            lines.write(json.dumps(line, ensure_ascii=False) + "\n")
+            lines.flush()
+            worst = max((n["over"] for n in of_it), default=0.0)
+            print(f"{name} {one.group}: {one.words}; {len(of_it)} numbers, worst {worst:.3g} u, "
+                  f"{line['seconds']:.1f} s {line['refused'] or ''}"[:230], flush=True)  # fmt: skip
+    return found
+
+
+def summary(found: Found) -> str:
+    """By law and experiment and number: how many, outside, beyond 3 ±, the farthest, the widest ±; then the lists."""
+    table: dict[tuple[str, str], list[Number]] = defaultdict(list)
+    for n in found.numbers:
+        table[n.group, n.name].append(n)
+    said = [f"{'law, experiment':<28} {'number':<28} all out far   worst   ±/tol"]
+    for (group, name), some in sorted(table.items()):
+        out, far = (sum(not n.over <= limit for n in some) for limit in (1.0, FAR))
+        said.append(f"{group:<28} {name:<28} {len(some):3} {out:3} {far:3} {max(n.over for n in some):7.2g} "
+                    f"{max(n.wide for n in some):7.2g}")  # fmt: skip
+    off, quiet = outside(found), unnamed(found)
+    wide = [n for n in found.numbers if n.wide > 1.0 and n.over < CLOSE]
+    said.append(f"{len(found.numbers)} numbers of {sum(found.scenes.values())} scenes; {len(off)} outside, "
+                f"{sum(not n.over <= FAR for n in off)} beyond 3 ±, {len(quiet)} unnamed, {len(wide)} perhaps too wide, "
+                f"{len(found.refused)} refused")  # fmt: skip
+    for title, some in (("OUTSIDE", off), ("UNNAMED", quiet), ("WIDE", wide)):
+        said += [f"{title} {n.scene} [{n.group}: {n.words}] {n.name}: {n.value:.9g} ± {n.uncertainty:.2g}, right "
+                 f"{n.reference:.9g}; {n.over:.3g} u, {n.far:.3g} tol, ± {n.wide:.3g} tol" for n in some]  # fmt: skip
+    for title, lists in (("MISSING WITHOUT A WORD", found.silent), ("missing", found.absent)):
+        said += [f"{title} {name}: {len(some)}, {some[:3]}" for name, some in lists.items()]
+    said += [f"REFUSED {name} {why[:300]}" for name, why in found.refused.items()]
+    return "\n".join([*said, f"without an oracle: {dict(found.unjudged)}"])
+
+
+def main() -> None:
+    """`SEED COUNT FOLDER [LAW ...]`."""
+    seed, count, folder, laws = int(sys.argv[1]), int(sys.argv[2]), Path(sys.argv[3]), sys.argv[4:]
+    report(conducted(draws(seed, count, laws), folder), folder)
+
+
+def report(found: Found, folder: Path) -> None:
+    """The summary, printed and beside the scenes."""
+    text = summary(found)
+    print(text)
+    (folder / "summary.txt").write_text(text + "\n", encoding="utf-8")
+    assert not any(math.isnan(n.value) for n in found.numbers)
+
+
+if __name__ == "__main__":
+    main()
