@@ -12,7 +12,7 @@ import json
 import math
 import sys
 import time
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -29,6 +29,8 @@ GENERATORS = (
     (any_law_draws.scene_of, 0.3), (relaxing_draws.scene_of, 0.25), (plane_draws.scene_of, 0.2),
     (impact_draws.scene_of, 0.15), (cohesive_draws.scene_of, 0.1),
 )  # fmt: skip
+IN_TIME, HELD = 0.3, 50.0
+"""Share of loads, and how long a displacement is held [TU]."""
 FAR, CLOSE = 3.0, 0.1
 """Uncertainties beyond which a number is wrong; error over the uncertainty of one that may be too wide."""
 
@@ -53,9 +55,23 @@ def drawn(seed: int, number: int) -> Drawn | None:
         return None
     if one is None:
         return None
+    one = in_time(one, np.random.default_rng((seed, number, 2)))
     kind = one.scene["experiment"]["kind"]
     more = f" {next(iter(set(one.scene['experiment']) & {'force', 'displacement'}), '')}" if kind == "history" else ""
     return replace(one, group=f"{law_of(one.scene)}, {kind}{more}")
+
+
+def in_time(one: Drawn, rng: np.random.Generator) -> Drawn:
+    """A part of the loads without units comes to rest in time: under its force, or at its displacement."""
+    experiment = one.scene["experiment"]
+    if experiment["kind"] != "load" or one.in_si or "material" in one.scene or rng.random() > IN_TIME:
+        return one
+    tables: Scene = {"damping": {"coefficient": "auto"}}
+    if rng.random() < 0.5 or one.exact["displacement"] <= 0.0:
+        tables["plate"] = {}
+    else:
+        tables["experiment"] = {"kind": "hold", "displacement": one.exact["displacement"], "duration": HELD}
+    return replace(one, scene=one.scene | tables, words=f"{one.words}, in time")
 
 
 def draws(seed: int, count: int, laws: list[str]) -> Iterator[tuple[str, Drawn]]:
@@ -103,8 +119,10 @@ def summary(found: Found) -> str:
     said.append(f"{len(found.numbers)} numbers of {sum(found.scenes.values())} scenes; {len(off)} outside, "
                 f"{sum(not n.over <= FAR for n in off)} beyond 3 ±, {len(quiet)} unnamed, {len(wide)} perhaps too wide, "
                 f"{len(found.refused)} refused")  # fmt: skip
-    for title, some in (("OUTSIDE", off), ("UNNAMED", quiet), ("WIDE", wide)):
-        said += [f"{title} {n.scene} [{n.group}: {n.words}] {n.name}: {n.value:.9g} ± {n.uncertainty:.2g}, right "
+    for title, every in (("OUTSIDE", off), ("UNNAMED", quiet), ("WIDE", wide)):
+        counts = Counter((n.group, n.name) for n in every)
+        some = list({(n.group, n.name): n for n in reversed(every)}.values())  # the worst of each
+        said += [f"{title} {counts[n.group, n.name]}×, {n.scene} [{n.group}: {n.words}] {n.name}: {n.value:.9g} ± {n.uncertainty:.2g}, right "
                  f"{n.reference:.9g}; {n.over:.3g} u, {n.far:.3g} tol, ± {n.wide:.3g} tol" for n in some]  # fmt: skip
     for title, lists in (("MISSING WITHOUT A WORD", found.silent), ("missing", found.absent)):
         said += [f"{title} {name}: {len(some)}, {some[:3]}" for name, some in lists.items()]

@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -102,7 +103,7 @@ def drawn(rng: np.random.Generator) -> Drawn | None:
     return written(rng, group, words, table, spacing, automatic, units, tolerance, contact, experiment, exact, tables)
 
 
-Made = tuple[str, Scene, dict[str, float], float, Scene] | None
+Made = tuple[str, Scene, dict[str, Any], float, Scene] | None
 
 
 def _experiment(
@@ -116,6 +117,18 @@ def _experiment(
         kind = str(rng.choice(["load", "tension", "pull_off", "pull_off", "path"]))
         return _adhesive(rng, kind, contact, radius, slope)
     return _pressed(rng, contact, radius, slope)
+
+
+def pressures(contact: Contact, **states: tuple[float, float]) -> dict[str, Pressure]:
+    """p(r) of states (a, d) whose body has no kink inside, by their names among the numbers."""
+    body = contact.body
+
+    def of(a: float, d: float) -> Pressure:
+        middle = contact.central_pressure(a, d) if math.isinf(body.end) else d / (math.pi * a) * contact.modulus
+        return lambda r: contact.pressure(r, a, d) if r else middle
+
+    rough = any(jump for jump in body.jumps)
+    return {} if rough else {name: of(*state) for name, state in states.items()}
 
 
 def _state(contact: Contact, a: float, d: float | None = None) -> dict[str, float]:
@@ -134,6 +147,7 @@ def _pressed(rng: np.random.Generator, contact: Contact, radius: float, slope: f
     exact = {"mean_pressure": force / (math.pi * a * a), "contact_stiffness": 2.0 * contact.modulus * a}
     exact |= _state(contact, a, d)
     if rng.random() < 0.5:
+        exact |= pressures(contact, final=(a, d)) | {"force": force}
         return "load", {"kind": "load", "force": force}, exact | {"displacement": d, "contact_radius": a}, a, {}
     steps = round(math.exp(rng.uniform(0.0, math.log(60.0))))
     closed = bool(rng.random() < 0.5)
@@ -175,7 +189,11 @@ def _adhesive(rng: np.random.Generator, kind: str, contact: Contact, radius: flo
         force = unit * float(10.0 ** rng.uniform(-1.0, 2.5))
         widest = contact.pressed_radius(force, radius)
         exact = _marks(contact, radius)
-        exact |= {} if punch else _state(contact, exact["zero_load_radius"])
+        exact["preload"] = force
+        if not punch:
+            rest, edge = exact["zero_load_radius"], exact["critical_radius"]
+            states = {"zero_load": (rest, contact.displacement(rest)), "critical": (edge, contact.displacement(edge))}
+            exact |= _state(contact, rest) | pressures(contact, **states)
         return kind, {"kind": kind, "preload": force}, exact, widest, {}
     outer = -contact.force_at(radius, contact.displacement(radius)) if punch else -contact.force(
         contact.softest_outer(radius))  # fmt: skip
@@ -185,6 +203,7 @@ def _adhesive(rng: np.random.Generator, kind: str, contact: Contact, radius: flo
     exact = {"displacement": d, "contact_radius": a, "mean_pressure": force / (math.pi * a * a),
              "adhesion_energy": math.pi * a * a * contact.work}  # fmt: skip
     exact |= {} if punch else _state(contact, a)
+    exact |= pressures(contact, final=(a, d)) | {"force": force}
     return kind, {"kind": "load", "force": force}, exact, max(a, radius), {}
 
 
@@ -268,7 +287,8 @@ def _tangential(rng: np.random.Generator, contact: Contact, radius: float, slope
     slipping = Slipping(contact, radius, friction, ratio)
     force = contact.force(radius)
     u = slipping.sliding * float(10.0 ** rng.uniform(-3.0, 0.1))
-    exact = {"contact_radius": radius}
+    exact = {"contact_radius": radius, "normal_force": force} | _state(contact, radius)
+    exact |= pressures(contact, farthest=(radius, contact.displacement(radius)))
     tables = {"friction": {"coefficient": friction}, "ratio": ratio}
     kind = str(rng.choice(["out", "back", "cycles", "cycles"]))
     if kind == "cycles":
@@ -292,9 +312,9 @@ def _tangential(rng: np.random.Generator, contact: Contact, radius: float, slope
 
 def written(
     rng: np.random.Generator, group: str, words: str, table: Scene, spacing: float | None, automatic: bool,
-    units: bool, tolerance: float, contact: Contact, experiment: Scene, exact: Mapping[str, float], tables: Scene,
+    units: bool, tolerance: float, contact: Contact, experiment: Scene, exact: Mapping[str, Any], tables: Scene,
 ) -> Drawn:  # fmt: skip
-    """The scene, with units or without."""
+    """The scene, with units or without; among the numbers there are p(r) by the names of states."""
     length, modulus = float(10.0 ** rng.uniform(-9.0, -3.0)), float(10.0 ** rng.uniform(6.0, 11.0))
     tables = dict(tables)
     ratio = tables.pop("ratio", None)
@@ -316,4 +336,6 @@ def written(
         scene["material"] = {"contact_modulus": f"{modulus!r} Pa"} if ratio is None else elastic(modulus, ratio)
     force = modulus * length**2
     scales = {"L": length, "F": force, "P": modulus, "S": modulus * length, "E": force * length, "1": 1.0}
-    return Drawn(group, words, scene, exact, scales, units)
+    found = {name: value for name, value in exact.items() if callable(value)}
+    numbers = {name: value for name, value in exact.items() if name not in found}
+    return Drawn(group, words, scene, numbers, scales, units, pressures=found)

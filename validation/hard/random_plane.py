@@ -124,7 +124,10 @@ def number_of(
     if math.isinf(reference):
         over = far = math.inf
     else:
-        error = max(0.0, abs(value - reference) - slack * abs(reference))
+        whole = abs(reference)
+        if quantity == "dissipated_energy":  # the difference of two works
+            whole = max(whole, one.exact.get("peak_force", 0.0) * one.exact.get("peak_displacement", 0.0))
+        error = max(0.0, abs(value - reference) - slack * whole)
         over = error / uncertainty if uncertainty > 0.0 else (0.0 if error == 0.0 else math.inf)
         far = error / abs(reference) / tolerance if reference else 0.0
     wide = uncertainty / (abs(value) * tolerance) if value and reference else 0.0
