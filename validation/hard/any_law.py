@@ -1,6 +1,7 @@
 """Random scenes of every law and experiment on the plane, each number and some points of p(r) beside an oracle.
 
-python -m validation.hard.any_law SEED COUNT FOLDER [LAW ...]     a summary, and FOLDER/scenes.jsonl, found.json
+python -m validation.hard.any_law SEED COUNT FOLDER [LAW ...]     a summary, and FOLDER/scenes.jsonl, summary.txt
+python -m validation.hard.any_law dashpots|times|pressures|paths FOLDER     fixed lists (`any_law_lists`)
 
 Laws are elastic, JKR, Maugis, rate, Prony, Kelvin–Voigt, friction; naming some draws these alone. The generators are
 those of the studies beside, and `any_law_draws`; the judge is that of `random_plane`.
@@ -19,7 +20,7 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.hard import any_law_draws, cohesive_draws, impact_draws, plane_draws, relaxing_draws
+from validation.hard import any_law_draws, any_law_lists, cohesive_draws, impact_draws, plane_draws, relaxing_draws
 from validation.hard.plane_bodies import Scene
 from validation.hard.plane_draws import Drawn
 from validation.hard.random_plane import Found, Number, judge, outside, run_of, unnamed
@@ -109,10 +110,11 @@ def summary(found: Found) -> str:
     table: dict[tuple[str, str], list[Number]] = defaultdict(list)
     for n in found.numbers:
         table[n.group, n.name].append(n)
-    said = [f"{'law, experiment':<28} {'number':<28} all out far   worst   ±/tol"]
+    said = [f"{'law, experiment':<28} {'number':<28} all out far   worst off/tol   ±/tol"]
     for (group, name), some in sorted(table.items()):
         out, far = (sum(not n.over <= limit for n in some) for limit in (1.0, FAR))
         said.append(f"{group:<28} {name:<28} {len(some):3} {out:3} {far:3} {max(n.over for n in some):7.2g} "
+                    f"{max(n.far for n in some):7.2g} "
                     f"{max(n.wide for n in some):7.2g}")  # fmt: skip
     off, quiet = outside(found), unnamed(found)
     wide = [n for n in found.numbers if n.wide > 1.0 and n.over < CLOSE]
@@ -131,7 +133,11 @@ def summary(found: Found) -> str:
 
 
 def main() -> None:
-    """`SEED COUNT FOLDER [LAW ...]`."""
+    """`SEED COUNT FOLDER [LAW ...]`, or the name of a list and a folder."""
+    if sys.argv[1] in any_law_lists.LISTS:
+        folder = Path(sys.argv[2])
+        report(conducted(any_law_lists.LISTS[sys.argv[1]](), folder), folder)
+        return
     seed, count, folder, laws = int(sys.argv[1]), int(sys.argv[2]), Path(sys.argv[3]), sys.argv[4:]
     report(conducted(draws(seed, count, laws), folder), folder)
 

@@ -64,7 +64,7 @@ def drawn(rng: np.random.Generator) -> Drawn | None:
         inside = math.exp(rng.uniform(*np.log(POINTS)))
         reach = 1.35 * widest
         profile = sampled(body, max(free / inside, reach / MOST_POINTS), reach, None)
-    if shape in ROUND:
+    if shape in ROUND and shape != TABLE:
         apex = body.bend(0.0)
         exact["tabor_parameter"] = math.cbrt(contact.work**2 / apex) / contact.reach
     tolerance = float(10.0 ** rng.uniform(-4.0, -2.0))
@@ -115,7 +115,9 @@ def _held(rng: np.random.Generator, contact: Cohesive, group: str) -> Made:
     unit = -contact.critical.force
     if group == "pull_off":
         force = unit * float(10.0 ** rng.uniform(-1.0, 2.5))
-        exact = marks(contact) | {"cohesive_radius": contact.free.c, "preload": force}
+        exact: dict[str, Any] = marks(contact)
+        exact.pop("fixed_grips_displacement")  # of a path alone
+        exact |= {"cohesive_radius": contact.free.c, "preload": force}
         exact |= _state(contact, contact.free, "zero_load", mean=False) | {"critical": _pressure(contact, contact.critical)}
         return group, {"kind": group, "preload": force}, exact, contact.under(force).c
     force = unit * float(10.0 ** rng.uniform(-2.0, 2.0) if group == "load" else -rng.uniform(0.1, 0.95))

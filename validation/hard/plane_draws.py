@@ -39,7 +39,8 @@ SAMPLED = "sampled"
 class Drawn:
     """A scene, its numbers [in units of its own lengths and E*], what turns them into SI, and their relative error.
 
-    `pressures` are p(r) by the name of the state; numbers that are inf must be absent.
+    `pressures` are p(r) by the name of the state, `force` is F of every load step by its displacement; numbers that
+    are inf must be absent.
     """
 
     group: str
@@ -51,6 +52,7 @@ class Drawn:
     reference_error: float = REFERENCE
     pressures: Mapping[str, Pressure] = field(default_factory=dict)
     pressure_error: float = REFERENCE
+    force: Pressure | None = None
 
 
 def scene_of(seed: int, number: int) -> Drawn | None:

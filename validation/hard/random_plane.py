@@ -99,6 +99,7 @@ def judge(found: Found, name: str, one: Drawn, run: Run | Refused) -> None:
     results = run.document
     found.unjudged.update(set(run.results) - set(one.exact))
     judge_pressures(found, name, one, run)
+    judge_forces(found, name, one, run)
     for quantity, reference in one.exact.items():
         scale = 1.0
         entry = results.get(quantity)
@@ -132,6 +133,19 @@ def number_of(
         far = error / abs(reference) / tolerance if reference else 0.0
     wide = uncertainty / (abs(value) * tolerance) if value and reference else 0.0
     return Number(name, one.group, one.words, quantity, value, uncertainty, reference, over, far, wide, named)
+
+
+def judge_forces(found: Found, name: str, one: Drawn, run: Run) -> None:
+    """F of every load step; without a column of its ± that is 0."""
+    if one.force is None:
+        return
+    columns = read_run(run.folder).curve if one.in_si else run.curve
+    length, force = (one.scales["L"], one.scales["F"]) if one.in_si else (1.0, 1.0)
+    errors = columns["force_uncertainty"] if "force_uncertainty" in columns else 0.0 * columns["force"]
+    for d, value, error in zip(columns["displacement"], columns["force"], errors, strict=True):
+        n = number_of(name, one, "F of a load step", float(value) / force, float(error) / force,
+                      one.force(float(d) / length), named=True)  # fmt: skip
+        found.numbers.append(n)
 
 
 def judge_pressures(found: Found, name: str, one: Drawn, run: Run) -> None:

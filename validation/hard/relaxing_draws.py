@@ -194,7 +194,9 @@ def of_lines(body: Power | Flat, law: Law, d: Legs, given: Legs) -> tuple[dict[s
     at = lines(rule, body.depth, width, d, sorted(names.values()), body.exponent)
     states = dict(zip(names, at, strict=True))
     last, exact = states["final"], {}
-    if last.edge and at[-1].force > 1e-6 * max(one.force for one in at):
+    if d is not given and given.values[-1] == 0.0:  # a body without a force that it is pressed by does not touch
+        states["final"] = last = Line(np.zeros(0), np.zeros(0))
+    if last.edge:
         exact |= {"contact_radius": last.edge, "mean_pressure": last.force / (math.pi * last.edge**2),
                   "central_pressure": last.pressure(0.0), "peak_pressure": last.peak}  # fmt: skip
     kinds = [int(np.sign(b - a)) for a, b in pairwise(given.values)]
