@@ -9,12 +9,14 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
 from validation.hard.impact_draws import numbers
 from validation.hard.plane_bodies import Scene
 from validation.hard.plane_draws import Drawn, Pressure
+from validation.hard.plane_draws import pressures as pressures_at
 from validation.hard.relaxing_draws import (
     EXACT,
     LINES,
@@ -87,14 +89,14 @@ def written(rng: np.random.Generator, one: Drawn) -> Drawn:
     return replace(one, scene=scene, scales=scales, in_si=True)
 
 
-def _in_si(node: Scene, scales: Mapping[str, float]) -> Scene:
+def _in_si(node: Mapping[str, Any], scales: Mapping[str, float]) -> Scene:
     def text(value: float, unit: str) -> str:
         return f"{value * scales[unit]!r} {TEXTS[unit]}"
 
     found: Scene = {}
     for name, value in node.items():
         if isinstance(value, Mapping):
-            found[name] = _in_si(dict(value), scales)
+            found[name] = _in_si(value, scales)
         elif name in ("displacement", "force") and isinstance(value, list):
             found[name] = [[text(t, "T"), text(v, UNITS[name])] for t, v in value]
         elif isinstance(value, list):
@@ -116,9 +118,7 @@ def pressures_of(body: Power, a: float, d: float, name: str) -> tuple[dict[str, 
     middle = one.central_pressure(a, d)
     jump = d - body.depth(a)
     peak = math.inf if jump > 1e-9 * abs(d) else one.peak_pressure(a, d)
-    return {"central_pressure": middle, "peak_pressure": peak}, {
-        name: lambda r: one.pressure(r, a, d) if r else middle
-    }
+    return {"central_pressure": middle, "peak_pressure": peak}, pressures_at(one, **{name: (a, d)})
 
 
 def _adhering(rng: np.random.Generator, body: Power, radius: float, at_once: bool = False) -> tuple[Receding, Scene]:
@@ -137,11 +137,13 @@ def _rate(rng: np.random.Generator, body: Power, radius: float, at_once: bool = 
     top = contact.displacement(contact.touch * float(rng.uniform(1.1, 3.0)))
     apart = contact.displacement(contact.grips)
     speed = (1.0 if at_once else one.speed) * body.depth(radius) / radius * float(10.0 ** rng.uniform(-3.0, 0.5))
-    reach = (top - apart) * (1.0 + (0.0 if at_once else (speed / one.speed * radius / body.depth(radius)) ** one.exponent))
+    beyond = 0.0 if at_once else (speed / one.speed * radius / body.depth(radius)) ** one.exponent
+    reach = (top - apart) * (1.0 + beyond)
     values = [float(rng.choice([0.0, 0.3 * apart])), top]
     values += [top] if rng.random() < 0.3 else []
     parts = bool(rng.random() < 0.5)
-    values.append(top - (float(rng.uniform(5.0, 20.0)) * reach if parts else float(rng.uniform(0.1, 0.9)) * (top - apart)))
+    drop = float(rng.uniform(5.0, 20.0)) * reach if parts else float(rng.uniform(0.1, 0.9)) * (top - apart)
+    values.append(top - drop)
     values += [top * float(rng.uniform(0.7, 1.2))] if not parts and rng.random() < 0.3 else []
     d = in_legs([0.0] + [max(abs(b - a), 0.1 * top) / speed for a, b in pairwise(values)], values)
     way = path(one, d)
@@ -151,7 +153,8 @@ def _rate(rng: np.random.Generator, body: Power, radius: float, at_once: bool = 
 
 
 def _numbers(one: Receding, way: Path, d: Legs) -> tuple[dict[str, float], dict[str, Pressure]]:
-    body, pressures = one.contact.body, {}
+    body = one.contact.body
+    pressures: dict[str, Pressure] = {}
     _, last, a, force = way.states[-1]
     exact = {"peak_force": max(s[3] for s in way.states), "peak_displacement": max(d.values), "displacement": last,
              "force": force}  # fmt: skip
@@ -200,10 +203,12 @@ def dashpot(rng: np.random.Generator, body: Power, radius: float) -> Made:
 
 def under_force(law: KelvinVoigt, force: Legs) -> tuple[dict[str, float], dict[str, Pressure]]:
     """All numbers; a slope of unloading there is none, where a jump of the force is one of the rate."""
-    one, last, pressures = Pressed(law, force), force.times[-1], {}
+    one, last = Pressed(law, force), force.times[-1]
+    pressures: dict[str, Pressure] = {}
     end = one.displacement(last)
+    deepest_d = one.displacement(min(one.turn, last))
     exact = {"peak_force": max(force.values), "force": force.values[-1], "displacement": end,
-             "peak_displacement": one.displacement(min(one.turn, last)), "creep_corrected_stiffness": math.inf}  # fmt: skip
+             "peak_displacement": deepest_d, "creep_corrected_stiffness": math.inf}  # fmt: skip
     for name, t in marked(force).items():
         if force(t) > 0.0:
             a = one.radius(t)
@@ -212,7 +217,7 @@ def under_force(law: KelvinVoigt, force: Legs) -> tuple[dict[str, float], dict[s
             pressures |= p
             exact |= more | {"contact_radius": a, "mean_pressure": force(t) / (math.pi * a * a)} if t == last else {}
     if force.values[-1] == 0.0:
-        exact["contact_time"] = last - force.times[0]
+        exact |= {"contact_time": last - force.times[0], "dissipated_energy": one.lost}
     elif force.values[-1] == force.values[-2]:
         exact["relaxation"] = end - one.displacement(force.times[-2])
     return exact, pressures
@@ -244,11 +249,12 @@ def long_impact(rng: np.random.Generator, body: Power, radius: float) -> Made:
     depth = body.depth(radius)
     power = 1.0 + 0.5 / body.exponent
     velocity = (depth / deepest(body, 1.0, mass, 1.0)) ** power
-    law = _far(rng, elastic(body, 1.0, mass, velocity).contact_time, -1.0)
+    lasts = elastic(body, 1.0, mass, velocity).contact_time
+    law = _far(rng, lasts, -1.0)
     tables = {"plate": {"mass": mass}, "viscoelasticity": terms_of(law),
               "experiment": {"kind": "impact", "velocity": velocity}}  # fmt: skip
-    lasts = elastic(body, 1.0, mass, velocity).contact_time
-    return tables, numbers(relaxing(body, law, mass, velocity), mass, velocity), {}, MOTION, f"times {_times(law, lasts)}"
+    exact = numbers(relaxing(body, law, mass, velocity), mass, velocity)
+    return tables, exact, {}, MOTION, f"times {_times(law, lasts)}"
 
 
 def _far(rng: np.random.Generator, duration: float, least: float) -> Material:
@@ -260,4 +266,3 @@ def _far(rng: np.random.Generator, duration: float, least: float) -> Material:
 
 def _times(law: Material, duration: float) -> str:
     return ", ".join(f"{tau / duration:.0e}" for _, tau in law.terms)
-

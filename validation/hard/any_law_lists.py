@@ -31,8 +31,8 @@ RELAXED, JUMPING = 4e-4, 8e-3
 TOLERANCES = (1e-3, 1e-4, 1e-5)
 EXAMPLE = Legs(((0.0, 0.0), (0.3, 10.0), (1.0, 10.0), (2.0, 3.0)))
 """A force that once gave a peak_force of 2.6e36."""
-WAY = Legs(((0.0, 0.0), (0.1, 1.0), (1.0, 1.0), (1.2, 0.65), (1.6, -0.3), (2.0, -0.3), (2.6, 0.8)))
-"""Growing, held, receding, parted, touched again: displacement [over the largest]."""
+WAY = Legs(((0.0, 0.0), (0.1, 1.0), (1.0, 1.0), (1.2, 0.85), (1.3, 0.85), (1.7, -0.3), (2.1, -0.3), (2.6, 0.8)))
+"""Growing, held, receding, held, parted, touched again: displacement [over the largest]."""
 
 
 def dashpots() -> Iterator[tuple[str, Drawn]]:
@@ -79,7 +79,7 @@ def of_rings(body: Power | Flat, law: Material | KelvinVoigt, d: Legs) -> dict[s
         edges = BEYOND * body.radius(max(d.values)) * np.linspace(0.0, 1.0, RINGS + 1)
         heights = lambda r: body.factor * r**body.exponent  # noqa: E731
     relaxing = {"terms": law.terms} if isinstance(law, Material) else {"retardation": law.time}
-    rings, found = Rings(edges, heights, **relaxing), {}  # type: ignore[arg-type]
+    rings, found = Rings(edges, heights, **relaxing), {}
     names = {t: name for name, t in marked(d).items()}
     for before, after in pairwise(d.times):
         rings.follow(d, np.linspace(before, after, STEPS + 1).tolist())
@@ -117,8 +117,9 @@ def paths() -> Iterator[tuple[str, Drawn]]:
                 scene["material"] = {"contact_modulus": 1e6, "length_unit": 1e-3, "force_unit": 1.0}
             scene |= {"adhesion": {"work_of_adhesion": contact.work},
                       "experiment": {"kind": "path", "start": "contact", "displacements": way}}  # fmt: skip
+            group, words = f"JKR, path {tolerance:.0e}", f"n = {body.exponent:.3g}"
             yield f"path_{i}_{tolerance:.0e}", Drawn(
-                f"JKR, path {tolerance:.0e}", f"n = {body.exponent:.3g}", scene, {}, {}, False, 1e-9, force=_force(contact)
+                group, words, scene, {}, {}, False, 1e-9, force=_force(contact)
             )  # fmt: skip
 
 

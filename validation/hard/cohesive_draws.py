@@ -118,7 +118,9 @@ def _held(rng: np.random.Generator, contact: Cohesive, group: str) -> Made:
         exact: dict[str, Any] = marks(contact)
         exact.pop("fixed_grips_displacement")  # of a path alone
         exact |= {"cohesive_radius": contact.free.c, "preload": force}
-        exact |= _state(contact, contact.free, "zero_load", mean=False) | {"critical": _pressure(contact, contact.critical)}
+        exact |= _state(contact, contact.free, "zero_load", mean=False) | {
+            "critical": _pressure(contact, contact.critical)
+        }
         return group, {"kind": group, "preload": force}, exact, contact.under(force).c
     force = unit * float(10.0 ** rng.uniform(-2.0, 2.0) if group == "load" else -rng.uniform(0.1, 0.95))
     state = contact.under(force)

@@ -105,7 +105,9 @@ def drawn(rng: np.random.Generator) -> Drawn | None:
     return written(rng, group, words, table, spacing, automatic, units, tolerance, contact, experiment, exact, tables)
 
 
-Made = tuple[str, Scene, dict[str, Any], float, Scene] | None
+Numbers = dict[str, Any]
+"""By name, and p(r) by the names of states."""
+Made = tuple[str, Scene, Numbers, float, Scene] | None
 
 
 def _experiment(
@@ -127,13 +129,13 @@ def pressures(contact: Contact, **states: tuple[float, float]) -> dict[str, Pres
 
     def of(a: float, d: float) -> Pressure:
         middle = contact.central_pressure(a, d) if math.isinf(body.end) else d / (math.pi * a) * contact.modulus
-        return lambda r: contact.pressure(r, a, d) if r else middle
+        return lambda r: 0.0 if r >= a else contact.pressure(r, a, d) if r else middle
 
     rough = any(jump for jump in body.jumps)
     return {} if rough else {name: of(*state) for name, state in states.items()}
 
 
-def _state(contact: Contact, a: float, d: float | None = None) -> dict[str, float]:
+def _state(contact: Contact, a: float, d: float | None = None) -> Numbers:
     """p(0) and the largest pressure of a state; inf where there is none."""
     if math.isfinite(contact.body.end):  # its edge has no bound
         return {"peak_pressure": math.inf} if contact.work == 0.0 else {}
@@ -141,6 +143,7 @@ def _state(contact: Contact, a: float, d: float | None = None) -> dict[str, floa
 
 
 def _pressed(rng: np.random.Generator, contact: Contact, radius: float, slope: float) -> Made:
+    exact: Numbers
     a = radius * float(10.0 ** rng.uniform(-0.1, 0.5))
     d = contact.displacement(a)
     if math.isfinite(contact.body.end):
@@ -165,7 +168,7 @@ def _unit(contact: Contact, radius: float) -> float:
     return -contact.force(contact.critical(radius))
 
 
-def _marks(contact: Contact, radius: float) -> dict[str, float]:
+def _marks(contact: Contact, radius: float) -> Numbers:
     """F_A and the radii; separation's work, from the largest contact without a load to fixed grips."""
     critical, last = contact.critical(radius), contact.fixed_grips(radius)
     if math.isfinite(contact.body.end):
@@ -184,6 +187,7 @@ def _marks(contact: Contact, radius: float) -> dict[str, float]:
 
 
 def _adhesive(rng: np.random.Generator, kind: str, contact: Contact, radius: float, slope: float) -> Made:
+    exact: Numbers
     unit, punch = _unit(contact, radius), math.isfinite(contact.body.end)
     if kind == "path":
         return _loop(rng, contact, radius, slope, opened=True)
@@ -250,7 +254,7 @@ def _loop(rng: np.random.Generator, contact: Contact, radius: float, slope: floa
     return f"{'closed' if closed else 'open'} path from {start}", experiment, exact, widest, {}
 
 
-def _marks_of(contact: Contact, radius: float, points: list[float], first: bool) -> dict[str, float]:
+def _marks_of(contact: Contact, radius: float, points: list[float], first: bool) -> Numbers:
     """The marks that the last unloading passes, of those that touch as it begins."""
     turn = len(points) - 1
     while points[turn] >= points[turn - 1]:
@@ -289,7 +293,7 @@ def _tangential(rng: np.random.Generator, contact: Contact, radius: float, slope
     slipping = Slipping(contact, radius, friction, ratio)
     force = contact.force(radius)
     u = slipping.sliding * float(10.0 ** rng.uniform(-3.0, 0.1))
-    exact = {"contact_radius": radius, "normal_force": force} | _state(contact, radius)
+    exact: Numbers = {"contact_radius": radius, "normal_force": force} | _state(contact, radius)
     exact |= pressures(contact, farthest=(radius, contact.displacement(radius)))
     tables = {"friction": {"coefficient": friction}, "ratio": ratio}
     kind = str(rng.choice(["out", "back", "cycles", "cycles"]))
@@ -314,7 +318,7 @@ def _tangential(rng: np.random.Generator, contact: Contact, radius: float, slope
 
 def written(
     rng: np.random.Generator, group: str, words: str, table: Scene, spacing: float | None, automatic: bool,
-    units: bool, tolerance: float, contact: Contact, experiment: Scene, exact: Mapping[str, Any], tables: Scene,
+    units: bool, tolerance: float, contact: Contact, experiment: Scene, exact: Numbers, tables: Scene,
 ) -> Drawn:  # fmt: skip
     """The scene, with units or without; among the numbers there are p(r) by the names of states."""
     length, modulus = float(10.0 ** rng.uniform(-9.0, -3.0)), float(10.0 ** rng.uniform(6.0, 11.0))

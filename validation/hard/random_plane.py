@@ -30,7 +30,8 @@ DIMENSIONS = {
     "contact_stiffness": "S", "adhesion_energy": "E", "dissipated_energy": "E", "dissipated_energy_per_cycle": "E",
     "instability_energy": "E", "work_of_separation": "E", "tabor_parameter": "1", "peak_displacement": "L",
     "unloading_stiffness": "S", "creep_corrected_stiffness": "S", "preload": "F", "normal_force": "F",
-    "peak_force": "F", "force": "F", "relaxation": "F", "contact_time": "T", "restitution": "1", "peak_contact_radius": "L",
+    "peak_force": "F", "force": "F", "relaxation": "F", "contact_time": "T", "restitution": "1",
+    "peak_contact_radius": "L",
 }  # fmt: skip
 NAMING, GONE = (
     ("lattice", "tolerance", "kink", "input"),
@@ -104,7 +105,8 @@ def judge(found: Found, name: str, one: Drawn, run: Run | Refused) -> None:
         scale = 1.0
         entry = results.get(quantity)
         if one.in_si:
-            scale = one.scales[DIMENSIONS[quantity]]
+            by_force = quantity == "relaxation" and "force" in one.scene["experiment"]  # of a length, then
+            scale = one.scales["L" if by_force else DIMENSIONS[quantity]]
             entry = entry and (entry.get("si") or entry)
         if entry is None or entry["value"] is None:
             if math.isfinite(reference):

@@ -174,8 +174,7 @@ def marked(given: Legs) -> dict[str, float]:
         counts[NAMES[kind]] += 1
         number = counts[NAMES[kind]]
         found[f"after_{NAMES[kind]}" + (f"_{number}" if number > 1 else "")] = given.times[list(same)[-1] + 1]
-    name, last = found.popitem()
-    return found | {"final": last}
+    return found | {"final": found.popitem()[1]}
 
 
 def width_of(body: Power | Flat, d: float, more: float) -> float:
@@ -193,7 +192,8 @@ def of_lines(body: Power | Flat, law: Law, d: Legs, given: Legs) -> tuple[dict[s
     names, width = marked(given), width_of(body, max(d.values), 1.02)
     at = lines(rule, body.depth, width, d, sorted(names.values()), body.exponent)
     states = dict(zip(names, at, strict=True))
-    last, exact = states["final"], {}
+    last = states["final"]
+    exact: dict[str, float] = {}
     if d is not given and given.values[-1] == 0.0:  # a body without a force that it is pressed by does not touch
         states["final"] = last = Line(np.zeros(0), np.zeros(0))
     if last.edge:
@@ -302,7 +302,7 @@ def _forces(rng: np.random.Generator, force: float, duration: float) -> Legs:
 
 
 def in_units(group: str, words: str, one: Scene, exact: Mapping[str, float], slack: float, free: bool,
-             pressures: Mapping[str, Pressure]) -> Drawn:  # fmt: skip
+             pressures: Mapping[str, Pressure] | None = None) -> Drawn:  # fmt: skip
     """The same in micrometres, micronewtons and milliseconds of a contact modulus of 1 MPa; with its own spacing."""
     bodies = {name: value for name, value in one["bodies"].items() if name != "bulk_stiffness"}
     bodies["spacing"] = "auto" if free else f"{bodies['spacing']!r} µm"
@@ -317,4 +317,4 @@ def in_units(group: str, words: str, one: Scene, exact: Mapping[str, float], sla
         law = {"retardation_time": f"{law['retardation_time']!r} ms"}
     tables = {"bodies": bodies, "material": {"contact_modulus": "1.0 MPa"}, "viscoelasticity": law,
               "experiment": {"kind": "history", key: legs}}  # fmt: skip
-    return Drawn(group, words, one | tables, exact, SCALES, True, slack, pressures, LINES)
+    return Drawn(group, words, one | tables, exact, SCALES, True, slack, pressures or {}, LINES)

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 
 from scipy.optimize import brentq
@@ -63,9 +63,22 @@ class Pressed:
             parts = max(1, min(40, math.ceil((high - low) / T)))
             ends = [low + (high - low) * i / parts for i in range(parts + 1)]
             for a, b in pairwise(ends):
-                mean = smooth(lambda s, b=b: body.depth(self.radius(s)) * math.exp((s - b) / T) / T, a, b, 40)
-                d = d * math.exp((a - b) / T) + mean
+                d = d * math.exp((a - b) / T) + smooth(partial(self._drawn, b), a, b, 40)
         return d
+
+    @property
+    def lost(self) -> float:
+        """int F dd of a force that ends at 0, -int d dF [energy]."""
+        corners = sorted({*self.force.times, self.turn})
+        return -sum(
+            self.force.rate(0.5 * (low + high)) * smooth(self.displacement, low, high, 24)
+            for low, high in pairwise(corners)
+        )
+
+    def _drawn(self, end: float, s: float) -> float:
+        """What the edge at a time draws the body to, at the end [length/time]."""
+        T = self.law.time
+        return self.law.body.depth(self.radius(s)) * math.exp((s - end) / T) / T
 
     def rate(self, t: float) -> float:
         """d' [length/time] just before t."""

@@ -1,4 +1,4 @@
-"""The pressure p(r) of a contact from the line load q(x) of independent springs, by quadrature, with a jump at its edge.
+"""The pressure p(r) of a contact by quadrature of the line load q(x) of independent springs, with a jump at its edge.
 
     p(r) = (1/pi) [q(e)/sqrt(e^2 - r^2) - int_r^e q'(x)/sqrt(x^2 - r^2) dx],    F = 2 int_0^e q dx
 

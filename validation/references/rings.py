@@ -18,6 +18,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -116,7 +117,7 @@ class Rings:
     def follow(self, d: Callable[[float], float], times: Sequence[float]) -> list[float]:
         """F at rising times from the second on; at the first one the surface is at rest."""
         found = []
-        for before, after in zip(times[:-1], times[1:], strict=True):
+        for before, after in pairwise(times):
             self.step(d(after), after - before)
             found.append(self.force)
         return found
