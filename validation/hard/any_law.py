@@ -171,7 +171,8 @@ def too_wide(found: Found, scenes: Mapping[str, Drawn], folder: Path) -> Iterato
                 errors.append(run.results[n.name].value - n.reference)
         rms = float(np.sqrt(np.mean(np.square(errors)))) if errors else math.nan
         if n.uncertainty > WIDEST * rms:
-            yield f"TOO WIDE {n.scene} [{n.group}] {n.name}: ± {n.uncertainty:.2g}, rms error {rms:.2g}, {n.wide:.3g} tol"
+            error = f"± {n.uncertainty:.2g}, {n.wide:.3g} tol, rms error {rms:.2g}"
+            yield f"TOO WIDE {n.scene} [{n.group}] {n.name}: {error}"
 
 
 def report(found: Found, folder: Path) -> None:

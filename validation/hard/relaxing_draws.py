@@ -146,7 +146,7 @@ def scene_of(seed: int, number: int) -> Drawn | None:
         legs = path = drawn(rng, body.depth(radius), duration)
         exact, slack = exact_of_path(body, law, legs)
     more, pressures = of_lines(body, law, path, legs)
-    exact |= more
+    exact = more | exact  # what is exact stays
     arms = f"{len(law.terms)} arms" if isinstance(law, Material) else "retarded"
     words = f"{body.exponent:.3g}, {group}, {arms}"
     spacing = radius / math.exp(rng.uniform(math.log(NARROW), math.log(WIDE)))
