@@ -7,9 +7,10 @@ taken from. In a part of the scenes everything is given with units, and compared
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -29,13 +30,18 @@ POINTS = (5.0, 60.0)
 MOST_POINTS = 3000
 REFERENCE = 1e-8
 """Relative error of the quadratures."""
+Pressure = Callable[[float], float]
 SAMPLED = "sampled"
 """A table of a paraboloid."""
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """A scene, its numbers [in units of its own lengths and E*], what turns them into SI, and their relative error."""
+    """A scene, its numbers [in units of its own lengths and E*], what turns them into SI, and their relative error.
+
+    `pressures` are p(r) by the name of the state, `force` is F of every load step by its displacement; numbers that
+    are inf must be absent.
+    """
 
     group: str
     words: str
@@ -44,6 +50,9 @@ class Drawn:
     scales: Mapping[str, float]
     in_si: bool
     reference_error: float = REFERENCE
+    pressures: Mapping[str, Pressure] = field(default_factory=dict)
+    pressure_error: float = REFERENCE
+    force: Pressure | None = None
 
 
 def scene_of(seed: int, number: int) -> Drawn | None:
@@ -96,7 +105,9 @@ def drawn(rng: np.random.Generator) -> Drawn | None:
     return written(rng, group, words, table, spacing, automatic, units, tolerance, contact, experiment, exact, tables)
 
 
-Made = tuple[str, Scene, dict[str, float], float, Scene] | None
+Numbers = dict[str, Any]
+"""By name, and p(r) by the names of states."""
+Made = tuple[str, Scene, Numbers, float, Scene] | None
 
 
 def _experiment(
@@ -112,7 +123,19 @@ def _experiment(
     return _pressed(rng, contact, radius, slope)
 
 
-def _state(contact: Contact, a: float, d: float | None = None) -> dict[str, float]:
+def pressures(contact: Contact, **states: tuple[float, float]) -> dict[str, Pressure]:
+    """p(r) of states (a, d) whose body has no kink inside, by their names among the numbers."""
+    body = contact.body
+
+    def of(a: float, d: float) -> Pressure:
+        middle = contact.central_pressure(a, d) if math.isinf(body.end) else d / (math.pi * a) * contact.modulus
+        return lambda r: 0.0 if r >= a else contact.pressure(r, a, d) if r else middle
+
+    rough = any(jump for jump in body.jumps)
+    return {} if rough else {name: of(*state) for name, state in states.items()}
+
+
+def _state(contact: Contact, a: float, d: float | None = None) -> Numbers:
     """p(0) and the largest pressure of a state; inf where there is none."""
     if math.isfinite(contact.body.end):  # its edge has no bound
         return {"peak_pressure": math.inf} if contact.work == 0.0 else {}
@@ -120,6 +143,7 @@ def _state(contact: Contact, a: float, d: float | None = None) -> dict[str, floa
 
 
 def _pressed(rng: np.random.Generator, contact: Contact, radius: float, slope: float) -> Made:
+    exact: Numbers
     a = radius * float(10.0 ** rng.uniform(-0.1, 0.5))
     d = contact.displacement(a)
     if math.isfinite(contact.body.end):
@@ -128,6 +152,7 @@ def _pressed(rng: np.random.Generator, contact: Contact, radius: float, slope: f
     exact = {"mean_pressure": force / (math.pi * a * a), "contact_stiffness": 2.0 * contact.modulus * a}
     exact |= _state(contact, a, d)
     if rng.random() < 0.5:
+        exact |= pressures(contact, final=(a, d)) | {"force": force}
         return "load", {"kind": "load", "force": force}, exact | {"displacement": d, "contact_radius": a}, a, {}
     steps = round(math.exp(rng.uniform(0.0, math.log(60.0))))
     closed = bool(rng.random() < 0.5)
@@ -143,7 +168,7 @@ def _unit(contact: Contact, radius: float) -> float:
     return -contact.force(contact.critical(radius))
 
 
-def _marks(contact: Contact, radius: float) -> dict[str, float]:
+def _marks(contact: Contact, radius: float) -> Numbers:
     """F_A and the radii; separation's work, from the largest contact without a load to fixed grips."""
     critical, last = contact.critical(radius), contact.fixed_grips(radius)
     if math.isfinite(contact.body.end):
@@ -162,6 +187,7 @@ def _marks(contact: Contact, radius: float) -> dict[str, float]:
 
 
 def _adhesive(rng: np.random.Generator, kind: str, contact: Contact, radius: float, slope: float) -> Made:
+    exact: Numbers
     unit, punch = _unit(contact, radius), math.isfinite(contact.body.end)
     if kind == "path":
         return _loop(rng, contact, radius, slope, opened=True)
@@ -169,7 +195,11 @@ def _adhesive(rng: np.random.Generator, kind: str, contact: Contact, radius: flo
         force = unit * float(10.0 ** rng.uniform(-1.0, 2.5))
         widest = contact.pressed_radius(force, radius)
         exact = _marks(contact, radius)
-        exact |= {} if punch else _state(contact, exact["zero_load_radius"])
+        exact["preload"] = force
+        if not punch:
+            rest, edge = exact["zero_load_radius"], exact["critical_radius"]
+            states = {"zero_load": (rest, contact.displacement(rest)), "critical": (edge, contact.displacement(edge))}
+            exact |= _state(contact, rest) | pressures(contact, **states)
         return kind, {"kind": kind, "preload": force}, exact, widest, {}
     outer = -contact.force_at(radius, contact.displacement(radius)) if punch else -contact.force(
         contact.softest_outer(radius))  # fmt: skip
@@ -179,6 +209,7 @@ def _adhesive(rng: np.random.Generator, kind: str, contact: Contact, radius: flo
     exact = {"displacement": d, "contact_radius": a, "mean_pressure": force / (math.pi * a * a),
              "adhesion_energy": math.pi * a * a * contact.work}  # fmt: skip
     exact |= {} if punch else _state(contact, a)
+    exact |= pressures(contact, final=(a, d)) | {"force": force}
     return kind, {"kind": "load", "force": force}, exact, max(a, radius), {}
 
 
@@ -223,7 +254,7 @@ def _loop(rng: np.random.Generator, contact: Contact, radius: float, slope: floa
     return f"{'closed' if closed else 'open'} path from {start}", experiment, exact, widest, {}
 
 
-def _marks_of(contact: Contact, radius: float, points: list[float], first: bool) -> dict[str, float]:
+def _marks_of(contact: Contact, radius: float, points: list[float], first: bool) -> Numbers:
     """The marks that the last unloading passes, of those that touch as it begins."""
     turn = len(points) - 1
     while points[turn] >= points[turn - 1]:
@@ -262,7 +293,8 @@ def _tangential(rng: np.random.Generator, contact: Contact, radius: float, slope
     slipping = Slipping(contact, radius, friction, ratio)
     force = contact.force(radius)
     u = slipping.sliding * float(10.0 ** rng.uniform(-3.0, 0.1))
-    exact = {"contact_radius": radius}
+    exact: Numbers = {"contact_radius": radius, "normal_force": force} | _state(contact, radius)
+    exact |= pressures(contact, farthest=(radius, contact.displacement(radius)))
     tables = {"friction": {"coefficient": friction}, "ratio": ratio}
     kind = str(rng.choice(["out", "back", "cycles", "cycles"]))
     if kind == "cycles":
@@ -286,9 +318,9 @@ def _tangential(rng: np.random.Generator, contact: Contact, radius: float, slope
 
 def written(
     rng: np.random.Generator, group: str, words: str, table: Scene, spacing: float | None, automatic: bool,
-    units: bool, tolerance: float, contact: Contact, experiment: Scene, exact: Mapping[str, float], tables: Scene,
+    units: bool, tolerance: float, contact: Contact, experiment: Scene, exact: Numbers, tables: Scene,
 ) -> Drawn:  # fmt: skip
-    """The scene, with units or without."""
+    """The scene, with units or without; among the numbers there are p(r) by the names of states."""
     length, modulus = float(10.0 ** rng.uniform(-9.0, -3.0)), float(10.0 ** rng.uniform(6.0, 11.0))
     tables = dict(tables)
     ratio = tables.pop("ratio", None)
@@ -310,4 +342,6 @@ def written(
         scene["material"] = {"contact_modulus": f"{modulus!r} Pa"} if ratio is None else elastic(modulus, ratio)
     force = modulus * length**2
     scales = {"L": length, "F": force, "P": modulus, "S": modulus * length, "E": force * length, "1": 1.0}
-    return Drawn(group, words, scene, exact, scales, units)
+    found = {name: value for name, value in exact.items() if callable(value)}
+    numbers = {name: value for name, value in exact.items() if name not in found}
+    return Drawn(group, words, scene, numbers, scales, units, pressures=found)

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from validation.doors import Run
+from validation.doors import Run, read_run
 from validation.hard.plane_bodies import Scene
 from validation.hard.plane_draws import Drawn, scene_of
 from validation.row import Row, at_most
@@ -29,13 +29,17 @@ DIMENSIONS = {
     "largest_force": "F", "tangential_force": "F", "mean_pressure": "P", "central_pressure": "P", "peak_pressure": "P",
     "contact_stiffness": "S", "adhesion_energy": "E", "dissipated_energy": "E", "dissipated_energy_per_cycle": "E",
     "instability_energy": "E", "work_of_separation": "E", "tabor_parameter": "1", "peak_displacement": "L",
-    "peak_force": "F", "force": "F", "contact_time": "T", "restitution": "1", "peak_contact_radius": "L",
+    "unloading_stiffness": "S", "creep_corrected_stiffness": "S", "preload": "F", "normal_force": "F",
+    "peak_force": "F", "force": "F", "relaxation": "F", "contact_time": "T", "restitution": "1",
+    "peak_contact_radius": "L",
 }  # fmt: skip
 NAMING, GONE = (
     ("lattice", "tolerance", "kink", "input"),
     ("unknown", "no_peak", "no_zero_load", "no_radius", "no_energy"),
 )
 """Warnings that give the relative uncertainty of each number they name; those that say that there is none."""
+POINTS = (0.0, 0.3, 0.7, 1.0)
+"""Of the radii of a pressure, which are compared."""
 INSIDE, FARTHEST = 0.98, 3.0
 FOLLOWS = {
     "critical_radius": ("adhesion_force",),
@@ -81,6 +85,7 @@ class Found:
     absent: dict[str, list[str]] = field(default_factory=dict)
     silent: dict[str, list[str]] = field(default_factory=dict)
     refused: dict[str, str] = field(default_factory=dict)
+    unjudged: Counter[str] = field(default_factory=Counter)
     scenes: Counter[str] = field(default_factory=Counter)
 
 
@@ -90,15 +95,18 @@ def judge(found: Found, name: str, one: Drawn, run: Run | Refused) -> None:
     if isinstance(run, Refused):
         found.refused[name] = f"{one.words}: {run.words}"
         return
-    tolerance = one.scene["accuracy"]["tolerance"]
     scene = f"{name} ({one.words})"
     warnings = run.warnings
     results = run.document
+    found.unjudged.update(set(run.results) - set(one.exact))
+    judge_pressures(found, name, one, run)
+    judge_forces(found, name, one, run)
     for quantity, reference in one.exact.items():
         scale = 1.0
         entry = results.get(quantity)
         if one.in_si:
-            scale = one.scales[DIMENSIONS[quantity]]
+            by_force = quantity == "relaxation" and "force" in one.scene["experiment"]  # of a length, then
+            scale = one.scales["L" if by_force else DIMENSIONS[quantity]]
             entry = entry and (entry.get("si") or entry)
         if entry is None or entry["value"] is None:
             if math.isfinite(reference):
@@ -107,16 +115,59 @@ def judge(found: Found, name: str, one: Drawn, run: Run | Refused) -> None:
             continue
         value, uncertainty = entry["value"] / scale, entry["uncertainty"] / scale
         named = any(re.search(rf"\b{quantity}\b", warnings.get(w, "")) for w in NAMING)
-        if math.isinf(reference):
-            over = far = math.inf
-        else:
-            error = max(0.0, abs(value - reference) - one.reference_error * abs(reference))
-            over = error / uncertainty if uncertainty > 0.0 else (0.0 if error == 0.0 else math.inf)
-            far = error / abs(reference) / tolerance if reference else 0.0
-        wide = uncertainty / (abs(value) * tolerance) if value and reference else 0.0
-        found.numbers.append(
-            Number(name, one.group, one.words, quantity, value, uncertainty, reference, over, far, wide, named)
-        )
+        found.numbers.append(number_of(name, one, quantity, value, uncertainty, float(reference), named))
+
+
+def number_of(
+    name: str, one: Drawn, quantity: str, value: float, uncertainty: float, reference: float, named: bool
+) -> Number:
+    """A number beside its reference."""
+    slack = one.pressure_error if quantity.startswith("p(r)") or quantity.endswith("pressure") else one.reference_error
+    tolerance = one.scene["accuracy"]["tolerance"]
+    if math.isinf(reference):
+        over = far = math.inf
+    else:
+        whole = abs(reference)
+        if quantity == "dissipated_energy":  # the difference of two works
+            whole = max(whole, one.exact.get("peak_force", 0.0) * one.exact.get("peak_displacement", 0.0))
+        error = max(0.0, abs(value - reference) - slack * whole)
+        over = error / uncertainty if uncertainty > 0.0 else (0.0 if error == 0.0 else math.inf)
+        far = error / abs(reference) / tolerance if reference else 0.0
+    wide = uncertainty / (abs(value) * tolerance) if value and reference else 0.0
+    return Number(name, one.group, one.words, quantity, value, uncertainty, reference, over, far, wide, named)
+
+
+def judge_forces(found: Found, name: str, one: Drawn, run: Run) -> None:
+    """F of every load step; without a column of its ± that is 0."""
+    if one.force is None:
+        return
+    columns = read_run(run.folder).curve if one.in_si else run.curve
+    length, force = (one.scales["L"], one.scales["F"]) if one.in_si else (1.0, 1.0)
+    errors = columns["force_uncertainty"] if "force_uncertainty" in columns else 0.0 * columns["force"]
+    for d, value, error in zip(columns["displacement"], columns["force"], errors, strict=True):
+        n = number_of(name, one, "F of a load step", float(value) / force, float(error) / force,
+                      one.force(float(d) / length), named=True)  # fmt: skip
+        found.numbers.append(n)
+
+
+def judge_pressures(found: Found, name: str, one: Drawn, run: Run) -> None:
+    """Some points of p(r) of each state that has one; it must have a ± of its own."""
+    columns = (read_run(run.folder) if one.in_si else run).body_pressures
+    length, stress = (one.scales["L"], one.scales["P"]) if one.in_si and one.pressures else (1.0, 1.0)
+    for state, pressure in one.pressures.items():
+        quantity = f"p(r) {state}"
+        if state not in columns:
+            found.absent.setdefault(quantity, []).append(name)
+            continue
+        radii, values, errors = (columns[state][key] for key in ("r", "pressure", "pressure_uncertainty"))
+        scale = abs(pressure(0.5 * float(radii[-1]) / length))
+        for i in sorted({round(part * (radii.size - 1)) for part in POINTS}):
+            reference = float(pressure(float(radii[i]) / length))
+            if math.isfinite(reference):
+                # Where a pressure crosses 0, its reference is as exact as it is in the middle.
+                slack = max(0.0, scale - abs(reference)) * one.pressure_error
+                value, error = float(values[i]) / stress, float(errors[i]) / stress + slack
+                found.numbers.append(number_of(name, one, quantity, value, error, reference, named=True))
 
 
 def run_of(bench: Bench, name: str, scene: Scene) -> Run | Refused:

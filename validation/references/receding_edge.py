@@ -12,12 +12,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
-from scipy.integrate import solve_ivp
+from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq, minimize_scalar
 
 from validation.references.impact import Adhesive
+from validation.references.relaxing import Legs, smooth
 
 LEAST = 1e-3
 """Radius over that of the preload at which the edge is not followed further."""
@@ -66,7 +68,7 @@ class Receding:
 
     def pull_off(self, preload: float, velocity: float) -> tuple[float, float]:
         """The largest tension [force] of a body drawn off with a velocity, and the radius there [length]."""
-        return self.largest(self._pressed(preload), velocity)
+        return self.largest(self.pressed(preload), velocity)
 
     def largest(self, start: float, velocity: float) -> tuple[float, float]:
         """The same from the equilibrium of a radius."""
@@ -86,6 +88,18 @@ class Receding:
         radius = float(found.sol(at)[0])
         return -self.force(radius, top - at), radius
 
+    def separated(self, start: float, velocity: float) -> tuple[float, float, float]:
+        """a and d [length] where F = 0, and the work from there on [energy]."""
+        top, found = self.contact.displacement(start), self.drawn(start, velocity)
+
+        def force(t: float) -> float:
+            return self.force(float(found.sol(t)[0]), top - t)
+
+        i = next(i for i, t in enumerate(found.t) if force(float(t)) < 0.0)
+        at = float(brentq(force, float(found.t[i - 1]), float(found.t[i]), xtol=1e-300, rtol=1e-14)) if i else 0.0
+        ends = [at, *(float(t) for t in found.t if t > at)]
+        return float(found.sol(at)[0]), top - at, -sum(smooth(force, *two, count=8) for two in pairwise(ends))
+
     def at(self, displacement: float) -> float:
         """The radius [length] of the equilibrium at a displacement of at least 0."""
         high = 2.0 * self.contact.touch
@@ -94,7 +108,7 @@ class Receding:
         low = self.contact.touch
         return float(brentq(lambda a: self.contact.displacement(a) - displacement, low, high, xtol=1e-300, rtol=1e-14))
 
-    def _pressed(self, force: float) -> float:
+    def pressed(self, force: float) -> float:
         """The radius [length] of JKR's contact under a force."""
         high = self.contact.touch
         while self.contact.force(high) < force:
@@ -107,3 +121,86 @@ class Receding:
             lambda a: self.contact.force(a), bounds=(0.5 * low, high), method="bounded", options={"xatol": 1e-12}
         )
         return float(brentq(lambda a: self.contact.force(a) - force, float(least.x), high, xtol=1e-300, rtol=1e-14))
+
+
+@dataclass(frozen=True)
+class Path:
+    """What a displacement over time has: states (time, d, a, F), at corners and between; int F dd; when it is lost."""
+
+    states: list[tuple[float, float, float, float]]
+    work: float
+    touched: float
+    lost: float
+
+
+def path(one: Receding, d: Legs) -> Path:
+    """Follow the edge: it is at G = W while the body sinks, unless it still recedes; with an infinite v_0 always.
+
+    Apart, bodies touch from d = 0 on.
+    """
+    contact, a, work, touched, lost = one.contact, 0.0, 0.0, math.inf, math.inf
+    states = [(d.times[0], d.values[0], 0.0, 0.0)]
+    if d.values[0] == 0.0 < d.values[1]:
+        a, touched = contact.touch, d.times[0]
+        states = [(d.times[0], 0.0, a, contact.force(a))]
+    for (t0, d0), (t1, d1) in pairwise(d.points):
+        rate, start = (d1 - d0) / (t1 - t0), t0
+        if a == 0.0 and d1 > 0.0 and math.isinf(lost):
+            start, a = t0 + (t1 - t0) * max(0.0, -d0) / (d1 - d0), contact.touch
+            touched = start
+        if a > 0.0:
+            a, part, end = _leg(one, a, d, start, t1, rate, states)
+            work, lost = work + part, min(lost, end)
+        states.append((t1, d1, a, one.force(a, d1) if a > 0.0 else 0.0))
+    return Path(states, work, touched, lost)
+
+
+def _leg(
+    one: Receding, a: float, d: Legs, start: float, stop: float, rate: float, states: list[Any]
+) -> tuple[float, float, float]:
+    """a at the end, int F dd, and when the contact is lost."""
+    contact, work = one.contact, 0.0
+    begun, first = start, a
+
+    def at(t: float) -> float:
+        return d(begun) + rate * (t - begun)
+
+    if math.isinf(one.speed):
+        limit = contact.displacement(contact.grips)
+        end = begun + (limit - at(begun)) / rate if rate < 0.0 and at(stop) < limit else stop
+        last = contact.grips if end < stop else equilibrium(contact, at(end))
+        part = float(quad(lambda x: contact.force(x) * contact.slope(x), a, last, epsrel=1e-12)[0])
+        return (0.0, part, end) if end < stop else (last, part, math.inf)
+    if one.excess(a, at(begun)) > 0.0 or rate < 0.0:
+
+        def change(t: float, y: Any) -> list[float]:
+            return [-one.speed * one.excess(float(y[0]), at(t)) ** (1.0 / one.exponent), rate * one.force(y[0], at(t))]
+
+        def small(_: float, y: Any) -> float:
+            return float(y[0]) - LEAST * first
+
+        def settled(t: float, y: Any) -> float:
+            g = contact.body.depth(float(y[0])) - at(t)
+            return contact.modulus * g * abs(g) / (2.0 * math.pi * float(y[0]) * contact.work) - 1.0
+
+        small.terminal = True  # type: ignore[attr-defined]
+        settled.terminal, settled.direction = rate > 0.0, -1.0  # type: ignore[attr-defined]
+        accuracy = {"method": "LSODA", "rtol": 1e-11, "atol": [1e-15 * a, 1e-14 * abs(contact.lost)]}
+        found = solve_ivp(change, (begun, stop), [a, 0.0], events=(small, settled), **accuracy)
+        states += [(t, at(t), x, one.force(x, at(t))) for t, x in zip(found.t, found.y[0], strict=True)]
+        begun, a, work = float(found.t[-1]), float(found.y[0, -1]), float(found.y[1, -1])
+        if a <= 1.001 * LEAST * first:
+            return 0.0, work, begun
+    if rate > 0.0 and begun < stop:
+        last = equilibrium(contact, d(stop))
+        work += float(quad(lambda x: contact.force(x) * contact.slope(x), a, last, epsrel=1e-12)[0])
+        a = last
+    return a, work, math.inf
+
+
+def equilibrium(contact: Adhesive, displacement: float) -> float:
+    """The radius [length] of the outer equilibrium at a displacement."""
+    high = 2.0 * contact.touch
+    while contact.displacement(high) < displacement:
+        high *= 2.0
+    return float(brentq(lambda a: contact.displacement(a) - displacement, contact.grips, high, xtol=1e-300, rtol=1e-14))

@@ -65,8 +65,8 @@ class Prony:
     def held(self, state: Floats, rate: float, t: Floats) -> Floats:
         """The state after a time in contact."""
         tau = self._arms[2][:, None]
-        fade = np.exp(-t[None] / tau)
-        return np.concatenate([(state[0] + rate * t)[None], state[1:] * fade + rate * tau * (1.0 - fade)])
+        x = -t[None] / tau
+        return np.concatenate([(state[0] + rate * t)[None], state[1:] * np.exp(x) - rate * tau * np.expm1(x)])
 
     def free(self, state: Floats, t: Floats) -> Floats:
         """The state after a time without contact: u' from q' = 0, s_j by modes."""

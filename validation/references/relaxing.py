@@ -163,6 +163,18 @@ class Power:
         return float((max(0.0, volume) * (n + 1.0) / (2.0 * n * self.reduced)) ** (1.0 / (n + 1.0)))
 
 
+@dataclass(frozen=True)
+class Flat:
+    """The flat end of a punch, for springs: a body of no depth that ends at its radius [length]."""
+
+    end: float
+    exponent: float = 2.0
+
+    def depth(self, a: float) -> float:
+        """g(a) [length]."""
+        return 0.0
+
+
 def sphere(radius: float) -> Power:
     """The paraboloid of that R."""
     return Power(2.0, 0.5 / radius)
