@@ -118,8 +118,8 @@ class Branch(ContactBranch):
             UntrustedError: see `require_trust`; also where the force cannot be held.
         """
         # Where pairs snap the force at a displacement is known no better.
-        near = (0.5 if self.settings.is_smooth else 1.0) * FORCE_ACCURACY * self.settings.tolerance * scale
-        near = self._nearest(near, scale)
+        enough = (0.5 if self.settings.is_smooth else 1.0) * FORCE_ACCURACY * self.settings.tolerance * scale
+        near = self._nearest(enough, scale)
         rises = not self.states or force - self._last.carried > near
         direction = 1 if rises else -1
         self._turn(rises)
@@ -144,6 +144,8 @@ class Branch(ContactBranch):
                     f"{'above' if rises else 'below'} it. Give a force beyond that, or use "
                     'kind = "path" for the full curve'
                 )
+            if beyond is not None and self._is_same(before, beyond) and abs(last.carried - force) <= enough:
+                break
             self._require_within_reach(force, rises, before, beyond)
             step = self.settings.increment(last.smallest_distance if rises else math.inf)
             self._at(self._towards(before, beyond, force, direction * step))
@@ -178,7 +180,7 @@ class Branch(ContactBranch):
     def _require_within_reach(self, force: float, rises: bool, before: State, beyond: State | None) -> None:
         """Refuse a force that the branch jumps past, never reaches, or does not reach in a practicable time."""
         states = self.leg
-        if beyond is not None and abs(beyond.displacement - before.displacement) < SAME * self.scene.bodies.spacing:
+        if beyond is not None and self._is_same(before, beyond):
             raise UntrustedError(
                 f"the force jumps past {force:.4g} FU at displacement {before.displacement:.6g} LU, from "
                 f"{before.carried:.4g} to {beyond.carried:.4g} FU: an instability, and no state on this path has this "
@@ -193,6 +195,10 @@ class Branch(ContactBranch):
                 f"{states[-1].displacement:.4g} LU and {states[-1].carried:.4g} FU: the ranges of the interaction are "
                 "short compared with the path. Use a force nearer to 0, longer ranges or stiffer springs"
             )
+
+    def _is_same(self, one: State, other: State) -> bool:
+        """Whether two states are at one displacement but for round-off."""
+        return abs(one.displacement - other.displacement) < SAME * self.scene.bodies.spacing
 
     # --- the largest tension
 

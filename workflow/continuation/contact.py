@@ -69,6 +69,10 @@ class Contact:
             self._x = bodies(deck.scene, deck.settings)[0].particles[:, 0]
             self._nothing = np.zeros_like(self._x)
             self._read = 0  # bytes of the frames' file
+            adhesion = deck.scene.adhesion
+            stress = adhesion.work / adhesion.range if adhesion and adhesion.range else 0.0
+            # The part of a cell in the ring of attraction is a difference of the discs up to its ends.
+            self._stress = float(np.finfo(np.float64).eps) * 2.0 * stress
 
     @property
     def phases(self) -> tuple[Phase, ...]:
@@ -188,8 +192,9 @@ class Contact:
             along = row.place if isinstance(row, Draw) else 0.0
             if isinstance(row, Cohere):
                 profile = self._zoned(profile, row)
+            lost = round_off if not isinstance(row, Cohere) else round_off + self._stress * row.reach**2
             states.append(
-                State(phase, row.displacement, force, profile, self._rule, closest, 0.0, round_off, plate_x=along,
+                State(phase, row.displacement, force, profile, self._rule, closest, 0.0, lost, plate_x=along,
                       step=float(began + i + 1), number=first + i)
             )  # fmt: skip
         return states

@@ -68,6 +68,11 @@ def _separation(branch: Trace, peak: Peak) -> dict[str, Reading]:
     lost = branch.radius(len(branch) - 1) is None or _distance_from_limit(branch) <= LAST
     if not held or not (lost or abs(force[-1]) <= SEPARATED * peak.tension):
         return {}
+    if model.parted is None:  # it goes on for as long as it takes
+        after = next(i for i, one in enumerate(d) if one < start)
+        pulled, way = np.asarray([0.0, *force[after:]]), np.asarray([start, *d[after:]])
+        value, other = (float(np.trapezoid(pulled[rows], way[rows])) for rows in (slice(None), _every_other(way.size)))
+        return {"work_of_separation": Reading(value, ENERGY, {"sampling": abs(value - other)})}
     at, own = np.asarray([*held, (start, 0.0)]).T
     off = own - model.held(at)
 
@@ -84,6 +89,11 @@ def _separation(branch: Trace, peak: Peak) -> dict[str, Reading]:
     value = work(NODES, 1)
     missed = abs(value - work(NODES // 2, 2)) + MODEL_DIGITS * value
     return {"work_of_separation": Reading(value, ENERGY, {"sampling": missed})}
+
+
+def _every_other(count: int) -> list[int]:
+    """Numbers of every other of so many states, and of the last."""
+    return [*range(0, count - 1, 2), count - 1]
 
 
 def _critical_radius(branch: Trace, peak: Peak, settings: Settings, missed: float) -> Reading:

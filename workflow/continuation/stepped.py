@@ -49,7 +49,7 @@ class SteppedBranch(Branch):
 
     def _nearest(self, near: float, scale: float) -> float:
         """Up to the round-off of the particles: the next load step costs next to nothing."""
-        round_off = self.settings.chains.upper * max((state.residual for state in self.states[-1:]), default=near)
+        round_off = self.settings.chains.upper * max((state.residual for state in self.states[-1:]), default=0.0)
         return min(near, max(EXACT * scale, round_off))
 
     def _first_rows(self, force: float, direction: int) -> None:

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from contact1d.digits import apart
 from contact1d.workflow.model.adhesion import SPANNED, AdhesiveEstimate
 from contact1d.workflow.model.chain import SettingsError
-from contact1d.workflow.model.dugdale import DOUBLINGS, TINY, Dugdale, Zone, covered
+from contact1d.workflow.model.dugdale import DOUBLINGS, Dugdale, Zone, covered
 from contact1d.workflow.model.pairs import ContactEstimate, Profile, beside_kinks, plane_estimate
 from contact1d.workflow.scene import Impact, Rate, Scene
 
@@ -402,7 +402,8 @@ class RatedEstimate(ZonedEstimate):
 
 def _half_disc(x: Array, radius: float) -> Array:
     """∫₀ˣ √(c² − x²) dx [LU²]."""
-    return 0.5 * (x * np.sqrt((radius - x) * (radius + x)) + radius**2 * np.arcsin(x / max(radius, TINY)))
+    root = np.sqrt((radius - x) * (radius + x))
+    return np.asarray(0.5 * (x * root + radius**2 * np.arctan2(x, root)))
 
 
 def _between(column: Array, low: int, value: float) -> float:

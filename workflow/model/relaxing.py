@@ -20,7 +20,7 @@ Exact for one circular contact of a body with a constant Poisson's ratio (Lee an
 from __future__ import annotations
 
 import math
-from bisect import bisect_left
+from bisect import bisect_right
 from dataclasses import dataclass
 
 import numpy as np
@@ -135,7 +135,7 @@ class Memory:
     def _carrying(self, load: float, counts: Array, time: float, start: float, way_time: float) -> float:
         """The displacement [LU] that carries a load after a time [TU], with the velocity from `start` on in `way_time`.
 
-        Forces rise with it, and are a parabola from where a cell begins or ends to touch to the next.
+        The largest under none. Forces rise with it, a parabola from where a cell begins or ends to touch to the next.
         """
         response, free, *_ = self._ahead(time)
         rate, cells = self._retarded / way_time, self._cells
@@ -149,12 +149,14 @@ class Memory:
             pushed = [(cells.heights + rate * start + one) / (1.0 + rate) for one in over]
             ends = np.concatenate([*(ends + one for one in over), *pushed, start - free / rate])
         ends = np.unique(ends)
-        first = bisect_left(ends, 0.0, key=excess)
+        first = bisect_right(ends, 0.0, key=excess)
         if first == 0:
             return float(ends[0])
         low = float(ends[first - 1])
         high = float(ends[first]) if first < ends.size else low + load / response
         begin, middle, end = (excess(low + part * (high - low)) for part in (0.0, 0.5, 1.0))
+        if begin >= 0.0:
+            return low
         bend, slope = 2.0 * (begin - 2.0 * middle + end), 4.0 * middle - 3.0 * begin - end
         root = math.sqrt(max(slope * slope - 4.0 * bend * begin, 0.0))
         return low + (high - low) * min(max(-2.0 * begin / (slope + root), 0.0), 1.0)
