@@ -75,7 +75,7 @@ class Zoned(RadiusRule):
         if not isinstance(profile, ZonedProfile):
             pulled = profile.pressure.min() < 0.0
             return tensile_radius(profile) if pulled else compressive_radius(profile, self.share)
-        return ContactRadius(profile.edge, 0.0, -profile.edge, profile.edge, reaches_end=False)
+        return ContactRadius(profile.edge, profile.doubt, -profile.edge, profile.edge, reaches_end=False)
 
     def is_cut(self, profile: Profile) -> bool:
         """Whether the attraction reaches the end of the chain."""

@@ -102,11 +102,11 @@ class SteppedBranch(Branch):
         Where a body that relaxes ends its contact, particles that touch nothing know, and these have no force to show.
         """
         self._turned, times, self._history = True, iter(history.time.tolist()), history.path(self.model)
-        edges: Iterator[tuple[float, float]] | None = None
+        edges: Iterator[tuple[float, ...]] | None = None
         if isinstance(self.model, RelaxingSprings):
             zone = self.model.follow(self._history).zone
             assert zone
-            edges = zip(zone[0].tolist(), zone[2].tolist(), strict=True)
+            edges = zip(*(one.tolist() for one in zone), strict=True)
         for phase in followed(self.model, history):
             self.begin(phase.name)
             self._enter()

@@ -223,8 +223,7 @@ def of_model(
         pressure = np.pad(followed.force(state), BESIDE) / spacing
         shear = none if followed.shear is None else np.pad(followed.shear(state), BESIDE) / spacing
         if followed.zone:
-            edge, reach, jump = (float(one[state]) for one in followed.zone)
-            return ZonedProfile(x, none, none, pressure, shear, edge, reach, jump)
+            return ZonedProfile(x, none, none, pressure, shear, *(float(one[state]) for one in followed.zone))
         return Profile(x, none, none, pressure, shear)
 
     return Trace(

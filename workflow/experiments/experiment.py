@@ -17,7 +17,7 @@ from contact1d.workflow.continuation.budget import (
 from contact1d.workflow.continuation.context import ContactBranch, RunContext
 from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.load_control import LoadBranch
-from contact1d.workflow.continuation.outcome import Agreement, Outcome, Reading
+from contact1d.workflow.continuation.outcome import Agreement, Outcome, Reading, Result
 from contact1d.workflow.continuation.replayed import ReplayedBranch
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.stepped import SteppedBranch
@@ -126,7 +126,7 @@ class Scripted(Experiment[K]):
         tables = self.tables(trace, scene, settings)
         states, moves = tuple(branch.states), case.moves
         checks = consistency.plan(scene, states, branch.by_model()) | consistency.balance(scene, states)
-        checks |= consistency.asked(scene, self.asked(trace, scene), states) | self.energy(case, states)
+        checks |= consistency.asked(scene, self.asked(trace, scene), states) | self.energy(case, states, results)
         outcome = Outcome(
             results, states, branch.marked, branch.phases, warnings, tables=tables, moves=moves, consistency=checks
         )
@@ -136,7 +136,7 @@ class Scripted(Experiment[K]):
         """Forces [FU] that the scene asks for, each with that of the state that has it."""
         return ()
 
-    def energy(self, case: Reduction, states: Sequence[State]) -> dict[str, Agreement]:
+    def energy(self, case: Reduction, states: Sequence[State], results: Mapping[str, Result]) -> dict[str, Agreement]:
         """The check of the energy, of a contact on a plane along its whole path."""
         return consistency.energy(case) if case.scene.is_stepped and case.scene.is_modelled else {}
 

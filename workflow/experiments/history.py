@@ -48,7 +48,7 @@ class HistoryExperiment(Scripted[History]):
 
     def script(self, branch: Driver, scene: Scene) -> None:
         """All of it; the end of each leg is reported."""
-        branch.follow(_moments(scene))
+        branch.follow(branch.model.refined(_moments(scene)))
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
         """See the class."""
@@ -106,7 +106,8 @@ class HistoryExperiment(Scripted[History]):
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The schedule that runs; a leg is a phase."""
-        return followed(reduced(scene, settings), _moments(scene))
+        model = reduced(scene, settings)
+        return followed(model, model.refined(_moments(scene)))
 
     def advice(self, scene: Scene) -> str:
         """Lattice and load steps limit it."""

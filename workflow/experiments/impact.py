@@ -12,7 +12,7 @@ from contact1d.analysis.polynomial import lowest_minimum, through, value
 from contact1d.workflow.continuation import consistency
 from contact1d.workflow.continuation.budget import Reduction
 from contact1d.workflow.continuation.driver import Driver
-from contact1d.workflow.continuation.outcome import Agreement, Outcome, Reading
+from contact1d.workflow.continuation.outcome import Agreement, Outcome, Reading, Result
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.deck.steps import Fly, Launch, Phase
@@ -66,7 +66,7 @@ class ImpactExperiment(Scripted[Impact]):
         }
         return found | ({"contact_time": lost(trace)} if parted else {})
 
-    def energy(self, case: Reduction, states: Sequence[State]) -> dict[str, Agreement]:
+    def energy(self, case: Reduction, states: Sequence[State], results: Mapping[str, Result]) -> dict[str, Agreement]:
         """The kinetic energy that is gone, beside what the contact stores and loses along the path of the body.
 
         Between two states it is the cubic of their displacements and velocities.
@@ -87,7 +87,7 @@ class ImpactExperiment(Scripted[Impact]):
         dense = np.interp(np.arange(0.0, len(time) - 1 + 1e-9, 1.0 / FINER), np.arange(len(time)), time)
         path = Path(moved(dense), np.zeros_like(dense), dense, moved(dense, 1))
         first, left = (0.5 * mass * one**2 for one in (velocity, states[-1].plate_velocity))
-        return consistency.energy(case, (path, first, first - left))
+        return consistency.energy(case, (path, first, first - left), results["dissipated_energy"].uncertainty / first)
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
         """The time of each state."""

@@ -68,7 +68,9 @@ class PathExperiment(Scripted[Path]):
         results = budgeted(case, trace, errors, sampled=not self.is_statistical, repeated=repeated)
         warnings = self._missing(results, case, phases) | doubts(scene, settings, tuple(reported))
         warnings |= _buckling(trace, other, settings)
-        checks = consistency.plan(scene, states, by_model(scene, case.model, states)) | self.energy(case, states)
+        checks = consistency.plan(scene, states, by_model(scene, case.model, states)) | self.energy(
+            case, states, results
+        )
         checks |= {} if self.is_statistical else consistency.balance(scene, states)
         return Outcome(results, tuple(reported), ends, phases, warnings, moves=case.moves, consistency=checks)
 

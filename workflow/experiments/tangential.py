@@ -74,7 +74,7 @@ class TangentialExperiment(Scripted[Tangential]):
         marked = {"farthest": reported[farthest], "final": reported[-1]}
         path = Path(trace.displacement, trace.along, trace.time)
         checks = consistency.plan(scene, states, case.model.follow(path).total) if scene.is_modelled else {}
-        checks |= self.energy(case, states)
+        checks |= self.energy(case, states, results)
         loads = zip(self.given(scene).normal_forces(), (state.force for state in reported), strict=False)
         checks |= consistency.asked(scene, list(loads), states)
         columns = _columns(kept)

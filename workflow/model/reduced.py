@@ -50,6 +50,8 @@ SIDES, LOOKS = np.asarray([-0.5, -0.1, -0.01, -1e-4, 0.0, 1e-4, 0.01, 0.1, 0.5])
 """Looks for where a force is carried, each beside the secant's place by so much of the bracket, and how many."""
 NEAREST = 1e-9
 """Distance from the limit point, over that to the largest displacement, from which positions are examined."""
+LOOKS_BETWEEN, EDGE_STEP = 20, 0.01
+"""Looks for a receding edge between two moments of a history, and its way from one load step to the next, over all."""
 JUMPS = 1e-6
 """Least overlap at an edge over the displacement that makes a jump there: less is round-off of the edge."""
 TOUCH = 1e-9
@@ -117,15 +119,14 @@ class Followed:
         total: force of all, (m,) [FU].
         force: of each at one of the displacements, by its number, (n,) [FU].
         shear: the same along x; None where nothing is prescribed there.
-        zone: a and c [LU], and the jump of the line load at a [FU/LU], (m,), see `ZonedProfile`; None where particles
-            tell where they end.
+        zone: what a `ZonedProfile` knows of each state, (m,); None where particles tell where they end.
     """
 
     x: Array
     total: Array
     force: Callable[[int], Array]
     shear: Callable[[int], Array] | None = None
-    zone: tuple[Array, Array, Array] | None = None
+    zone: tuple[Array, ...] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,6 +174,10 @@ class Reduced(ABC):
         Found without a force. None where this is not known.
         """
         return None
+
+    def refined(self, history: History) -> History:
+        """With further moments where a contact needs them."""
+        return history
 
     def carrying(self, times: Array, forces: Array) -> tuple[Array, Array | None]:
         """Displacements [LU] of load steps at times (m,) [TU] under forces (m,) [FU] ≥ 0; velocities, see `Path`."""
@@ -535,6 +540,18 @@ class RatedCells(Reduced):
         jumps = np.flatnonzero(np.diff(a > 0.0, prepend=False))
         return energies[-1], lost + sum(energies[at] - energies[at + 1] for at in jumps.tolist())
 
+    def refined(self, history: History) -> History:
+        """With moments at equal ways of an edge that recedes."""
+        steps = np.linspace(0.0, len(history.phases) - 1.0, (len(history.phases) - 1) * LOOKS_BETWEEN + 1)
+        time, values = (np.interp(steps, np.arange(len(history.phases)), one) for one in (history.time, history.values))
+        edge = self.estimate.edges(time, values)
+        passed = np.append(0.0, np.cumsum(np.maximum(-np.diff(edge), 0.0))) / (float(edge.max()) or 1.0)
+        more = np.interp(np.arange(EDGE_STEP, float(passed[-1]), EDGE_STEP), passed, steps)
+        at = np.union1d(np.arange(float(len(history.phases))), more)
+        phases = tuple(history.phases[int(i)] for i in np.ceil(at - NEAREST))
+        time, values = (np.interp(at, np.arange(len(history.phases)), one) for one in (history.time, history.values))
+        return replace(history, phases=phases, time=time, values=values)
+
     def follow(self, path: Path) -> Followed:
         """See `Reduced.follow`."""
         zone, cells = self.zone(path), self.estimate.zones(self.x)
@@ -668,7 +685,8 @@ class RelaxingSprings(Reduced):
             memory.go(place, time, velocity)
         each *= self.estimate.stiffness
         edge = self._edges(margin)
-        zone = (edge, edge, self._jumps(edge, path.displacement, columns[2]))
+        other = 0.5 * self.estimate.spacing * memory.width(margin, counts) if self.shares_edges else edge
+        zone = (edge, edge, self._jumps(edge, path.displacement, columns[2]), np.abs(other - edge))
         return Followed(self.x, each @ counts, lambda state: each[state][own], zone=zone)
 
     def energies(self, path: Path) -> tuple[float, float]:
@@ -714,7 +732,9 @@ class RelaxingSprings(Reduced):
 
         ahead, across = crossing(after, np.minimum(last + 2, end)), crossing(last, after)
         shrinks = np.append(False, ahead[1:] < ahead[:-1])
-        return np.where(touching.any(axis=1), np.where(shrinks, across, ahead), 0.0)
+        reach = self.estimate.profile.reach
+        inside = np.where(last == end, min(reach, self._reach), np.where(shrinks, across, ahead))
+        return np.where(touching.any(axis=1), inside, 0.0)
 
 
 def legs(displacements: Array) -> list[slice]:

@@ -114,7 +114,7 @@ class Memory:
         return part * (push + (1.0 - part) * rise), margin
 
     def _part(self, margin: Array) -> Array:
-        """φ of the module's docstring, (n,)."""
+        """φ of the module's docstring at overlaps (…, n) [LU]."""
         return np.clip((self._cells.rises + margin) / self._cells.widths, 0.0, 1.0)
 
     def under(self, load: float, before: float, counts: Array, time: float) -> tuple[float, float]:
@@ -161,6 +161,10 @@ class Memory:
         root = math.sqrt(max(slope * slope - 4.0 * bend * begin, 0.0))
         return low + (high - low) * min(max(-2.0 * begin / (slope + root), 0.0), 1.0)
 
+    def width(self, margin: Array, counts: Array) -> Array:
+        """How many cells touch at overlaps (…, n) [LU], `counts` of each."""
+        return np.asarray(self._part(margin) @ counts)
+
     def go(self, place: float, time: float, velocity: float) -> None:
         """Bring the body to a displacement [LU] with a velocity [LU/TU], evenly over a time [TU]."""
         _, free, decay, gain = self._ahead(time)
@@ -190,7 +194,8 @@ class Memory:
             before, part = (self._part(margin) for margin in margins)
             recovered = self.surface * np.exp(-time / self._retarded)
             given = np.where(margins[1] > 0.0, 0.0, 0.5 * (self.surface**2 - recovered**2))
-            return np.asarray(self._retarded * velocity**2 * time * 0.5 * (before + part) + given)
+            mean = (place - self.place) / time
+            return np.asarray(self._retarded * mean**2 * time * 0.5 * (before + part) + given)
         age = (time / self._time)[:, None]
         steady = (np.maximum(place - self._cells.heights, free) - self.surface) / age
         start, faded = self.arms - steady, gain[:, None] * age
