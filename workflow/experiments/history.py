@@ -181,7 +181,7 @@ def _smooth(trace: Trace, states: Sequence[int]) -> list[float]:
     found, spacing = [], trace.model.estimate.spacing
     for i in states:
         profile, edge = trace.profile(i), trace.radius(i) or 0.0
-        ends = np.flatnonzero(profile.pressure)[[0, -1]] if profile.pressure.any() else []
+        ends = np.flatnonzero(profile.pressure)[[0, -1] if profile.pressure.any() else []]
         beyond = edge - np.abs(profile.x[ends]) - spacing
         found.append(float(trace.force[i]) + 0.5 * float(np.sum(profile.pressure[ends] * beyond)))
     return found
