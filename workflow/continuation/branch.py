@@ -87,6 +87,7 @@ class Branch(ContactBranch):
         """Load steps at displacements [LU] that are known beforehand, of one direction."""
         self._turn(not self.states or positions[-1] >= self._last.displacement)
         self._visit(positions)
+        self._came(math.nan)
 
     def _visit(self, positions: Sequence[float] | Array) -> None:
         """The same on the leg under way, to and fro."""
@@ -149,6 +150,7 @@ class Branch(ContactBranch):
             self._require_within_reach(force, rises, before, beyond)
             step = self.settings.increment(last.smallest_distance if rises else math.inf)
             self._at(self._towards(before, beyond, force, direction * step))
+        self._came(force + self._last.pushed)
 
     def _nearest(self, near: float, scale: float) -> float:
         """How near to a force a search comes [FU], of `near`."""

@@ -19,11 +19,13 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.convergence import extrapolated
+from contact1d.workflow.continuation.marks import displacement_under
 from contact1d.workflow.continuation.model_branch import MOST_NUMBERS, ModelBranch
 from contact1d.workflow.continuation.outcome import LATTICE, Move, Reading, Result, in_squares
 from contact1d.workflow.continuation.state import State
@@ -43,40 +45,63 @@ UNEVEN = (0.93, 0.86)
 """Spacings over the own one that put a kink of the profile elsewhere between particles, on both sides alike."""
 MORE_PHASES = (0.375, 0.25, 0.125, 0.0)
 """Such positions where friction makes several edges, the errors of which may cancel at two positions."""
+FINER = (0.5, 0.25)
+"""Spacings over the own one on which errors converge."""
+BY_CHANCE = 0.5
+"""Least error of a row over those beside it."""
 SHIFTS = (0.0, 0.25, 0.5, 0.75)
 """Shifts of a path's steps over their width, of which the worst counts where the model is no copy of the deck."""
 FEWEST = 200
 """Particles that the model of a plane keeps for dense positions."""
 FOLLOWED = 0.5
 """Difference of the model from a motion, over the result, beyond which its lattice says nothing of that."""
+BEFORE = 1e-3
+"""Distance of two displacements that show the stiffness of the model, over its path."""
+LEAST_MOVE = 0.05
+"""Least relative change of an input that shows what a smaller one does, to first order: readers have errors."""
+REACHED = 1.1
+"""Of a displacement, over that of a force that was missed to first order: nothing else may err."""
 WAYS = (-1.0, 1.0)
 """Both ways."""
 
 
 Script = Callable[[ModelBranch], object]
 Reader = Callable[[Trace], Mapping[str, Reading]]
-Values = dict[str, float]
+Values = dict[str, Any]
+"""Numbers by name of a result; by name of a column of curve.csv one for each of its rows, (m,)."""
 
 
 @dataclass(frozen=True)
 class Reduction:
-    """How results go with the lattice of the model: script and reader of a scene's experiment; `of` another scene."""
+    """How results go with the lattice of the model: script and reader of a scene's experiment; `of` another scene.
+
+    Or, of states that were `passed`, how each of them does.
+    """
 
     scene: Scene
     settings: Settings
     script: Script
     read: Reader
     of: Callable[[Scene, Settings], Reduction]
+    passed: Trace | None = None
+
+    def along(self, trace: Trace) -> Reduction:
+        """The same for each state of a trace; the models are shared."""
+        found = replace(self, passed=trace, of=lambda *other: replace(self.of(*other), passed=trace))
+        vars(found).update(model=self.model, _lattices=self._lattices)
+        return found
 
     def values(self, model: Reduced, dense: int = 1, shift: float = 0.0) -> Values:
         """The results of the model; `shift` of the displacements that the scene gives [LU]."""
+        if self.passed:
+            return self.passed.again(self.scene, self.settings, model)
         return _values(self.read(self.trace(model, dense, shift)))
 
-    def trace(self, model: Reduced, dense: int = 1, shift: float = 0.0) -> Trace:
-        """The driver of the reduced model, and its trace."""
+    def trace(self, model: Reduced, dense: int = 1, shift: float = 0.0, whole: bool = False) -> Trace:
+        """What the script makes of the reduced model."""
         branch = ModelBranch(self.scene, self.settings, model, dense, shift)
         self.script(branch)
-        return branch.trace()
+        return branch.trace(whole)
 
     @property
     def is_open(self) -> bool:
@@ -110,47 +135,71 @@ class Reduction:
 
     def followed(self, values: Values) -> Values:
         """`lattice` of results in time; where the model does not follow the motion, by how much they differ."""
-        off = {name: abs(values[name] - self.own.get(name, 0.0)) for name in values.keys() & self.lattice.keys()}
-        return {name: max(self.lattice[name], one * (one > FOLLOWED * abs(values[name]))) for name, one in off.items()}
+        off = {name: np.abs(values[name] - self.own.get(name, 0.0)) for name in values.keys() & self.lattice.keys()}
+        return {
+            name: np.maximum(self.lattice[name], one * (one > FOLLOWED * np.abs(values[name])))
+            for name, one in off.items()
+        }
+
+    @cached_property
+    def _lattices(self) -> tuple[list[Reduced], list[Reduced]]:
+        """The model with its particles elsewhere, and on finer spacings."""
+        if not (self.on_lattice or self.converges):
+            return [], []
+        kinks = self.scene.bodies.profile.kinks
+        beside = [self.model.resized(factor) for factor in UNEVEN if kinks]
+        if not self.converges or kinks:
+            phases = MORE_PHASES if self.scene.friction or kinks else PHASES
+            beside += [self.model.shifted(phase) for phase in phases]
+        return beside, [self.model.resized(factor) for factor in FINER if self.converges]
 
     @cached_property
     def lattice(self) -> Values:
         """By name of a result, its discretisation error; a result that another lattice does not have may be 0."""
-        if not (self.on_lattice or self.converges):
+        beside, finer = self._lattices
+        if not (beside or finer):
             return {}
-        model, own = self.model, self.own
-        kinks = self.scene.bodies.profile.kinks
-        beside = [model.resized(factor) for factor in UNEVEN if kinks]
-        if not self.converges or kinks:
-            phases = MORE_PHASES if self.scene.friction or kinks else PHASES
-            beside += [model.shifted(phase) for phase in phases]
         found = self._apart(beside)
-        if self.converges:
-            finer = [self.values(model.resized(0.5)), self.values(model.resized(0.25))]
-            for name, value in own.items():
-                found[name] = max(found[name], extrapolated(value, *(one.get(name, 0.0) for one in finer)))
+        if finer:
+            others = [self.values(model) for model in finer]
+            for name, value in self.own.items():
+                found[name] = np.maximum(found[name], extrapolated(value, *(one.get(name, 0.0) for one in others)))
         return {name: MARGIN * error for name, error in found.items()}
 
     @cached_property
     def moves(self) -> tuple[Move, ...]:
-        """Of the scene, each number with ± moved both ways; of each pair of bodies half of their difference."""
-        scene, moves = self.scene, []
+        """Of the scene, each number with ± moved both ways; of each pair of bodies half of their difference.
+
+        So of a number, too, that moves so little that its results are read off no better: it is moved further.
+        """
+        scene, moves = self.scene, list[Move]()
         for key, share in scene.shares.items():
-            for way in WAYS:
-                other = scene.moved(key, 1.0 + way * share)
-                values = self._of(other)
-                moves.append(Move(key, other, {name: values.get(name, own) - own for name, own in self.own.items()}))
-        for number, pair in enumerate(scene.bodies.profile.deviations, 1):
-            others = [scene.with_profile(shape) for shape in pair]
+            ends, times = [scene.moved(key, 1.0 + way * share) for way in WAYS], max(1.0, LEAST_MOVE / share)
             try:
-                first, second = (self._of(other) for other in others)
+                both = [self._of(scene.moved(key, 1.0 + way * times * share)) for way in WAYS]
+            except SettingsError:
+                times, both = 1.0, [self._of(end) for end in ends]
+            moves += self._changes(key, ends, both, times, apart=times > 1.0)
+        for number, pair in enumerate(scene.bodies.profile.deviations, 1):
+            ends = [scene.with_profile(shape) for shape in pair]
+            try:
+                both = [self._of(end) for end in ends]
             except SettingsError:  # one of them is no contact
                 continue
-            half = {name: 0.5 * (first[name] - second[name]) for name in first.keys() & second.keys() & self.own.keys()}
-            for other, way in zip(others, (1.0, -1.0), strict=True):
-                changes = {name: way * change for name, change in half.items()}
-                moves.append(Move(f"bodies.profile: deviation {number}", other, changes))
+            moves += self._changes(f"bodies.profile: deviation {number}", ends, both, 1.0, apart=True)
         return tuple(moves)
+
+    def _changes(
+        self, key: str, ends: Sequence[Scene], both: Sequence[Values], times: float, apart: bool
+    ) -> list[Move]:
+        """What an input does at its ends, from results so many times as far; `apart`: half of their difference."""
+        found = []
+        for end, one, other in zip(ends, both, both[::-1], strict=True):
+            middle = {n: 0.5 * (one[n] + other[n]) for n in one.keys() & other.keys()} if apart else self.own
+            shared = self.own.keys() & middle.keys()
+            changes = {name: (one.get(name, middle[name]) - middle[name]) / times for name in shared}
+            found.append(Move(key, end, changes))
+        return found
 
     def _of(self, scene: Scene) -> Values:
         """The results of the model of another scene."""
@@ -177,9 +226,62 @@ class Reduction:
 
     def _apart(self, models: Sequence[Reduced]) -> Values:
         """How far results of other models are off, at most."""
-        others = [self.values(model) for model in models]
-        own = self.own.items()
-        return {name: max((abs(one.get(name, 0.0) - value) for one in others), default=0.0) for name, value in own}
+        found = {name: np.zeros_like(value) for name, value in self.own.items()}
+        for one in map(self.values, models):
+            for name, value in self.own.items():
+                found[name] = np.maximum(found[name], np.abs(one.get(name, 0.0) - value))
+        return found
+
+
+def curve_errors(
+    case: Reduction, trace: Trace, solver: Array, repeated: Mapping[str, Sequence[Trace]] | None = None
+) -> dict[str, Values]:
+    """By column of curve.csv, the errors of its rows by source, (m,).
+
+    Args:
+        case: scene, settings, script and reader.
+        trace: of all states that were passed.
+        solver: ε of each.
+        repeated: see `budgeted`.
+    """
+    rows, repeated = case.along(trace), repeated or {}
+    measured = {"force": trace.force, "displacement": trace.displacement}
+    lattice = rows.followed(measured) if "time" in repeated else rows.lattice
+    inputs = rows.inputs if case.is_open else {}
+    softness = 1.0 / _stiffness(case, trace.displacement)
+    found: dict[str, Values] = {"force": {"solver": solver}}
+    if trace.given != "displacement":
+        found["displacement"] = {"solver": solver * softness}
+    for name, errors in found.items():
+        if name in lattice:
+            errors[LATTICE] = _beside(lattice[name])
+        if name in inputs:
+            errors["input"] = inputs[name]
+        for source, others in repeated.items():
+            errors[source] = MARGIN * sum(_off(trace, other, name) for other in others)
+    if trace.given == "load":  # a force that is off moves the body
+        moved = {source: error * softness for source, error in found["force"].items()}
+        held = {source: found["force"][source] for source in ("solver", *repeated)}
+        found = {"force": held, "displacement": moved | found["displacement"]}
+    return found
+
+
+def of_rows(errors: Mapping[str, Values], chosen: NDArray[np.bool_]) -> dict[str, Values]:
+    """The same of the rows that are reported."""
+    return {name: {source: error[chosen] for source, error in one.items()} for name, one in errors.items()}
+
+
+def _off(trace: Trace, other: Trace, name: str) -> Array:
+    """By how much the states of another trace are off at the same times, or one by one, (m,)."""
+    values = getattr(other, name)
+    there = np.interp(trace.time, other.time, values) if trace.time.any() else values
+    return np.asarray(np.abs(getattr(trace, name) - there))
+
+
+def _beside(errors: Array) -> Array:
+    """Errors of rows (m,), at least BY_CHANCE of their neighbours': one that changes its sign is small by chance."""
+    padded = np.pad(errors, 1)
+    return np.maximum(errors, BY_CHANCE * np.maximum(padded[:-2], padded[2:]) * (errors > 0.0))
 
 
 def sampling_errors(case: Reduction, trace: Trace) -> Values:
@@ -256,7 +358,8 @@ def budgeted(
         shapes.append(force_error.common * np.clip((trace.displacement - force_error.anchor) / length, -1.0, 1.0))
     if sampled:
         shapes.append(force_error.turning * np.sign(np.diff(trace.displacement, prepend=trace.displacement[:1])))
-    traces = [trace.perturbed(sign * shape) for shape in shapes for sign in (1.0, -1.0)]
+    missed = _missed(case, trace, force_error.common)
+    traces = [trace.perturbed(sign * shape, moved=missed) for shape in shapes for sign in WAYS]
     # Where an interaction is so much stronger or weaker, a contact is as much wider or narrower at most.
     strength = case.settings.estimate.pull_off_force() or float(np.max(np.abs(trace.force), initial=0.0))
     if force_error.law > 0.0 and strength > 0.0:
@@ -273,12 +376,14 @@ def budgeted(
         source: [_changes(case.read, values, [other], missing=True) for other in others]
         for source, others in repeated.items()
     }
+    late = _changes(case.read, values, [trace.perturbed(moved=_late(case, trace))]) if trace.given == "" else {}
     lattice = case.followed(values) if "time" in repeated else case.lattice
     inputs = case.inputs if case.is_open else {}
     found = {}
     for name, one in readings.items():
         errors = {"solver": solver[name], LATTICE: lattice.get(name, 0.0) + read[name]}
         errors |= {source: MARGIN * sum(one[name] for one in changes) for source, changes in again.items()}
+        errors |= {"time": max(errors.get("time", 0.0), MARGIN * late[name])} if late else {}
         for source, error in one.errors.items():
             errors[source] = errors.get(source, 0.0) + error
         if name in inputs:
@@ -288,6 +393,40 @@ def budgeted(
         given = in_squares(case.moves, name)
         found[name] = Result(one.value, one.unit, errors, one.scale, one.prescribed, read[name], given)
     return found
+
+
+def _late(case: Reduction, trace: Trace) -> Array:
+    """How far [LU] a free body is off, (m,), whose contact is lost at once somewhere in a timestep: ½ ΔF Δt/M (t − t₀).
+
+    Any other timestep has its own place there, so that a difference of two may vanish.
+    """
+    model, motion = case.model, case.settings.motion
+    if not model.limits:
+        return np.zeros(len(trace))
+    jump = float(model.held(np.asarray([model.apart + BEFORE * (model.deepest - model.apart)]))[0])
+    passed = trace.time - trace.time[trace.force != 0.0].max(initial=0.0)
+    return np.asarray(0.5 * abs(jump) * motion.time_step / motion.plate_mass * np.maximum(passed, 0.0))
+
+
+def _missed(case: Reduction, trace: Trace, error: Array) -> Array:
+    """How far [LU] states that were to carry a force are from it, at most, (m,); 0 of others."""
+    found, stiffness = np.zeros(len(trace)), _stiffness(case, trace.displacement)
+    for i, wanted in trace.wanted.items():
+        force, d = float(trace.force[i]), float(trace.displacement[i])
+        parts = abs(wanted - force), float(error[i])
+        off = max(parts) if trace.given == "load" else sum(parts)  # what a load does not balance is both
+        found[i] = REACHED * abs(displacement_under(trace, i, force - off, float(stiffness[i])) - d)
+    return found
+
+
+def _stiffness(case: Reduction, displacement: Array) -> Array:
+    """dF/dd [FU/LU] at displacements (m,) [LU] of the model, at least that of a particle."""
+    settings, model = case.settings, case.model
+    if settings.is_toothed:
+        return np.full_like(displacement, settings.estimate.stuck_stiffness(settings.largest_displacement))
+    step = BEFORE * abs(model.deepest - model.apart) or model.estimate.spacing
+    rise = model.held(displacement) - model.held(displacement - step)
+    return np.maximum(rise / step, model.estimate.stiffness)
 
 
 def _changes(read: Reader, values: Values, perturbed: list[Trace], missing: bool = False) -> Values:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import shutil
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -139,6 +140,8 @@ class ContactBranch:
         marked: states that are reported, by name.
         unbalance: force [FU] that the last state leaves unbalanced; None: what its residual forces add up to.
         moves: whether the states are those of a motion, and no equilibria.
+        wanted: force [FU] that a state was to carry, by its number.
+        given: see `Trace`.
     """
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
@@ -152,6 +155,8 @@ class ContactBranch:
         self.marked: dict[str, State] = {}
         self.unbalance: float | None = None
         self.moves = False
+        self.wanted: dict[int, float] = {}
+        self.given = "displacement"
         self._direction, self._turned, self._phase = 0, False, ""
         self._open = ExitStack()
 
@@ -188,7 +193,8 @@ class ContactBranch:
     def trace(self) -> Trace:
         """What a reader sees."""
         step = self.settings.motion.time_step if self.moves else 0.0
-        return of_states(self.states, self.model, self.legs, self.searches, step)
+        found = of_states(self.states, self.model, self.legs, self.searches, step)
+        return replace(found, wanted=self.wanted, given=self.given)
 
     def begin(self, name: str) -> None:
         """Begin a phase with the next load step: "loading" for the second time is "loading_2"."""
@@ -208,7 +214,7 @@ class ContactBranch:
         Raises:
             UntrustedError: the bodies neither part nor stick in MOST_STRETCHES times the time of a fall.
         """
-        self.moves, steps = True, stretch(self.settings, velocity)
+        self.moves, self.given, steps = True, "", stretch(self.settings, velocity)
         self._turn(rises=True)
         for name, row in (("touching", Launch(velocity, steps)), ("impact", Fly(steps))):
             self.begin(name)
@@ -248,6 +254,11 @@ class ContactBranch:
         self.legs += [self._number + self._turned] * len(states)
         self.states += states
         self._turned = False
+
+    def _came(self, force: float) -> None:
+        """Note that the last state was to carry a force [FU]; NaN: to be at a displacement."""
+        if not math.isnan(force):
+            self.wanted[len(self.states) - 1] = force
 
     def _enter(self) -> None:
         """Begin the phase that the script has named, before its first load step."""

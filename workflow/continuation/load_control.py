@@ -117,7 +117,7 @@ class LoadBranch(ContactBranch):
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
         """Prepare a contact."""
         super().__init__(context, meanwhile)
-        self.unbalance = 0.0
+        self.unbalance, self.given = 0.0, "load"
         self._held: Held | None = None
 
     def reach(self, force: float, scale: float) -> None:
@@ -143,6 +143,7 @@ class LoadBranch(ContactBranch):
             self._take(hold(self.contact, force if close else max(force, gentle), scale))
         if not self._latest.held:
             raise UntrustedError(f"the contact does not sustain {self._latest.load:.4g} FU: the bodies separate")
+        self._came(force + self._last.pushed)
 
     def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
         """Hold a force [FU] for a time [TU]; a tension from F = 0 on."""

@@ -11,13 +11,11 @@ from numpy.typing import NDArray
 from contact1d.analysis.curve_marks import Peak, crossing, largest_tension, rivals, smooth_crossing
 from contact1d.analysis.polynomial import gauss
 from contact1d.workflow.continuation.outcome import Reading
-from contact1d.workflow.continuation.trace import Trace
+from contact1d.workflow.continuation.trace import BRANCH_DISTANCE, Trace, slope
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH
 
 Array = NDArray[np.float64]
-BRANCH_DISTANCE = 0.02
-"""Distance of two displacements over the whole path from which on a change is more than interpolation error."""
 LAST = 1e-6
 """Distance from the limit point, over the path from F = 0 to there, within which the last load step represents it."""
 SEPARATED = 0.02
@@ -28,6 +26,8 @@ model's own tables, relative."""
 HIDDEN = 200
 """Positions of the model between the load steps around a jump."""
 TINY = float(np.finfo(np.float64).tiny)
+SURELY = 1.1
+"""Error of the force at a limit point over what it gains up to there, to first order."""
 PLACE_FACTOR = 2.0
 """Error of the position of the force maximum over the distance between those of two polynomials."""
 
@@ -190,24 +190,24 @@ def _distance_from_limit(branch: Trace) -> float:
 
 
 def peak_of(trace: Trace) -> Peak:
-    """The force maximum by falling displacement; at the limit point, where a contact is lost at once, its force."""
+    """The force maximum by falling displacement; at the limit point, where a contact is lost at once, its force.
+
+    Up to there it gains as much as the model has over the same distance before.
+    """
     found = largest_tension(*trace.lists)
     last = len(trace) - 1
     left = _distance_from_limit(trace)
     if found.index < last or left > LAST:
         return found
-    return Peak(last, found.tension, left * found.tension, found.tension, found.position, 0.0)
+    d = float(trace.displacement[-1])
+    gained = float(np.ptp(trace.model.held(np.asarray([d, 2.0 * d - trace.limit]))))
+    missed = max(left * found.tension, SURELY * gained)
+    return Peak(last, found.tension, missed, found.tension, found.position, 0.0)
 
 
 def radius_rate(trace: Trace, state: int, least: float = 0.0) -> float:
     """da/dd at a state, from the nearest other one that is farther than a share `least` of the whole path."""
-    away = np.abs(trace.displacement - trace.displacement[state])
-    others = np.flatnonzero(away > least * float(away.max()))
-    if others.size == 0:
-        return 0.0
-    near = int(others[np.argmin(away[others])])
-    change = trace.radius_or_spot(near) - trace.radius_or_spot(state)
-    return change / float(trace.displacement[near] - trace.displacement[state])
+    return slope(trace.displacement, state, trace.radius_or_spot, least)
 
 
 def radius_at(trace: Trace, position: float) -> float:

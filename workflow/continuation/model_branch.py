@@ -161,13 +161,13 @@ class ModelBranch:
         d, along, time, velocity = (np.asarray(column, dtype=np.float64) for column in columns)
         return Path(d, along, time, None if np.isnan(velocity).any() else velocity)
 
-    def trace(self) -> Trace:
-        """What a reader sees."""
+    def trace(self, whole: bool = False) -> Trace:
+        """What a reader sees; of the `whole` path also what leads to its first state."""
         phases, legs = list(zip(*self._rows, strict=True))[:2]
         path = self.path
         rule = radius_rule(self.scene, self.settings.tolerance)
-        whole = of_model(phases, legs, path, self.model.follow(path), rule, self.model)
-        return whole.chosen([i for i, name in enumerate(phases) if name != UNSEEN])
+        found = of_model(phases, legs, path, self.model.follow(path), rule, self.model)
+        return found if whole else found.chosen([i for i, name in enumerate(phases) if name != UNSEEN])
 
     def _turn(self, rises: bool) -> None:
         """Begin a leg where the loading turns."""

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from math import hypot, inf, nan
+from functools import reduce
+from math import inf, nan
+from typing import Any
 
-from contact1d.analysis.pressure import Profile
+import numpy as np
+
+from contact1d.analysis.pressure import Array, Profile
 from contact1d.digits import digits_apart
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.deck.steps import Phase
@@ -113,20 +117,20 @@ class Move:
     Attributes:
         key: the dotted key of a number, or what else is moved.
         scene: with it there.
-        changes: of the results, by name, on the reduced model, in their units.
+        changes: of the results, by name, on the reduced model, in their units; of rows (m,).
     """
 
     key: str
     scene: Scene
-    changes: Mapping[str, float]
+    changes: Mapping[str, Any]
 
 
-def in_squares(moves: Iterable[Move], name: str) -> float:
-    """√(Σ change²) of a result over independent inputs, of each the larger change of the two ways."""
-    found = dict[str, float]()
+def in_squares(moves: Iterable[Move], name: str) -> Any:
+    """√(Σ change²) of a result, or of rows, over independent inputs, of each the larger change of the two ways."""
+    found = dict[str, Any]()
     for move in moves:
-        found[move.key] = max(found.get(move.key, 0.0), abs(move.changes.get(name, 0.0)))
-    return hypot(*found.values())
+        found[move.key] = np.maximum(found.get(move.key, 0.0), np.abs(move.changes.get(name, 0.0)))
+    return reduce(np.hypot, found.values(), 0.0)
 
 
 @dataclass(frozen=True)
@@ -149,6 +153,7 @@ class Outcome:
         phases: the schedule.
         warnings: by name, what limits the trust in the numbers.
         columns: further columns of curve.csv.
+        rows: of columns of curve.csv, by name, the errors of each row by source, (m,).
         tables: columns of further files, by the names of these.
         refinement: None where the settings were given, or are not refined.
         moves: what the scene leaves open.
@@ -161,6 +166,7 @@ class Outcome:
     phases: tuple[Phase, ...]
     warnings: Mapping[str, str] = field(default_factory=dict)
     columns: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    rows: Mapping[str, Mapping[str, Array]] = field(default_factory=dict)
     tables: Mapping[str, Mapping[str, tuple[float, ...]]] = field(default_factory=dict)
     refinement: Refinement | None = None
     moves: tuple[Move, ...] = ()

@@ -102,6 +102,7 @@ class SteppedBranch(Branch):
         Where a body that relaxes ends its contact, particles that touch nothing know, and these have no force to show.
         """
         self._turned, times, self._history = True, iter(history.time.tolist()), history.path(self.model)
+        self.given = "force" if history.by_force else self.given
         edges: Iterator[tuple[float, ...]] | None = None
         if isinstance(self.model, RelaxingSprings):
             zone = self.model.follow(self._history).zone

@@ -12,9 +12,13 @@ from numpy.typing import NDArray
 from contact1d.analysis.pressure import Profile, ZonedProfile
 from contact1d.analysis.radius import ContactRadius
 from contact1d.workflow.continuation.state import RadiusRule, State
-from contact1d.workflow.model.reduced import CohesiveCells, Followed, Path, Reduced
+from contact1d.workflow.model.reduced import CohesiveCells, Followed, Path, Reduced, impact
+from contact1d.workflow.model.settings import Settings
+from contact1d.workflow.scene import Impact, Scene
 
 Array = NDArray[np.float64]
+BRANCH_DISTANCE = 0.02
+"""Distance of two displacements over the whole path from which on a change is more than interpolation error."""
 BESIDE = 2
 """Particles beside a contact that carry nothing: a radius is read between the last that carries and the next."""
 
@@ -40,11 +44,13 @@ class Perturbation:
         force: added, (m,) [FU].
         radius_shift: by how many of its own uncertainties each radius is taken too large, (m,).
         radius_factor: by which radii are taken larger.
+        moved: added to displacements, and lengths go along, (m,) [LU].
     """
 
     force: Array | float = 0.0
     radius_shift: Array | float = 0.0
     radius_factor: float = 1.0
+    moved: Array | float = 0.0
 
 
 @dataclass(frozen=True)
@@ -62,7 +68,9 @@ class Trace:
         rule: what a contact radius is.
         model: the reduced model of the particles, with the limit points of its contact.
         searches: of the legs on which a force maximum was searched for.
-        perturbation: forces are changed by it already, radii as they are read.
+        wanted: force [FU] that a state of the whole trace was to carry, by its number.
+        given: what is prescribed of all states: "displacement", "force" over time, a "load", or "" of a free motion.
+        perturbation: forces and displacements are changed by it already, lengths as they are read.
     """
 
     phase: tuple[str, ...]
@@ -76,6 +84,8 @@ class Trace:
     rule: RadiusRule = field(repr=False)
     model: Reduced = field(repr=False)
     searches: Mapping[int, Search] = field(default_factory=dict)
+    wanted: Mapping[int, float] = field(default_factory=dict)
+    given: str = "displacement"
     perturbation: Perturbation = Perturbation()
 
     def __len__(self) -> int:
@@ -118,14 +128,25 @@ class Trace:
 
     def reach(self, state: int) -> float | None:
         """How far an attraction with a range goes, c [LU]; None of others."""
-        profile = self.profile(state)
-        return profile.reach if isinstance(profile, ZonedProfile) and isinstance(self.model, CohesiveCells) else None
+        if not (isinstance(self.profile(state), ZonedProfile) and isinstance(self.model, CohesiveCells)):
+            return None
+        return self._there(state, lambda i: float(getattr(self.profile(i), "reach", 0.0)))
 
     def _perturbed(self, found: ContactRadius, state: int) -> float:
+        value = self._there(state, lambda i: (self.contact(i) or self.rule.or_spot(self.profile(i))).value)
         if found.uncertainty == 0.0:  # a body that ends at an edge
-            return found.value
-        shifted = found.value + self.shift_of(state) * found.uncertainty
+            return value
+        shifted = value + self.shift_of(state) * found.uncertainty
         return max(0.0, self.perturbation.radius_factor * shifted)
+
+    def _there(self, state: int, length: Callable[[int], float]) -> float:
+        """A length [LU] where a state is moved to."""
+        moved = np.broadcast_to(self.perturbation.moved, self.force.shape)
+        value, d = length(state), self.displacement - moved
+        if not moved[state]:
+            return value
+        rate = slope(d, state, length) or self.model.estimate.radius_rate(float(d[state]))
+        return value + float(moved[state]) * rate
 
     def phases(self, *names: str) -> Trace:
         """The states of these phases, "unloading_2" being one of "unloading"."""
@@ -134,10 +155,6 @@ class Trace:
     def shift_of(self, state: int) -> float:
         """By how many of its uncertainties the radius of a state is taken too large."""
         return float(np.broadcast_to(self.perturbation.radius_shift, self.force.shape)[state])
-
-    def own_force(self, state: int) -> float:
-        """Force of an unperturbed state [FU]."""
-        return float((self.force - self.perturbation.force)[state])
 
     def falling(self) -> Trace:
         """The states that are held, by falling displacement, each once, the last that was measured there."""
@@ -149,7 +166,8 @@ class Trace:
     def chosen(self, states: Sequence[int] | NDArray[np.intp]) -> Trace:
         """The states of these numbers, in this order."""
         at, own = np.asarray(states, dtype=np.intp), self.perturbation
-        force, shift = (np.broadcast_to(one, self.force.shape)[at] for one in (own.force, own.radius_shift))
+        parts = own.force, own.radius_shift, own.moved
+        force, shift, moved = (np.broadcast_to(one, self.force.shape)[at] for one in parts)
         return replace(
             self,
             phase=tuple(self.phase[i] for i in at),
@@ -158,18 +176,43 @@ class Trace:
             force=self.force[at],
             along=self.along[at],
             time=self.time[at],
-            perturbation=replace(own, force=force, radius_shift=shift),
+            perturbation=replace(own, force=force, radius_shift=shift, moved=moved),
             profile=lambda i: self.profile(int(at[i])),
             contact=lambda i: self.contact(int(at[i])),
         )
 
+    def again(self, scene: Scene, settings: Settings, model: Reduced) -> dict[str, Array]:
+        """What is not prescribed of each state, on another model of the particles; a free motion is its own."""
+        if self.given == "force":
+            return {"displacement": model.carrying(self.time, self.force)[0]}
+        if self.given:
+            return {"force": model.follow(Path(self.displacement, self.along, self.time)).total}
+        assert isinstance(scene.experiment, Impact)
+        path = impact(scene, settings, model, scene.experiment.velocity)
+        columns = {"force": model.follow(path).total, "displacement": path.displacement}
+        return {name: np.interp(self.time, path.time, one) for name, one in columns.items()}
+
     def perturbed(
-        self, force: Array | float = 0.0, radius_shift: Array | float = 0.0, radius_factor: float = 1.0
+        self,
+        force: Array | float = 0.0,
+        radius_shift: Array | float = 0.0,
+        radius_factor: float = 1.0,
+        moved: Array | float = 0.0,
     ) -> Trace:
-        """With forces changed [FU], and radii changed by a multiple of their uncertainties and by a factor."""
+        """With forces changed [FU], radii by multiples of their uncertainties and a factor, states moved [LU]."""
         changed = self.force + force
-        own = Perturbation(changed - self.force, radius_shift, radius_factor)
-        return replace(self, force=changed, perturbation=own)
+        own = Perturbation(changed - self.force, radius_shift, radius_factor, moved)
+        return replace(self, displacement=self.displacement + moved, force=changed, perturbation=own)
+
+
+def slope(displacement: Array, state: int, value: Callable[[int], float], least: float = BRANCH_DISTANCE) -> float:
+    """dv/dd at a state, from the nearest other one that is farther than a share `least` of the whole path."""
+    away = np.abs(displacement - displacement[state])
+    others = np.flatnonzero(away > least * float(away.max()))
+    if others.size == 0:
+        return 0.0
+    near = int(others[np.argmin(away[others])])
+    return (value(near) - value(state)) / float(displacement[near] - displacement[state])
 
 
 def legs_by_phase(phases: Sequence[str]) -> NDArray[np.int64]:

@@ -12,6 +12,7 @@ from contact1d.workflow.continuation.branch import Branch, SecondMaximumError
 from contact1d.workflow.continuation.budget import (
     Reduction,
     budgeted,
+    curve_errors,
     force_errors,
 )
 from contact1d.workflow.continuation.context import ContactBranch, RunContext
@@ -48,10 +49,12 @@ class Experiment(ABC, Generic[K]):
         main_results: names of the results that an error is judged by, as far as a scene has them.
         branches: phases whose branch of the curve has another name than they.
         is_statistical: whether results are means, the errors of which follow from their scatter.
+        curve_is_result: whether the forces of curve.csv are results that the tolerance holds for.
     """
 
     main_results: ClassVar[tuple[str, ...]]
     is_statistical: ClassVar[bool] = False
+    curve_is_result: ClassVar[bool] = False
     branches: ClassVar[Mapping[str, str]] = {}
 
     def given(self, scene: Scene) -> K:
@@ -127,8 +130,9 @@ class Scripted(Experiment[K]):
         states, moves = tuple(branch.states), case.moves
         checks = consistency.plan(scene, states, branch.by_model()) | consistency.balance(scene, states)
         checks |= consistency.asked(scene, self.asked(trace, scene), states) | self.energy(case, states, results)
+        rows = curve_errors(case, trace, errors.common, slower)
         outcome = Outcome(
-            results, states, branch.marked, branch.phases, warnings, tables=tables, moves=moves, consistency=checks
+            results, states, branch.marked, branch.phases, warnings, {}, rows, tables, moves=moves, consistency=checks
         )
         return self.finish(outcome, scene, settings)
 

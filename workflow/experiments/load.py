@@ -9,19 +9,16 @@ from typing import ClassVar
 
 import numpy as np
 
-from contact1d.workflow.continuation.budget import MARGIN
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.driver import Driver
-from contact1d.workflow.continuation.holding import held_phase, stiffness_under
+from contact1d.workflow.continuation.holding import held_phase
 from contact1d.workflow.continuation.load_control import FIRST_RISE, LoadBranch
-from contact1d.workflow.continuation.marks import BRANCH_DISTANCE, displacement_under, radius_rate
 from contact1d.workflow.continuation.outcome import Outcome, Reading
 from contact1d.workflow.continuation.stepped import LOADING_STEPS, curve_steps
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.deck.steps import Phase, displacements
 from contact1d.workflow.experiments.experiment import Scripted
 from contact1d.workflow.experiments.thermal import planned_samples, thermal_load
-from contact1d.workflow.model.cohesive import CohesiveEstimate
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Load, Scene
 from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE
@@ -62,30 +59,21 @@ class LoadExperiment(Scripted[Load]):
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
         """Results at the last state."""
         force, last = self.given(scene).force, len(trace) - 1
-        own, stiffness = float(trace.displacement[last]), stiffness_under(settings, force)
-        displacement = displacement_under(trace, last, trace.own_force(last), stiffness)
-        missed = abs(displacement_under(trace, last, force, stiffness) - displacement)
-        if is_exact := trace.reach(last) is not None:  # nothing else errs, and this is of first order
-            missed *= MARGIN
         carried = float(trace.force[last])
+        missed, is_free = abs(carried - force), force == 0.0
         found = {
-            "displacement": Reading(displacement, LENGTH, {"solver": missed}),
-            "force": Reading(carried, FORCE, {"solver": abs(carried - force)}, prescribed=force == 0.0),
+            "displacement": Reading(float(trace.displacement[last]), LENGTH),
+            "force": Reading(carried, FORCE, {"solver": missed}, prescribed=is_free),
         }
         if trace.radius(last):
-            rate = radius_rate(trace, last, BRANCH_DISTANCE) or settings.estimate.radius_rate(own)
-            radius = trace.radius_or_spot(last) + rate * (displacement - own)
-            found["contact_radius"] = Reading(radius, LENGTH, {"solver": abs(rate) * missed})
-            if (reach := trace.reach(last)) is not None and isinstance(settings.estimate, CohesiveEstimate):
-                places = np.asarray([own, displacement, displacement - missed, displacement + missed])
-                here, there, *ends = settings.estimate.reaches(places).tolist()
-                error = abs(there - here) + max(abs(end - there) for end in ends)
-                found["cohesive_radius"] = Reading(reach + there - here, LENGTH, {"solver": error})
+            radius = trace.radius_or_spot(last)
+            found["contact_radius"] = Reading(radius, LENGTH)
+            if (reach := trace.reach(last)) is not None:
+                found["cohesive_radius"] = Reading(reach, LENGTH)
             if radius > 0.0:
                 area = math.pi * radius**2
-                off = abs(carried - force) + is_exact * 2.0 * abs(carried * rate) * missed / radius
-                errors = {"solver": off / area}
-                found["mean_pressure"] = Reading(carried / area, MEAN_PRESSURE, errors, prescribed=force == 0.0)
+                errors = {"solver": missed / area}
+                found["mean_pressure"] = Reading(carried / area, MEAN_PRESSURE, errors, prescribed=is_free)
         return found
 
     def asked(self, trace: Trace, scene: Scene) -> Sequence[tuple[float, float]]:

@@ -6,13 +6,13 @@ import math
 from bisect import bisect_left
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import compress, pairwise
 
 import numpy as np
 
 from contact1d.analysis.curve_marks import closes, work_of
 from contact1d.workflow.continuation import consistency
-from contact1d.workflow.continuation.budget import ForceErrors, Reduction, budgeted, force_errors
+from contact1d.workflow.continuation.budget import ForceErrors, Reduction, budgeted, curve_errors, force_errors, of_rows
 from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.driver import Driver
@@ -46,6 +46,7 @@ class PathExperiment(Scripted[Path]):
     """F_A, a₀ and a_cr, read off the branch that unloads last; the energy that a closed path dissipates."""
 
     main_results = ("adhesion_force", "zero_load_radius", "critical_radius", "largest_force", "largest_radius")
+    curve_is_result = True
 
     def run(self, context: RunContext) -> Outcome:
         """Run the schedule."""
@@ -54,25 +55,26 @@ class PathExperiment(Scripted[Path]):
         with context.contact(meanwhile=lambda: case.lattice) as contact:
             states = self.states(contact, positions)
             phases = contact.phases
-        asked = [one for _, one in positions]
-        reported = [state for state, one in zip(states, asked, strict=True) if one]
+        asked = np.asarray([one for _, one in positions])
+        reported = tuple(compress(states, asked))
         # Where pairs snap, all rows show the jumps; else the same positions there and back show what a curve loses.
-        seen = states[asked.index(True) :] if settings.estimate.snaps else reported
+        seen = np.flatnonzero(np.logical_or.accumulate(asked) if settings.estimate.snaps else asked)
         ends = {"deepest": max(reported, key=lambda s: s.displacement), "final": reported[-1]}
-        strongest = (ends["deepest"], min(seen, key=lambda s: s.force), ends["final"])
-        errors = self.force_errors(scene, settings, seen, strongest)
-        trace = of_states(seen, case.model)
-        kept = {id(state) for state in seen}
-        other = self._in_half_steps(context, case.model, [i for i, state in enumerate(states) if id(state) in kept])
-        repeated = {} if other is None else {"instability": [other]}
-        results = budgeted(case, trace, errors, sampled=not self.is_statistical, repeated=repeated)
-        warnings = self._missing(results, case, phases) | doubts(scene, settings, tuple(reported))
-        warnings |= _buckling(trace, other, settings)
+        strongest = (ends["deepest"], min((states[i] for i in seen), key=lambda s: s.force), ends["final"])
+        errors = self.force_errors(scene, settings, states, strongest)
+        whole = of_states(states, case.model)
+        trace, shown = whole.chosen(seen), replace(errors, common=errors.common[seen], turning=errors.turning[seen])
+        repeated = self._in_half_steps(context, case.model)
+        others = {name: [other.chosen(seen) for other in traces] for name, traces in repeated.items()}
+        results = budgeted(case, trace, shown, sampled=not self.is_statistical, repeated=others)
+        warnings = self._missing(results, case, phases) | doubts(scene, settings, reported)
+        warnings |= _buckling(trace, others, settings)
+        rows = of_rows(curve_errors(case, whole, errors.common, repeated), asked)
         checks = consistency.plan(scene, states, by_model(scene, case.model, states)) | self.energy(
             case, states, results
         )
         checks |= {} if self.is_statistical else consistency.balance(scene, states)
-        return Outcome(results, tuple(reported), ends, phases, warnings, moves=case.moves, consistency=checks)
+        return Outcome(results, reported, ends, phases, warnings, rows=rows, moves=case.moves, consistency=checks)
 
     def states(self, contact: Contact, positions: Positions) -> list[State]:
         """A state at each of the positions; in time when particles are at rest."""
@@ -97,14 +99,14 @@ class PathExperiment(Scripted[Path]):
         ends = [trace.radius(state) is None for state in (0, len(trace) - 1)]
         return ends[0] == ends[1] and closes(*trace.lists, settings.tolerance)
 
-    def _in_half_steps(self, context: RunContext, model: Reduced, seen: Sequence[int]) -> Trace | None:
-        """The states of these numbers of a second run with twice as many; None where no particle can move aside.
+    def _in_half_steps(self, context: RunContext, model: Reduced) -> dict[str, list[Trace]]:
+        """The same states of a second run with twice as many; none where no particle can move aside.
 
         Chains that may buckle along x jump to another equilibrium between two load steps; to which depends on these.
         """
         scene, deck = context.deck.scene, context.deck
         if not scene.horizontal or scene.method != "quasistatic":
-            return None
+            return {}
         phases, before = [], 0.0
         for phase in self.planned(scene, deck.settings):
             rows = []
@@ -115,7 +117,7 @@ class PathExperiment(Scripted[Path]):
             phases.append(replace(phase, rows=tuple(rows)))
         with context.aside(deck) as other, other.contact("repeating the path in half the steps") as contact:
             states = contact.replay(phases)[1::2]
-        return of_states([states[i] for i in seen], model)
+        return {"instability": [of_states(states, model)]}
 
     def script(self, branch: Driver, scene: Scene) -> None:
         """The approach, which is not evaluated, and the positions of the scene; where pairs snap also those between."""
@@ -168,7 +170,7 @@ class PathExperiment(Scripted[Path]):
 
     def advice(self, scene: Scene) -> str:
         """The load steps are the scene's own."""
-        return f"Use more steps in experiment.displacements; for a radius also {FINER_SPACING}"
+        return f"Use more steps in experiment.displacements; for a radius or a force in curve.csv also {FINER_SPACING}"
 
     def _missing(self, results: Mapping[str, Result], case: Reduction, phases: Sequence[Phase]) -> dict[str, str]:
         """Warnings of results that the path does not reach."""
@@ -237,10 +239,11 @@ def _passes_jump(case: Reduction) -> bool:
     return bool(jumps) and max(places) > 0.0 and (places[0] < 0.0 or min(places) < min(jumps))
 
 
-def _buckling(trace: Trace, other: Trace | None, settings: Settings) -> dict[str, str]:
+def _buckling(trace: Trace, others: Mapping[str, Sequence[Trace]], settings: Settings) -> dict[str, str]:
     """A warning where forces at the same displacements differ between two widths of the load steps."""
-    if other is None:
+    if not others:
         return {}
+    (other,) = others["instability"]
     off = np.abs(trace.force - other.force)
     worst, largest = int(off.argmax()), float(np.abs(trace.force).max())
     if off[worst] <= settings.tolerance * largest:

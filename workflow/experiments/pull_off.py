@@ -201,11 +201,10 @@ def _under_load(rested: Trace, scene: Scene, settings: Settings, preload: float)
         critical = Reading(radius, LENGTH, {"instability": scene.bodies.spacing + beyond})
     else:
         critical = _extrapolated(rested)
-    slope = abs(critical.value - zero) / tension
-    at_zero = {"solver": slope * abs(float(rested.force[0]))}
+    at_zero = {}
     if settings.is_toothed:  # beyond the largest tension the plate would not have come back
         swung = overshoot(settings, scene.bodies.mass, preload, 0.0) * preload
-        at_zero["instability"] = slope * min(swung, tension)
+        at_zero["instability"] = abs(critical.value - zero) * min(swung / tension, 1.0)
     return {
         "adhesion_force": Reading(tension, FORCE, errors),
         "critical_radius": critical,

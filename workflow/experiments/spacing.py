@@ -77,9 +77,10 @@ def fine_enough(scene_of: Callable[[int], Scene]) -> tuple[Scene, float]:
 
 
 def left_by_lattice(scene: Scene) -> float:
-    """The largest relative discretisation error of a result; 0 where no contact can be predicted: the run reports it.
+    """The largest relative discretisation error of a result, or of a curve over its largest force.
 
-    A result that is 0 has no share; a radius that is 0 here and not elsewhere has one without bound.
+    0 where no contact can be predicted: the run reports it. A result that is 0 has no share; a radius that is 0 here
+    and not elsewhere has one without bound.
     """
     try:
         settings = settings_for(scene)
@@ -100,6 +101,9 @@ def left_by_lattice(scene: Scene) -> float:
         if size:
             left.append((SQUARED if name in RADII else 1.0) * error / size)
         appear |= bool(error) and not size and name in RADII
+    if kind_of(scene).curve_is_result and (largest := float(np.abs(trace.force).max())):
+        rows = case.along(case.trace(case.model, whole=True)).lattice
+        left.append(float(np.max(rows.get("force", 0.0))) / largest)
     return math.inf if appear else max(left)
 
 

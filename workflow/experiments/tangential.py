@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from contact1d.analysis.radius import ContactRadius
 from contact1d.analysis.shear import slip, stick_margin, stick_radius
 from contact1d.workflow.continuation import consistency
-from contact1d.workflow.continuation.budget import budgeted, force_errors
+from contact1d.workflow.continuation.budget import budgeted, curve_errors, force_errors, of_rows
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.outcome import LATTICE, Outcome, Reading
@@ -77,9 +77,17 @@ class TangentialExperiment(Scripted[Tangential]):
         checks |= self.energy(case, states, results)
         loads = zip(self.given(scene).normal_forces(), (state.force for state in reported), strict=False)
         checks |= consistency.asked(scene, list(loads), states)
-        columns = _columns(kept)
+        points = of_rows(curve_errors(case, trace, errors.common), np.asarray(asked))
         return Outcome(
-            results, tuple(reported), marked, phases, warnings, columns, moves=case.moves, consistency=checks
+            results,
+            tuple(reported),
+            marked,
+            phases,
+            warnings,
+            _columns(kept),
+            points,
+            moves=case.moves,
+            consistency=checks,
         )
 
     def script(self, branch: Driver, scene: Scene) -> None:

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.digits import apart
-from contact1d.workflow.model.adhesion import SPANNED, AdhesiveEstimate
+from contact1d.workflow.model.adhesion import SPANNED, AdhesiveEstimate, elongation
 from contact1d.workflow.model.chain import SettingsError
 from contact1d.workflow.model.dugdale import DOUBLINGS, Dugdale, Zone, covered
 from contact1d.workflow.model.pairs import ContactEstimate, Profile, beside_kinks, plane_estimate
@@ -349,6 +349,20 @@ class RatedEstimate(ZonedEstimate):
     def law(self) -> Dugdale:
         """Without an attraction beyond the edge."""
         return Dugdale(self.profile, self.surface, self.modulus, 0.0, self.known, self.known)
+
+    def radii(self, displacements: Array) -> Array:
+        """a(d) [LU] at rest, solved between the places of the predictor: the force of a row depends on it."""
+        from scipy.optimize import elementwise
+
+        x, h, _, least = self._grid
+        cell = np.clip(np.searchsorted(h[least:], displacements), 1, h.size - least - 1) + least
+        ends = x[cell - 1], x[cell]
+
+        def error(edge: Array, d: Array) -> Array:
+            return np.asarray(self.profile.height(edge) - elongation(edge, self.modulus, self.work) - d)
+
+        found = elementwise.find_root(error, ends, args=(displacements,))
+        return np.where(found.success, found.x, super().radii(displacements))
 
     def _recedes(self, edge: float, displacement: float) -> float:
         """da/dt [LU/TU]."""

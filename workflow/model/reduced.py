@@ -829,7 +829,9 @@ def impact(scene: Scene, settings: Settings, model: Reduced, velocity: float, de
     while len(places) < FLIGHT * dense or not is_over(places, forces, FLIGHT * dense):
         for _ in range(each):
             velocity -= 0.5 * step * force / mass
-            place += step * velocity
+            before, place = place, place + step * velocity
+            if model.limits and place < model.limits[0] <= before:  # the force ends there, within the step
+                velocity -= step * force / mass * ((before - model.limits[0]) / (before - place) - 0.5)
             force = feel(place, step, velocity - 0.5 * step * force / mass)
             velocity -= 0.5 * step * force / mass
         places.append(place)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -16,6 +16,8 @@ from contact1d.workflow.experiments.experiment import FINER_SPACING
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import FORCE, LENGTH
 
+ROWS = "force in curve.csv"
+"""What a warning calls the rows of a curve."""
 UNKNOWN = 0.5
 """Uncertainty over a value above which the value is not reported."""
 
@@ -28,14 +30,14 @@ def accuracy_warnings(scene: Scene, outcome: Outcome) -> dict[str, str]:
     if kind_of(scene).is_statistical:
         return {}
     missing, tolerance, warnings = unknown(scene, outcome), scene.accuracy.tolerance, {}
-    known = {name: one for name, one in outcome.results.items() if name not in missing}
+    every = dict(outcome.results) | _of_the_curve(scene, outcome)
+    known = {name: one for name, one in every.items() if name not in missing}
     by_lattice = _by_lattice(known, tolerance)
     others = {name: share for name, share in unmet(known, tolerance, (MODEL,)).items() if name not in by_lattice}
     if missing:
         wide = ", ".join(f"{name} {_less_than(one)}" for name, one in missing.items())
         warnings["unknown"] = (
-            f"not reported, because the uncertainty is more than half of the value: {wide}. "
-            f"{_advice(scene, outcome, missing)}"
+            f"not reported, because the uncertainty is more than half of the value: {wide}. {_advice(scene, missing)}"
         )
     if by_lattice:
         warnings["lattice"] = _lattice_message(scene, by_lattice, bool(_by_lattice(missing, tolerance)))
@@ -43,7 +45,7 @@ def accuracy_warnings(scene: Scene, outcome: Outcome) -> dict[str, str]:
         ended = f" ({outcome.refinement.ended})" if outcome.refinement and outcome.refinement.ended else ""
         warnings["tolerance"] = (
             f"relative uncertainties above the tolerance of {tolerance:g}: {in_words(others, tolerance)}{ended}. "
-            f"{_advice(scene, outcome, others)}"
+            f"{_advice(scene, {name: known[name] for name in others})}"
         )
     return warnings
 
@@ -132,14 +134,25 @@ def _less_than(one: Result) -> str:
     return f"({words} {float(f'{bound:.2g}'):g} {one.unit})"
 
 
-def _advice(scene: Scene, outcome: Outcome, names: Iterable[str]) -> str:
+def _of_the_curve(scene: Scene, outcome: Outcome) -> dict[str, Result]:
+    """The least certain force of a curve that is asked for, which is compared with the largest one."""
+    if not kind_of(scene).curve_is_result:
+        return {}
+    forces, errors = [state.force for state in outcome.states], outcome.rows["force"]
+    worst = int(np.argmax(sum(errors.values())))
+    own = {source: float(one[worst]) for source, one in errors.items()}
+    given = 0.0 if scene.bodies.profile.alternatives else own.get("input", 0.0)
+    return {ROWS: Result(forces[worst], FORCE, own, scale=float(np.abs(forces).max()), given=given)}
+
+
+def _advice(scene: Scene, results: Mapping[str, Result]) -> str:
     """How to improve these results, by their dominant error."""
-    tolerance, results = scene.accuracy.tolerance, outcome.results
-    if all(MODEL in results[name].errors for name in names):
+    tolerance = scene.accuracy.tolerance
+    if all(MODEL in one.errors for one in results.values()):
         return "Two evaluations of this quantity differ by that much (`formulas` in results.json)"
-    if scene.bodies.profile.alternatives and all(_is_of_points(results[name]) for name in names):
+    if scene.bodies.profile.alternatives and all(map(_is_of_points, results.values())):
         return "They are limited by what lies between the points of the profile: give more of them, or more digits"
-    if any(results[name].read > tolerance * results[name].size for name in names):
+    if any(one.read > tolerance * one.size for one in results.values()):
         return f"The uncertainty of a radius is limited by the spacing: use {FINER_SPACING}"
     return kind_of(scene).advice(scene)
 

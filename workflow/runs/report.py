@@ -237,7 +237,8 @@ COLUMN_UNITS = {
     "stick_radius_uncertainty": LENGTH, "dissipated_energy": ENERGY, "r": LENGTH,
     "shear_stress": MEAN_PRESSURE, "shear_stress_uncertainty": MEAN_PRESSURE, "cantilever_force": FORCE,
     "cantilever_work": ENERGY, "place": LENGTH, "size": LENGTH, "time": TIME, "load": FORCE,
-    "force_standard_error": FORCE, "adhesion_force": FORCE, "cohesive_radius": LENGTH,
+    "force_standard_error": FORCE, "adhesion_force": FORCE, "cohesive_radius": LENGTH, "force_uncertainty": FORCE,
+    "displacement_uncertainty": LENGTH,
 }  # fmt: skip
 """Unit of each column of the CSV files that has one made of LU, FU and MU."""
 OF_A_BODY = {"pressure": MEAN_PRESSURE, "pressure_uncertainty": MEAN_PRESSURE}
@@ -264,7 +265,9 @@ def tables_of(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressu
     if isinstance(states[-1].rule, Zoned):
         curve["cohesive_radius"] = [getattr(state.profile, "reach", 0.0) for state in states]
     tables: dict[str, Mapping[str, Any]] = {
-        "curve": curve | dict(outcome.columns),
+        "curve": curve
+        | dict(outcome.columns)
+        | {f"{name}_uncertainty": sum(errors.values()) for name, errors in outcome.rows.items()},
         "profile": profile_columns(outcome.profiles),
         **outcome.tables,
         "inputs": inputs_of(scene, outcome),

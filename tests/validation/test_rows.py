@@ -1,0 +1,193 @@
+"""Claim: every row of curve.csv has an uncertainty that is right, and scripts may load where pairs snap.
+
+References: JKR's and Hertz's F(d), Ting's convolution of a ramp, the creep of a standard solid, an ODE of the edge and
+Johnson and Pollock's energy of impact (7.0922 (W⁵R⁴/E*²)^(1/3)), all of the test's own.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+import contact1d
+from contact1d.workflow import experiments
+from contact1d.workflow.continuation.driver import Driver
+from contact1d.workflow.continuation.marks import unloading
+from contact1d.workflow.continuation.outcome import Reading
+from contact1d.workflow.continuation.trace import Trace
+from contact1d.workflow.experiments.pull_off import PullOffExperiment
+from contact1d.workflow.model.settings import Settings
+from contact1d.workflow.scene import Scene
+from contact1d.workflow.units import FORCE, LENGTH
+
+RADIUS, WORK = 250.0, 0.03
+"""Of a body whose layer has E* = 1."""
+POINTS = "force in curve.csv"
+
+
+def scene(experiment: Mapping[str, Any], spacing: float = 0.7, **tables: Any) -> dict[str, Any]:
+    profile = {"kind": "parabola", "radius": RADIUS}
+    bodies = {"particles": "auto", "spacing": spacing, "reduction": "mdr", "lower": "rigid_plane", "profile": profile}
+    return {"title": "rows", "bodies": bodies | {"bulk_stiffness": spacing}, "experiment": dict(experiment)} | tables
+
+
+def jkr(displacement: float, radius: float, modulus: float, work: float) -> float:
+    """F of a contact that is held."""
+
+    def depth(a: float) -> float:
+        return a * a / radius - math.sqrt(2.0 * math.pi * a * work / modulus)
+
+    least = (radius / 4.0 * math.sqrt(2.0 * math.pi * work / modulus)) ** (2.0 / 3.0)
+    a = brentq(lambda a: depth(a) - displacement, least, 1e3 * least, xtol=1e-300, rtol=1e-14)
+    return 2.0 * modulus * (a * displacement - a**3 / (3.0 * radius))
+
+
+def inside(values: NDArray[np.float64], exact: Any, uncertainty: NDArray[np.float64], within: float) -> None:
+    off, largest = np.abs(values - np.asarray(exact)), np.abs(values).max()
+    assert np.all(off <= uncertainty + 1e-15 * largest)
+    assert uncertainty.max() <= within * largest
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-4, 1e-5])
+def test_an_adhesive_path_meets_its_tolerance_at_every_point(tolerance: float) -> None:
+    half = {"youngs_modulus": "6 MPa", "poisson_ratio": 0.0}
+    tables = scene({"kind": "path", "displacements": {"from": "20 µm", "to": "1 µm", "steps": 19}, "start": "contact"})
+    tables["bodies"] |= {"spacing": "auto", "bulk_stiffness": "auto", "profile": {"kind": "parabola", "radius": "2 mm"}}
+    tables |= {"material": {"upper": half, "lower": half}, "adhesion": {"work_of_adhesion": "80 mJ/m²"}}
+    run = contact1d.run(tables | {"accuracy": {"tolerance": tolerance}})
+    exact = [jkr(d, 2e-3, 3e6, 0.08) for d in run.curve["displacement"]]
+    inside(run.curve["force"], exact, run.curve["force_uncertainty"], tolerance)
+    assert list(run.curve)[-1] == "force_uncertainty"
+    assert not any(f"{POINTS} " in one["message"].partition(". ")[0] for one in run.document["warnings"])
+
+
+def test_a_coarse_path_says_that_its_points_miss_the_tolerance() -> None:
+    path = {"kind": "path", "displacements": {"from": 3.0, "to": 1.0, "steps": 10}, "start": "contact"}
+    run = contact1d.run(scene(path, spacing=3.0, adhesion={"work_of_adhesion": WORK}, accuracy={"tolerance": 1e-4}))
+    exact = [jkr(d, RADIUS, 1.0, WORK) for d in run.curve["displacement"]]
+    inside(run.curve["force"], exact, run.curve["force_uncertainty"], 0.1)
+    (message,) = (one["message"] for one in run.document["warnings"] if one["name"] == "lattice")
+    assert f"{POINTS} " in message.partition(". ")[0]
+
+
+@pytest.mark.parametrize("kind", ["displacement", "force"])
+def test_points_of_a_history(kind: str) -> None:
+    share, time, most = 0.6, 1.7, {"displacement": 0.8, "force": 12.0}[kind]
+    terms = {"viscoelasticity": {"terms": [{"share": share, "time": time}]}}
+    run = contact1d.run(scene({"kind": "history", kind: [[0.0, 0.0], [1.0, most], [3.0, most]]}, **terms))
+    scale, left = 4.0 / 3.0 * math.sqrt(RADIUS), 1.0 - share
+
+    def relaxing(t: float) -> float:
+        def rate(s: float) -> float:
+            return (left + share * math.exp((s - t) / time)) * 1.5 * math.sqrt(most * s) * most
+
+        return scale * float(quad(rate, 0.0, min(t, 1.0), epsabs=1e-13)[0])
+
+    def creeping(t: float) -> float:
+        def rate(s: float) -> float:
+            return most * (1.0 + share / left * (1.0 - math.exp((s - t) * left / time)))
+
+        return float((quad(rate, 0.0, min(t, 1.0), epsabs=1e-13)[0] / scale) ** (2.0 / 3.0))
+
+    found, law = {"displacement": ("force", relaxing), "force": ("displacement", creeping)}[kind]
+    inside(run.curve[found], [law(t) for t in run.curve["time"]], run.curve[f"{found}_uncertainty"], 2e-3)
+
+
+@pytest.mark.parametrize("times", [1.6, 2.7, 4.1])
+def test_the_loss_of_a_contact_falls_into_a_timestep(times: float) -> None:
+    """In SI: e² = 1 − (v_s/v)²."""
+    radius, modulus, work, mass = 2e-5, 4e7, 0.04, 7e-11
+    sticking = math.sqrt(2.0 * 7.0922 * (work**5 * radius**4 / modulus**2) ** (1.0 / 3.0) / mass)
+    half = {"youngs_modulus": f"{2.0 * modulus} Pa", "poisson_ratio": 0.0}
+    tables = scene({"kind": "impact", "velocity": f"{times * sticking} m/s"}, plate={"mass": f"{mass} kg"})
+    profile = {"kind": "parabola", "radius": f"{radius} m"}
+    tables["bodies"] |= {"spacing": "auto", "bulk_stiffness": "auto", "profile": profile}
+    tables |= {"material": {"upper": half, "lower": half}, "adhesion": {"work_of_adhesion": f"{work} J/m²"}}
+    found = contact1d.run(tables).results.restitution
+    assert abs(found.value - math.sqrt(1.0 - times**-2)) <= found.uncertainty <= 2e-3
+
+
+def test_an_edge_at_a_rate_starts_at_its_own_equilibrium() -> None:
+    """The largest force of a history is that of JKR at its corner, to round-off."""
+    rate = {"velocity": 0.02, "exponent": 0.4}
+    points = [[0.0, 0.0], [10.0, 1.3], [20.0, -0.5]]
+    adhesion = {"work_of_adhesion": WORK, "rate": rate}
+    found = contact1d.run(scene({"kind": "history", "displacement": points}, adhesion=adhesion)).results.peak_force
+    assert abs(found.value - jkr(1.3, RADIUS, 1.0, WORK)) <= found.uncertainty <= 1e-9
+
+
+def test_a_flat_punch_is_held_up_to_its_limit() -> None:
+    """Kendall: F_A = √(8π a³ E* W), of which the last load step leaves a part."""
+    tables = scene({"kind": "pull_off", "preload": 3.0}, adhesion={"work_of_adhesion": WORK})
+    tables["bodies"]["profile"] = {"kind": "flat_punch", "radius": 14.0}
+    found = contact1d.run(tables).results.adhesion_force
+    assert abs(found.value - math.sqrt(8.0 * math.pi * 14.0**3 * WORK)) <= found.uncertainty <= 1e-6
+
+
+class Kneading(PullOffExperiment):
+    """Press and relieve twice, then pull off."""
+
+    preload, relief = 0.25, 0.08
+
+    def script(self, branch: Driver, scene: Scene) -> None:
+        for _ in range(2):
+            branch.begin("loading")
+            branch.reach(self.preload, 0.5)
+            branch.begin("relieving")
+            branch.reach(self.relief, 0.5)
+        branch.mark("relieved")
+        branch.begin("unloading")
+        branch.reach(0.0, 0.5)
+        branch.begin("pulling")
+        branch.maximum()
+        branch.mark("critical")
+        branch.begin("separating")
+        branch.open()
+
+    def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
+        relieved = trace.phases("relieving")
+        return {
+            "adhesion_force": unloading(trace.legs[-1].falling(), settings)["adhesion_force"],
+            "displacement": Reading(float(relieved.displacement[-1]), LENGTH),
+            "force": Reading(float(relieved.force[-1]), FORCE, prescribed=True),
+        }
+
+
+SNAPPING = {
+    "title": "kneading",
+    "bodies": {
+        "particles": "auto", "spacing": 1.0, "profile": {"kind": "parabola", "radius": 100.0}, "bulk_stiffness": 0.03,
+        "reduction": "geike_popov",
+    },
+    "interaction": {"repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26}},
+    "experiment": {"kind": "pull_off", "preload": 0.25},
+}  # fmt: skip
+
+
+def test_a_script_may_press_and_relieve_where_pairs_snap(monkeypatch: pytest.MonkeyPatch) -> None:
+    once = contact1d.run(SNAPPING).results.adhesion_force
+    monkeypatch.setitem(experiments.KINDS, "pull_off", Kneading())
+    run = contact1d.run(SNAPPING)
+    assert abs(run.results.adhesion_force.value - once.value) <= 0.1 * once.uncertainty
+    assert run.results.force.value == pytest.approx(Kneading.relief, abs=1e-3 * once.value)
+    branches = [str(one) for one in run.curve["branch"]]
+    assert [name for i, name in enumerate(branches) if name != branches[i - 1]] == [
+        "loading", "relieving", "loading", "relieving", "unloading",
+    ]  # fmt: skip
+
+
+def test_a_displacement_under_a_force_has_the_error_of_the_force(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(experiments.KINDS, "pull_off", Kneading())
+    fine = scene({"kind": "pull_off", "preload": 0.25}, spacing=0.05, adhesion={"work_of_adhesion": WORK})
+    fine["bodies"]["particles"] = 2000
+    found = contact1d.run(fine).outcome.results["displacement"]
+    exact = brentq(lambda d: jkr(d, RADIUS, 1.0, WORK) - Kneading.relief, 0.0, 3.0, xtol=1e-15)
+    assert found.errors["solver"] > 0.0
+    assert abs(found.value - exact) <= found.uncertainty
