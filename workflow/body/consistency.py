@@ -10,7 +10,7 @@ from contact1d.workflow.body.theory import Case, applying
 from contact1d.workflow.body.traction import BodyPressure
 from contact1d.workflow.continuation.outcome import Agreement, Outcome
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.units import FORCE, Quantity
+from contact1d.workflow.units import Quantity
 
 PRESSURE, OPEN_PRESSURE = 1e-4, 1e-3
 """Difference of ∫ p dA from the force over ∫ |p| dA, by springs under a formula, and under a table or a scan."""
@@ -28,10 +28,13 @@ def pressure(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressur
     if scene.interaction is not None:
         return {}
     found, shape = [], scene.bodies.profile
-    known = max((one.uncertainty for one in outcome.exact.values() if one.unit == FORCE), default=0.0)
+    rows = sum(outcome.rows.get("force", {}).values())
     least = OPEN_PRESSURE if shape.alternatives or shape.deviations or shape.slow else PRESSURE
     for name, one in pressures.items():
-        force, size = outcome.marked[name].force, float(np.trapezoid(np.abs(one.pressure) * one.r, one.r))
+        state = outcome.marked[name]
+        at = next((i for i, other in enumerate(outcome.states) if other is state), None)
+        known = 0.0 if at is None else float(np.broadcast_to(rows, len(outcome.states))[at])
+        force, size = state.force, float(np.trapezoid(np.abs(one.pressure) * one.r, one.r))
         stated = float(np.trapezoid(one.uncertainty * one.r, one.r)) / size if size else 0.0
         words = f"the pressure of the state {name!r} adds up to {one.force:.8g} FU, and its force is {force:.8g} FU"
         found.append(
