@@ -390,16 +390,15 @@ class AdheringCells(Reduced):
         return held
 
     def energies(self, path: Path) -> tuple[float, float]:
-        """U(d, a) of JKR; what it jumps by where the contact is made or lost."""
-        d, held = path.displacement, self._holds(path.displacement)
+        """U(d, a) of JKR; what it jumps by where the contact is made, at touch, or lost, under fixed grips."""
+        held = self._holds(path.displacement)
 
-        def energy(state: int) -> float:
-            if state < 0 or not held[state]:
-                return 0.0
-            return self.estimate.energy(float(d[state]), float(self.estimate.radii(d[state : state + 1])[0])) or 0.0
+        def energy(displacement: float) -> float:
+            return self.estimate.energy(displacement, float(self.estimate.radii(np.asarray([displacement]))[0])) or 0.0
 
-        jumps = np.flatnonzero(np.diff(held, prepend=False)).tolist()
-        return energy(d.size - 1), sum(energy(at - 1) - energy(at) for at in jumps)
+        made, lost = (np.count_nonzero(np.diff(held.astype(int), prepend=0) == way) for way in (1, -1))
+        end = energy(float(path.displacement[-1])) if held[-1] else 0.0
+        return end, lost * energy(self.apart) - made * energy(0.0)
 
     def follow(self, path: Path) -> Followed:
         """Nothing is felt before touch; see `Reduced.follow`."""
