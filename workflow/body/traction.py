@@ -39,7 +39,7 @@ MOST = 1000
 """Particles on a side that are used, and radii that p is given at; of more, every second, third …"""
 RADII = 100
 """Evenly from 0 to the contact radius, at which q is given, and at its kinks besides."""
-ANGLES = 32
+ANGLES = 20
 """Positions of Gauss's at which p(r) is added up to a force."""
 INNER = 6
 """Part of the particles in a contact that show the slope of its load at the axis."""
@@ -137,7 +137,7 @@ def body_pressures(
             state = _Loaded(scene, profile, radius)
             share = of_radius if state.is_elastic and not scene.bodies.profile.has_edge else of_all
             if one := _pressure(state, share, given):
-                found[name] = replace(one, doubt=of_all)
+                found[name] = replace(one, doubt=one.doubt + of_all)
     return found
 
 
@@ -281,9 +281,17 @@ def _pressure(state: _Loaded, share: float, given: float) -> BodyPressure | None
     force, size = _total(fine, state.shape.kinks, pulled)
     ring = _ring(scene, zone)
     edge, stiffness = state.radius.value / state.wider, _stiffness(state, share)
+    doubt = _added_up(state) / (size - ring)
     return BodyPressure(
-        r, p, error + by_shape(np.asarray), share, edge, results, force + ring, size - ring, stiffness
+        r, p, error + by_shape(np.asarray), doubt, edge, results, force + ring, size - ring, stiffness
     )  # fmt: skip
+
+
+def _added_up(state: _Loaded) -> float:
+    """Most by which the sum of the particles is off ∫ q dx [FU]: Δ²/12 of all by which slopes change (Euler, Maclaurin)."""
+    if state.jump != 0.0:
+        return 0.0
+    return float(np.abs(np.diff(np.pad(state.load, 2), 2)).sum()) * state.scene.bodies.spacing / state.wider / 12.0
 
 
 def _stiffness(state: _Loaded, share: float) -> Quantity | None:

@@ -10,7 +10,9 @@ The pressure of the body and closed forms are checked where these are made (`bod
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -32,9 +34,9 @@ AT_REST, MOVING = 1e-8, 1e-4
 ENERGY, LEAST_LOSS, OPEN = 1e-3, 0.05, 4.0
 """Energy that is missing over what is lost, or over all work where that is less than this share of it; over what half
 the spacing and half the steps change, where that is more: forces rise as roots at first."""
-DENSE, EACH_STEP, EACH_LEG, BESIDE, NEAREST = 2, 16, 400, 60, 1e-9
-"""Positions in a step of a history and of a tangential path, and in a leg of others, between which forces are straight
-lines; on both sides of a jump, the nearest of them over the spacing."""
+EACH_STEP, EACH_LEG, BESIDE, NEAREST = 32, 200, 60, 1e-9
+"""Positions in a step of a tangential path that changes the load, and in all of the displacement of others, between
+which forces are straight lines; on both sides of a jump, the nearest of them over the spacing."""
 
 
 def plan(scene: Scene, states: Sequence[State], forces: Array | None) -> dict[str, Agreement]:
@@ -94,70 +96,86 @@ def balance(scene: Scene, states: Sequence[State]) -> dict[str, Agreement]:
     return {"balance": Agreement(missed / size if size else 0.0, allowed, words)}
 
 
-def energy(
-    case: Reduction, motion: tuple[Path, float, float] | None = None, doubt: float = 0.0
-) -> dict[str, Agreement]:
+@dataclass(frozen=True)
+class Work:
+    """What the plate has done on its path.
+
+    Attributes:
+        path: in LAMMPS.
+        forces: of the model along it, (m,) [FU]; None where they are still to be found, with positions between.
+        kinetic: the first energy of a body that flies, and what is gone of it [FU·LU].
+    """
+
+    path: Path
+    forces: Array | None = None
+    kinetic: tuple[float, float] | None = None
+
+
+def energy(case: Reduction, work: Work, doubt: float = 0.0) -> dict[str, Agreement]:
     """Work beside what is stored and lost; nothing where the model of a contact does not tell.
 
-    `motion`: of a body that flies, its path in LAMMPS, its first kinetic energy and what is gone of it [FU·LU].
     `doubt`: what is uncertain of the energy that the run reports, relative.
     """
-    found = _missing(case, case.model, 1, motion)
+    found = _missing(case.model, work, 1)
     if found is None:
         return {}
-    missing, work, spent, size = found
+    missing, done, spent, size = found
     allowed = ENERGY + doubt
     if abs(missing) > ENERGY * size:  # cells and steps miss some of it, which may cancel
-        others = (_missing(case, case.model.resized(0.5), 1, motion), _missing(case, case.model, 2, motion))
-        allowed += OPEN * sum(abs(missing / size - finer[0] / finer[3]) for finer in others if finer)
-    words = f"the work of the plate is {work:.6g} FU·LU, and {spent:.6g} FU·LU are stored or lost"
+        finer = _missing(case.model, _denser(case, work), 2)
+        others = (_missing(case.model.resized(0.5), replace(work, forces=None), 1), finer)
+        allowed += OPEN * sum(abs(missing / size - other[0] / other[3]) for other in others if other)
+    words = f"the work of the plate is {done:.6g} FU·LU, and {spent:.6g} FU·LU are stored or lost"
     return {"energy": Agreement(abs(missing) / size if size else 0.0, allowed, words)}
 
 
-def _missing(
-    case: Reduction, model: Reduced, finer: int, motion: tuple[Path, float, float] | None
-) -> tuple[float, float, float, float] | None:
+def _missing(model: Reduced, work: Work, finer: int) -> tuple[float, float, float, float] | None:
     """Work that is neither stored nor lost, the work, what is stored and lost, and the size of it [FU·LU]."""
-    path = _dense(case, model, finer) if motion is None else motion[0]
+    path = work.path if work.kinetic or work.path.time.any() else _dense(work.path, model, finer)
     if (found := model.energies(path)) is None:
         return None
     stored, lost = found
-    if motion is None:
-        followed = model.follow(path)
-        if path.displacement[0] > 0.0 and followed.total[0] != 0.0:  # what came before is not known
-            return None
-        parts = 0.5 * (followed.total[1:] + followed.total[:-1]) * np.diff(path.displacement)
-        if followed.shear is not None:
-            shears = np.asarray([-followed.shear(state).sum() for state in range(path.along.size)])
-            parts += 0.5 * (shears[1:] + shears[:-1]) * np.diff(path.along)
-        work, whole = float(parts.sum()), float(np.abs(parts).sum())
-    else:
-        whole, work = motion[1:]
-        return work - stored - lost, work, stored + lost, whole
+    if work.kinetic:
+        whole, done = work.kinetic
+        return done - stored - lost, done, stored + lost, whole
+    followed = None if work.forces is not None else model.follow(path)
+    forces = followed.total if followed else np.asarray(work.forces)
+    if path.displacement[0] > 0.0 and forces[0] != 0.0:  # what came before is not known
+        return None
+    parts = 0.5 * (forces[1:] + forces[:-1]) * np.diff(path.displacement)
+    if followed and followed.shear is not None:
+        shears = np.asarray([-followed.shear(state).sum() for state in range(path.along.size)])
+        parts += 0.5 * (shears[1:] + shears[:-1]) * np.diff(path.along)
+    done, whole = float(parts.sum()), float(np.abs(parts).sum())
     size = lost if lost > LEAST_LOSS * whole else whole
-    return work - stored - lost, work, stored + lost, max(size, abs(stored))
+    return done - stored - lost, done, stored + lost, max(size, abs(stored))
 
 
-def _dense(case: Reduction, model: Reduced, finer: int) -> Path:
-    """The path of the script, with as many states as the work along it needs."""
-    along = case.scene.experiment.goes_along
-    branch = ModelBranch(case.scene, case.settings, model, 1 if along else DENSE * finer, 0.0)
+def _denser(case: Reduction, work: Work) -> Work:
+    """The same of a history with twice the load steps."""
+    if work.kinetic or not work.path.time.any():
+        return work
+    branch = ModelBranch(case.scene, case.settings, case.model, 2, 0.0)
     case.script(branch)
-    path = branch.path
-    if path.time.any():
-        return path
+    return Work(branch.path)
+
+
+def _dense(path: Path, model: Reduced, finer: int) -> Path:
+    """Equilibria along a path from apart on, with as many states as the work along it needs."""
     start = min(0.0, model.apart) - NEAREST * model.estimate.spacing  # below that nothing is felt
-    places, count = np.append(start, np.maximum(path.displacement, start)), EACH_STEP * finer
-    if along:
-        at = np.arange(0.0, places.size - 1.0 + 0.5 / count, 1.0 / count)
+    places = np.append(start, np.maximum(path.displacement, start))
+    if path.along.any():
+        each = np.where(np.diff(places) != 0.0, EACH_STEP, 1) * finer
         steps, moved = np.arange(places.size), np.append(path.along[:1], path.along)
+        at = np.append(0.0, np.concatenate([step + np.arange(1, count + 1) / count for step, count in enumerate(each)]))
         return Path(np.interp(at, steps, places), np.interp(at, steps, moved), np.zeros_like(at))
-    ends = places[[0, *(leg.stop - 1 for leg in legs(places))]]
     near = model.estimate.spacing * np.geomspace(NEAREST, 1.0, BESIDE)
     beside = np.asarray([jump + side for jump in model.jumps for side in (-near, near)]).ravel()
-    found = [places[:1]]
-    for start, end in pairwise(ends.tolist()):
+    ends = places[[0, *(leg.stop - 1 for leg in legs(places))]].tolist()
+    found, whole = [places[:1]], float(np.ptp(places))
+    for start, end in pairwise(ends):
+        count = math.ceil(EACH_LEG * finer * abs(end - start) / whole) + 1
         between = beside[(beside > min(start, end)) & (beside < max(start, end))]
-        places = np.unique(np.concatenate([np.linspace(start, end, EACH_LEG * finer + 1), between]))
-        found.append((places if end > start else places[::-1])[1:])
+        leg = np.unique(np.concatenate([np.linspace(start, end, count + 1), between]))
+        found.append((leg if end > start else leg[::-1])[1:])
     return path_of(np.concatenate(found))

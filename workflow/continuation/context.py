@@ -23,6 +23,7 @@ from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.engine.session import Engine
 from contact1d.workflow.model.reduced import FLIGHT, STRETCHES, History, Reduced, is_over, reduced, stretch
+from contact1d.workflow.model.reduced import Path as Motion
 
 MOST_STRETCHES = 100
 """How long an impact lasts at most, over the time of a fall to the deepest displacement."""
@@ -140,6 +141,7 @@ class ContactBranch:
         marked: states that are reported, by name.
         unbalance: force [FU] that the last state leaves unbalanced; None: what its residual forces add up to.
         moves: whether the states are those of a motion, and no equilibria.
+        history: what the plate does over time; None where states are equilibria.
         wanted: force [FU] that a state was to carry, by its number.
         given: see `Trace`.
     """
@@ -155,6 +157,7 @@ class ContactBranch:
         self.marked: dict[str, State] = {}
         self.unbalance: float | None = None
         self.moves = False
+        self.history: Motion | None = None
         self.wanted: dict[int, float] = {}
         self.given = "displacement"
         self._direction, self._turned, self._phase = 0, False, ""

@@ -41,11 +41,9 @@ BEYOND_LIMIT = 1.05
 class SteppedBranch(Branch):
     """States on a rigid plane."""
 
-    _history: Path | None = None
-
     def by_model(self) -> NDArray[np.float64] | None:
         """See `by_model`."""
-        return by_model(self.scene, self.model, self.states, self._history)
+        return by_model(self.scene, self.model, self.states, self.history)
 
     def _nearest(self, near: float, scale: float) -> float:
         """Up to the round-off of the particles: the next load step costs next to nothing."""
@@ -101,11 +99,11 @@ class SteppedBranch(Branch):
 
         Where a body that relaxes ends its contact, particles that touch nothing know, and these have no force to show.
         """
-        self._turned, times, self._history = True, iter(history.time.tolist()), history.path(self.model)
+        self._turned, times, self.history = True, iter(history.time.tolist()), history.path(self.model)
         self.given = "force" if history.by_force else self.given
         edges: Iterator[tuple[float, ...]] | None = None
         if isinstance(self.model, RelaxingSprings):
-            zone = self.model.follow(self._history).zone
+            zone = self.model.follow(self.history).zone
             assert zone
             edges = zip(*(one.tolist() for one in zone), strict=True)
         for phase in followed(self.model, history):

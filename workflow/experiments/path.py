@@ -26,7 +26,7 @@ from contact1d.workflow.continuation.trust import doubts, require_trust
 from contact1d.workflow.deck.steps import Displace, DisplaceInTime, Phase, Row, displacements
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
 from contact1d.workflow.experiments.thermal import CERTAIN, averaged, thermal_rows
-from contact1d.workflow.model.reduced import Reduced
+from contact1d.workflow.model.reduced import Reduced, path_of
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Path, Scene
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH
@@ -70,9 +70,10 @@ class PathExperiment(Scripted[Path]):
         warnings = self._missing(results, case, phases) | doubts(scene, settings, reported)
         warnings |= _buckling(trace, others, settings)
         rows = of_rows(curve_errors(case, whole, errors.common, repeated), asked)
-        checks = consistency.plan(scene, states, by_model(scene, case.model, states)) | self.energy(
-            case, states, results
-        )
+        forces = by_model(scene, case.model, states)
+        checks = consistency.plan(scene, states, forces)
+        if forces is not None:
+            checks |= consistency.energy(case, consistency.Work(path_of(whole.displacement)))
         checks |= {} if self.is_statistical else consistency.balance(scene, states)
         return Outcome(results, reported, ends, phases, warnings, rows=rows, moves=case.moves, consistency=checks)
 

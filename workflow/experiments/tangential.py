@@ -74,7 +74,7 @@ class TangentialExperiment(Scripted[Tangential]):
         marked = {"farthest": reported[farthest], "final": reported[-1]}
         path = Path(trace.displacement, trace.along, trace.time)
         checks = consistency.plan(scene, states, case.model.follow(path).total) if scene.is_modelled else {}
-        checks |= self.energy(case, states, results)
+        checks |= consistency.energy(case, consistency.Work(path)) if scene.is_modelled else {}
         loads = zip(self.given(scene).normal_forces(), (state.force for state in reported), strict=False)
         checks |= consistency.asked(scene, list(loads), states)
         points = of_rows(curve_errors(case, trace, errors.common), np.asarray(asked))

@@ -83,6 +83,7 @@ class Memory:
         self._share, self._time = (np.asarray([getattr(term, key) for term in terms]) for key in ("share", "time"))
         self.arms = np.zeros((len(terms), cells.heights.size))
         self.place, self.surface, self.outer = 0.0, *np.zeros((2, cells.heights.size))
+        self._held = np.zeros(cells.heights.size, dtype=bool)
 
     def _ahead(self, time: float) -> tuple[float, Array, Array, Array]:
         """Response, free surfaces (n,) [LU], decay and gain of each arm after a time [TU]."""
@@ -170,12 +171,25 @@ class Memory:
         _, free, decay, gain = self._ahead(time)
         if self._retarded:
             held = self._forces(place, self._retarded * velocity, 1.0, free)[1] > 0.0
-            recovered = self.surface * np.exp(-time / self._retarded)
+            recovered = self._recovered(place, time, velocity)
             after, self.outer = np.where(held, place - self._cells.heights, recovered), np.where(held, free, recovered)
+            self._held = held
         else:
             after = np.maximum(place - self._cells.heights, free)
             self.arms = decay[:, None] * self.arms + gain[:, None] * (after - self.surface)
         self.place, self.surface = place, after
+
+    def _left(self, velocity: float) -> Array:
+        """u at which a body that moves off at a velocity [LU/TU] leaves the surfaces that it has held, where f = 0."""
+        return np.minimum(self.surface, max(-self._retarded * velocity, 0.0))
+
+    def _recovered(self, place: float, time: float, velocity: float) -> Array:
+        """u of surfaces that are free at the end of a step, some of them since they were left within it."""
+        left, kept = self._left(velocity), np.exp(-time / self._retarded)
+        if velocity >= 0.0:
+            return self.surface * kept
+        since = np.exp(np.minimum((left - place + self._cells.heights) / (self._retarded * velocity), 0.0))
+        return np.asarray(np.where(self._held, left * since, self.surface * kept))
 
     @property
     def stored(self) -> Array:
@@ -192,8 +206,8 @@ class Memory:
         if self._retarded:
             margins = [self._forces(at, self._retarded * velocity, 1.0, free)[1] for at in (self.place, place)]
             before, part = (self._part(margin) for margin in margins)
-            recovered = self.surface * np.exp(-time / self._retarded)
-            given = np.where(margins[1] > 0.0, 0.0, 0.5 * (self.surface**2 - recovered**2))
+            left = np.where(self._held, self._left(velocity), self.surface)
+            given = np.where(margins[1] > 0.0, 0.0, 0.5 * (left**2 - self._recovered(place, time, velocity) ** 2))
             mean = (place - self.place) / time
             return np.asarray(self._retarded * mean**2 * time * 0.5 * (before + part) + given)
         age = (time / self._time)[:, None]
