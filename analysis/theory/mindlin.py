@@ -18,6 +18,10 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 
+SAME = 1e-9
+"""Relative: up to that two positions are one; round-off."""
+
+
 def sliding_displacement(friction: float, ratio: float, displacement: float) -> float:
     """Return u* = mu d/(G*/E*) [length], from which on all slips: mu `friction`, G*/E* `ratio`, d `displacement`."""
     return friction * displacement / ratio
@@ -26,7 +30,7 @@ def sliding_displacement(friction: float, ratio: float, displacement: float) -> 
 def _ways(places: Sequence[float]) -> list[list[float]]:
     """Return at each position how far it is from the first remembered turn, and half of the path from each to the next.
 
-    A turn is forgotten where the way goes beyond the one before it, or of the first one beyond its mirror image.
+    A turn is forgotten where the way comes to the one before it, or of the first one to its mirror image.
     """
     turns: list[float] = []
     here, direction, found = 0.0, 0.0, []
@@ -36,7 +40,7 @@ def _ways(places: Sequence[float]) -> list[list[float]]:
             if direction and onwards != direction:
                 turns.append(here)
             direction, here = onwards, place
-            while turns and (place - (turns[-2] if len(turns) > 1 else -turns[-1])) * direction > 0.0:
+            while turns and direction * (place - (turns[-2] if len(turns) > 1 else -turns[-1])) >= -SAME * abs(place):
                 del turns[-2:]
         stops = [*turns, place]
         found.append([stops[0], *(0.5 * (b - a) for a, b in pairwise(stops))])

@@ -100,7 +100,7 @@ def test_the_command_prints_a_table_and_leaves_two_files(tmp_path: Path, monkeyp
     ("scene", "change", "code", "words"),
     [
         ("hertz_plane", "experiment.displacements={from=-2.0,to=-1.0,steps=2}", 3, "its main results are all 0"),
-        ("jkr", "experiment.preload=1e9", 2, "Lower adhesion.work_of_adhesion, the load or the displacement"),
+        ("mindlin", 'bodies.profile={kind="circle",radius=1.0}', 2, "would cover the profile, which ends at 1 LU"),
     ],
 )
 def test_a_scene_without_a_reference_ends_with_the_reason(

@@ -39,8 +39,8 @@ MOST = 1000
 """Particles on a side that are used, and radii that p is given at; of more, every second, third …"""
 RADII = 100
 """Evenly from 0 to the contact radius, at which q is given, and at its kinks besides."""
-ANGLES = 20
-"""Positions of Gauss's at which p(r) is added up to a force."""
+ANGLES, PIECES = 20, 10
+"""Positions of Gauss's at which p(r) is added up to a force, between kinks and in as many pieces of a table's body."""
 INNER = 6
 """Part of the particles in a contact that show the slope of its load at the axis."""
 BETWEEN = 101
@@ -278,17 +278,18 @@ def _pressure(state: _Loaded, share: float, given: float) -> BodyPressure | None
         name: replace(one, uncertainty=one.uncertainty or float(error[place] + by_shape(read)))
         for name, (one, place, read) in _largest(state, fine, r, told, lambda r: fine.pressure(r) - pulled(r)).items()
     }
-    force, size = _total(fine, state.shape.kinks, pulled)
+    kinks = [*state.shape.kinks, *(np.arange(1, PIECES) * fine.edge / PIECES * state.shape.slow)]
+    force, size = _total(fine, kinks, pulled)
     ring = _ring(scene, zone)
     edge, stiffness = state.radius.value / state.wider, _stiffness(state, share)
-    doubt = _added_up(state) / (size - ring)
+    doubt = _added_up(state) / ((size - ring) or 1.0)
     return BodyPressure(
         r, p, error + by_shape(np.asarray), doubt, edge, results, force + ring, size - ring, stiffness
     )  # fmt: skip
 
 
 def _added_up(state: _Loaded) -> float:
-    """Most by which the sum of the particles is off ∫ q dx [FU]: Δ²/12 of all by which slopes change (Euler, Maclaurin)."""
+    """Most by which the sum of the particles is off ∫ q dx [FU]: Δ²/12 of each change of slope (Euler, Maclaurin)."""
     if state.jump != 0.0:
         return 0.0
     return float(np.abs(np.diff(np.pad(state.load, 2), 2)).sum()) * state.scene.bodies.spacing / state.wider / 12.0
@@ -370,7 +371,7 @@ def _total(fine: LineLoad, kinks: Sequence[float], pulled: Callable[[Array], Arr
     """∫ p dA and ∫ |p| dA [FU] over the contact by quadrature of p(r), r = a sin θ, between kinks."""
     node, weight = gauss(ANGLES)
     share = 0.5 * (node + 1.0)
-    ends = np.arcsin([0.0, *sorted(kink / fine.edge for kink in kinks if kink < fine.edge), 1.0])
+    ends = np.arcsin([0.0, *np.unique([kink / fine.edge for kink in kinks if 0.0 < kink < fine.edge]), 1.0])
     width = np.diff(ends)[:, None]
     angle = (ends[:-1, None] + width * share * share * (3.0 - 2.0 * share)).ravel()  # dense at both ends of a piece
     step = (0.5 * width * weight * 6.0 * share * (1.0 - share)).ravel()

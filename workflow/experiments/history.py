@@ -158,7 +158,7 @@ def _slopes(trace: Trace) -> dict[str, Reading]:
         return {}
     corner, time, d = first - 1, trace.time, trace.displacement
     near = range(corner - RATES + 1, corner + RATES)
-    force = dict(zip(near, _smooth(trace, near), strict=True))
+    force = dict(zip(near, _whole(trace, corner, near), strict=True))
     rates = []
     for side in (near[:RATES], near[RATES - 1 :]):
         at = np.asarray([time[i] - time[corner] for i in side])
@@ -172,19 +172,20 @@ def _slopes(trace: Trace) -> dict[str, Reading]:
     return found
 
 
-def _smooth(trace: Trace, states: Sequence[int]) -> list[float]:
-    """F [FU] of states without the steps of a sum over whole particles, whose number a slope would count.
+def _whole(trace: Trace, corner: int, states: Sequence[int]) -> list[float]:
+    """F [FU] of states with as many particles as fit into the contact of one of them, and not a whole number.
 
-    From the last particle on, δ before the edge, the line load q is straight: ∫ q dx is qδ/2 on either side, and its
-    particle has half of the spacing there.
+    A slope counts them, while forces that fall to 0 at the edge do not show how many there are. The end of a body is
+    that of a particle, and some laws have parts of one.
     """
-    found, spacing = [], trace.model.estimate.spacing
-    for i in states:
-        profile, edge = trace.profile(i), trace.radius(i) or 0.0
-        ends = np.flatnonzero(profile.pressure)[[0, -1] if profile.pressure.any() else []]
-        beyond = edge - np.abs(profile.x[ends]) - spacing
-        found.append(float(trace.force[i]) + 0.5 * float(np.sum(profile.pressure[ends] * beyond)))
-    return found
+    estimate, radius = trace.model.estimate, trace.radius(corner) or 0.0
+    if trace.model.shares_edges or radius >= estimate.profile.reach:
+        return [float(trace.force[i]) for i in states]
+    pressure = np.asarray([trace.profile(i).pressure for i in states])
+    touching = np.flatnonzero(pressure.all(axis=0))
+    missing = 2.0 * radius - estimate.spacing * touching.size
+    edge = pressure[:, touching[[0, -1]]].mean(axis=1) if touching.size else np.zeros(len(states))
+    return (estimate.spacing * pressure[:, touching].sum(axis=1) + missing * edge).tolist()
 
 
 def _work(d: NDArray[np.float64], force: NDArray[np.float64]) -> float:

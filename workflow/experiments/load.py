@@ -77,8 +77,9 @@ class LoadExperiment(Scripted[Load]):
         return found
 
     def asked(self, trace: Trace, scene: Scene) -> Sequence[tuple[float, float]]:
-        """The load."""
-        return [(self.given(scene).force, float(trace.force[-1]))]
+        """The load, of the state that comes nearest to it."""
+        force = self.given(scene).force
+        return [(force, float(trace.force[np.argmin(np.abs(trace.force - force))]))]
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The schedule by the model."""

@@ -32,8 +32,8 @@ from contact1d.workflow.scene import Scene
 Array = NDArray[np.float64]
 PLACES = 4000
 """Positions between which the predictor is straight."""
-FIRST = 1e-3
-"""The first of them over the last."""
+FIRST, SEEN = 1e-3, 30.0
+"""The first of them over the last, to a power at which the least h is so many times further out than the first."""
 BEYOND = 1.2
 """Width of what is known of the contact over what the experiment needs."""
 SPANNED = 0.9
@@ -123,10 +123,13 @@ class AdhesiveEstimate(ContactEstimate):
     @cached_property
     def _grid(self) -> tuple[Array, Array, Array, int]:
         """Positions x [LU], h(x) [LU], F of a contact up to there [FU], and the index of the least h."""
-        x = np.concatenate([[0.0], np.geomspace(FIRST * self.known, self.known, PLACES)])
-        x = beside_kinks(x, self.profile)
-        g = self.profile.height(x)
-        h = g - elongation(x, self.modulus, self.work)
+        for level in (1, 2, 3, 4):
+            inner = np.geomspace(FIRST**level * self.known, self.known, level * PLACES)
+            x = beside_kinks(np.append(0.0, inner), self.profile)
+            g = self.profile.height(x)
+            h = g - elongation(x, self.modulus, self.work)
+            if self.work == 0.0 or x[np.argmin(h)] > SEEN * inner[0]:
+                break
         area = np.concatenate([[0.0], np.cumsum(0.5 * (g[1:] + g[:-1]) * np.diff(x))])
         if self.known == self.profile.reach:  # beyond its end a body is as wide as it is
             far = h[-1:] + FARTHEST_RATIO * self.spacing

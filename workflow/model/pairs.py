@@ -281,7 +281,7 @@ class ContactEstimate:
         """(undeformed gap [LU] at the snap-out of a pair, tension [FU] that it loses then); the end, 0 if none does."""
         rises = np.diff(self.gap)
         level = np.flatnonzero(rises < FLATNESS * rises.mean())
-        if level.size == 0:
+        if level.size == 0 or not self.snaps:
             return float(self.gap[-1]), 0.0
         return float(self.gap[level[0]]), float(self.force[level[-1] + 1] - self.force[level[0]])
 

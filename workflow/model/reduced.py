@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, ClassVar, cast
@@ -32,6 +32,7 @@ from contact1d.workflow.model.dugdale import Zone
 from contact1d.workflow.model.friction import Sliders, sliders_of
 from contact1d.workflow.model.motion import inertia
 from contact1d.workflow.model.pairs import ContactEstimate, places_within
+from contact1d.workflow.model.pairs import Profile as Undeformed
 from contact1d.workflow.model.relaxing import SUDDEN, Edges, Memory, edges_of
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene, Viscoelasticity
@@ -137,14 +138,21 @@ class Reduced(ABC):
         estimate: the body, its spacing and stiffness.
         x: positions of the particles [LU], rising.
         deepest: largest displacement that is expected [LU].
+        body: the same body as the deck has it, where `estimate` has it between points of a table.
     """
 
     estimate: ContactEstimate
     x: Array
     deepest: float
+    body: Undeformed | None = field(default=None, kw_only=True)
 
     dense: ClassVar[int] = 16
     """Positions in one step of a path that show what its steps miss."""
+
+    @property
+    def shape(self) -> Undeformed:
+        """What the particles are of."""
+        return self.body or self.estimate.profile
 
     @property
     def shares_edges(self) -> bool:
@@ -293,7 +301,7 @@ class Springs(Reduced):
     @cached_property
     def heights(self) -> tuple[Array, NDArray[np.intp]]:
         """Undeformed gaps at displacement 0 [LU], each once, and which is whose."""
-        gaps = self.estimate.rest + self.estimate.profile.height(np.abs(self.x))
+        gaps = self.estimate.rest + self.shape.height(np.abs(self.x))
         found, own = np.unique(gaps, return_inverse=True)
         return found, own
 
@@ -353,7 +361,7 @@ class AdheringCells(Reduced):
 
     @cached_property
     def _cells(self) -> Cells:
-        return self.estimate.cells(self.x, self.estimate.profile)
+        return self.estimate.cells(self.x, self.shape)
 
     @cached_property
     def _once(self) -> tuple[Cells, NDArray[np.intp]]:
@@ -571,7 +579,7 @@ class Sliding(Springs):
     def chain(self) -> Sliders:
         """The sliders of these particles."""
         assert self.sliders is not None
-        heights = np.asarray(self.estimate.profile.height(np.abs(self.x)), dtype=np.float64)
+        heights = np.asarray(self.shape.height(np.abs(self.x)), dtype=np.float64)
         scaled = self.estimate.stiffness / self.sliders.normal  # of a finer chain
         springs = {"normal": self.estimate.stiffness, "tangential": scaled * self.sliders.tangential}
         return replace(self.sliders, x=self.x, heights=heights, **springs)
@@ -620,7 +628,7 @@ class RelaxingSprings(Reduced):
     @cached_property
     def _cells(self) -> tuple[Edges, NDArray[np.intp], Array]:
         """Cells that come to touch alike, each once, by rising height, which is whose, and how many of each."""
-        every = vars(edges_of(self.estimate.profile, self.x, self.estimate.spacing))
+        every = vars(edges_of(self.shape, self.x, self.estimate.spacing))
         found, own = np.unique(np.stack([*every.values()]), axis=1, return_inverse=True)
         return Edges(*found), own, np.bincount(own).astype(np.float64)
 
@@ -746,6 +754,10 @@ def legs(displacements: Array) -> list[slice]:
 
 def reduced(scene: Scene, settings: Settings) -> Reduced:
     """The model of the particles that run, as far as the contact reaches."""
+    return replace(_reduced(scene, settings), body=scene.bodies if scene.bodies.profile.slow else None)
+
+
+def _reduced(scene: Scene, settings: Settings) -> Reduced:
     estimate, spacing = settings.estimate, settings.estimate.spacing
     deepest = settings.largest_displacement
     phase = 0.5 if settings.chains.upper % 2 == 0 else 0.0

@@ -187,7 +187,7 @@ class Memory:
         """u of surfaces that are free at the end of a step, some of them since they were left within it."""
         left, kept = self._left(velocity), np.exp(-time / self._retarded)
         if velocity >= 0.0:
-            return self.surface * kept
+            return np.asarray(self.surface * kept)
         since = np.exp(np.minimum((left - place + self._cells.heights) / (self._retarded * velocity), 0.0))
         return np.asarray(np.where(self._held, left * since, self.surface * kept))
 
