@@ -17,7 +17,6 @@ import math
 from collections.abc import Sequence
 from itertools import pairwise
 
-
 SAME = 1e-9
 """Relative: up to that two positions are one; round-off."""
 

@@ -185,7 +185,7 @@ def _whole(trace: Trace, corner: int, states: Sequence[int]) -> list[float]:
     touching = np.flatnonzero(pressure.all(axis=0))
     missing = 2.0 * radius - estimate.spacing * touching.size
     edge = pressure[:, touching[[0, -1]]].mean(axis=1) if touching.size else np.zeros(len(states))
-    return (estimate.spacing * pressure[:, touching].sum(axis=1) + missing * edge).tolist()
+    return list(map(float, estimate.spacing * pressure[:, touching].sum(axis=1) + missing * edge))
 
 
 def _work(d: NDArray[np.float64], force: NDArray[np.float64]) -> float:
