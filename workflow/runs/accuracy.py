@@ -152,6 +152,8 @@ def _advice(scene: Scene, results: Mapping[str, Result]) -> str:
         return "Two evaluations of this quantity differ by that much (`formulas` in results.json)"
     if scene.bodies.profile.alternatives and all(map(_is_of_points, results.values())):
         return "They are limited by what lies between the points of the profile: give more of them, or more digits"
+    if all(max(one.errors, key=one.errors.__getitem__) == "time" for one in results.values()):
+        return "They are limited by the timestep, which a smaller accuracy.tolerance shortens"
     if any(one.read > tolerance * one.size for one in results.values()):
         return f"The uncertainty of a radius is limited by the spacing: use {FINER_SPACING}"
     return kind_of(scene).advice(scene)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
+from shutil import rmtree
+from tempfile import TemporaryDirectory, mkdtemp
 from weakref import finalize
 
 from contact1d.files import AnyPath
@@ -48,9 +49,14 @@ def run(
     """
     progress, figures = progress or Silent(), folder is not None if figures is None else figures
     if folder is None:
-        kept = TemporaryDirectory(prefix="contact1d-", ignore_cleanup_errors=True)
-        done = run(scene, Path(kept.name) / "run", figures, progress, time_limit, settings, workers, ranks, printed)
-        finalize(done, kept.cleanup)
+        kept = mkdtemp(prefix="contact1d-")
+        try:
+            done = run(scene, Path(kept) / "run", figures, progress, time_limit, settings, workers, ranks, printed)
+        except BaseException as error:
+            if not isinstance(error, RunError):  # which says where its files are
+                rmtree(kept, ignore_errors=True)
+            raise
+        finalize(done, rmtree, kept, ignore_errors=True)
         return done
 
     def edited(edit: SceneEdit) -> Scene:
