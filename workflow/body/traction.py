@@ -23,6 +23,7 @@ from operator import itemgetter
 from typing import Any
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d
 
 from contact1d.analysis.abel import FEWEST, LineLoad, line_load
 from contact1d.analysis.polynomial import gauss
@@ -58,6 +59,8 @@ SHRINKS = 0.45
 """|p₁ − p₂|/|p₁ − p₄| below which differences shrink: 1/(1 + 2ᵖ) of an order p, ½ of a logarithm, more of a pole."""
 NOISE = 0.1
 """Of the tolerance: differences that are smaller, relative to the pressure, are those of the minimiser."""
+BESIDE = 7
+"""Radii whose largest error is that of the one between them, where the shape of a load is not known."""
 NEXT = 0.25
 """Of the difference of the second from the fourth particles, added to that of the first, which may be small by accident
 where a kink lies between particles: as much again of the second order."""
@@ -238,14 +241,14 @@ class _Loaded:
         slope = float(fall / rise) if rise > 0.0 else 1.0
         return lambda x: slope * self.heights(x)
 
-    def through(self, load: Array, stride: int) -> LineLoad | None:
-        """The line load through every `stride`-th particle."""
+    def through(self, load: Array, stride: int, first: int = 0) -> LineLoad | None:
+        """The line load through every `stride`-th particle on either side, from the first one or a later one on."""
         apex = _has_apex(self.scene, TIP if self.body is None else KNOWN_TIP)
 
         def of(chosen: Array) -> LineLoad:
             return line_load(self.x[chosen], load[chosen], self.edge, self.jump, apex, self.body, self.shape.kinks)
 
-        return _through(self.x.size, stride, of)
+        return _through(self.x.size, stride, of, first)
 
 
 def _pressure(state: _Loaded, share: float, given: float) -> BodyPressure | None:
@@ -270,6 +273,8 @@ def _pressure(state: _Loaded, share: float, given: float) -> BodyPressure | None
     # Of a known shape nothing lies between the particles: where they are too few to show it, its edge alone is open.
     if coarser or state.body is None:
         spread += _spread(p, *coarser)
+    if not state.is_elastic and (other := state.through(state.load, 2 * own, own)):  # one difference may be 0 by chance
+        spread = maximum_filter1d(np.maximum(spread, np.abs(other.pressure(r) - pulled(r) - p)), BESIDE, mode="nearest")
     by_shape = _by_shape(state, own, r, p, pulled)
     within = np.count_nonzero(side < state.radius.value / state.wider)
     told = [one for i, one in enumerate((p, *coarser)) if within >= FEWEST * 2**i]
@@ -422,9 +427,9 @@ def _has_apex(scene: Scene, off: float = TIP) -> bool:
     return bool(tip > KINK * off * beside)
 
 
-def _through(size: int, stride: int, load: Callable[[Array], LineLoad]) -> LineLoad | None:
+def _through(size: int, stride: int, load: Callable[[Array], LineLoad], first: int = 0) -> LineLoad | None:
     """The line load through every `stride`-th particle on either side; None where these are too few."""
-    right = np.arange(size // 2, size)[::stride]
+    right = np.arange(size // 2 + first, size)[::stride]
     left = size - 1 - right[::-1]
     if right.size < FEWEST:
         return None
