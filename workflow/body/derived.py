@@ -141,7 +141,11 @@ def pressures_of(scene: Scene, outcome: Outcome) -> dict[str, BodyPressure]:
     found = outcome.exact
     shares = {name: one.uncertainty / abs(one.value) for name in ERRORS if (one := found.get(name)) and one.value}
     radius = next((shares[name] for name in RADII if name in shares), 0.0)
-    return body_pressures(scene, outcome.profiles, radius, sum(shares.values()), _pressure_share(scene, outcome))
+    critical = found.get("critical_radius")
+    radii = dict.fromkeys(outcome.profiles, radius)
+    if critical and critical.value and "critical" in radii:
+        radii["critical"] = max(radius, critical.uncertainty / critical.value)
+    return body_pressures(scene, outcome.profiles, radii, sum(shares.values()), _pressure_share(scene, outcome))
 
 
 def _pressure_share(scene: Scene, outcome: Outcome) -> float:

@@ -51,6 +51,8 @@ TIP, KNOWN_TIP, KINK = 1e-3, 1e-9, 0.5
 second where the body's own shape is taken, and not what particles make of it."""
 ROUND_OFF = 2e-12
 """Error of a pressure over the stiffness of the layer: of positions beside the depth of the wall that carries them."""
+SOLVED = 5e-6
+"""Relative error at least of the edge of a contact that adheres: equations give it."""
 INSIDE = 1.0 - 1e-9
 """Of the edge, up to which p is given: round-off."""
 STEP = 1e-6
@@ -121,14 +123,14 @@ def is_of_a_body(scene: Scene) -> bool:
 
 
 def body_pressures(
-    scene: Scene, profiles: Mapping[str, Profile], of_radius: float, of_all: float, given: float
+    scene: Scene, profiles: Mapping[str, Profile], of_radius: Mapping[str, float], of_all: float, given: float
 ) -> dict[str, BodyPressure]:
     """p(r) of the reported states in which the bodies touch over a width; none where there is no body for them.
 
     Args:
         scene: what ran.
         profiles: of the reported states.
-        of_radius: relative uncertainty of the contact radius, of which pressures under elastic springs are functions.
+        of_radius: relative uncertainty of each contact radius, of which pressures under elastic springs are functions.
         of_all: the sum of those of all results, for the pressure under others.
         given: of pressures, by the numbers of the scene that are uncertain.
     """
@@ -138,7 +140,9 @@ def body_pressures(
     for name, profile in profiles.items():
         if (radius := rule.of(profile)) and radius.value > 0.0:
             state = _Loaded(scene, profile, radius)
-            share = of_radius if state.is_elastic and not scene.bodies.profile.has_edge else of_all
+            share = of_radius[name] if state.is_elastic and not scene.bodies.profile.has_edge else of_all
+            if scene.adheres:
+                share = max(share, SOLVED)
             if one := _pressure(state, share, given):
                 found[name] = replace(one, doubt=one.doubt + of_all)
     return found
@@ -273,8 +277,10 @@ def _pressure(state: _Loaded, share: float, given: float) -> BodyPressure | None
     # Of a known shape nothing lies between the particles: where they are too few to show it, its edge alone is open.
     if coarser or state.body is None:
         spread += _spread(p, *coarser)
-    if not state.is_elastic and (other := state.through(state.load, 2 * own, own)):  # one difference may be 0 by chance
-        spread = maximum_filter1d(np.maximum(spread, np.abs(other.pressure(r) - pulled(r) - p)), BESIDE, mode="nearest")
+    if not state.is_elastic:  # one difference may be 0 by chance
+        if other := state.through(state.load, 2 * own, own):
+            spread = np.maximum(spread, np.abs(other.pressure(r) - pulled(r) - p))
+        spread = maximum_filter1d(spread, BESIDE, mode="nearest")
     by_shape = _by_shape(state, own, r, p, pulled)
     within = np.count_nonzero(side < state.radius.value / state.wider)
     told = [one for i, one in enumerate((p, *coarser)) if within >= FEWEST * 2**i]

@@ -177,7 +177,8 @@ def _marks(falling: Trace, scene: Scene, settings: Settings, preload: float) -> 
 
 def _held(falling: Trace, settings: Settings) -> dict[str, Reading]:
     """The marks of an unloading under displacement control, which begins at F = 0 where there was no preload."""
-    found, least = unloading(falling, settings), int(np.argmin(np.abs(falling.force)))
+    held = falling.force[: int(falling.force.argmin()) + 1]  # what is apart has no load either
+    found, least = unloading(falling, settings), int(np.argmin(np.abs(held)))
     return (
         found
         if "zero_load_radius" in found

@@ -24,6 +24,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
 
 from contact1d.workflow.model.chain import FARTHEST_RATIO, SettingsError
 from contact1d.workflow.model.pairs import ContactEstimate, Profile, beside_kinks
@@ -123,13 +124,20 @@ class AdhesiveEstimate(ContactEstimate):
     @cached_property
     def _grid(self) -> tuple[Array, Array, Array, int]:
         """Positions x [LU], h(x) [LU], F of a contact up to there [FU], and the index of the least h."""
+
+        def opened(at: Array) -> Array:
+            return np.asarray(self.profile.height(at) - elongation(at, self.modulus, self.work))
+
         for level in (1, 2, 3, 4):
             inner = np.geomspace(FIRST**level * self.known, self.known, level * PLACES)
             x = beside_kinks(np.append(0.0, inner), self.profile)
-            g = self.profile.height(x)
-            h = g - elongation(x, self.modulus, self.work)
-            if self.work == 0.0 or x[np.argmin(h)] > SEEN * inner[0]:
+            least = int(np.argmin(opened(x)))
+            if self.work == 0.0 or x[least] > SEEN * inner[0]:
                 break
+        if self.work and 0 < least < x.size - 1:
+            lowest = minimize_scalar(lambda at: float(opened(np.asarray([at]))[0]), bounds=(x[least - 1], x[least + 1]))
+            x = np.unique(np.append(x, lowest.x))
+        g, h = self.profile.height(x), opened(x)
         area = np.concatenate([[0.0], np.cumsum(0.5 * (g[1:] + g[:-1]) * np.diff(x))])
         if self.known == self.profile.reach:  # beyond its end a body is as wide as it is
             far = h[-1:] + FARTHEST_RATIO * self.spacing
