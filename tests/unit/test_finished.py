@@ -19,7 +19,7 @@ from tests.sweeps import BROKEN
 
 MakeScene = Callable[..., Scene]
 STEEL = {"youngs_modulus": 210e9, "poisson_ratio": 0.3}
-SHORT = 1200
+SHORT = 1300
 """Characters that a run shows of itself, sentences of warnings among them; it has hundreds of thousands of numbers."""
 
 

@@ -30,7 +30,7 @@ BARE = tables(None, PATH, lower="rigid_plane", reduction="mdr")
 FRAME = {
     "theory", "validity",
     "scene", "experiment", "method", "reduction", "effects", "status", "warnings", "timing", "versions",
-    "accuracy",
+    "accuracy", "consistency",
 }  # fmt: skip
 
 
