@@ -20,7 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve, solve_banded
+from scipy.linalg import solve_banded, solve_triangular
 from scipy.optimize import brentq
 from scipy.special import stdtr
 
@@ -126,15 +126,15 @@ def _judge(noise: Noise, residuals: Array, slopes: Array, prior: Array) -> tuple
     freedom = max(1.0, r.size - float(J.shape[1] - P.shape[0]))
     step, deviation = np.zeros(J.shape[1]), math.sqrt(float(r @ r) / freedom)
     for _ in range(3):  # σ weighs the data against what is known of the parameters
-        information = J.T @ J / deviation**2 + P.T @ P
-        factor = cho_factor(information)
-        step = cho_solve(factor, J.T @ r / deviation**2 + P.T @ known)
+        q, triangle = np.linalg.qr(np.vstack([J / deviation, P]))  # keeps the digits that JᵀJ squares away
+        step = solve_triangular(triangle, q.T @ np.append(r / deviation, known))
         left = r - J @ step
         deviation = math.sqrt(float(left @ left) / freedom)
     misfit = known - P @ step
     log = -0.5 * noise.log_determinant - r.size * math.log(deviation) - 0.5 * float(misfit @ misfit)
-    log -= float(np.log(np.diag(factor[0])).sum())
-    return Judged(noise, deviation, step, cho_solve(factor, np.eye(J.shape[1])), 0.0), log
+    log -= float(np.log(np.abs(np.diag(triangle))).sum())
+    root = solve_triangular(triangle, np.eye(J.shape[1]))
+    return Judged(noise, deviation, step, root @ root.T, 0.0), log
 
 
 @dataclass(frozen=True)
