@@ -62,7 +62,7 @@ def mass(value: float) -> Q:
 
 
 RADIUS, WORK, RANGE, SLOPE, PUNCH, MODULUS = 1000.0, 1e-3, 0.1, 0.03, 20.5, 1.0
-CURVE = [40.0 * i / 80.0 for i in range(81)]
+CURVE = [2.0 * i for i in range(101)]
 PROFILES: dict[str, dict[str, Any]] = {
     "parabola": {"radius": length(RADIUS)},
     "circle": {"radius": length(200.0)},
@@ -76,6 +76,11 @@ PROFILES: dict[str, dict[str, Any]] = {
 """By their kind; under LOAD on a plane the contact radius is 10 to 20 LU."""
 
 NEAR, FAR = ({"amplitude": energy(A), "range": length(a)} for A, a in ((0.18, 0.13), (0.09, 0.26)))
+LONG = {
+    "repulsion": {"amplitude": energy(1.0), "range": length(0.5)},
+    "attraction": {"amplitude": energy(0.2), "range": length(1.0)},
+}
+"""Of bodies that slide: a shorter range lets them fall into each other's gaps."""
 LAWS: dict[str, dict[str, Any]] = {
     "elastic": {},
     "neighbours": {"neighbours": {"stiffness": stiffness(0.3)}},
@@ -92,9 +97,10 @@ LAWS: dict[str, dict[str, Any]] = {
     "attracting horizontal": {"interaction": {"repulsion": NEAR, "attraction": FAR}, "horizontal": {}},
 }  # fmt: skip
 """Effects of the bodies and their contact by a name; those of a motion come with the experiment."""
-MOTION = {"damping": {"coefficient": "auto"}, "plate": {}, "horizontal": {}, "cantilever": {"stiffness": stiffness(0.5), "velocity": velocity(0.1)}}  # fmt: skip
+MOTION = {"damping": {"coefficient": "auto"}, "plate": {}, "horizontal": {}, "cantilever": {"stiffness": stiffness(20.0), "velocity": velocity(0.05)}}  # fmt: skip
 
-LOAD, DEPTH, END = 10.0, 0.3, 3.0
+LOAD, BETWEEN, DEPTH, END = 10.0, 0.5, 0.3, 3.0
+"""Forces on a plane and between particles [FU], a displacement [LU], a duration [TU]."""
 STEPS = [length(d) for d in (0.0, 0.2, DEPTH, 0.1)]
 TURNS = [[0.0, 0.0], [1.0, 1.0], [2.0, 1.0], [END, -0.5]]
 EXPERIMENTS: dict[str, dict[str, Any]] = {
@@ -113,7 +119,7 @@ EXPERIMENTS: dict[str, dict[str, Any]] = {
     "hold": {"displacement": length(DEPTH), "duration": duration(60.0)},
     "hold a force": {"force": force(LOAD), "duration": duration(400.0)},
     "impact": {"velocity": velocity(0.3)},
-    "slide": {"normal_force": force(0.5), "distance": length(1.0)},
+    "slide": {"normal_force": force(0.2), "distance": length(4.0)},
 }  # fmt: skip
 """By a name that begins with their kind."""
 METHODS: tuple[str, ...] = get_args(Method)
@@ -176,11 +182,15 @@ class Combination:
         bodies: dict[str, Any] = {
             "particles": "auto", "spacing": length(h), "lower": "rigid_plane" if self.on_plane else "particles",
             "reduction": "mdr", "profile": {"kind": self.profile} | PROFILES[self.profile],
-            "bulk_stiffness": stiffness(MODULUS * h if self.on_plane else 0.83),
+            "bulk_stiffness": stiffness(MODULUS * h if self.on_plane else 0.83), "mass": mass(1.0),
         }  # fmt: skip
+        if self.experiment == "slide":
+            bodies["bulk_stiffness"] = stiffness(2.0)
         if self.profile == "flat":
             bodies |= {"particles": 16, "periodic": True}
         tables = {"bodies": bodies} | LAWS[self.law]
+        if self.experiment == "slide" and "interaction" in tables:
+            tables["interaction"] = {name: LONG[name] for name in tables["interaction"]}
         needed = [*kind.needs, *(kind.needs_in_time if self.method == "dynamic" else ())]
         if self.method == "dynamic":
             needed = [name for name in needed if name not in kind.excludes]
@@ -195,6 +205,8 @@ class Combination:
         if "plate" in tables:
             tables["plate"] = own.get(kind_of(self.experiment), {})
         experiment = {"kind": kind_of(self.experiment)} | EXPERIMENTS[self.experiment]
+        if not self.on_plane:
+            experiment |= {key: force(BETWEEN) for key in ("force", "preload") if key in experiment}
         if self.law == "noise" and experiment["kind"] == "pull_off" and "velocity" not in experiment:
             experiment["loading_rate"] = Q(0.05, 0.0, 1.0, -1.0)
         if kind.only_method is None:
@@ -270,7 +282,8 @@ def sample(least: int = 2) -> list[Combination]:
     """
     rest = sorted(allowed(), key=lambda one: _digest(str(one)))
     lacking = {
-        name: min(least, sum(name in one.members for one in rest)) for name in set().union(*(one.members for one in rest))
+        name: min(least, sum(name in one.members for one in rest))
+        for name in set().union(*(one.members for one in rest))
     }
     found = []
     while any(lacking.values()):
