@@ -5,13 +5,12 @@ Numbers are in model units, with their dimension, so that a scene can be written
 
 from __future__ import annotations
 
-import json
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import product
 from typing import Any, get_args
+from zlib import crc32
 
 from contact1d import read_scene
 from contact1d.workflow.experiments import KINDS
@@ -75,7 +74,9 @@ PROFILES: dict[str, dict[str, Any]] = {
 }
 """By their kind; under LOAD on a plane the contact radius is 10 to 20 LU."""
 
+ARMS = [{"share": 0.4, "time": duration(1.0)}, {"share": 0.3, "time": duration(10.0)}]
 NEAR, FAR = ({"amplitude": energy(A), "range": length(a)} for A, a in ((0.18, 0.13), (0.09, 0.26)))
+PAIR = {"repulsion": NEAR, "attraction": FAR}
 LONG = {
     "repulsion": {"amplitude": energy(1.0), "range": length(0.5)},
     "attraction": {"amplitude": energy(0.2), "range": length(1.0)},
@@ -87,17 +88,24 @@ LAWS: dict[str, dict[str, Any]] = {
     "jkr": {"adhesion": {"work_of_adhesion": stiffness(WORK)}},
     "maugis": {"adhesion": {"work_of_adhesion": stiffness(WORK), "range": length(RANGE)}},
     "rate": {"adhesion": {"work_of_adhesion": stiffness(WORK), "rate": {"velocity": velocity(1.0), "exponent": 0.6}}},
-    "prony": {"viscoelasticity": {"terms": [{"share": 0.4, "time": duration(1.0)}, {"share": 0.3, "time": duration(10.0)}]}},
+    "prony": {"viscoelasticity": {"terms": ARMS}},
     "kelvin_voigt": {"viscoelasticity": {"retardation_time": duration(0.3)}},
     "friction": {"friction": {"coefficient": 0.3}},
     "noise": {"noise": {"temperature": energy(1e-3), "seed": 1}},
     "pairs": {"interaction": {"repulsion": NEAR}},
-    "attracting": {"interaction": {"repulsion": NEAR, "attraction": FAR}},
-    "attracting neighbours": {"interaction": {"repulsion": NEAR, "attraction": FAR}, "neighbours": {"stiffness": stiffness(0.3)}},
-    "attracting horizontal": {"interaction": {"repulsion": NEAR, "attraction": FAR}, "horizontal": {}},
-}  # fmt: skip
+    "attracting": {"interaction": PAIR},
+    "attracting neighbours": {"interaction": PAIR, "neighbours": {"stiffness": stiffness(0.3)}},
+    "attracting horizontal": {"interaction": PAIR, "horizontal": {}},
+    "attracting alike": {"interaction": PAIR, "horizontal": {}, "neighbours": {"stiffness": stiffness(0.3)}},
+    "attracting noise": {"interaction": PAIR, "noise": {"temperature": energy(1e-4), "seed": 1}},
+}
 """Effects of the bodies and their contact by a name; those of a motion come with the experiment."""
-MOTION = {"damping": {"coefficient": "auto"}, "plate": {}, "horizontal": {}, "cantilever": {"stiffness": stiffness(20.0), "velocity": velocity(0.05)}}  # fmt: skip
+MOTION = {
+    "damping": {"coefficient": "auto"},
+    "plate": {},
+    "horizontal": {},
+    "cantilever": {"stiffness": stiffness(20.0), "velocity": velocity(0.05)},
+}
 
 LOAD, BETWEEN, DEPTH, END = 10.0, 0.5, 0.3, 3.0
 """Forces on a plane and between particles [FU], a displacement [LU], a duration [TU]."""
@@ -207,7 +215,7 @@ class Combination:
         experiment = {"kind": kind_of(self.experiment)} | EXPERIMENTS[self.experiment]
         if not self.on_plane:
             experiment |= {key: force(BETWEEN) for key in ("force", "preload") if key in experiment}
-        if self.law == "noise" and experiment["kind"] == "pull_off" and "velocity" not in experiment:
+        if "noise" in tables and experiment["kind"] == "pull_off" and "velocity" not in experiment:
             experiment["loading_rate"] = Q(0.05, 0.0, 1.0, -1.0)
         if kind.only_method is None:
             experiment["method"] = self.method
@@ -280,11 +288,9 @@ def sample(least: int = 2) -> list[Combination]:
 
     The next one has the most members that are still lacking; of equal ones that with the smallest digest.
     """
-    rest = sorted(allowed(), key=lambda one: _digest(str(one)))
-    lacking = {
-        name: min(least, sum(name in one.members for one in rest))
-        for name in set().union(*(one.members for one in rest))
-    }
+    rest = sorted(allowed(), key=lambda one: crc32(str(one).encode()))
+    every = set().union(*(one.members for one in rest))
+    lacking = {name: min(least, sum(name in one.members for one in rest)) for name in every}
     found = []
     while any(lacking.values()):
         best = max(rest, key=lambda one: sum(lacking[name] > 0 for name in one.members))
@@ -293,18 +299,3 @@ def sample(least: int = 2) -> list[Combination]:
         lacking = {name: count - (name in best.members) for name, count in lacking.items()}
         lacking = {name: max(count, 0) for name, count in lacking.items()}
     return found
-
-
-def _digest(text: str) -> int:
-    import zlib
-
-    return zlib.crc32(text.encode())
-
-
-if __name__ == "__main__":
-    from collections import Counter
-
-    print(unknown(), len(allowed()))
-    print(json.dumps(Counter(f"{one.law} {one.experiment} {one.method}" for one in allowed()), indent=0))
-    print(*sample(), sep="\n")
-    _ = math

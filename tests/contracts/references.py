@@ -1,4 +1,4 @@
-"""What a combination has by closed forms and by solvers of `validation/references`, which share no code with the program.
+"""What a combination has by closed forms and solvers of `validation/references`, which share no code with the program.
 
 Pressures are those of the reported state: deepest of a path, without a load of a pull-off, the last of others.
 """
@@ -78,7 +78,7 @@ FORCES = Legs(tuple((t, LOAD * max(share, 0.0)) for t, share in TURNS))
 
 
 def state(contact: Contact, a: float, d: float, pressures: bool = True) -> Numbers:
-    """Of a contact with a and d; what has no bound is left out."""
+    """Of a contact with a and d."""
     found = {"contact_radius": a, "displacement": d, "force": contact.force_at(a, d)}
     found["mean_pressure"] = found["force"] / (math.pi * a * a)
     if not contact.work:
@@ -88,7 +88,7 @@ def state(contact: Contact, a: float, d: float, pressures: bool = True) -> Numbe
         found["central_pressure"] = contact.central_pressure(a, d)
         if not math.isfinite(contact.body.end) and not contact.work:
             found["peak_pressure"] = contact.peak_pressure(a, d)
-    return {name: value for name, value in found.items() if math.isfinite(value) and value}
+    return {name: value for name, value in found.items() if value}
 
 
 def largest(found: Numbers) -> Numbers:
@@ -173,7 +173,8 @@ def maugis(one: Combination) -> Numbers:
         return {"contact_radius": s.a, "displacement": s.displacement, "cohesive_radius": s.c} | pressure
     if one.experiment in ("pull_off", "pull_off twice"):
         free, critical = contact.free, contact.critical
-        return {"adhesion_force": -critical.force, "critical_radius": critical.a, "zero_load_radius": free.a, "cohesive_radius": free.c}  # fmt: skip
+        radii = {"critical_radius": critical.a, "zero_load_radius": free.a, "cohesive_radius": free.c}
+        return radii | {"adhesion_force": -critical.force}
     s = contact.at(DEPTH)
     assert s is not None
     if one.experiment.startswith("path"):
@@ -225,15 +226,16 @@ def kelvin_voigt(one: Combination) -> Numbers:
         pressed = Pressed(law, FORCES)
         return {"peak_displacement": pressed.displacement(pressed.turn), "dissipated_energy": pressed.lost}
     last = TURNS[2][0] + (DEPTH / (1.5 * DEPTH) - RETARDATION) * (END - TURNS[2][0])  # d + T d' = 0
-    work = sum(rate * quad(lambda t: law.force(DEPTHS(t), rate), low, high, epsabs=1e-12, limit=200)[0]
-               for low, high, rate in ((0.0, 1.0, DEPTH), (2.0, last, -1.5 * DEPTH)))  # fmt: skip
+    work = 0.0
+    for low, high, rate in ((0.0, 1.0, DEPTH), (2.0, last, -1.5 * DEPTH)):
+        work += rate * quad(lambda t, rate=rate: law.force(DEPTHS(t), rate), low, high, epsabs=1e-12, limit=200)[0]
     return {"peak_force": law.force(DEPTH, DEPTH), "dissipated_energy": work}
 
 
 def friction(one: Combination) -> Numbers:
     """Cattaneo, Mindlin, Jaeger and Ciavarella; after a turn by Masing's rule."""
     contact = Contact(BODIES[one.profile], MODULUS)
-    a, d = edge(contact, LOAD)
+    a = edge(contact, LOAD)[0]
     found = {"contact_radius": a, "mean_pressure": LOAD / (math.pi * a * a)}
     if one.profile == "flat_punch":
         return found

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -43,7 +41,6 @@ class Found:
     consistency: dict[str, Any] = field(default_factory=dict)
     failure: str = ""
     done: Run | None = None
-    model_units: bool = True
 
 
 def in_model_units(done: Run, units: Units) -> dict[str, tuple[float, float]]:
@@ -78,8 +75,3 @@ class Runs:
         except RunError as error:
             return Found(one, failure=str(error))
         return Found(one, in_model_units(done, units), done.document["consistency"], done=done)
-
-
-@contextmanager
-def _nothing() -> Iterator[None]:
-    yield
