@@ -77,24 +77,23 @@ DEPTHS = Legs(tuple((t, DEPTH * share) for t, share in TURNS))
 FORCES = Legs(tuple((t, LOAD * max(share, 0.0)) for t, share in TURNS))
 
 
-def state(contact: Contact, a: float, d: float, pressures: bool = True) -> Numbers:
+def state(contact: Contact, a: float, d: float) -> Numbers:
     """Of a contact with a and d."""
     found = {"contact_radius": a, "displacement": d, "force": contact.force_at(a, d)}
     found["mean_pressure"] = found["force"] / (math.pi * a * a)
     if not contact.work:
         found["contact_stiffness"] = 2.0 * contact.modulus * a
     found["adhesion_energy"] = math.pi * a * a * contact.work
-    if pressures:
-        found["central_pressure"] = contact.central_pressure(a, d)
-        if not math.isfinite(contact.body.end) and not contact.work:
-            found["peak_pressure"] = contact.peak_pressure(a, d)
+    found["central_pressure"] = contact.central_pressure(a, d)
+    if not math.isfinite(contact.body.end) and not contact.work:
+        found["peak_pressure"] = contact.peak_pressure(a, d)
     return {name: value for name, value in found.items() if value}
 
 
 def largest(found: Numbers) -> Numbers:
     """The state as a path names it."""
-    names = {"contact_radius": "largest_radius", "force": "largest_force", "displacement": ""}
-    return {names.get(name, name): value for name, value in found.items()}
+    names = {"contact_radius": "largest_radius", "force": "largest_force"}
+    return {names.get(name, name): value for name, value in found.items() if name != "displacement"}
 
 
 def edge(contact: Contact, force: float) -> tuple[float, float]:
@@ -114,8 +113,7 @@ def elastic(one: Combination, work: float = 0.0) -> Numbers:
     if one.experiment == "hold":
         return state(contact, *deep)
     if one.experiment.startswith("path"):
-        found = largest(state(contact, *deep, pressures=not work))
-        return {name: value for name, value in found.items() if name != "adhesion_energy"}  # that is without a load
+        return {} if work else largest(state(contact, *deep))
     if one.experiment == "history":
         gone = {} if work else {"dissipated_energy": 0.0, "contact_time": 1.0 + 1.0 + 2.0 / 3.0}
         return {"peak_force": contact.force_at(*deep)} | gone
@@ -123,7 +121,8 @@ def elastic(one: Combination, work: float = 0.0) -> Numbers:
         return {"peak_displacement": edge(contact, LOAD)[1], "dissipated_energy": 0.0, "contact_time": END}
     if one.experiment == "impact":
         return bounced(contact)
-    return pulled_off(contact) if one.experiment.startswith("pull_off") else {}
+    found = pulled_off(contact) if one.experiment.startswith("pull_off") else {}
+    return {name: value for name, value in found.items() if one.method == "quasistatic" or name != "work_of_separation"}
 
 
 def bounced(contact: Contact) -> Numbers:
@@ -188,8 +187,9 @@ def rated(one: Combination) -> Numbers:
         return {}
     receding = Receding(impact.Adhesive(POWERS[one.profile], WORK, MODULUS), 1.0, 0.6)
     force, critical = receding.pull_off(LOAD, 0.01)
-    free = receding.separated(receding.pressed(LOAD), 0.01)[0]
-    return {"adhesion_force": force, "critical_radius": critical, "zero_load_radius": free}
+    free, d, work = receding.separated(receding.pressed(LOAD), 0.01)
+    found = {"adhesion_force": force, "critical_radius": critical, "zero_load_radius": free, "work_of_separation": work}
+    return found | {"central_pressure": Contact(BODIES[one.profile], MODULUS, WORK).central_pressure(free, d)}
 
 
 def prony(one: Combination) -> Numbers:
@@ -236,7 +236,7 @@ def friction(one: Combination) -> Numbers:
     """Cattaneo, Mindlin, Jaeger and Ciavarella; after a turn by Masing's rule."""
     contact = Contact(BODIES[one.profile], MODULUS)
     a = edge(contact, LOAD)[0]
-    found = {"contact_radius": a, "mean_pressure": LOAD / (math.pi * a * a)}
+    found = {"contact_radius": a, "contact_stiffness": 2.0 * MODULUS * a}
     if one.profile == "flat_punch":
         return found
     slipping = Slipping(contact, a, LAWS["friction"]["friction"]["coefficient"], 1.0)
