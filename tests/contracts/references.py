@@ -236,9 +236,9 @@ def friction(one: Combination) -> Numbers:
     """Cattaneo, Mindlin, Jaeger and Ciavarella; after a turn by Masing's rule."""
     contact = Contact(BODIES[one.profile], MODULUS)
     a = edge(contact, LOAD)[0]
-    found = {"contact_radius": a, "contact_stiffness": 2.0 * MODULUS * a}
     if one.profile == "flat_punch":
-        return found
+        return {"contact_radius": a}
+    found = {"contact_radius": a, "contact_stiffness": 2.0 * MODULUS * a}
     slipping = Slipping(contact, a, LAWS["friction"]["friction"]["coefficient"], 1.0)
     if one.experiment == "tangential":
         *_, most, last = (u.value for u in EXPERIMENTS[one.experiment]["displacements"])

@@ -65,7 +65,6 @@ def asked(scene: Scene, pairs: Sequence[tuple[float, float]], states: Sequence[S
     wanted, found = max(pairs, key=lambda pair: abs(pair[0] - pair[1]))
     words = f"the scene asks for {wanted:.10g} FU, and the state that has it carries {found:.10g} FU"
     allowed = AT_REST if scene.is_stepped and scene.is_modelled else scene.accuracy.tolerance
-    allowed = TABLE if scene.bodies.profile.slow else allowed
     missed = max(abs(wanted - found) - max(map(_round_off, states)), 0.0)
     return {"asked": Agreement(missed / largest if largest else 0.0, allowed, words)}
 
