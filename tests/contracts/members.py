@@ -5,7 +5,7 @@ Numbers are in model units, with their dimension, so that a scene can be written
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import product
@@ -283,14 +283,14 @@ def _allowed() -> Iterator[Combination]:
         yield one
 
 
-def sample(least: int = 2) -> list[Combination]:
+def sample(every: Sequence[Combination], least: int = 2) -> list[Combination]:
     """Combinations in which each member of each registry is at least so many times, or as often as it is allowed.
 
     The next one has the most members that are still lacking; of equal ones that with the smallest digest.
     """
-    rest = sorted(allowed(), key=lambda one: crc32(str(one).encode()))
-    every = set().union(*(one.members for one in rest))
-    lacking = {name: min(least, sum(name in one.members for one in rest)) for name in every}
+    rest = sorted(every, key=lambda one: crc32(str(one).encode()))
+    members = set().union(*(one.members for one in rest))
+    lacking = {name: min(least, sum(name in one.members for one in rest)) for name in members}
     found = []
     while any(lacking.values()):
         best = max(rest, key=lambda one: sum(lacking[name] > 0 for name in one.members))

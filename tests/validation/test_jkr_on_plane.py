@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from scipy.optimize import brentq, minimize_scalar
 
 from contact1d import Run
 from contact1d.analysis.theory.indenters import PowerLaw

@@ -1,4 +1,4 @@
-"""Claim: on the rigid plane every profile has, with the MDR, the 3D indenter's force and radius, up to the lattice.
+"""Claim: on the rigid plane the force of a paraboloid and of a cone goes to the 3D indenter's as spacing².
 
 Reference. With springs c = E* per length under the transformed profile g, F = ∫ E* (d − g) dx and g(a) = d are Galin's
 and Sneddon's (I. N. Sneddon, Int. J. Engng Sci. 3 (1965) 47). z = q rⁿ: d = κ_n q aⁿ, F = 2n/(n+1) E* a d. Circle:
@@ -25,7 +25,6 @@ import pytest
 from numpy.typing import NDArray
 
 from contact1d import Run
-from contact1d.workflow.continuation.state import State
 from contact1d.workflow.scene import scene_from_dict
 
 RunTables = Callable[[dict[str, Any]], Run]
@@ -78,18 +77,10 @@ def power(tables: dict[str, Any], q: float, n: float) -> Indenter:
     )
 
 
-SAMPLES = np.linspace(0.0, 100.0, 401)
 INDENTERS = {
     "parabola": power({"kind": "parabola", "radius": 400.0}, 1.0 / 800.0, 2.0),
-    "circle": sphere(60.0),
-    "ellipsoid": ellipsoid(60.0, 20.0),
     "cone": power({"kind": "cone", "slope": 0.05}, 0.05, 1.0),
-    "power 3": power({"kind": "power", "exponent": 3.0, "radius": 20.0, "height": 1.0}, 1.0 / 8000.0, 3.0),
-    "power 1.5": power({"kind": "power", "exponent": 1.5, "radius": 20.0, "height": 1.0}, 20.0**-1.5, 1.5),
-    "table": power(
-        {"kind": "table", "r": SAMPLES.tolist(), "z": (SAMPLES**2 / 800.0).tolist()}, 1.0 / 800.0, 2.0
-    ),
-}  # fmt: skip
+}
 
 
 def on_plane(run_tables: RunTables, profile: dict[str, Any], displacements: Array, spacing: float = 1.0) -> Run:
