@@ -251,7 +251,7 @@ class Units:
 
 MODEL = Units()
 OTHERS = {
-    "scaled": Units(2.0**-21, 2.0**13, 2.0**-6),
+    "scaled": Units(2.0**-40, 2.0**50, 2.0**-15),
     "nm": Units(1e3, 1e-3, 1.0, ("nm", "mN", "ms")),
     "m": Units(1e-6, 1e-6, 1e-3, ("m", "N", "s")),
     "ft": Units(1e-6 / 0.3048, 1e-6 / 4.4482216152605, 1e-3 / 60.0, ("ft", "lbf", "min")),

@@ -115,6 +115,8 @@ def applying(one: Combination) -> set[str]:
     if statistics or one.experiment == "slide":
         return set()
     found = {"asked"} if one.experiment in FORCED else set()
+    if one.law == "elastic" and one.experiment == "load" and not timed and one.profile != "table":
+        found.add("closed_form")
     if not one.on_plane or "neighbours" in one.tables:
         return found | ({"balance"} if not timed else set())
     if scene_of(one).is_modelled:

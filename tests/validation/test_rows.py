@@ -120,5 +120,3 @@ def test_a_flat_punch_is_held_up_to_its_limit() -> None:
     tables["bodies"]["profile"] = {"kind": "flat_punch", "radius": 14.0}
     found = contact1d.run(tables).results.adhesion_force
     assert abs(found.value - math.sqrt(8.0 * math.pi * 14.0**3 * WORK)) <= found.uncertainty <= 1e-6
-
-
