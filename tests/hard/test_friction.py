@@ -130,23 +130,6 @@ def test_so_small_a_load_that_one_or_two_particles_carry_it(tmp_path: Path, coun
     assert done.friction["tangential_force"] == pytest.approx(expected, abs=1e-6 * load)
 
 
-def test_numbers_in_metres_and_newtons_give_the_same_reduced_ones(tmp_path: Path) -> None:
-    """A deck in units of its own: lengths × 1e-6, forces × 1e-3."""
-    length, force = 1e-6, 1e-3
-    stiffness = force / length
-    body = {
-        "spacing": length, "profile": {"kind": "parabola", "radius": RADIUS * length},
-        "bulk_stiffness": stiffness, "bulk_stiffness_tangential": 0.8 * stiffness,
-    }  # fmt: skip
-    places = [0.1, -0.2, 0.3]
-    small = finished(tmp_path / "a", scene([p * length for p in places], bodies=body, normal_force=LOAD * force))
-    plain = finished(tmp_path / "b", scene(places))
-    assert small.friction["tangential_force"] / force == pytest.approx(plain.friction["tangential_force"], rel=1e-9)
-    assert value(small, "stick_radius") / length == pytest.approx(value(plain, "stick_radius"), rel=1e-6)
-    energy = value(small, "dissipated_energy") / (length * force)
-    assert energy == pytest.approx(value(plain, "dissipated_energy"), rel=1e-9)
-
-
 @pytest.mark.parametrize(
     ("load", "words"),
     [

@@ -134,15 +134,6 @@ def largest_tension(law: dict[str, Any]) -> float:
     return B / b * math.exp(-r / b) - A / a * math.exp(-r / a)
 
 
-def test_flat_punch_on_the_plane_is_all_its_springs(tmp_path: Path) -> None:
-    finished = done(tmp_path, tables(PUNCH, path(0.1, 0.5)), figures=True)
-    assert finished.document["largest_force"]["value"] == pytest.approx(20 * STIFFNESS * 0.5, rel=FORCE)
-    assert finished.document["largest_radius"]["value"] == 10.0
-    load = done(tmp_path, tables(PUNCH, {"kind": "load", "force": 3.0}), figures=True).document
-    assert load["displacement"]["value"] == pytest.approx(3.0 / (20 * STIFFNESS), rel=FORCE)
-    assert load["mean_pressure"]["value"] == pytest.approx(3.0 / (math.pi * 100.0), rel=FORCE)
-
-
 @pytest.mark.parametrize("reduction", ["geike_popov", "mdr"])
 @pytest.mark.parametrize("radius", [1.5, 10.0])
 def test_flat_punch_pulls_off_with_the_largest_tension_of_each_pair(

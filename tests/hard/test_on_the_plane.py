@@ -12,7 +12,7 @@ import pytest
 from contact1d import RunError, run
 from contact1d.analysis.theory.indenters import PowerLaw
 from contact1d.workflow.scene import SceneError, scene_from_dict
-from validation.references.indenters import Indenter, jkr, with_zero_load_radius
+from validation.references.indenters import jkr
 from validation.references.mdr import ReducedContact
 
 RADIUS, ENERGY = 1000.0, 0.005
@@ -188,24 +188,3 @@ def test_a_large_preload_does_not_lose_the_pull_off(kind: str, times: float, tmp
     for name, value in (("adhesion_force", exact.pull_off_force()), ("zero_load_radius", exact.zero_load_radius())):
         assert found[name].value == pytest.approx(value, rel=1e-3)
         assert abs(found[name].value - value) <= found[name].uncertainty
-
-
-@pytest.mark.parametrize("adheres", [False, True])
-@pytest.mark.parametrize("exponent", [1.1, 1.5, 2.4])
-def test_the_pressure_on_the_axis_of_a_power_is_within_its_uncertainty(
-    exponent: float, adheres: bool, tmp_path: Path
-) -> None:
-    """p(0) = (E*/π) [n κ c a^(n − 1)/(n − 1) − √(2πaW/E*)/a], a the radius under the load or at F = 0."""
-    contact = with_zero_load_radius(1e-3, exponent, 1.0, 20.0) if adheres else Indenter(1e-3, exponent, 1.0)
-    bodies = {"profile": {"kind": "power", "height": 1e-3, "radius": 1.0, "exponent": exponent}}
-    experiment = {"kind": "load", "force": float(contact.force(20.0))}
-    more = {"adhesion": {"work_of_adhesion": contact.work_of_adhesion}} if adheres else {}
-    if adheres:
-        experiment = {"kind": "pull_off", "preload": contact.pull_off_force()}
-    tables = scene(experiment=experiment, accuracy={"tolerance": 1e-2}, **more)
-    tables["bodies"] |= bodies
-    found = run(tables, tmp_path / "run", figures=False).results["central_pressure"]
-    edge = math.sqrt(2.0 * math.pi * contact.work_of_adhesion / 20.0)
-    exact = (exponent / (exponent - 1.0) * contact.rise * 20.0 ** (exponent - 1.0) - edge) / math.pi
-    assert found.value == pytest.approx(exact, rel=1e-2)
-    assert abs(found.value - exact) <= found.uncertainty

@@ -18,14 +18,12 @@ import pytest
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.runs.campaign import run
-from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import scene_from_dict
 from tests.scenes import chains
 
 SAME = 1e-6
 """Of reduced numbers: the minimisers stop at a residual, and round-off decides by how much they fall below it. Most
 decks are the same to the last digits and agree within 1e-8."""
-FACTORS = [(1e-9, 1.0), (1e1, 1.0), (1e-9, 1e-9), (1e6, 1e9)]
 DIMENSIONS = {
     "spacing": (1, 0), "radius": (1, 0), "range": (1, 0), "amplitude": (0, 1), "bulk_stiffness": (-2, 1),
     "bulk_stiffness_tangential": (-2, 1), "stiffness": (-2, 1), "force": (-1, 1), "preload": (-1, 1),
@@ -33,7 +31,6 @@ DIMENSIONS = {
     "distance": (1, 0), "velocity": (0, 0.5),
 }  # fmt: skip
 """Powers of λ and ε in each key of a scene that has any."""
-UNITS = {"LU": (1, 0), "FU": (-1, 1), "FU/LU": (-2, 1), "FU/LU²": (-3, 1), "FU·LU": (0, 1)}
 """The same of a result."""
 
 PLANE = {
@@ -79,24 +76,6 @@ def similar(scene: Any, length: float, energy: float, key: str = "") -> Any:
         powers = DIMENSIONS.get(key, (0, 0))
         return scene * length ** powers[0] * energy ** powers[1]
     return scene
-
-
-def reduced(done: Run, length: float, energy: float) -> dict[str, float]:
-    """The results without the two factors."""
-    return {
-        name: quantity.value / (length ** UNITS[quantity.unit][0] * energy ** UNITS[quantity.unit][1])
-        for name, quantity in done.outcome.quantities.items()
-    }
-
-
-@pytest.mark.parametrize("name", SCENES)
-def test_similar_scenes_have_the_same_reduced_numbers(name: str, tmp_path: Path) -> None:
-    wanted = reduced(run(scene_from_dict(SCENES[name]), tmp_path / "one", figures=False), 1.0, 1.0)
-    assert len(wanted) >= 3
-    for i, (length, energy) in enumerate(FACTORS):
-        scene = scene_from_dict(similar(SCENES[name], length, energy))
-        found = reduced(run(scene, tmp_path / str(i), figures=False), length, energy)
-        assert found == pytest.approx(wanted, rel=SAME), (length, energy)
 
 
 def test_a_deck_in_units_of_its_own_repeats_the_run_in_those_of_the_scene(tmp_path: Path) -> None:

@@ -104,22 +104,6 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[tuple[float, int], Ru
     }
 
 
-@pytest.mark.parametrize(("share", "number"), CYCLES)
-def test_a_cycle_dissipates_what_mindlin_and_deresiewicz_say(
-    runs: dict[tuple[float, int], Run], share: float, number: int
-) -> None:
-    found = runs[share, number]
-    cycle = found.document["dissipated_energy_per_cycle"]["si"]
-    exact = FRICTION * LOAD * SLIDING * around(share)
-    assert cycle["unit"] == "J"
-    assert abs(cycle["value"] - exact) <= cycle["uncertainty"] < 2e-3 * exact
-    (theory,) = found.document["theory"]
-    beside = theory["values"]["dissipated_energy_per_cycle"]
-    assert beside["si"]["value"] == pytest.approx(exact, rel=QUADRATURE)
-    assert beside["deviation"] == pytest.approx(cycle["value"] / exact - 1.0, abs=1e-9)
-    assert not found.warnings
-
-
 @pytest.mark.parametrize("share", [0.4, 1.5])
 def test_the_first_cycle_is_the_steady_state(runs: dict[tuple[float, int], Run], share: float) -> None:
     """Every cycle dissipates the same, which is the area of the loop; the initial loading belongs to none."""

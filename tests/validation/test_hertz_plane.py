@@ -78,12 +78,6 @@ def test_force_is_the_sum_over_particles(run_tables: RunTables, radius: float, s
         assert state.force == pytest.approx(exact, rel=FORCE)
 
 
-def test_pressure_is_that_of_each_spring(run_tables: RunTables) -> None:
-    state = on_plane(run_tables, 1000.0, 1.0, STIFFNESS, np.array([0.7]))[0]
-    exact = STIFFNESS * np.maximum(0.0, 0.7 - state.profile.x**2 / 2000.0)
-    assert state.profile.pressure == pytest.approx(exact, abs=FORCE * float(exact.max()))
-
-
 def test_convergence_towards_the_closed_form(run_tables: RunTables) -> None:
     """c_n and R fixed; at each spacing the displacements move the edge through one spacing."""
     radius, layer, edge = 1000.0, 0.5, 64.0

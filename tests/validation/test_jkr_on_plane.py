@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from scipy.optimize import brentq, minimize_scalar
 
 from contact1d import Run
 from contact1d.analysis.theory.indenters import PowerLaw
@@ -96,15 +95,6 @@ def test_bodies_jump_in_at_touch_and_then_there_is_one_curve(run_tables: RunTabl
     assert curve.force[again] == pytest.approx(there, abs=1e-6 * F_A)
 
 
-def test_hysteresis_is_the_area_between_jumps(run_tables: RunTables) -> None:
-    """From fixed grips' end to touch: ∫ F dd of the stable branch."""
-    a = np.linspace(JKR.fixed_grips_radius(), float(jkr_at(np.asarray([0.0]))[1][0]), 100_000)
-    area = -float(np.trapezoid(jkr_force(a), jkr_displacement(a)))
-    found = run_tables(tables(PATH)).results["dissipated_energy"]
-    assert found.value == pytest.approx(area, abs=found.uncertainty)
-    assert found.uncertainty < 0.05 * area
-
-
 def test_fixed_grips_let_go_between_two_rows(run_tables: RunTables) -> None:
     found = run_tables(tables(PATH)).results["fixed_grips_displacement"]
     last = JKR.displacement(JKR.fixed_grips_radius())
@@ -121,23 +111,6 @@ def test_a_contact_that_is_not_let_go_of_comes_back_the_same_way(run_tables: Run
     assert force[5] == force[6] == 0.0
     assert force[7] == pytest.approx(-8.0 / 9.0 * F_A, rel=PULL_OFF)
     assert force[8] == force[0]
-
-
-def test_pull_off_at_default_settings(run_tables: RunTables) -> None:
-    done = run_tables(tables(PULL))
-    known = done.results
-    wanted = {
-        "adhesion_force": F_A, "critical_radius": JKR.critical_radius(), "zero_load_radius": A_0, "preload": 2.0,
-    }  # fmt: skip
-    for name, value in wanted.items():
-        assert abs(known[name].value - value) <= known[name].uncertainty
-    assert known["adhesion_force"].value == pytest.approx(F_A, rel=PULL_OFF)
-    assert done.warnings == {}
-    states = done.outcome.states
-    critical = min(states, key=lambda state: state.force)
-    assert critical.displacement == pytest.approx(JKR.displacement(JKR.critical_radius()), rel=PLACE)
-    zero = min(states, key=lambda state: abs(state.force) if state.displacement > 0.05 else math.inf)
-    assert zero.displacement == pytest.approx(JKR.displacement(A_0), rel=PLACE)
 
 
 @pytest.mark.parametrize("key", ["work_of_adhesion", "surface_energy"])
@@ -172,14 +145,6 @@ def test_load(run_tables: RunTables, force: float) -> None:
 TIMED: dict[str, Any] = {"damping": {"coefficient": "auto"}, "plate": {}, "accuracy": {"tolerance": 1e-2}}
 
 
-@pytest.mark.parametrize("force", [1.0, -1.0])
-def test_a_plate_in_time_comes_to_rest_where_jkr_has_it(run_tables: RunTables, force: float) -> None:
-    known = run_tables(tables({"kind": "load", "force": force}, 0.4) | TIMED).results
-    a = JKR.contact_radius(force)
-    assert abs(known["contact_radius"].value - a) <= known["contact_radius"].uncertainty
-    assert abs(known["displacement"].value - JKR.displacement(a)) <= known["displacement"].uncertainty
-
-
 def test_a_plate_in_time_is_pulled_off_by_f_a(run_tables: RunTables) -> None:
     """A contact that goes back to where it was held is held again, so that loads can be tried one after the other."""
     known = run_tables(tables(PULL, 0.4) | TIMED).results
@@ -192,25 +157,6 @@ def test_a_plate_in_time_is_pulled_off_by_f_a(run_tables: RunTables) -> None:
         assert known[name].value == pytest.approx(value, rel=1e-2), name
 
 
-@pytest.mark.parametrize(("exponent", "profile"), [
-    (1.0, {"kind": "cone", "slope": 0.05}), (4.0, {"kind": "power", "exponent": 4.0, "radius": 10.0, "height": 0.4}),
-])  # fmt: skip
-def test_cone_and_fourth_power(run_tables: RunTables, exponent: float, profile: dict[str, Any]) -> None:
-    n, c = exponent, profile.get("slope", 0.4 / 10.0**4)
-    kappa = 0.5 * math.sqrt(math.pi) * n * math.gamma(0.5 * n) / math.gamma(0.5 * (n + 1.0))
-
-    def force(a: float) -> float:
-        return 2.0 * n / (n + 1.0) * kappa * c * E * a ** (n + 1.0) - math.sqrt(8.0 * math.pi * E * W * a**3)
-
-    critical = minimize_scalar(force, bounds=(1e-3, 100.0), method="bounded", options={"xatol": 1e-10})
-    zero = brentq(force, critical.x, 200.0)
-    done = run_tables(tables(PULL, 0.1, profile=profile, bulk_stiffness=0.1 * E))
-    known = done.results
-    for name, value in (("adhesion_force", -critical.fun), ("critical_radius", critical.x), ("zero_load_radius", zero)):
-        assert abs(known[name].value - value) <= known[name].uncertainty, name
-        assert known[name].value == pytest.approx(value, rel=PLACE), name
-
-
 PUNCH = 10.0
 KENDALL = math.sqrt(8.0 * math.pi * E * W * PUNCH**3)
 """F_A = √(8πE*Wa³) of a flat punch; before that F = 2E*ad."""
@@ -220,22 +166,6 @@ PUNCH_SPACINGS = [1.0, 0.5, 0.25]
 def punch(experiment: dict[str, Any], spacing: float) -> dict[str, Any]:
     profile = {"kind": "flat_punch", "radius": PUNCH}
     return tables(experiment, spacing, profile=profile, bulk_stiffness=E * spacing)
-
-
-@pytest.mark.parametrize("spacing", PUNCH_SPACINGS)
-def test_flat_punch_is_kendalls_with_any_spacing_and_says_so(run_tables: RunTables, spacing: float) -> None:
-    """It lets go all at once, and ends where its edge particles do: no lattice is in it, and no uncertainty of one."""
-    done = run_tables(punch(PULL, spacing))
-    for name, value in (("adhesion_force", KENDALL), ("critical_radius", PUNCH), ("zero_load_radius", PUNCH)):
-        known = done.results[name]
-        assert known.value == pytest.approx(value, rel=1e-7), name
-        assert abs(known.value - value) <= known.uncertainty + ROUND_OFF * value, name
-        assert known.uncertainty <= 1e-7 * value, name
-    assert not done.warnings
-    held = [state for state in done.outcome.states if state.force]
-    assert [state.force for state in held] == pytest.approx(
-        [2.0 * E * PUNCH * state.displacement for state in held], rel=ROUND_OFF, abs=ROUND_OFF
-    )
 
 
 def test_rows_of_a_punch_bracket_where_it_lets_go(run_tables: RunTables) -> None:

@@ -66,12 +66,6 @@ def test_limits_are_dmt_and_jkr(run_tables: RunTables) -> None:
     assert (soft / (1.5 * LOAD) - 1.0) * transition**2 == pytest.approx(0.109, rel=0.02)
 
 
-def test_no_number_depends_on_the_spacing(run_tables: RunTables) -> None:
-    coarse, fine = (run_tables(tables(1.0, PULL, spacing)).results for spacing in (1.5, 0.1))
-    for name in ("adhesion_force", "zero_load_radius", "critical_radius", "cohesive_radius"):
-        assert coarse[name].value == pytest.approx(fine[name].value, rel=CLOSE), name
-
-
 def test_a_particle_on_the_axis_has_the_cells_of_both_sides(run_tables: RunTables) -> None:
     """Of an odd number one stands there; a force is that of an even number, to round-off of sixty cells."""
     path = {"kind": "path", "displacements": [0.05, 0.3, -0.05]}

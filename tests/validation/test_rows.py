@@ -17,15 +17,6 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import contact1d
-from contact1d.workflow import experiments
-from contact1d.workflow.continuation.driver import Driver
-from contact1d.workflow.continuation.marks import unloading
-from contact1d.workflow.continuation.outcome import Reading
-from contact1d.workflow.continuation.trace import Trace
-from contact1d.workflow.experiments.pull_off import PullOffExperiment
-from contact1d.workflow.model.settings import Settings
-from contact1d.workflow.scene import Scene
-from contact1d.workflow.units import FORCE, LENGTH
 
 RADIUS, WORK = 250.0, 0.03
 """Of a body whose layer has E* = 1."""
@@ -129,65 +120,3 @@ def test_a_flat_punch_is_held_up_to_its_limit() -> None:
     tables["bodies"]["profile"] = {"kind": "flat_punch", "radius": 14.0}
     found = contact1d.run(tables).results.adhesion_force
     assert abs(found.value - math.sqrt(8.0 * math.pi * 14.0**3 * WORK)) <= found.uncertainty <= 1e-6
-
-
-class Kneading(PullOffExperiment):
-    """Press and relieve twice, then pull off."""
-
-    preload, relief = 0.25, 0.08
-
-    def script(self, branch: Driver, scene: Scene) -> None:
-        for _ in range(2):
-            branch.begin("loading")
-            branch.reach(self.preload, 0.5)
-            branch.begin("relieving")
-            branch.reach(self.relief, 0.5)
-        branch.mark("relieved")
-        branch.begin("unloading")
-        branch.reach(0.0, 0.5)
-        branch.begin("pulling")
-        branch.maximum()
-        branch.mark("critical")
-        branch.begin("separating")
-        branch.open()
-
-    def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        relieved = trace.phases("relieving")
-        return {
-            "adhesion_force": unloading(trace.legs[-1].falling(), settings)["adhesion_force"],
-            "displacement": Reading(float(relieved.displacement[-1]), LENGTH),
-            "force": Reading(float(relieved.force[-1]), FORCE, prescribed=True),
-        }
-
-
-SNAPPING = {
-    "title": "kneading",
-    "bodies": {
-        "particles": "auto", "spacing": 1.0, "profile": {"kind": "parabola", "radius": 100.0}, "bulk_stiffness": 0.03,
-        "reduction": "geike_popov",
-    },
-    "interaction": {"repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26}},
-    "experiment": {"kind": "pull_off", "preload": 0.25},
-}  # fmt: skip
-
-
-def test_a_script_may_press_and_relieve_where_pairs_snap(monkeypatch: pytest.MonkeyPatch) -> None:
-    once = contact1d.run(SNAPPING).results.adhesion_force
-    monkeypatch.setitem(experiments.KINDS, "pull_off", Kneading())
-    run = contact1d.run(SNAPPING)
-    assert abs(run.results.adhesion_force.value - once.value) <= 0.1 * once.uncertainty
-    assert run.results.force.value == pytest.approx(Kneading.relief, abs=1e-3 * once.value)
-    branches = [str(one) for one in run.curve["branch"]]
-    assert [name for i, name in enumerate(branches) if name != branches[i - 1]] == [
-        "loading", "relieving", "loading", "relieving", "unloading",
-    ]  # fmt: skip
-
-
-def test_a_displacement_under_a_force_has_the_error_of_the_force(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(experiments.KINDS, "pull_off", Kneading())
-    fine = scene({"kind": "pull_off", "preload": 0.25}, spacing=0.05, adhesion={"work_of_adhesion": WORK})
-    fine["bodies"]["particles"] = 2000
-    found = contact1d.run(fine).outcome.results["displacement"]
-    exact = brentq(lambda d: jkr(d, RADIUS, 1.0, WORK) - Kneading.relief, 0.0, 3.0, xtol=1e-15)
-    assert found.errors["solver"] > 0.0
-    assert abs(found.value - exact) <= found.uncertainty

@@ -131,19 +131,6 @@ SLIDING = sliding_displacement(MU, 0.8, DEPTH)
 EDGE = math.sqrt(RADIUS * DEPTH)
 
 
-def test_cattaneo_and_mindlin_with_twenty_particles_in_contact(run_tables: RunTables) -> None:
-    """F_x(u), c/a, the way back and the loop's area."""
-    shares = np.array([0.2, 0.5, 0.8, 0.6, 0.0, -0.4, -0.8, -0.4, 0.4, 0.8])
-    run = run_tables(tables((SLIDING * shares).tolist(), at_spacing(EDGE / 10.0)))
-    assert int((run.profiles["final"].pressure > 0.0).sum()) == 20
-    expected = mindlin_path((SLIDING * shares).tolist(), 40.0, MU, SLIDING)
-    assert run.friction["tangential_force"] == pytest.approx(expected, abs=CLOSED_FORM * MU * 40.0)
-    sticking = run.friction["stick_radius"][:3] / run.curve.contact_radius[:3]
-    assert sticking == pytest.approx(mindlin_stick_radius(SLIDING * shares[:3], 1.0, SLIDING), abs=CLOSED_FORM)
-    area = run.friction["dissipated_energy"][-1] - run.friction["dissipated_energy"][2]
-    assert area == pytest.approx(mindlin_loop_area(0.8 * SLIDING, 40.0, MU, SLIDING), rel=CLOSED_FORM)
-
-
 def test_convergence_towards_mindlin_is_of_second_order(run_tables: RunTables) -> None:
     """Root mean square over a way out and back, of F_x over μN and c over a."""
     shares = [*np.linspace(0.03, 0.9, 30).tolist(), *np.linspace(0.85, -0.9, 36).tolist()]

@@ -23,17 +23,20 @@ FEWEST, WIDEST = 10.0, 0.9
 def pressure(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressure]) -> dict[str, Agreement]:
     """∫ p dA of each reported state beside the force, which is as uncertain as the forces of the run.
 
-    Nothing of particles that interact.
+    Under a given force the displacement is, which moves ∫ p dA. Nothing of particles that interact.
     """
     if scene.interaction is not None:
         return {}
     found, shape = [], scene.bodies.profile
-    rows = sum(outcome.rows.get("force", {}).values())
+    rows = {name: sum(outcome.rows.get(name, {}).values()) for name in ("force", "displacement")}
     least = OPEN_PRESSURE if shape.alternatives or shape.deviations or shape.slow else PRESSURE
     for name, one in pressures.items():
         state = outcome.marked[name]
         at = next((i for i, other in enumerate(outcome.states) if other is state), None)
-        known = 0.0 if at is None else float(np.broadcast_to(rows, len(outcome.states))[at])
+        known, moved = (
+            0.0 if at is None else float(np.broadcast_to(row, len(outcome.states))[at]) for row in rows.values()
+        )
+        known += moved * (one.stiffness.value if one.stiffness else 0.0)
         force, size = state.force, float(np.trapezoid(np.abs(one.pressure) * one.r, one.r))
         stated = float(np.trapezoid(one.uncertainty * one.r, one.r)) / size if size else 0.0
         words = f"the pressure of the state {name!r} adds up to {one.force:.8g} FU, and its force is {force:.8g} FU"

@@ -79,14 +79,21 @@ class Case:
 
     @property
     def force(self) -> float | None:
-        """F [FU] of the state that is reported, where the scene gives it; else None."""
+        """F [FU] of the state that is reported, where the scene gives it; else None.
+
+        Where bodies adhere a force has two displacements, so that one under a given displacement tells nothing.
+        """
+        if self.scene.adheres and self.scene.experiment.places():
+            return None
         return float(self.quantities["force"].value) if "force" in self.quantities else None
 
     @property
     def displacement(self) -> float | None:
         """d [LU] of the state that is reported, where the scene gives it (the deepest of a path); else None."""
         places = self.scene.experiment.places()
-        return max(places) if places and self.force is None else None
+        if not places or self.force is not None:
+            return None
+        return float(self.quantities["displacement"].value) if "displacement" in self.quantities else max(places)
 
     @property
     def work(self) -> float:
@@ -309,7 +316,8 @@ def _jkr_values(case: Case) -> Values:
 def _adhesive_values(case: Case) -> Values:
     body, said = case.body, _marks(case, case.body)
     said["fixed_grips_displacement"] = body.displacement(body.fixed_grips_radius())
-    a = said.get("contact_radius", said["zero_load_radius"] if case.force is None else 0.0)
+    reported = case.contact_radius if "displacement" in case.quantities else said["zero_load_radius"]
+    a = said.get("contact_radius", reported if case.force is None else 0.0)
     said["adhesion_energy"] = math.pi * a**2 * case.work
     if case.kind == "parabola" and case.contact_radius > 0.0:
         said["central_pressure"] = said["peak_pressure"] = body.central_pressure(case.contact_radius)

@@ -137,8 +137,10 @@ def _missing(model: Reduced, work: Work, finer: int) -> tuple[float, float, floa
         return done - stored - lost, done, stored + lost, whole
     followed = None if work.forces is not None else model.follow(path)
     forces = followed.total if followed else np.asarray(work.forces)
-    if path.displacement[0] > 0.0 and forces[0] != 0.0:  # what came before is not known
-        return None
+    if forces[0] != 0.0:  # work begins there; what was gained and lost before is no part of it
+        first = {name: column[:1] for name, column in vars(path).items() if column is not None}
+        before = model.energies(Path(**first)) or (0.0, 0.0)
+        stored, lost = stored - before[0], lost - before[1]
     parts = 0.5 * (forces[1:] + forces[:-1]) * np.diff(path.displacement)
     if followed and followed.shear is not None:
         shears = np.asarray([-followed.shear(state).sum() for state in range(path.along.size)])

@@ -87,8 +87,9 @@ class ImpactExperiment(Scripted[Impact]):
         dense = np.interp(np.arange(0.0, len(time) - 1 + 1e-9, 1.0 / FINER), np.arange(len(time)), time)
         path = Path(moved(dense), np.zeros_like(dense), dense, moved(dense, 1))
         first, left = (0.5 * mass * one**2 for one in (velocity, states[-1].plate_velocity))
-        work = consistency.Work(path, kinetic=(first, first - left))
-        return consistency.energy(case, work, results["dissipated_energy"].uncertainty / first)
+        peak = results["peak_force"]  # a body that sticks has lost all, whatever its forces
+        doubt = max(results["dissipated_energy"].uncertainty / first, peak.uncertainty / peak.value)
+        return consistency.energy(case, consistency.Work(path, kinetic=(first, first - left)), doubt)
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
         """The time of each state."""

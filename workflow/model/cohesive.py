@@ -440,7 +440,9 @@ def stopped_at(scene: Scene, estimate: ContactEstimate, softer: float = 1.0) -> 
     assert scene.plate
     assert scene.plate.mass != "auto"
     energy, deepest = 0.5 * softer * scene.plate.mass * scene.experiment.velocity**2, scene.bodies.spacing
-    last = estimate.end[1] if isinstance(estimate, AdhesiveEstimate) else math.inf
+    last = math.inf  # a contact that covers its body only gets deeper
+    if isinstance(estimate, AdhesiveEstimate) and estimate.known < estimate.profile.reach:
+        last = estimate.end[1]
 
     def stored(displacement: float) -> float:
         places = np.linspace(0.0, displacement, STOPPING)
