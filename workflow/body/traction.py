@@ -278,6 +278,8 @@ def _pressure(state: _Loaded, share: float, given: float) -> BodyPressure | None
     if coarser or state.body is None:
         spread += _spread(p, *coarser)
     if not state.is_elastic:  # one difference may be 0 by chance
+        if not coarser and state.body is not None:
+            spread += np.abs(p) / (2.0 * np.count_nonzero(side < fine.edge)) ** 2
         if other := state.through(state.load, 2 * own, own):
             spread = np.maximum(spread, np.abs(other.pressure(r) - pulled(r) - p))
         spread = maximum_filter1d(spread, BESIDE, mode="nearest")
