@@ -39,16 +39,18 @@ FORCED = (
     "load", "pull_off", "pull_off twice", "pull_off at a velocity", "tangential", "tangential cycles",
     "history of a force",
 )  # fmt: skip
+FORMULAS = ("parabola", "circle", "ellipsoid", "cone", "flat_punch", "power")
+"""Profiles whose contact has a closed form in the program."""
 KNOWN: dict[str, str] = {
     one: reason
     for reason, those in {
-        "± depends on the units: a threshold is not relative": ("units two_kinks-jkr-pull_off_twice-quasistatic",),
+        "± depends on the units: a threshold is not relative": ("units two_kinks-jkr-pull_off-quasistatic",),
         "a number under dashpots and a given force changes by 1e-4 with the units": (
             "units cone-kelvin_voigt-history_of_a_force-quasistatic",
         ),
         "± is 4 to 20 times the errors": (
             "cap power-friction-tangential_cycles-quasistatic",
-            "cap truncated_cone-elastic-history-quasistatic",
+            "cap circle-prony-history_of_a_force-quasistatic",
         ),
         "± is too small by 3 to 8 %": (
             "reference cone-jkr-pull_off-dynamic",
@@ -76,7 +78,9 @@ STOPPED = {
 """What no particles can do: one under the tip of a cone is pushed through, one at the edge of a punch never rests."""
 
 EVERY = [one for one in allowed() if str(one) not in STOPPED]
-CHOSEN = sample(EVERY)
+LONG = ("maugis", "rate", "kelvin_voigt")
+"""Laws whose runs take longest."""
+CHOSEN = sample([one for one in EVERY if one.profile != "table" or one.law not in LONG])
 
 
 def cases(contract: str, applies: Callable[[Combination], Any], long: tuple[str, ...] = ()) -> Any:
@@ -115,7 +119,7 @@ def applying(one: Combination) -> set[str]:
     if statistics or one.experiment == "slide":
         return set()
     found = {"asked"} if one.experiment in FORCED else set()
-    if one.law == "elastic" and one.experiment == "load" and not timed and one.profile != "table":
+    if one.law == "elastic" and one.experiment == "load" and not timed and one.profile in FORMULAS:
         found.add("closed_form")
     if not one.on_plane or "neighbours" in one.tables:
         return found | ({"balance"} if not timed else set())
@@ -133,7 +137,7 @@ def test_the_checks_are_there_and_hold(made: Runs, one: Combination) -> None:
         assert check is None or 0.0 <= check["difference"] <= check["allowed"], name
 
 
-@cases("units", lambda one: True)
+@cases("units", lambda one: True, long=("rate",))
 def test_units_change_nothing(made: Runs, one: Combination) -> None:
     here = finished(made(one)).numbers
     names = sorted(OTHERS)
@@ -144,10 +148,10 @@ def test_units_change_nothing(made: Runs, one: Combination) -> None:
         other, told = there[key]
         least = ROUND_OFF * abs(value) + NOTHING
         assert abs(other - value) <= SAME * max(abs(value), doubt) + least, f"{key} in {name}"
-        assert abs(told - doubt) <= (SAME if one.refines else MINIMISED) * doubt + least, f"± of {key} in {name}"
+        assert abs(told - doubt) <= (SAME if one.refines else MINIMISED) * doubt + 10.0 * least, f"± of {key} in {name}"
 
 
-@cases("refinement", lambda one: one.refines)
+@cases("refinement", lambda one: one.refines, long=LONG[:2])
 def test_half_the_spacing_stays_within_both(made: Runs, one: Combination) -> None:
     here, finer = (finished(made(each)).numbers for each in (one, replace(one, spacing=0.5 * one.spacing)))
     for name in here.keys() & finer.keys():
@@ -169,7 +173,7 @@ def has_lattices(one: Combination) -> bool:
     return one.refines and one.method == "quasistatic" and one.profile != "flat_punch"
 
 
-@cases("cap", has_lattices, long=("maugis", "rate", "kelvin_voigt"))
+@cases("cap", has_lattices, long=(*LONG, "prony"))
 def test_no_uncertainty_is_far_too_wide(made: Runs, one: Combination) -> None:
     """Of what is no reference's, the errors are those from the mean."""
     exact = replace(one, tolerance=1e-3)

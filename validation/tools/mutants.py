@@ -37,7 +37,7 @@ from validation.tools.copies import ROOT, copy_of_this, first_failure, load, run
 
 RESULTS = Path(__file__).parents[1] / "results" / "mutants.json"
 FOLDERS = ("workflow", "analysis", "potentials")
-TESTS = ("tests/unit", "tests/decks", "tests/validation", "tests/hard")
+TESTS = ("tests/unit", "tests/decks", "tests/validation", "tests/contracts", "tests/hard")
 ASKED = 0.85
 """Asked of the share that is noticed."""
 LONGEST = 60.0
