@@ -23,7 +23,7 @@ from operator import itemgetter
 from typing import Any
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d
+from numpy.lib.stride_tricks import sliding_window_view
 
 from contact1d.analysis.abel import FEWEST, LineLoad, line_load
 from contact1d.analysis.polynomial import gauss
@@ -282,7 +282,7 @@ def _pressure(state: _Loaded, share: float, given: float) -> BodyPressure | None
             spread += np.abs(p) / (2.0 * np.count_nonzero(side < fine.edge)) ** 2
         if other := state.through(state.load, 2 * own, own):
             spread = np.maximum(spread, np.abs(other.pressure(r) - pulled(r) - p))
-        spread = maximum_filter1d(spread, BESIDE, mode="nearest")
+        spread = sliding_window_view(np.pad(spread, BESIDE // 2, "edge"), BESIDE).max(axis=1)
     by_shape = _by_shape(state, own, r, p, pulled)
     within = np.count_nonzero(side < state.radius.value / state.wider)
     told = [one for i, one in enumerate((p, *coarser)) if within >= FEWEST * 2**i]

@@ -24,7 +24,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
 
 from contact1d.workflow.model.chain import FARTHEST_RATIO, SettingsError
 from contact1d.workflow.model.pairs import ContactEstimate, Profile, beside_kinks
@@ -35,6 +34,8 @@ PLACES = 4000
 """Positions between which the predictor is straight."""
 FIRST, SEEN = 1e-3, 30.0
 """The first of them over the last, to a power at which the least h is so many times further out than the first."""
+ROUNDS, LOOKS = 4, 41
+"""How often the least h is looked for between the neighbours of the best place, and at how many."""
 BEYOND = 1.2
 """Width of what is known of the contact over what the experiment needs."""
 SPANNED = 0.9
@@ -134,9 +135,11 @@ class AdhesiveEstimate(ContactEstimate):
             least = int(np.argmin(opened(x)))
             if self.work == 0.0 or x[least] > SEEN * inner[0]:
                 break
-        if self.work and 0 < least < x.size - 1:
-            lowest = minimize_scalar(lambda at: float(opened(np.asarray([at]))[0]), bounds=(x[least - 1], x[least + 1]))
-            x = np.unique(np.append(x, lowest.x))
+        near, at = x, least
+        for _ in range(ROUNDS if self.work else 0):
+            near = np.linspace(near[max(at - 1, 0)], near[min(at + 1, near.size - 1)], LOOKS)
+            at = int(np.argmin(opened(near)))
+        x = np.unique(np.append(x, near[at]))
         g, h = self.profile.height(x), opened(x)
         area = np.concatenate([[0.0], np.cumsum(0.5 * (g[1:] + g[:-1]) * np.diff(x))])
         if self.known == self.profile.reach:  # beyond its end a body is as wide as it is
