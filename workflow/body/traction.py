@@ -270,7 +270,8 @@ def _pressure(state: _Loaded, share: float, given: float) -> BodyPressure | None
     r = inside if fine.has_apex else np.append(0.0, inside)
     p, *coarser = (one.pressure(r) - pulled(r) for one in levels)
     # Where g is flat up to an edge that lies between two particles, p is that of a punch, ∝ 1/a.
-    moves = np.maximum(np.abs(p), _moves(fine, fine.body or state.heights, r) if state.is_alone else 0.0)
+    at_most = _moves(fine, fine.body or state.heights, r, -1.0 if state.is_elastic else 1.0) if state.is_alone else 0.0
+    moves = np.maximum(np.abs(p), at_most)
     if zone:  # the attraction's edge goes with that of the contact
         moves += np.abs(_attraction(scene, zone, STEP)(r) - pulled(r)) / STEP
     spread = state.radius.uncertainty / state.radius.value * moves + given * np.abs(p)
@@ -413,11 +414,14 @@ def _attraction(scene: Scene, zone: ZonedProfile | None, wider: float = 0.0) -> 
     return lambda r: 2.0 / np.pi * stress * np.arctan2(ring, np.sqrt((edge - r) * (edge + r)))
 
 
-def _moves(load: LineLoad, body: Callable[[Array], Array], r: Array) -> Array:
-    """|a ∂p/∂a| under springs on a plane at most, without the J/2a of a jump that grows [FU/LU²]."""
+def _moves(load: LineLoad, body: Callable[[Array], Array], r: Array, way: float) -> Array:
+    """|a ∂p/∂a| under springs on a plane at most, without the J/2a of a jump that grows [FU/LU²].
+
+    `way`: −1 where both parts are known to be of that edge, else 1.
+    """
     square = (load.edge - r) * (load.edge + r)
     rise = np.diff(body(load.edge * np.asarray([1.0, 1.0 + STEP]))) / STEP
-    return (rise - load.at_edge * load.edge**2 / square) / (np.pi * np.sqrt(square))
+    return (rise + way * load.at_edge * load.edge**2 / square) / (np.pi * np.sqrt(square))
 
 
 def _converges(levels: Sequence[float], noise: float) -> bool:

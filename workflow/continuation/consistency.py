@@ -128,14 +128,14 @@ def energy(case: Reduction, work: Work, doubt: float = 0.0) -> dict[str, Agreeme
 
 def _missing(model: Reduced, work: Work, finer: int) -> tuple[float, float, float, float] | None:
     """Work that is neither stored nor lost, the work, what is stored and lost, and the size of it [FU·LU]."""
-    path = work.path if work.kinetic or work.path.time.any() else _dense(work.path, model, finer)
+    path = work.path if work.kinetic or model.in_time else _dense(work.path, model, finer)
     if (found := model.energies(path)) is None:
         return None
     stored, lost = found
     if work.kinetic:
         whole, done = work.kinetic
         return done - stored - lost, done, stored + lost, whole
-    followed = None if work.forces is not None else model.follow(path)
+    followed = None if model.in_time and work.forces is not None else model.follow(path)
     forces = followed.total if followed else np.asarray(work.forces)
     if forces[0] != 0.0:  # work begins there; what was gained and lost before is no part of it
         first = {name: column[:1] for name, column in vars(path).items() if column is not None}
@@ -152,7 +152,7 @@ def _missing(model: Reduced, work: Work, finer: int) -> tuple[float, float, floa
 
 def _denser(case: Reduction, work: Work) -> Work:
     """The same of a history with twice the load steps."""
-    if work.kinetic or not work.path.time.any():
+    if work.kinetic or not case.model.in_time:
         return work
     branch = ModelBranch(case.scene, case.settings, case.model, 2, 0.0)
     case.script(branch)

@@ -134,7 +134,7 @@ class Scripted(Experiment[K]):
         checks |= consistency.asked(scene, self.asked(trace, scene), states)
         if forces is not None:
             own = branch.history or Path(trace.displacement, trace.along, trace.time)
-            checks |= consistency.energy(case, consistency.Work(own, forces if branch.history else None))
+            checks |= consistency.energy(case, consistency.Work(own, forces))
         checks |= self.energy(case, states, results)
         rows = curve_errors(case, trace, errors.common, slower)
         outcome = Outcome(

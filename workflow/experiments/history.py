@@ -32,6 +32,8 @@ NOTHING = 1e-9
 """Force over the largest one below which it is round-off of a displacement."""
 RATES = 3
 """States on one side of a corner that give the rates there."""
+SAMPLED, DIGITS = 1e-4, 1e-7
+"""Errors at least, relative, of the rates that a few states show, and of a time that is found between two."""
 ROUNDED = 9
 """Decimals of parts of a leg: none is as short as round-off."""
 PHASES = {1.0: "loading", -1.0: "unloading", 0.0: "holding"}
@@ -55,7 +57,7 @@ class HistoryExperiment(Scripted[History]):
         by_force, last = self.given(scene).force is not None, len(trace) - 1
         d, force = trace.displacement, trace.force
         found = {
-            "peak_force": Reading(float(force.max()), FORCE, prescribed=by_force),
+            "peak_force": Reading(float(force.max()), FORCE, {"sampling": _between(trace)}, prescribed=by_force),
             "peak_displacement": Reading(float(d.max()), LENGTH, prescribed=not by_force),
             "displacement": Reading(float(d[last]), LENGTH, prescribed=not by_force, scale=float(np.abs(d).max())),
             "force": Reading(float(force[last]), FORCE, prescribed=by_force, scale=float(np.abs(force).max())),
@@ -165,11 +167,25 @@ def _slopes(trace: Trace) -> dict[str, Reading]:
         rates.append([float(through(at, np.asarray([one[i] for i in side]))[1]) for one in (force, d)])
     (force_before, d_before), (force_after, d_after) = rates
     # Slopes are what a few states at a corner show: no tolerance is asked of them.
-    found = {"unloading_stiffness": Reading(force_after / d_after, LINE_PRESSURE, prescribed=True)} if d_after else {}
+    found = {"unloading_stiffness": _rate(force_after / d_after)} if d_after else {}
     if d_after != d_before:
         own = (force_after - force_before) / (d_after - d_before)
-        found["creep_corrected_stiffness"] = Reading(own, LINE_PRESSURE, prescribed=True)
+        found["creep_corrected_stiffness"] = _rate(own)
     return found
+
+
+def _rate(value: float) -> Reading:
+    return Reading(value, LINE_PRESSURE, {"sampling": SAMPLED * abs(value)}, prescribed=True)
+
+
+def _between(trace: Trace) -> float:
+    """What the largest force of all states misses of a maximum within a leg [FU], by a parabola beside it."""
+    top = int(trace.force.argmax())
+    near = slice(top - 1, top + 2)
+    if top == 0 or len(set(trace.phase[near])) > 1 or trace.force[near].size < 3:
+        return 0.0
+    _, slope, bend = through(trace.time[near] - trace.time[top], trace.force[near]).tolist()
+    return -0.25 * slope**2 / bend if bend < 0.0 else 0.0
 
 
 def _whole(trace: Trace, corner: int, states: Sequence[int]) -> list[float]:
@@ -228,4 +244,4 @@ def lost(trace: Trace, touched: float = 0.0) -> Reading:
         before, here = (float(np.abs(trace.profile(i).pressure).max()) for i in (last - 1, last))
         part = here / (before - here) * (time - start) / (end - time) if before > here else 1.0
     found = time + min(max(part, 0.0), 1.0) * (end - time)
-    return Reading(found - touched, TIME, {"sampling": MARGIN * doubt * (end - time)})
+    return Reading(found - touched, TIME, {"sampling": MARGIN * doubt * (end - time) + DIGITS * (found - touched)})

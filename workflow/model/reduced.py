@@ -53,6 +53,8 @@ NEAREST = 1e-9
 """Distance from the limit point, over that to the largest displacement, from which positions are examined."""
 LOOKS_BETWEEN, EDGE_STEP = 20, 0.01
 """Looks for a receding edge between two moments of a history, and its way from one load step to the next, over all."""
+EDGE = 0.02
+"""How far an edge with a jump may be off, over the spacing: measured beside rings, a third of it at most."""
 JUMPS = 1e-6
 """Least overlap at an edge over the displacement that makes a jump there: less is round-off of the edge."""
 TOUCH = 1e-9
@@ -148,6 +150,8 @@ class Reduced(ABC):
 
     dense: ClassVar[int] = 16
     """Positions in one step of a path that show what its steps miss."""
+    in_time: ClassVar[bool] = False
+    """Whether forces depend on how fast a path is gone."""
 
     @property
     def shape(self) -> Undeformed:
@@ -507,6 +511,7 @@ class RatedCells(Reduced):
     estimate: RatedEstimate
 
     dense: ClassVar[int] = 4
+    in_time: ClassVar[bool] = True
 
     @property
     def shares_edges(self) -> bool:
@@ -619,6 +624,7 @@ class RelaxingSprings(Reduced):
     law: Viscoelasticity
 
     dense: ClassVar[int] = 4
+    in_time: ClassVar[bool] = True
 
     @property
     def shares_edges(self) -> bool:
@@ -692,8 +698,11 @@ class RelaxingSprings(Reduced):
             memory.go(place, time, velocity)
         each *= self.estimate.stiffness
         edge = self._edges(margin)
-        other = 0.5 * self.estimate.spacing * memory.width(margin, counts) if self.shares_edges else edge
-        zone = (edge, edge, self._jumps(edge, path.displacement, columns[2]), np.abs(other - edge))
+        doubt = np.zeros_like(edge)
+        if self.shares_edges:
+            spacing = self.estimate.spacing
+            doubt = np.abs(0.5 * spacing * memory.width(margin, counts) - edge) + EDGE * spacing * (edge > 0.0)
+        zone = (edge, edge, self._jumps(edge, path.displacement, columns[2]), doubt)
         return Followed(self.x, each @ counts, lambda state: each[state][own], zone=zone)
 
     def energies(self, path: Path) -> tuple[float, float]:
