@@ -139,7 +139,9 @@ def _work(law: DoubleExponential, spacing: float) -> Quantity:
 def pressures_of(scene: Scene, outcome: Outcome) -> dict[str, BodyPressure]:
     """p(r) of the reported states of the body, as uncertain as the results of which it is a function."""
     found = outcome.exact
-    shares = {name: one.uncertainty / abs(one.value) for name in ERRORS if (one := found.get(name)) and one.value}
+    shares = {
+        name: one.uncertainty / outcome.results[name].size for name in ERRORS if (one := found.get(name)) and one.value
+    }
     radius = next((shares[name] for name in RADII if name in shares), 0.0)
     critical = found.get("critical_radius")
     radii = dict.fromkeys(outcome.profiles, radius)
