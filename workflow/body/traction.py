@@ -61,8 +61,9 @@ SHRINKS = 0.45
 """|p₁ − p₂|/|p₁ − p₄| below which differences shrink: 1/(1 + 2ᵖ) of an order p, ½ of a logarithm, more of a pole."""
 NOISE = 0.1
 """Of the tolerance: differences that are smaller, relative to the pressure, are those of the minimiser."""
-BESIDE = 7
-"""Radii whose largest error is that of the one between them, where the shape of a load is not known."""
+BESIDE, OPEN = 7, 2.5
+"""Where the shape of a load is not known: radii whose largest error is that of the one between them, and how many of
+these it may be; measured beside rings that touch again, between whose particles a slope jumps."""
 NEXT = 0.25
 """Of the difference of the second from the fourth particles, added to that of the first, which may be small by accident
 where a kink lies between particles: as much again of the second order."""
@@ -283,7 +284,7 @@ def _pressure(state: _Loaded, share: float, given: float) -> BodyPressure | None
             spread += np.abs(p) / (2.0 * np.count_nonzero(side < fine.edge)) ** 2
         if other := state.through(state.load, 2 * own, own):
             spread = np.maximum(spread, np.abs(other.pressure(r) - pulled(r) - p))
-        spread = sliding_window_view(np.pad(spread, BESIDE // 2, "edge"), BESIDE).max(axis=1)
+        spread = OPEN * sliding_window_view(np.pad(spread, BESIDE // 2, "edge"), BESIDE).max(axis=1)
     by_shape = _by_shape(state, own, r, p, pulled)
     within = np.count_nonzero(side < state.radius.value / state.wider)
     told = [one for i, one in enumerate((p, *coarser)) if within >= FEWEST * 2**i]
