@@ -235,7 +235,7 @@ def lost(trace: Trace, touched: float = 0.0) -> Reading:
     if place is not None:  # the particles next to the axis may be lost before
         last += int(np.argmax(d[last + 1 :] <= place))
     start, time, end = trace.time[last - 1 : last + 2].tolist()
-    part, doubt = 0.0, 0.0
+    part, doubt, digits = 0.0, 0.0, 0.0 if place is None else DIGITS
     if place is not None:
         part = float((d[last] - place) / (d[last] - d[last + 1])) if d[last] > d[last + 1] else 0.0
     elif trace.force[last] < 0.0:
@@ -244,4 +244,4 @@ def lost(trace: Trace, touched: float = 0.0) -> Reading:
         before, here = (float(np.abs(trace.profile(i).pressure).max()) for i in (last - 1, last))
         part = here / (before - here) * (time - start) / (end - time) if before > here else 1.0
     found = time + min(max(part, 0.0), 1.0) * (end - time)
-    return Reading(found - touched, TIME, {"sampling": MARGIN * doubt * (end - time) + DIGITS * (found - touched)})
+    return Reading(found - touched, TIME, {"sampling": MARGIN * doubt * (end - time) + digits * (found - touched)})
