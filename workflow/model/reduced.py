@@ -55,6 +55,8 @@ LOOKS_BETWEEN, EDGE_STEP = 20, 0.01
 """Looks for a receding edge between two moments of a history, and its way from one load step to the next, over all."""
 EDGE = 0.02
 """How far an edge with a jump may be off, over the spacing: measured beside rings, a third of it at most."""
+AGAIN = 0.1
+"""The same of one that comes back over a surface that has not recovered: margins are no straight lines there."""
 JUMPS = 1e-6
 """Least overlap at an edge over the displacement that makes a jump there: less is round-off of the edge."""
 TOUCH = 1e-9
@@ -698,10 +700,10 @@ class RelaxingSprings(Reduced):
             memory.go(place, time, velocity)
         each *= self.estimate.stiffness
         edge = self._edges(margin)
-        doubt = np.zeros_like(edge)
+        doubt: Array = AGAIN * self.estimate.spacing * _returned(edge).astype(np.float64)
         if self.shares_edges:
             spacing = self.estimate.spacing
-            doubt = np.abs(0.5 * spacing * memory.width(margin, counts) - edge) + EDGE * spacing * (edge > 0.0)
+            doubt += np.abs(0.5 * spacing * memory.width(margin, counts) - edge) + EDGE * spacing * (edge > 0.0)
         zone = (edge, edge, self._jumps(edge, path.displacement, columns[2]), doubt)
         return Followed(self.x, each @ counts, lambda state: each[state][own], zone=zone)
 
@@ -759,6 +761,17 @@ def legs(displacements: Array) -> list[slice]:
     turns = [i + 1 for i in range(1, len(ways)) if ways[i] * ways[i - 1] < 0.0]
     edges = [0, *turns, len(displacements)]
     return [slice(first, last) for first, last in pairwise(edges) if last > first]
+
+
+def _returned(edge: Array) -> NDArray[np.bool_]:
+    """In which states an edge has receded, and grown since, but not yet as far as it was."""
+    found, most, least = np.zeros(edge.size, dtype=bool), 0.0, 0.0
+    for i, here in enumerate(edge.tolist()):
+        if here >= most * (1.0 - NEAREST):
+            most = least = here
+        least = min(least, here)
+        found[i] = here > least * (1.0 + NEAREST)
+    return found
 
 
 def reduced(scene: Scene, settings: Settings) -> Reduced:
