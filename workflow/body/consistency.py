@@ -12,9 +12,8 @@ from contact1d.workflow.continuation.outcome import Agreement, Outcome
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import Quantity
 
-PRESSURE, OPEN_PRESSURE, VAGUE = 1e-4, 1e-3, 0.3
-"""Difference of ∫ p dA from the force over ∫ |p| dA, by springs under a formula, and under a table or a scan; that from
-which on it would check nothing."""
+PRESSURE, OPEN_PRESSURE = 1e-4, 1e-3
+"""Difference of ∫ p dA from the force over ∫ |p| dA, by springs under a formula, and under a table or a scan."""
 CLOSED_FORM, DOUBT = 1e-4, 3.0
 """Difference from an exact closed form, relative, beside so many uncertainties."""
 FEWEST, WIDEST = 10.0, 0.9
@@ -42,8 +41,7 @@ def pressure(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressur
         stated = float(np.trapezoid(one.uncertainty * one.r, one.r)) / size if size else 0.0
         words = f"the pressure of the state {name!r} adds up to {one.force:.8g} FU, and its force is {force:.8g} FU"
         allowed = max(least, stated + one.doubt + known / (one.size or 1.0))
-        if allowed < VAGUE:
-            found.append(Agreement(abs(one.force - force) / (one.size or 1.0), allowed, words))
+        found.append(Agreement(abs(one.force - force) / (one.size or 1.0), allowed, words))
     return {"pressure": max(found, key=lambda one: one.difference / one.allowed)} if found else {}
 
 
