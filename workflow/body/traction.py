@@ -279,7 +279,7 @@ def _pressure(state: _Loaded, share: float, given: float) -> BodyPressure | None
     # Of a known shape nothing lies between the particles: where they are too few to show it, its edge alone is open.
     if coarser or state.body is None:
         spread += _spread(p, *coarser)
-    if not state.is_elastic:  # one difference may be 0 by chance
+    if state.is_alone and not state.is_elastic:  # one difference may be 0 by chance
         if not coarser and state.body is not None:
             spread += np.abs(p) / (2.0 * np.count_nonzero(side < fine.edge)) ** 2
         if other := state.through(state.load, 2 * own, own):
