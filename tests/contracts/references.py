@@ -126,7 +126,7 @@ def elastic(one: Combination, work: float = 0.0) -> Numbers:
 
 
 def bounced(contact: Contact) -> Numbers:
-    """By energies: ½ m v² = E(a) − E(touch), and what is left of it at fixed grips."""
+    """Energy balance of an impact: ½ m v² = E(a) − E at first contact, less what is lost under fixed grips."""
     energy, punch = 0.5 * MASS * SPEED**2, math.isfinite(contact.body.end)
     if punch:
         d = math.sqrt(energy / contact.modulus / PUNCH)

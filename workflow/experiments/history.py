@@ -169,12 +169,12 @@ def _slopes(trace: Trace) -> dict[str, Reading]:
     # Slopes are what a few states at a corner show: no tolerance is asked of them.
     found = {"unloading_stiffness": _rate(force_after / d_after)} if d_after else {}
     if d_after != d_before:
-        own = (force_after - force_before) / (d_after - d_before)
-        found["creep_corrected_stiffness"] = _rate(own)
+        found["creep_corrected_stiffness"] = _rate((force_after - force_before) / (d_after - d_before))
     return found
 
 
 def _rate(value: float) -> Reading:
+    """A slope at a corner [FU/LU], with what a few states leave open of it."""
     return Reading(value, LINE_PRESSURE, {"sampling": SAMPLED * abs(value)}, prescribed=True)
 
 
