@@ -174,12 +174,12 @@ def _slopes(trace: Trace) -> dict[str, Reading]:
 
 
 def _rate(value: float) -> Reading:
-    """A slope at a corner [FU/LU], with what a few states leave open of it."""
+    """A slope at a corner [FU/LU], with the discretisation error of a few states."""
     return Reading(value, LINE_PRESSURE, {"sampling": SAMPLED * abs(value)}, prescribed=True)
 
 
 def _between(trace: Trace) -> float:
-    """What the largest force of all states misses of a maximum within a leg [FU], by a parabola beside it."""
+    """Discretisation error of a maximum within a leg [FU]: from the largest state to the vertex of a parabola."""
     top = int(trace.force.argmax())
     near = slice(top - 1, top + 2)
     if top == 0 or len(set(trace.phase[near])) > 1 or trace.force[near].size < 3:
