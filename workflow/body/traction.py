@@ -41,7 +41,8 @@ MOST = 1000
 RADII = 100
 """Evenly from 0 to the contact radius, at which q is given, and at its kinks besides."""
 ANGLES, PIECES = 20, 10
-"""Positions of Gauss's at which p(r) is added up to a force, between kinks and in as many pieces of a table's body."""
+"""Positions of Gauss's at which p(r) is added up to a force, between kinks, and pieces of a body whose shape is a table
+or whose springs are not elastic: a corner of its history is a kink of the line load."""
 INNER = 6
 """Part of the particles in a contact that show the slope of its load at the axis."""
 BETWEEN = 101
@@ -293,7 +294,8 @@ def _pressure(state: _Loaded, share: float, given: float) -> BodyPressure | None
         name: replace(one, uncertainty=one.uncertainty or float(error[place] + by_shape(read)))
         for name, (one, place, read) in _largest(state, fine, r, told, lambda r: fine.pressure(r) - pulled(r)).items()
     }
-    kinks = [*state.shape.kinks, *(np.arange(1, PIECES) * fine.edge / PIECES * state.shape.slow)]
+    pieces = state.shape.slow or not state.is_elastic
+    kinks = [*state.shape.kinks, *(np.arange(1, PIECES) * fine.edge / PIECES * pieces)]
     force, size = _total(fine, kinks, pulled)
     ring = _ring(scene, zone)
     edge, stiffness = state.radius.value / state.wider, _stiffness(state, share)
