@@ -57,7 +57,7 @@ class ZonedProfile(Profile):
     doubt: float = 0.0
 
 
-def zoned(profile: Profile, edge: float, reach: float, jump: float, doubt: float) -> ZonedProfile:
+def zoned(profile: Profile, edge: float, reach: float, jump: float, doubt: float = 0.0) -> ZonedProfile:
     """Return a profile whose contact ends at an edge [LU] by a jump [FU/LU]."""
     own = profile.x, profile.z_lower, profile.z_upper, profile.pressure, profile.shear
     return ZonedProfile(*own, edge, reach, jump, doubt)

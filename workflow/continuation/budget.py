@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.convergence import extrapolated
 from contact1d.workflow.continuation.marks import displacement_under
-from contact1d.workflow.continuation.model_branch import MOST_NUMBERS, ModelBranch
+from contact1d.workflow.continuation.model_branch import MOST_NUMBERS, ModelBranch, Script
 from contact1d.workflow.continuation.outcome import LATTICE, Move, Reading, Result, in_squares
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace
@@ -65,7 +65,6 @@ WAYS = (-1.0, 1.0)
 """Both ways."""
 
 
-Script = Callable[[ModelBranch], object]
 Reader = Callable[[Trace], Mapping[str, Reading]]
 Values = dict[str, Any]
 """Numbers by name of a result; by name of a column of curve.csv one for each of its rows, (m,)."""

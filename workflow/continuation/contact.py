@@ -9,19 +9,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.pressure import (
-    Profile,
-    ZonedProfile,
-    penetration_depth,
-    pressure_profile,
-    smallest_distance,
-)
+from contact1d.analysis.pressure import Profile, penetration_depth, pressure_profile, smallest_distance
 from contact1d.workflow.continuation.state import State, radius_rule
 from contact1d.workflow.continuation.trust import is_converged, require_trust
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.lattice import bodies, period
 from contact1d.workflow.deck.parts import PLANE_DEPTH
-from contact1d.workflow.deck.steps import Cohere, Displace, Draw, Phase, Row
+from contact1d.workflow.deck.steps import Displace, Draw, Phase, Row
 from contact1d.workflow.deck.system import ANCHORS, PARTICLES
 from contact1d.workflow.engine.failure import NOT_FINITE
 from contact1d.workflow.engine.frames import last_frames
@@ -69,10 +63,6 @@ class Contact:
             self._x = bodies(deck.scene, deck.settings)[0].particles[:, 0]
             self._nothing = np.zeros_like(self._x)
             self._read = 0  # bytes of the frames' file
-            adhesion = deck.scene.adhesion
-            stress = adhesion.work / adhesion.range if adhesion and adhesion.range else 0.0
-            # The part of a cell in the ring of attraction is a difference of the discs up to its ends.
-            self._stress = float(np.finfo(np.float64).eps) * 2.0 * stress
 
     @property
     def phases(self) -> tuple[Phase, ...]:
@@ -104,17 +94,12 @@ class Contact:
             UntrustedError: see `require_trust`.
         """
         found: list[State] = []
-        size = BATCH
-        if self.deck.stepped:
-            last = next((phase.rows[-1] for phase in self._phases[::-1] if phase.rows), None)
-            rows = self.deck.completed([self.deck.as_listed(row) for row in rows], last)
-            size = max(1, MOST_NUMBERS // len(self._x))
         before = self.session.lammps_seconds
-        for start in range(0, len(rows), size):
-            batch = rows[start : start + size]
+        for start in range(0, len(rows), BATCH):
+            batch = rows[start : start + BATCH]
             first = sum(len(phase.rows) for phase in self._phases)
             self._phases[-1] = replace(self._phases[-1], rows=(*self._phases[-1].rows, *batch))
-            self._latest = (self._steps if self.deck.stepped else self._measured)(batch, first)
+            self._latest = self._measured(batch, first)
             for state in self._latest if trusted else ():
                 require_trust(self.scene, self.settings, state, moving)
             found += self._latest
@@ -133,8 +118,18 @@ class Contact:
         self._unfinished = ""
         (self.session.folder / FRAMES).unlink(missing_ok=True)
 
-    def replay(self, phases: Sequence[Phase], relaxed: bool = False) -> list[State]:
-        """Run a whole schedule; one state for each load step. `relaxed`: one in time is repeated until at rest."""
+    def replay(
+        self, phases: Sequence[Phase], relaxed: bool = False, meanwhile: Callable[[], object] | None = None
+    ) -> list[State]:
+        """Run a whole schedule; one state for each load step.
+
+        Args:
+            phases: with load steps, the first of the contact.
+            relaxed: whether a load step in time is repeated until at rest.
+            meanwhile: of steps of one run, see `Session.measure`.
+        """
+        if self.deck.stepped:
+            return self._in_one_request(phases, meanwhile)
         states: list[State] = []
         trusted = not self.scene.noise
         for phase in phases:
@@ -176,27 +171,27 @@ class Contact:
             states.append(state)
         return states
 
-    def _steps(self, rows: Sequence[Row], first: int) -> list[State]:
-        """Load steps that are steps of one run: nothing has to relax."""
-        began = self.session.timestep
-        self.session.measure(self._unfinished + self.deck.in_one_run(rows), meanwhile=self._look_back)
-        self._unfinished = ""
-        spacing, phase, settings = self.scene.bodies.spacing, self._phases[-1].name, self.settings
+    def _in_one_request(self, phases: Sequence[Phase], meanwhile: Callable[[], object] | None) -> list[State]:
+        """A schedule whose load steps are steps of one run for each phase: nothing has to relax."""
+        began, rows = self.session.timestep, [(phase.name, row) for phase in phases for row in phase.rows]
+        self._phases = [*phases]
+        self.session.execute(self.deck.schedule(phases), phase=phases[0].name, meanwhile=meanwhile)
+        self.rows_seconds = self.session.lammps_seconds
+        spacing, settings = self.scene.bodies.spacing, self.settings
         # The wall's force is a difference of distances from far below.
         depth = PLANE_DEPTH * max(settings.largest_displacement, spacing)
         round_off = float(np.finfo(np.float64).eps) * depth * settings.forces.plane_stiffness
-        states = []
-        for i, (row, profile) in enumerate(zip(rows, self._profiles(len(rows)), strict=True)):
-            assert isinstance(row, Displace | Draw)
-            force, closest = spacing * float(profile.pressure.sum()), float(profile.z_upper.min())
-            along = row.place if isinstance(row, Draw) else 0.0
-            if isinstance(row, Cohere):
-                profile = self._zoned(profile, row)
-            lost = round_off if not isinstance(row, Cohere) else round_off + self._stress * row.reach**2
-            states.append(
-                State(phase, row.displacement, force, profile, self._rule, closest, 0.0, lost, plate_x=along,
-                      step=float(began + i + 1), number=first + i)
-            )  # fmt: skip
+        at_once, states = max(1, MOST_NUMBERS // len(self._x)), list[State]()
+        for first in range(0, len(rows), at_once):
+            batch = rows[first : first + at_once]
+            for i, ((phase, row), profile) in enumerate(zip(batch, self._profiles(len(batch)), strict=True), first):
+                assert isinstance(row, Displace | Draw)
+                force, closest = spacing * float(profile.pressure.sum()), float(profile.z_upper.min())
+                states.append(
+                    State(phase, row.displacement, force, profile, self._rule, closest, 0.0, round_off,
+                          plate_x=getattr(row, "place", 0.0), step=float(began + i + 1), number=i)
+                )  # fmt: skip
+        (self.session.folder / FRAMES).unlink(missing_ok=True)
         return states
 
     def _profiles(self, count: int) -> list[Profile]:
@@ -220,20 +215,6 @@ class Contact:
             return [Profile(self._x, none, z, p, none) for z, p in zip(surfaces, pressures, strict=True)]
         shears = units.from_deck(frames[:, :, 2], "FU") / spacing
         return [Profile(self._x, none, z, p, q) for z, p, q in zip(surfaces, pressures, shears, strict=True)]
-
-    def _zoned(self, profile: Profile, row: Cohere) -> Profile:
-        """With the edges of a load step; between them the body is drawn towards the plane."""
-        heights = self.scene.bodies.height(self._x) - row.displacement
-        surface = np.maximum(heights + profile.pressure * self.scene.bodies.spacing / self.scene.bulk_stiffness, 0.0)
-        return ZonedProfile(
-            profile.x, profile.z_lower, np.where(np.abs(self._x) < row.edge, 0.0, surface), profile.pressure,
-            profile.shear, row.edge, row.reach, self._jump(row),
-        )  # fmt: skip
-
-    def _jump(self, row: Cohere) -> float:
-        """The line load just inside an edge beyond which there is none [FU/LU]; 0 where the attraction goes on."""
-        opened = row.displacement - float(self.scene.bodies.height(np.asarray([row.edge]))[0])
-        return self.scene.bulk_stiffness / self.scene.bodies.spacing * opened if row.reach == row.edge > 0.0 else 0.0
 
     def _look_back(self) -> None:
         """Work out the radii of the load steps before, which their states keep: LAMMPS is busy with the next ones."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -17,9 +17,12 @@ from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
-COARSE, FINE, ZOOMS = 100, 30, 2
-"""Positions of the first look for the force maximum and of each closer one, and how many of these: none where the
-curve is smooth, since the model's forces are straight between the points of a grid, whose corners would move a top."""
+COARSE, DENSE, FINE, ZOOMS = 48, 100, 30, 2
+"""Positions of the first look for the force maximum, on a rigid plane and between particles, and of each closer one,
+and how many of these: none where the curve is smooth, since the model's forces are straight between the points of a
+grid, whose corners would move a top."""
+BESIDE = 8.0
+"""Part of the distance of two positions in which those beside a force maximum are, three on either side."""
 BETWEEN = 8
 """Intermediate positions towards a force."""
 LAST = 1e-9
@@ -50,6 +53,7 @@ class ModelBranch:
         model: the particles.
         dense: positions for each step that the scene gives.
         shift: of the displacements that it gives [LU].
+        marks: names under which states are reported, by the number of the state.
     """
 
     def __init__(self, scene: Scene, settings: Settings, model: Reduced, dense: int, shift: float) -> None:
@@ -58,6 +62,8 @@ class ModelBranch:
         self._phase, self._leg = "", -1
         self._rises: bool | None = None
         self._rows: list[Row] = []
+        self._beyond = np.empty(0)
+        self.marks: dict[int, list[str]] = {}
 
     @property
     def scale(self) -> float:
@@ -100,11 +106,11 @@ class ModelBranch:
         return found if end > start else found[::-1]
 
     def reach(self, force: float, scale: float) -> None:
-        """Go to where a force [FU] is carried."""
-        end = self.model.displacement_at(force)
-        start = self._rows[-1].displacement if self._rows else min(0.0, end) - self.settings.estimate.spacing
+        """Go to where a force [FU] is carried; under a tension from where the bodies touch on."""
+        end, begun = self.model.displacement_at(force), bool(self._rows)
+        start = self._rows[-1].displacement if begun else 0.0
         self._turn(end > start)
-        self._add(np.linspace(start, end, BETWEEN + 1)[1:])
+        self._add(np.linspace(start, end, BETWEEN + 1)[begun:])
 
     def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
         """A displacement [LU], or a plate that moves under a force [FU], for a time [TU]: the first and the last state.
@@ -121,10 +127,13 @@ class ModelBranch:
             self._add(swing(self.scene, self.settings, self.model, start, force, duration), time=(0.0, duration))
 
     def follow(self, history: History) -> None:
-        """Displacements or forces over time, and others between them."""
+        """Displacements or forces over time, and others between them; phases are reported at their ends."""
         history = history.denser(self.dense)
         self._leg += 1
         self._add_path(history.phases, history.path(self.model))
+        for i, (one, other) in enumerate(pairwise([*history.phases, ""])):
+            if one != other and one in history.marks:
+                self.marks.setdefault(i, []).append(history.marks[one])
 
     def fly(self, velocity: float) -> None:
         """See `reduced.impact`."""
@@ -133,26 +142,57 @@ class ModelBranch:
         self._add_path(["impact"] * path.time.size, path)
 
     def maximum(self) -> None:
-        """Pass the force maximum, densely about it."""
+        """Go to the force maximum, densely about it; `open` goes on from there."""
         self._turn(False)
         zero, apart = self._rows[-1].displacement, self.model.apart
         end = zero + (1.0 - LAST) * (apart - zero)
-        dense = COARSE * (2 if self.settings.snaps else 1)
-        positions, step = np.linspace(zero, end, dense, retstep=True)
-        found = [positions[1:]]
+        if self.settings.forces.range:
+            found = np.linspace(zero, end, DENSE * (2 if self.settings.snaps else 1))[1:]
+        else:
+            found = self.model.unloading(zero, end, COARSE)
+        every = np.append(zero, found)
+        top = int(np.argmin(self.model.held(every)))
+        low, high = float(every[min(top + 1, every.size - 1)]), float(every[max(top - 1, 0)])
+        step, place = 0.5 * (high - low) / BESIDE, float(every[top])
         for _ in range(0 if self.settings.is_smooth else ZOOMS):
-            top = float(positions[int(np.argmin(self.model.held(positions)))])
-            low, high = max(top - abs(step), end), min(top + abs(step), zero)
-            positions, step = np.linspace(high, low, FINE, retstep=True)
-            found.append(positions[1:])
-        self._add(np.unique(np.concatenate(found))[::-1])
+            closer, width = np.linspace(high, low, FINE, retstep=True)
+            place = float(closer[int(np.argmin(self.model.held(closer)))])
+            low, high = max(place - abs(width), end), min(place + abs(width), zero)
+        beside = place + step * np.arange(-3.0, 4.0)
+        found = np.unique(np.append(found, np.clip(beside, end, zero)))[::-1]
+        found = found[found < zero]
+        last = int(np.count_nonzero(found > place - 0.5 * step)) if place < zero else 0
+        self._add(found[:last])
+        self._beyond = found[last:]
 
     def mark(self, name: str) -> None:
-        """Nothing is written."""
+        """Report the last state."""
+        self.marks.setdefault(self.last, []).append(name)
 
     def open(self) -> None:
         """Pull the bodies apart."""
-        self._add(np.asarray([self.model.apart - self.settings.estimate.spacing]))
+        self._add(np.append(self._beyond, self.model.apart - self.settings.estimate.spacing))
+        self._beyond = np.empty(0)
+
+    @property
+    def last(self) -> int:
+        """Number of the last state."""
+        return len(self._rows) - 1
+
+    @property
+    def held(self) -> float:
+        """F [FU] of the last state, of a contact that is unloaded from deeper."""
+        return float(self.model.held(np.asarray([self._rows[-1].displacement]))[0])
+
+    @property
+    def phases(self) -> list[str]:
+        """Names of the phases of all states."""
+        return [row.phase for row in self._rows]
+
+    @property
+    def legs(self) -> list[int]:
+        """Numbers of the legs of all states."""
+        return [row.leg for row in self._rows]
 
     @property
     def path(self) -> Path:
@@ -163,8 +203,7 @@ class ModelBranch:
 
     def trace(self, whole: bool = False) -> Trace:
         """What a reader sees; of the `whole` path also what leads to its first state."""
-        phases, legs = list(zip(*self._rows, strict=True))[:2]
-        path = self.path
+        phases, legs, path = self.phases, self.legs, self.path
         rule = radius_rule(self.scene, self.settings.tolerance)
         found = of_model(phases, legs, path, self.model.follow(path), rule, self.model)
         return found if whole else found.chosen([i for i, name in enumerate(phases) if name != UNSEEN])
@@ -188,3 +227,7 @@ class ModelBranch:
         columns = path.displacement, path.along, path.time, unknown if path.velocity is None else path.velocity
         rows = zip(*(column.tolist() for column in columns), strict=True)
         self._rows += [Row(phase, self._leg, *row) for phase, row in zip(phases, rows, strict=True)]
+
+
+Script = Callable[[ModelBranch], object]
+"""What moves a contact."""

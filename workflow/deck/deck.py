@@ -7,12 +7,12 @@ deck that it leaves behind holds the rows of the schedule that the search ended 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contact1d.workflow.deck.effects import Contribution, contributions
 from contact1d.workflow.deck.fragments import DeckError, Fragment, block, commands, deleted, fragment, indexed, listed
@@ -22,7 +22,6 @@ from contact1d.workflow.deck.steps import (
     NEW,
     STEPS,
     UNITS,
-    Cohere,
     Displace,
     Hold,
     Phase,
@@ -31,11 +30,8 @@ from contact1d.workflow.deck.steps import (
     skipped,
 )
 from contact1d.workflow.deck.units import DeckUnits, units_for
-from contact1d.workflow.model.cohesive import APART, CohesiveEstimate
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
-
-AnyRow = TypeVar("AnyRow", bound=Row)
 
 
 @dataclass(frozen=True)
@@ -103,26 +99,17 @@ class Deck:
         """One row up to its measurement: displacement or load, then measurement."""
         return commands(self._row(kind))
 
-    def as_listed(self, row: AnyRow) -> AnyRow:
-        """A row that is one timestep, with its numbers as LAMMPS reads those of a list: to 15 digits."""
-        numbers = {field.name: getattr(row, field.name) for field in fields(row)}
-        read = {
-            name: self.units.from_deck(float(f"{self.units.to_deck(value, UNITS[name]):.15g}"), UNITS[name])
-            for name, value in numbers.items()
+    def as_read(self, columns: Mapping[str, NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:
+        """Numbers of load steps that are one timestep each as LAMMPS reads those of a list: to 15 digits."""
+        return {
+            name: np.asarray(
+                [
+                    self.units.from_deck(float(f"{self.units.to_deck(value, UNITS[name]):.15g}"), UNITS[name])
+                    for value in column.tolist()
+                ]
+            )
+            for name, column in columns.items()
         }
-        return replace(row, **read)
-
-    def completed(self, rows: Sequence[Row], before: Row | None = None) -> list[Row]:
-        """Load steps with the edges of a contact whose attraction has a range, after a state of it or from apart on."""
-        estimate = self.settings.estimate
-        if not (isinstance(estimate, CohesiveEstimate) and rows and type(rows[0]) is Displace):
-            return list(rows)
-        d = np.asarray([row.displacement for row in rows if isinstance(row, Displace)])
-        start = estimate.place_of(before.edge, before.reach) if isinstance(before, Cohere) else APART
-        zone = estimate.solved(d, estimate.places(d, start))
-        height = np.divide(estimate.law.area(zone.edge), zone.edge, out=np.zeros_like(d), where=zone.edge > 0.0)
-        columns = (column.tolist() for column in (d, zone.edge, zone.reach, height))
-        return [self.as_listed(Cohere(*numbers)) for numbers in zip(*columns, strict=True)]
 
     def in_one_run(self, rows: Sequence[Row], skips: Sequence[int] = ()) -> str:
         """All rows, each a position of the plate, in one run; `skips`: those whose state is not written, else none."""
@@ -157,23 +144,19 @@ class Deck:
         Raises:
             DeckError: if fragments and variables do not fit together, in the head or in a phase.
         """
-        passed = self._completed([phase for phase in phases if phase.rows])
+        passed = [phase for phase in phases if phase.rows]
         self._check_schedule(passed)
-        blocks = [self.head]
-        first = True
-        for phase in passed:
+        return f"{self.head}\n{self.schedule(passed)}"
+
+    def schedule(self, phases: Sequence[Phase]) -> str:
+        """The loops, for phases that have rows."""
+        blocks, first = list[str](), True
+        for phase in phases:
             loop = self._loop(phase, first)
             first = first and not (self.keeps and {*appended(phase, self.stepped, first)} & {NEW, APPENDED})
             blocks.append(loop + (self.state(first) if phase.state else ""))
             first = first and not phase.state
         return "\n".join(blocks)
-
-    def _completed(self, phases: Sequence[Phase]) -> list[Phase]:
-        found: list[Phase] = []
-        for phase in phases:
-            before = found[-1].rows[-1] if found else None
-            found.append(replace(phase, rows=tuple(self.completed(phase.rows, before))))
-        return found
 
     @property
     def keeps(self) -> bool:

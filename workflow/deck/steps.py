@@ -9,12 +9,13 @@ so that it writes all of them and then leaves out those that are not wanted.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contact1d.files import whole
 from contact1d.workflow.deck.effects import number
@@ -183,6 +184,16 @@ def numbered(name: str, taken: Sequence[str]) -> str:
     """The name of a phase: "loading", and where that is taken "loading_2", "loading_3", …"""
     count = 1 + sum(one.partition("_")[0] == name for one in taken)
     return name if count == 1 else f"{name}_{count}"
+
+
+SWEPT: tuple[type[Row], ...] = (Displace, Cohere, Spend, Draw)
+"""Those that are one timestep each on a rigid plane."""
+
+
+def swept(columns: Mapping[str, NDArray[np.float64]]) -> list[Row]:
+    """Load steps on a rigid plane with these columns, (m,), by their names."""
+    kind = next(one for one in SWEPT if one.columns() == tuple(f"row_{name}" for name in columns))
+    return [kind(*numbers) for numbers in zip(*(column.tolist() for column in columns.values()), strict=True)]
 
 
 def displacements(places: Sequence[float]) -> tuple[Displace, ...]:

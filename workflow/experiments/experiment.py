@@ -19,9 +19,9 @@ from contact1d.workflow.continuation.context import ContactBranch, RunContext
 from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.load_control import LoadBranch
 from contact1d.workflow.continuation.outcome import Agreement, Outcome, Reading, Result
+from contact1d.workflow.continuation.planned import Plan, PlannedBranch
 from contact1d.workflow.continuation.replayed import ReplayedBranch
 from contact1d.workflow.continuation.state import State
-from contact1d.workflow.continuation.stepped import SteppedBranch
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.continuation.trust import ThroughError, doubts
 from contact1d.workflow.deck.deck import Deck
@@ -103,6 +103,17 @@ class Scripted(Experiment[K]):
         """Whether the load steps are known beforehand, so that what lies between them is an error."""
         return False
 
+    def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
+        """On a rigid plane what the script does there."""
+        if not scene.is_stepped:
+            return self.expected(scene, settings)
+        case = self.reduction(scene, settings)
+        return Plan.of(Deck(scene, settings), case.model, case.script).phases
+
+    def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
+        """The schedule of particles that interact, or of a motion, as far as it is known."""
+        raise NotImplementedError
+
     @abstractmethod
     def script(self, branch: Driver, scene: Scene) -> None:
         """Move a contact, as often to and fro as it takes: each turn begins a leg of the trace."""
@@ -178,13 +189,13 @@ class Scripted(Experiment[K]):
         return Reduction(scene, settings, script, read, self.reduction)
 
 
-def branch_of(context: RunContext, meanwhile: Callable[[], object]) -> Branch | LoadBranch:
-    """A new contact, under load control in time, else under displacement control."""
+def branch_of(context: RunContext, meanwhile: Callable[[], object]) -> Branch | LoadBranch | PlannedBranch:
+    """A new contact, under load control in time, planned on a rigid plane, else under displacement control."""
     scene = context.deck.scene
     if scene.method == "dynamic" and scene.experiment.compression is not None:
         return LoadBranch(context, meanwhile)
     if scene.is_stepped:
-        return SteppedBranch(context, meanwhile)
+        return PlannedBranch(context, meanwhile)
     return (ReplayedBranch if context.deck.settings.snaps else Branch)(context, meanwhile)
 
 

@@ -14,12 +14,9 @@ from contact1d.analysis.polynomial import through
 from contact1d.workflow.continuation.budget import MARGIN
 from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.outcome import Outcome, Reading
-from contact1d.workflow.continuation.stepped import followed
 from contact1d.workflow.continuation.trace import Trace
-from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
 from contact1d.workflow.model.reduced import History as Moments
-from contact1d.workflow.model.reduced import reduced
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import History, Scene
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, MEAN_PRESSURE, TIME
@@ -105,11 +102,6 @@ class HistoryExperiment(Scripted[History]):
             )
         outcome = replace(outcome, warnings={**outcome.warnings, **missing})
         return replace(outcome, columns={"time": tuple(one.time for one in outcome.states)})
-
-    def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """The schedule that runs; a leg is a phase."""
-        model = reduced(scene, settings)
-        return followed(model, model.refined(_moments(scene)))
 
     def advice(self, scene: Scene) -> str:
         """Lattice and load steps limit it."""

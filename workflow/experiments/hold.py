@@ -44,7 +44,7 @@ class HoldExperiment(Scripted[Hold]):
             found["mean_pressure"] = Reading(force / (math.pi * radius**2), MEAN_PRESSURE)
         return found
 
-    def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
+    def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The load steps that run."""
         held = self.given(scene)
         rows: list[Row] = []

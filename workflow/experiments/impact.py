@@ -98,7 +98,7 @@ class ImpactExperiment(Scripted[Impact]):
             outcome = replace(outcome, warnings={**outcome.warnings, "sticks": words})
         return replace(outcome, columns={"time": tuple(one.step * settings.motion.time_step for one in outcome.states)})
 
-    def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
+    def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The load steps that are expected to run."""
         velocity = self.given(scene).velocity
         steps = stretch(settings, velocity)

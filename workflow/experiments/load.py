@@ -14,7 +14,6 @@ from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.holding import held_phase
 from contact1d.workflow.continuation.load_control import FIRST_RISE, LoadBranch
 from contact1d.workflow.continuation.outcome import Outcome, Reading
-from contact1d.workflow.continuation.stepped import LOADING_STEPS, curve_steps
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.deck.steps import Phase, displacements
 from contact1d.workflow.experiments.experiment import Scripted
@@ -22,6 +21,9 @@ from contact1d.workflow.experiments.thermal import planned_samples, thermal_load
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Load, Scene
 from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE
+
+LOADING_STEPS = 24
+"""Load steps of particles that interact, where a run would search."""
 
 
 class LoadExperiment(Scripted[Load]):
@@ -81,14 +83,13 @@ class LoadExperiment(Scripted[Load]):
         force = self.given(scene).force
         return [(force, float(trace.force[np.argmin(np.abs(trace.force - force))]))]
 
-    def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
+    def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The schedule by the model."""
         force = self.given(scene).force
         if scene.method == "dynamic":
             scale = max(abs(force), settings.forces.scale)
             return (held_phase("loading", scene, settings, (force,), scale, state=True),)
-        steps = curve_steps(settings) if scene.is_stepped else LOADING_STEPS
-        rows = displacements(np.linspace(0.0, settings.largest_displacement, steps + 1).tolist())
+        rows = displacements(np.linspace(0.0, settings.largest_displacement, LOADING_STEPS + 1).tolist())
         return (Phase("loading", rows, state=True),)
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
@@ -110,6 +111,6 @@ class ThermalLoad(LoadExperiment):
         scene = context.deck.scene
         return self.finish(thermal_load(context, self.given(scene).force), scene, context.deck.settings)
 
-    def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
+    def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The run-in and the first samples."""
         return planned_samples(settings, self.given(scene).force)

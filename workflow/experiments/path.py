@@ -18,15 +18,16 @@ from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.marks import unloading
 from contact1d.workflow.continuation.model_branch import UNSEEN
-from contact1d.workflow.continuation.outcome import LOSSES, Outcome, Reading, Result
+from contact1d.workflow.continuation.outcome import LOSSES, Agreement, Outcome, Reading, Result
+from contact1d.workflow.continuation.planned import Plan
 from contact1d.workflow.continuation.state import State
-from contact1d.workflow.continuation.stepped import by_model
 from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import doubts, require_trust
+from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import Displace, DisplaceInTime, Phase, Row, displacements
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
 from contact1d.workflow.experiments.thermal import CERTAIN, averaged, thermal_rows
-from contact1d.workflow.model.reduced import Reduced, path_of
+from contact1d.workflow.model.reduced import Reduced, path_of, reduced
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Path, Scene
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH
@@ -52,8 +53,9 @@ class PathExperiment(Scripted[Path]):
         """Run the schedule."""
         scene, settings = context.deck.scene, context.deck.settings
         case, positions = self.reduction(scene, settings), way(scene, settings)
+        plan = self._plan(context.deck, case.model) if scene.is_stepped else None
         with context.contact(meanwhile=lambda: case.lattice) as contact:
-            states = self.states(contact, positions)
+            states = plan.measured(contact) if plan else self.states(contact, positions)
             phases = contact.phases
         asked = np.asarray([one for _, one in positions])
         reported = tuple(compress(states, asked))
@@ -70,12 +72,19 @@ class PathExperiment(Scripted[Path]):
         warnings = self._missing(results, case, phases) | doubts(scene, settings, reported)
         warnings |= _buckling(trace, others, settings)
         rows = of_rows(curve_errors(case, whole, errors.common, repeated), asked)
-        forces = by_model(scene, case.model, states)
-        checks = consistency.plan(scene, states, forces)
-        if forces is not None:
+        checks = dict[str, Agreement]()
+        if plan and scene.is_modelled:
+            checks = consistency.plan(scene, states, plan.followed.total)
             checks |= consistency.energy(case, consistency.Work(path_of(whole.displacement)))
         checks |= {} if self.is_statistical else consistency.balance(scene, states)
         return Outcome(results, reported, ends, phases, warnings, rows=rows, moves=case.moves, consistency=checks)
+
+    def _plan(self, deck: Deck, model: Reduced) -> Plan:
+        """Its load steps on a rigid plane; a phase is written at its end."""
+        parts = stretches([position for position, _ in way(deck.scene, deck.settings)])
+        names = [name for name, stretch in parts for _ in stretch]
+        ends = np.cumsum([len(stretch) for _, stretch in parts]) - 1
+        return Plan(deck, model, path_of(np.concatenate([stretch for _, stretch in parts])), names, ends.tolist())
 
     def states(self, contact: Contact, positions: Positions) -> list[State]:
         """A state at each of the positions; in time when particles are at rest."""
@@ -156,6 +165,8 @@ class PathExperiment(Scripted[Path]):
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The schedule that runs: a phase for each stretch of rising ("loading") or falling displacement."""
+        if scene.is_stepped:
+            return self._plan(Deck(scene, settings), reduced(scene, settings)).phases
         positions = way(scene, settings)
         phases, first = [], 0
         for name, stretch in stretches([position for position, _ in positions]):

@@ -16,7 +16,6 @@ from contact1d.workflow.continuation.holding import held_phase, overshoot
 from contact1d.workflow.continuation.load_control import FEWEST_HELD, SPREAD, top_of
 from contact1d.workflow.continuation.marks import unloading
 from contact1d.workflow.continuation.outcome import Outcome, Reading
-from contact1d.workflow.continuation.stepped import BEYOND_LIMIT, LOADING_STEPS, followed
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.continuation.trust import require_no_contradiction
 from contact1d.workflow.deck.steps import Phase, displacements
@@ -33,6 +32,8 @@ RATED_STEPS = 120
 """Load steps of a pull whose edge recedes at a finite speed."""
 NEAR_ZERO = 3
 """Load steps on both sides of F = 0 that tell when it is."""
+LOADING_STEPS, BEYOND_LIMIT = 24, 1.05
+"""Load steps up to a force that is known beforehand; end of the way over the limit point."""
 LARGEST_TENSION = 1.2
 """The last of these tensions over the expected pull-off force."""
 
@@ -51,7 +52,7 @@ class PullOffExperiment(Scripted[PullOff]):
         """Compress, unload to F = 0, retract to the force maximum, separate; as many times as there are cycles."""
         preload, model = self.given(scene).preload, branch.model
         scale = max(preload, branch.scale)
-        if isinstance(model, RatedCells):
+        if model.in_time:
             branch.follow(_pulled(model, self.given(scene)))
             return
         for _ in range(self.given(scene).cycles or 1):
@@ -88,7 +89,7 @@ class PullOffExperiment(Scripted[PullOff]):
         forces = tuple(_marks(one, scene, settings, preload)["adhesion_force"].value for one in falls)
         return {"cycles": {"cycle": tuple(map(float, range(1, len(falls) + 1))), "adhesion_force": forces}}
 
-    def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
+    def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The schedule by the model."""
         preload, tension = self.given(scene).preload, settings.estimate.pull_off_force()
         if scene.method == "dynamic":
@@ -98,8 +99,6 @@ class PullOffExperiment(Scripted[PullOff]):
                 held_phase("unloading", scene, settings, (0.0,), max(preload, tension), state=True),
                 held_phase("pulling", scene, settings, tensions, tension, state=True),
             )
-        if isinstance(model := reduced(scene, settings), RatedCells):
-            return followed(model, _pulled(model, self.given(scene)))
         deepest, apart = settings.largest_displacement, BEYOND_LIMIT * reduced(scene, settings).apart
         down = displacements(np.linspace(0.0, deepest, LOADING_STEPS + 1).tolist())
         back = displacements(np.linspace(deepest, apart, UNLOADING_STEPS).tolist())
@@ -158,7 +157,7 @@ class ThermalPullOff(PullOffExperiment):
         """Pull."""
         return pull_off_thermal(context, self.given(context.deck.scene))
 
-    def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
+    def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """Up to a tension that the predictor does not hold."""
         return planned_detachment(scene, settings, self.given(scene))
 

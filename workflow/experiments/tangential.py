@@ -22,13 +22,15 @@ from contact1d.workflow.continuation.budget import budgeted, curve_errors, force
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.outcome import LATTICE, Outcome, Reading
+from contact1d.workflow.continuation.planned import Plan
 from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import UntrustedError, doubts
+from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.lattice import places
-from contact1d.workflow.deck.steps import Draw, Phase
+from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
 from contact1d.workflow.model.friction import Sliders, Stop, sliders_of, stops, without_rests
-from contact1d.workflow.model.reduced import Path, Sliding, reduced
+from contact1d.workflow.model.reduced import Path, Reduced, Sliding, reduced
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Friction, Scene, Tangential
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH
@@ -59,8 +61,9 @@ class TangentialExperiment(Scripted[Tangential]):
         """Run the schedule; the forces must be those of the history of each particle."""
         scene, settings = context.deck.scene, context.deck.settings
         case = self.reduction(scene, settings)
+        plan = self._plan(context.deck, case.model)
         with context.contact(meanwhile=lambda: case.lattice) as contact:
-            states = contact.replay(self.planned(scene, settings))
+            states = plan.measured(contact)
             phases = contact.phases
         asked = [one for _, one in passed(scene, _chain(scene, settings), settings)]
         trace = of_states(states, reduced(scene, settings))
@@ -73,7 +76,7 @@ class TangentialExperiment(Scripted[Tangential]):
         farthest = int(np.argmax([abs(row.position) for row in kept]))
         marked = {"farthest": reported[farthest], "final": reported[-1]}
         path = Path(trace.displacement, trace.along, trace.time)
-        checks = consistency.plan(scene, states, case.model.follow(path).total) if scene.is_modelled else {}
+        checks = consistency.plan(scene, states, plan.followed.total) if scene.is_modelled else {}
         checks |= consistency.energy(case, consistency.Work(path)) if scene.is_modelled else {}
         loads = zip(self.given(scene).normal_forces(), (state.force for state in reported), strict=False)
         checks |= consistency.asked(scene, list(loads), states)
@@ -132,13 +135,19 @@ class TangentialExperiment(Scripted[Tangential]):
             found["dissipated_energy_per_cycle"] = _energy(rows[start:], 4.0 * lost, scene)  # its path is 4 u_m
         return found
 
-    def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
+    def _plan(self, deck: Deck, model: Reduced) -> Plan:
         """The load comes on in one row, then a phase for each stretch to the right ("forward") or to the left."""
-        way = passed(scene, _chain(scene, settings), settings)
-        return tuple(
-            Phase(name, tuple(Draw(*stop) for stop, _ in stretch), state=name != PRESSING)
-            for name, stretch in stretches(way)
-        )
+        parts = stretches(passed(deck.scene, _chain(deck.scene, deck.settings), deck.settings))
+        names = [name for name, stretch in parts for _ in stretch]
+        ends = np.cumsum([len(stretch) for _, stretch in parts]) - 1
+        depths, along = zip(*(stop for _, stretch in parts for stop, _ in stretch), strict=True)
+        path = Path(np.asarray(depths), np.asarray(along), np.zeros(len(names)))
+        marks = [end for (name, _), end in zip(parts, ends.tolist(), strict=True) if name != PRESSING]
+        return Plan(deck, model, path, names, marks)
+
+    def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
+        """The load steps that run."""
+        return self._plan(Deck(scene, settings), reduced(scene, settings)).phases
 
     def advice(self, scene: Scene) -> str:
         """A row is exact, so that the lattice alone is left."""

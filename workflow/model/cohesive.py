@@ -226,6 +226,11 @@ class CohesiveEstimate(ZonedEstimate):
         force = np.where(places == APART, 0.0, self.law.forces(edge, width, displacements))
         return Zone(edge, np.hypot(edge, width), displacements, force)
 
+    def held_at(self, displacement: float) -> float:
+        """F [FU] at a displacement [LU] of a contact that is unloaded from the widest, exactly."""
+        place = np.interp(displacement, self.held.displacement, self._unloaded[0])
+        return float(self.solved(np.asarray([displacement]), np.atleast_1d(place)).force[0])
+
     # --- what a predictor is asked
 
     @cached_property

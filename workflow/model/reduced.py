@@ -24,10 +24,9 @@ from typing import Any, ClassVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.pressure import Profile
 from contact1d.analysis.shear import slip
 from contact1d.workflow.model.adhesion import AdhesiveEstimate, Cells
-from contact1d.workflow.model.cohesive import APART, CohesiveEstimate, RatedEstimate
+from contact1d.workflow.model.cohesive import APART, CohesiveEstimate, RatedEstimate, ZonedEstimate
 from contact1d.workflow.model.dugdale import Zone
 from contact1d.workflow.model.friction import Sliders, sliders_of
 from contact1d.workflow.model.motion import inertia
@@ -49,6 +48,8 @@ ROUNDS, POINTS, SNAPPING = 5, 24, 10
 snap, and the force has many maxima."""
 SIDES, LOOKS = np.asarray([-0.5, -0.1, -0.01, -1e-4, 0.0, 1e-4, 0.01, 0.1, 0.5]), 4
 """Looks for where a force is carried, each beside the secant's place by so much of the bracket, and how many."""
+STIFF = 1e-3
+"""Distance over the range of an attraction of two displacements whose forces give a stiffness."""
 NEAREST = 1e-9
 """Distance from the limit point, over that to the largest displacement, from which positions are examined."""
 LOOKS_BETWEEN, EDGE_STEP = 20, 0.01
@@ -125,6 +126,7 @@ class Followed:
         force: of each at one of the displacements, by its number, (n,) [FU].
         shear: the same along x; None where nothing is prescribed there.
         zone: what a `ZonedProfile` knows of each state, (m,); None where particles tell where they end.
+        round_off: of the force of one particle, beyond that of its position, (m,) [FU].
     """
 
     x: Array
@@ -132,6 +134,7 @@ class Followed:
     force: Callable[[int], Array]
     shear: Callable[[int], Array] | None = None
     zone: tuple[Array, ...] | None = None
+    round_off: Array | float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,9 +168,17 @@ class Reduced(ABC):
         """Whether the cells at an edge of the contact have the part of its load that is inside of it."""
         return False
 
+    def prescribed(self, path: Path) -> dict[str, Array]:
+        """What load steps along a path that begins apart give a deck, by the names of its columns, (m,)."""
+        return {"displacement": path.displacement}
+
     @abstractmethod
+    def carried(self, columns: Mapping[str, Array]) -> Followed:
+        """Forces of load steps that give such columns."""
+
     def follow(self, path: Path) -> Followed:
         """Forces along a path that begins apart."""
+        return self.carried(self.prescribed(path))
 
     @abstractmethod
     def held(self, displacements: Array) -> Array:
@@ -177,10 +188,6 @@ class Reduced(ABC):
     @abstractmethod
     def apart(self) -> float:
         """Displacement [LU] below which nothing is felt."""
-
-    def planned(self, path: Path, profiles: Callable[[int], Profile]) -> Array:
-        """Forces along a path [FU], (m,), to compare a deck with; `profiles` of its states."""
-        return self.follow(path).total
 
     def energies(self, path: Path) -> tuple[float, float] | None:
         """What springs and surfaces store at the end of a path on a rigid plane, and what was lost on it [FU·LU].
@@ -322,9 +329,9 @@ class Springs(Reduced):
         each = self._forces(heights - displacements[:, None], np.ones(heights.size, dtype=bool))
         return np.asarray(each @ np.bincount(own))
 
-    def follow(self, path: Path) -> Followed:
-        """A pair that has snapped together stays so up to where it snaps apart; see `Reduced.follow`."""
-        (heights, own), displacements = self.heights, path.displacement
+    def carried(self, columns: Mapping[str, Array]) -> Followed:
+        """A pair that has snapped together stays so up to where it snaps apart; see `Reduced.carried`."""
+        (heights, own), displacements = self.heights, columns["displacement"]
         counts = np.bincount(own)
         joined = np.zeros(heights.size, dtype=bool)
         total, memory = np.empty(displacements.size), []
@@ -414,9 +421,9 @@ class AdheringCells(Reduced):
         end = energy(float(path.displacement[-1])) if held[-1] else 0.0
         return end, lost * energy(self.apart) - made * energy(0.0)
 
-    def follow(self, path: Path) -> Followed:
-        """Nothing is felt before touch; see `Reduced.follow`."""
-        displacements = path.displacement
+    def carried(self, columns: Mapping[str, Array]) -> Followed:
+        """Nothing is felt before touch; see `Reduced.carried`."""
+        displacements = columns["displacement"]
         held = self._holds(displacements)
         total = np.where(held, self.held(displacements), 0.0)
 
@@ -428,15 +435,42 @@ class AdheringCells(Reduced):
 
 
 @dataclass(frozen=True, eq=False)
-class CohesiveCells(Reduced):
-    """The cells of a chain on a rigid plane that attracts over a range."""
+class ZonedCells(Reduced):
+    """The cells of a chain on a rigid plane, the edges of whose contact each load step gives."""
 
-    estimate: CohesiveEstimate
+    estimate: ZonedEstimate
 
     @property
     def shares_edges(self) -> bool:
         """Always."""
         return True
+
+    def _edges_of(self, zone: Zone) -> dict[str, Array]:
+        """The columns of load steps: d, a, c and the mean of g(x) over the contact."""
+        area = self.estimate.law.area(zone.edge)
+        height = np.divide(area, zone.edge, out=np.zeros_like(area), where=zone.edge > 0.0)
+        return {"displacement": zone.displacement, "edge": zone.edge, "reach": zone.reach, "height": height}
+
+    def carried(self, columns: Mapping[str, Array]) -> Followed:
+        """See `Reduced.carried`; the line load jumps at an edge beyond which there is no attraction."""
+        estimate, law, cells = self.estimate, self.estimate.law, self.estimate.zones(self.x)
+        d, edge, reach = (columns[name] for name in ("displacement", "edge", "reach"))
+        zone = Zone(edge, reach, d, law.forces(edge, np.sqrt((reach - edge) * (reach + edge)), d))
+        ends = (reach == edge) & (edge > 0.0)
+        jump = np.where(ends, estimate.modulus * (d - estimate.profile.height(edge)), 0.0)
+        # The part of a cell in the ring of attraction is a difference of the discs up to its ends.
+        lost = float(np.finfo(np.float64).eps) * 2.0 * law.stress * reach**2
+        return Followed(
+            self.x, zone.force, lambda state: estimate.loads(cells, zone, state), zone=(edge, reach, jump),
+            round_off=lost,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class CohesiveCells(ZonedCells):
+    """The same where the attraction has a range."""
+
+    estimate: CohesiveEstimate
 
     @property
     def apart(self) -> float:
@@ -446,6 +480,14 @@ class CohesiveCells(Reduced):
     def held(self, displacements: Array) -> Array:
         """F [FU] of a contact that is unloaded."""
         return self.estimate.contact_forces(displacements)
+
+    def displacement_at(self, force: float) -> float:
+        """By the equations, from the displacement between points of the curve on."""
+        found, step = super().displacement_at(force), STIFF * self.estimate.range
+        low, high = self.held(np.asarray([found - step, found + step])).tolist()
+        for _ in range(LOOKS if high > low and found - step > self.apart else 0):
+            found += (force - self.estimate.held_at(found)) * 2.0 * step / (high - low)
+        return found
 
     @property
     def limits(self) -> tuple[float, ...]:
@@ -483,42 +525,25 @@ class CohesiveCells(Reduced):
         """There, where a contact that is loaded jumps, and where the attraction begins."""
         return (*self.limits, *self.estimate.snaps_in, -self.estimate.range)
 
-    def planned(self, path: Path, profiles: Callable[[int], Profile]) -> Array:
-        """By the edges that the load steps of a deck have: beside each other their digits are few."""
-        ends = np.asarray([[getattr(profiles(i), key) for key in ("edge", "reach")] for i in range(path.time.size)])
-        edge, reach = ends.T
-        return self.estimate.law.forces(edge, np.sqrt((reach - edge) * (reach + edge)), path.displacement)
-
     def energies(self, path: Path) -> tuple[float, float]:
         """U(a, c, d) of Maugis; what it jumps by from one place of the curve to another."""
         places = self.estimate.places(path.displacement).tolist()
         lost = sum(self.estimate.lost_between(*way) for way in pairwise([APART, *places]))
         return self.estimate.energy_at(places[-1]), lost
 
-    def follow(self, path: Path) -> Followed:
-        """From limit point to limit point of the curve; see `Reduced.follow`."""
-        estimate = self.estimate
-        zone = estimate.solved(path.displacement, estimate.places(path.displacement))
-        cells = estimate.zones(self.x)
-        return Followed(
-            self.x, zone.force, lambda state: estimate.loads(cells, zone, state),
-            zone=(zone.edge, zone.reach, np.zeros_like(zone.edge)),
-        )  # fmt: skip
+    def prescribed(self, path: Path) -> dict[str, Array]:
+        """With the edges of the contact, from limit point to limit point of the curve."""
+        return self._edges_of(self.estimate.solved(path.displacement, self.estimate.places(path.displacement)))
 
 
 @dataclass(frozen=True, eq=False)
-class RatedCells(Reduced):
-    """The cells of a chain on a rigid plane whose edge recedes at a finite speed."""
+class RatedCells(ZonedCells):
+    """The same where the edge recedes at a finite speed."""
 
     estimate: RatedEstimate
 
     dense: ClassVar[int] = 4
     in_time: ClassVar[bool] = True
-
-    @property
-    def shares_edges(self) -> bool:
-        """Always."""
-        return True
 
     @property
     def apart(self) -> float:
@@ -566,14 +591,9 @@ class RatedCells(Reduced):
         time, values = (np.interp(at, np.arange(len(history.phases)), one) for one in (history.time, history.values))
         return replace(history, phases=phases, time=time, values=values)
 
-    def follow(self, path: Path) -> Followed:
-        """See `Reduced.follow`."""
-        zone, cells = self.zone(path), self.estimate.zones(self.x)
-        jumps = self.estimate.modulus * (zone.displacement - self.estimate.profile.height(zone.edge))
-        return Followed(
-            self.x, zone.force, lambda state: self.estimate.loads(cells, zone, state),
-            zone=(zone.edge, zone.reach, jumps),
-        )  # fmt: skip
+    def prescribed(self, path: Path) -> dict[str, Array]:
+        """With the edge of the contact."""
+        return self._edges_of(self.zone(path))
 
 
 @dataclass(frozen=True, eq=False)
@@ -596,10 +616,15 @@ class Sliding(Springs):
         forces, lost = self._slid(path)
         return super().energies(path)[0] + 0.5 * float(np.sum(forces[-1] ** 2)) / self.chain.tangential, lost
 
-    def follow(self, path: Path) -> Followed:
-        """Straight from one state to the next; see `Reduced.follow`."""
-        forces, _ = self._slid(path)
-        normal = [self.chain.normal_forces(depth) for depth in path.displacement.tolist()]
+    def prescribed(self, path: Path) -> dict[str, Array]:
+        """With positions along x."""
+        return {"displacement": path.displacement, "place": path.along}
+
+    def carried(self, columns: Mapping[str, Array]) -> Followed:
+        """Straight from one state to the next; see `Reduced.carried`."""
+        depths, places = columns["displacement"], columns["place"]
+        forces, _ = self._slid(Path(depths, places, np.zeros_like(depths)))
+        normal = [self.chain.normal_forces(depth) for depth in depths.tolist()]
         total = np.asarray([each.sum() for each in normal])
         return Followed(self.x, total, normal.__getitem__, lambda state: -forces[state])
 
@@ -683,19 +708,21 @@ class RelaxingSprings(Reduced):
 
         return force
 
-    def velocities(self, path: Path) -> Array:
-        """Of the body at the end of each load step, (m,) [LU/TU]."""
-        if path.velocity is not None:
-            return path.velocity
-        return np.diff(path.displacement, prepend=0.0) / self.spent(path.time)
+    def prescribed(self, path: Path) -> dict[str, Array]:
+        """With the time that each load step takes and the velocity of the body at its end."""
+        spent, velocity = self.spent(path.time), path.velocity
+        if velocity is None:
+            velocity = np.diff(path.displacement, prepend=0.0) / spent
+        return {"displacement": path.displacement, "duration": spent, "velocity": velocity}
 
-    def follow(self, path: Path) -> Followed:
-        """A load step from each state to the next, in the time between them; see `Reduced.follow`."""
+    def carried(self, columns: Mapping[str, Array]) -> Followed:
+        """A load step from each state to the next, in the time between them; see `Reduced.carried`."""
         cells, own, counts = self._cells
         memory = Memory(self.law, cells)
-        each, margin = np.empty((2, path.displacement.size, counts.size))
-        columns = (path.displacement, self.spent(path.time), self.velocities(path))
-        for i, (place, time, velocity) in enumerate(zip(*(one.tolist() for one in columns), strict=True)):
+        displacement, spent, velocities = (columns[name] for name in ("displacement", "duration", "velocity"))
+        each, margin = np.empty((2, displacement.size, counts.size))
+        moves = zip(displacement.tolist(), spent.tolist(), velocities.tolist(), strict=True)
+        for i, (place, time, velocity) in enumerate(moves):
             each[i], margin[i] = memory.pressed(place, time, velocity)
             memory.go(place, time, velocity)
         each *= self.estimate.stiffness
@@ -704,14 +731,14 @@ class RelaxingSprings(Reduced):
         if self.shares_edges:
             spacing = self.estimate.spacing
             doubt += np.abs(0.5 * spacing * memory.width(margin, counts) - edge) + EDGE * spacing * (edge > 0.0)
-        zone = (edge, edge, self._jumps(edge, path.displacement, columns[2]), doubt)
+        zone = (edge, edge, self._jumps(edge, displacement, velocities), doubt)
         return Followed(self.x, each @ counts, lambda state: each[state][own], zone=zone)
 
     def energies(self, path: Path) -> tuple[float, float]:
         """Of springs and arms, those included whose particles have left; what dashpots lose."""
         cells, _, counts = self._cells
         memory, lost = Memory(self.law, cells), 0.0
-        columns = (path.displacement, self.spent(path.time), self.velocities(path))
+        columns = self.prescribed(path).values()
         for place, time, velocity in zip(*(one.tolist() for one in columns), strict=True):
             lost += float(memory.losing(place, time, velocity) @ counts)
             memory.go(place, time, velocity)
