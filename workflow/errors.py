@@ -129,3 +129,7 @@ class TensionError(UntrustedError):
 
 class DigitsError(UntrustedError):
     """Forces below the round-off error of positions."""
+
+
+class SettingsError(Contact1dError, ValueError):
+    """A scene whose numbers, each allowed, give no computable system; the message says which and what to change."""

@@ -29,12 +29,11 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from contact1d.analysis.atoms import atoms
     from contact1d.workflow.engine.failure import EngineError
-    from contact1d.workflow.errors import Contact1dError, FolderError, RunError
+    from contact1d.workflow.errors import Contact1dError, FolderError, RunError, SettingsError
     from contact1d.workflow.fit.fit import fit
     from contact1d.workflow.fit.many import fit_many
     from contact1d.workflow.identify.choice import from_material
     from contact1d.workflow.identify.shortcuts import Contact, cone, profile, punch, sphere
-    from contact1d.workflow.model.chain import SettingsError
     from contact1d.workflow.runs.advised import run
     from contact1d.workflow.runs.campaign import write_deck
     from contact1d.workflow.runs.finished import Run, load_run

@@ -15,16 +15,10 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from contact1d.potentials import DoubleExponential, Exponential
-from contact1d.workflow.model.cohesive import CohesiveEstimate, estimate_on_plane
-from contact1d.workflow.model.pairs import (
-    ContactEstimate,
-    NotCarriedError,
-    Profile,
-    Tabulated,
-    particles_estimate,
-    plane_estimate,
-    row_force,
-)
+from contact1d.workflow.laws import Independent, Law, Maugis, law_of
+from contact1d.workflow.laws.law import NotCarriedError
+from contact1d.workflow.laws.pairs import of_pairs, on_plane, row_force
+from contact1d.workflow.laws.shape import Profile, Tabulated
 from contact1d.workflow.scene import scene_from_dict
 from tests.scenes import LAW, chains
 
@@ -53,15 +47,15 @@ def body(shape: str) -> Profile:
     return scene_from_dict(chains(1.0, bodies={"profile": SHAPES[shape], "spacing": ROW}, experiment=load)).bodies
 
 
-def pairs(shape: str, stiffness: float = 0.7, points: int = 4000) -> ContactEstimate:
-    return particles_estimate(PAIR, body(shape), ROW, stiffness, CUTOFF, REST, points)
+def pairs(shape: str, stiffness: float = 0.7, points: int = 4000) -> Law:
+    return of_pairs(PAIR, body(shape), ROW, stiffness, CUTOFF, REST, points)
 
 
 @pytest.mark.parametrize("spacing", [1e-3, 0.8, 40.0])
 @pytest.mark.parametrize("shape", SHAPES)
 def test_half_widths_are_roots_of_the_height_at_most_the_bodys_own(shape: str, spacing: float) -> None:
     profile = body(shape)
-    found = ContactEstimate(np.array([-1.0, 0.3]), np.array([1.0, 0.0]), 0.1, profile, spacing, 1.0)
+    found = Law(np.array([-1.0, 0.3]), np.array([1.0, 0.0]), 0.1, profile, spacing, 1.0)
     displacements = np.array([-0.5, -0.2, -0.2 + 1e-9, -0.1, 0.0, 0.3, 2.0, 5.0, 5.9, 1e3])
     for d, width in zip(displacements.tolist(), found.half_widths(displacements, 0.3).tolist(), strict=True):
         height = 0.3 - 0.1 + d
@@ -82,7 +76,7 @@ def test_half_widths_are_roots_of_the_height_at_most_the_bodys_own(shape: str, s
 
 def test_a_terrace_that_is_just_as_high_is_no_longer_below() -> None:
     terrace = Tabulated(np.array([0.0, 1.0, 3.0, 4.0]), np.array([0.0, 1.0, 1.0, 2.0]))
-    found = plane_estimate(terrace, 0.7, 1.0)
+    found = on_plane(Independent, terrace, 0.7, 1.0)
     assert found.half_width(1.0, 0.0) == pytest.approx(1.0, rel=WIDTH)
     assert found.half_width(1.0 + 1e-12, 0.0) == pytest.approx(3.0, rel=1e-9)
     assert found.half_width(2.0, 0.0) == pytest.approx(4.0, rel=WIDTH)
@@ -106,7 +100,7 @@ class Counted:
 def test_a_width_takes_less_than_a_bisection_and_marks_some_thousands_of_places() -> None:
     """A bisection to all digits asks a body 60 times, and a search for a place of F(d) would some 40 times 400."""
     profile = Counted([])
-    found = particles_estimate(PAIR, profile, ROW, 0.7, CUTOFF, REST)
+    found = of_pairs(PAIR, profile, ROW, 0.7, CUTOFF, REST)
     assert 3000 < found.gap.size < 6000
     found.half_width(0.3, CUTOFF)
     assert len(profile.asked) < 60
@@ -191,7 +185,7 @@ def test_a_body_carries_no_more_than_all_its_particles_on_the_opposite_ones(shap
 
 @pytest.mark.parametrize("depth", [1e-3, 10.0, 5e5])
 def test_a_plane_is_felt_as_deep_as_a_body_may_go(depth: float) -> None:
-    found = plane_estimate(body("punch"), ROW, 0.5)
+    found = on_plane(Independent, body("punch"), ROW, 0.5)
     assert not found.snaps
     assert found.let_go_early(1.0, 1.0) == 0.0
     assert found.snap == (0.0, 0.0)
@@ -202,7 +196,7 @@ def test_a_plane_is_felt_as_deep_as_a_body_may_go(depth: float) -> None:
 @pytest.mark.parametrize("d", [1e-3, 0.3, 20.0])
 def test_springs_on_a_plane_are_as_stiff_as_their_contact_is_wide(d: float) -> None:
     """dF/dd = 2a k/s; a difference over a thousandth of the way is off by a quarter of that."""
-    found = plane_estimate(body("parabola"), ROW, 0.5)
+    found = on_plane(Independent, body("parabola"), ROW, 0.5)
     a = found.half_width(d, 0.0)
     assert found.stiffness_under(found.contact_force(d)) == pytest.approx(2.0 * a / ROW * 0.5, rel=4e-4)
 
@@ -216,9 +210,9 @@ class Flat(Counted):
 
 def test_a_spacing_whose_square_is_nothing_is_told_at_once() -> None:
     with pytest.raises(OverflowError, match="too small compared with the body"):
-        plane_estimate(body("parabola"), 1e-200, 1.0).displacement_at(1.0)
+        on_plane(Independent, body("parabola"), 1e-200, 1.0).displacement_at(1.0)
     with pytest.raises(OverflowError, match="too wide compared"):
-        plane_estimate(Flat([]), 1.0, 1.0).half_width(1.0, 0.0)
+        on_plane(Independent, Flat([]), 1.0, 1.0).half_width(1.0, 0.0)
 
 
 def test_an_estimate_that_scenes_share_is_not_to_be_written_to() -> None:
@@ -236,8 +230,8 @@ def test_a_cone_lets_go_of_a_weak_attraction_without_a_jump(work: float, reach: 
     adhesion = {"work_of_adhesion": work, "range": reach}
     pull = {"kind": "pull_off", "preload": 0.2}
     scene = scene_from_dict(chains(1.0, bodies=bodies, adhesion=adhesion, interaction=None, experiment=pull))
-    estimate = estimate_on_plane(scene, scene.bodies)
-    assert isinstance(estimate, CohesiveEstimate)
+    estimate = law_of(scene).of(scene, scene.bodies)
+    assert isinstance(estimate, Maugis)
     assert (4.0 * work / reach / math.pi > 0.2) == jumps
     assert len(estimate.limits) == jumps
     first = float(estimate.held.displacement[0])

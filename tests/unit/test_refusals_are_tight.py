@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d.workflow.model.chain import SettingsError, in_words, require_reach, require_rows, require_steps
+from contact1d.workflow.errors import SettingsError
+from contact1d.workflow.laws.shape import tabulated
+from contact1d.workflow.model.chain import in_words, require_reach, require_rows, require_steps
 from contact1d.workflow.model.dynamics import drive_steps
 from contact1d.workflow.model.motion import require_way, too_fast
-from contact1d.workflow.model.pairs import tabulated
 from contact1d.workflow.model.settings import Settings, settings_for
 from contact1d.workflow.scene import Scene, scene_from_dict
 from tests.scenes import chains

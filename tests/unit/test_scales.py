@@ -15,9 +15,10 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize_scalar
 
-from contact1d.workflow.model.chain import SettingsError, require_apex, require_memory, require_travel
+from contact1d.workflow.errors import SettingsError
+from contact1d.workflow.laws.law import NotCarriedError
+from contact1d.workflow.model.chain import require_apex, require_memory, require_travel
 from contact1d.workflow.model.motion import inertia
-from contact1d.workflow.model.pairs import NotCarriedError
 from contact1d.workflow.model.settings import CALIBRATION, Settings, innermost_distance, settings_for, thermal_motion
 from contact1d.workflow.scene import Scene, scene_from_dict
 from tests.scenes import LAW, chains
@@ -111,14 +112,14 @@ def test_steps_of_a_search_are_shares_of_the_way_and_of_the_longest_range() -> N
 def test_the_innermost_distance_is_that_of_a_pair_on_its_springs(displacement: float) -> None:
     settings = settings_for(scene(bodies={"spacing": 5.0}))
     exact = brentq(lambda r: r - 2.0 * pair(r) / SPRING - settings.forces.rest + displacement, 0.01, 3.0)
-    found = innermost_distance(settings.estimate, settings.forces.cutoff, displacement)
+    found = innermost_distance(settings.law, settings.forces.cutoff, displacement)
     assert found == pytest.approx(exact, rel=1e-5)  # the row's others are far away
 
 
 def test_a_table_follows_the_law_from_where_the_coldest_and_the_hottest_particles_come() -> None:
     """0.8 of the innermost distance; with heat five standard deviations √(2kT/k) nearer, down to `closest`."""
     cold = settings_for(scene())
-    near = innermost_distance(cold.estimate, cold.forces.cutoff, cold.largest_displacement)
+    near = innermost_distance(cold.law, cold.forces.cutoff, cold.largest_displacement)
     assert cold.forces.table_from == pytest.approx(0.8 * near, rel=EXACT)
     heat = {"damping": {"coefficient": 0.3}, "plate": {}, "experiment": LOAD | {"method": "dynamic"}}
     for temperature in (1e-5, 10.0):
@@ -273,7 +274,7 @@ def test_pairs_that_nearly_snap_let_go_one_by_one_and_weak_ones_together(
 
 @pytest.mark.parametrize("profile", [{"kind": "circle", "radius": 4.0}, {"kind": "flat_punch", "radius": 4.0}])
 def test_bodies_that_end_carry_any_load_below_the_one_that_is_named(profile: dict[str, Any]) -> None:
-    estimate = settings_for(scene(bodies={"profile": profile}, experiment=LOAD)).estimate
+    estimate = settings_for(scene(bodies={"profile": profile}, experiment=LOAD)).law
     with pytest.raises(NotCarriedError) as caught:
         estimate.displacement_at(1e9)
     most = caught.value.most
@@ -284,7 +285,7 @@ def test_bodies_that_end_carry_any_load_below_the_one_that_is_named(profile: dic
 
 
 def test_what_never_snaps_lets_go_at_the_end_of_its_forces_and_loses_nothing() -> None:
-    estimate = settings_for(scene()).estimate
+    estimate = settings_for(scene()).law
     assert estimate.snap == (float(estimate.gap[-1]), 0.0)
 
 

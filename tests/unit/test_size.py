@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.model.chain import (
-    SettingsError,
     in_words,
     require_digits,
     require_reach,

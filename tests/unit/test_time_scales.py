@@ -175,17 +175,15 @@ def test_a_slide_is_loaded_with_a_drag_that_lets_its_plate_swing_not_and_creep_n
     settings = settings_for(of)
     count = settings.chains.upper
     stiffness = min(
-        settings.estimate.stiffness_under(1.0),
-        settings.estimate.half_width(settings.largest_displacement, settings.forces.rest)
-        * 2.0
-        * settings.estimate.stiffness,
+        settings.law.stiffness_under(1.0),
+        settings.law.half_width(settings.largest_displacement, settings.forces.rest) * 2.0 * settings.law.stiffness,
     )
     moving = settings.motion.plate_mass + count * MASS
     rate = count * settings.motion.calm_damping / moving
     values = np.linalg.eigvals([[0.0, 1.0], [-0.6 * stiffness / moving, -rate]])
     assert settings.motion.calm_step == pytest.approx(settings.motion.time_step, rel=0.3)
     swing = 2.0 * math.pi * math.sqrt(moving / stiffness)  # of the plate on its contact, by the law and springs
-    own = 2.0 * math.pi * math.sqrt(moving / (2.0 * settings.estimate.stiffness))
+    own = 2.0 * math.pi * math.sqrt(moving / (2.0 * settings.law.stiffness))
     assert settings.motion.settle_time >= SWING * swing * (1.0 - 1e-6)
     assert settings.motion.settle_time <= max(SWING * swing, own) * (1.0 + 1e-6)
     assert settings.motion.calm_step * settings.motion.calm_damping / MASS <= 0.4 * 1.3
@@ -214,9 +212,9 @@ def test_a_slides_plate_has_time_for_half_a_swing_on_what_holds_it(spring: float
     of = slide(1e-3, bulk_stiffness=spring, bulk_stiffness_tangential=2.0)
     settings = settings_for(of)
     moving = settings.motion.plate_mass + settings.chains.upper * MASS
-    touching = settings.estimate.half_width(settings.largest_displacement, settings.forces.rest) * 2.0
-    contact = max(1.0, touching) * settings.estimate.stiffness
-    held = min(contact, settings.estimate.stiffness_under(1.0))
+    touching = settings.law.half_width(settings.largest_displacement, settings.forces.rest) * 2.0
+    contact = max(1.0, touching) * settings.law.stiffness
+    held = min(contact, settings.law.stiffness_under(1.0))
     assert (held < 0.1 * contact) == (spring > 2.0)
     periods = [2.0 * math.pi * math.sqrt(moving / contact), SWING * 2.0 * math.pi * math.sqrt(moving / held)]
     assert settings.motion.settle_time == pytest.approx(max(periods), rel=1e-6)
@@ -234,8 +232,8 @@ def test_a_slide_is_loaded_under_its_own_drag_where_that_is_enough_and_no_more_t
     )
     settings = settings_for(of)
     moving = mass + settings.chains.upper * MASS
-    touching = settings.estimate.half_width(settings.largest_displacement, settings.forces.rest) * 2.0
-    held = min(max(1.0, touching) * settings.estimate.stiffness, settings.estimate.stiffness_under(force))
+    touching = settings.law.half_width(settings.largest_displacement, settings.forces.rest) * 2.0
+    held = min(max(1.0, touching) * settings.law.stiffness, settings.law.stiffness_under(force))
     critical = 2.0 * math.sqrt(0.6 * held * moving) / settings.chains.upper
     within = [
         0.4 * MASS / (settings.motion.time_step * part) for part in (1.0, 1.3)

@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from contact1d.workflow.model.chain import SettingsError, decay_length
+from contact1d.workflow.errors import SettingsError
+from contact1d.workflow.model.chain import decay_length
 from contact1d.workflow.model.motion import contact_half_width, require_way, too_fast
 from contact1d.workflow.model.settings import CALIBRATION, largest_holding_force, settings_for
 from contact1d.workflow.scene import Scene, scene_from_dict

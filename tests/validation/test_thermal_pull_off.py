@@ -44,7 +44,7 @@ def test_the_detachment_force_is_that_of_smoluchowskis_equation(rate: float, tmp
     assert found.scene.bodies.spacing * held.pressure.sum() == pytest.approx(samples["force"][last])
     assert (
         samples["displacement"][last]
-        > settings_for(found.scene).estimate.parted(detachment.LET_GO)
+        > settings_for(found.scene).law.parted(detachment.LET_GO)
         > samples["displacement"][last + 1]
     )
 
@@ -83,7 +83,7 @@ def test_a_spring_drawn_off_at_a_velocity_lets_go_as_smoluchowskis_equation_says
     found = run(scene, tmp_path / "run", figures=False).results
     d, energy = detachment.free_energy()
     drag = drag_of_pairs(d, energy, detachment.PAIRS, detachment.STIFFNESS, detachment.DRAG)
-    slack = settings_for(scene).estimate.displacement_at(0.0)
+    slack = settings_for(scene).law.displacement_at(0.0)
     mean, spread = detachment_in_time(
         d, energy, drag, detachment.TEMPERATURE, 0.5 * 2e-3, detachment.barrier(), 0.5, slack
     )

@@ -73,7 +73,7 @@ def plain(scene: Scene, tolerance: float, folder: Path, tuned: bool) -> tuple[fl
     folder.mkdir(parents=True, exist_ok=True)
     doors.write_system(deck, folder)
     context = doors.RunContext(deck, folder, doors.Silent(), TIME_LIMIT)
-    guess = deck.settings.estimate.pull_off_force()
+    guess = deck.settings.law.pull_off_force()
     low, high = 0.0, 2.0 * guess
     while high - low > tolerance * high:
         tension = 0.5 * (low + high)

@@ -29,7 +29,7 @@ from contact1d.workflow.body.reading import product
 from contact1d.workflow.body.theory import Case, tabor
 from contact1d.workflow.body.traction import BodyPressure, body_pressures, is_of_a_body
 from contact1d.workflow.continuation.outcome import MODEL, Made, Outcome, Result
-from contact1d.workflow.model.pairs import row_force
+from contact1d.workflow.laws.pairs import row_force
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import ENERGY, FORCE, LINE_PRESSURE, MEAN_PRESSURE, NUMBER, Quantity
@@ -104,7 +104,7 @@ def implied(scene: Scene, settings: Settings, found: Mapping[str, Quantity]) -> 
     if radius is None or curvature is None or not radius.value > 0.0:
         return quantities
     energy = product(WIDER[reduction] / math.pi, LINE_PRESSURE, (line, 1.0), (radius, -1.0))
-    tension = found.get("adhesion_force", Quantity(settings.estimate.pull_off_force(), 0.0, FORCE))
+    tension = found.get("adhesion_force", Quantity(settings.law.pull_off_force(), 0.0, FORCE))
     jkr = product(1.0 / (1.5 * math.pi * EFFECTIVE[reduction] * curvature), LINE_PRESSURE, (tension, 1.0))
     spread = energy.uncertainty + abs(energy.value - jkr.value) + jkr.uncertainty
     return quantities | {"work_of_adhesion": Quantity(energy.value, spread, LINE_PRESSURE)}

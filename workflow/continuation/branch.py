@@ -261,7 +261,7 @@ class Branch(ContactBranch):
 
         Returns the increment [LU].
         """
-        estimate, zero = self.settings.estimate, self._last
+        estimate, zero = self.settings.law, self._last
         tooth = estimate.tooth(self.settings.chains.upper)
         densest = (zero.displacement - estimate.rest + float(estimate.gap[-1])) / MOST_TEETH
         step = min(self.settings.increment(), max(tooth, densest) / PER_TOOTH)
@@ -361,7 +361,7 @@ class Branch(ContactBranch):
 
     def _unloading_step(self, start: float) -> float:
         """First increment [LU] of an unloading: soft springs follow the attraction farther than they were pressed."""
-        way = start - self.settings.forces.rest + float(self.settings.estimate.gap[-1])
+        way = start - self.settings.forces.rest + float(self.settings.law.gap[-1])
         return max(self.settings.increment(), way / SEPARATION_ROWS)
 
     def _still_held(self, state: State) -> float:

@@ -30,7 +30,8 @@ from contact1d.workflow.continuation.model_branch import MOST_NUMBERS, ModelBran
 from contact1d.workflow.continuation.outcome import LATTICE, Move, Reading, Result, in_squares
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace
-from contact1d.workflow.model.reduced import Reduced, reduced
+from contact1d.workflow.laws.particles import Particles
+from contact1d.workflow.model.reduced import reduced
 from contact1d.workflow.model.settings import Settings, SettingsError, settings_for
 from contact1d.workflow.scene import Scene, Shape
 
@@ -90,13 +91,13 @@ class Reduction:
         vars(found).update(model=self.model, _lattices=self._lattices)
         return found
 
-    def values(self, model: Reduced, dense: int = 1, shift: float = 0.0) -> Values:
+    def values(self, model: Particles, dense: int = 1, shift: float = 0.0) -> Values:
         """The results of the model; `shift` of the displacements that the scene gives [LU]."""
         if self.passed:
             return self.passed.again(self.scene, self.settings, model)
         return _values(self.read(self.trace(model, dense, shift)))
 
-    def trace(self, model: Reduced, dense: int = 1, shift: float = 0.0, whole: bool = False) -> Trace:
+    def trace(self, model: Particles, dense: int = 1, shift: float = 0.0, whole: bool = False) -> Trace:
         """What the script makes of the reduced model."""
         branch = ModelBranch(self.scene, self.settings, model, dense, shift)
         self.script(branch)
@@ -123,7 +124,7 @@ class Reduction:
         return self.model.shares_edges
 
     @cached_property
-    def model(self) -> Reduced:
+    def model(self) -> Particles:
         """The model of the chain that runs."""
         return reduced(self.scene, self.settings)
 
@@ -141,14 +142,14 @@ class Reduction:
         }
 
     @cached_property
-    def _lattices(self) -> tuple[list[Reduced], list[Reduced]]:
+    def _lattices(self) -> tuple[list[Particles], list[Particles]]:
         """The model with its particles elsewhere, and on finer spacings."""
         if not (self.on_lattice or self.converges):
             return [], []
         kinks = self.scene.bodies.profile.kinks
         beside = [self.model.resized(factor) for factor in UNEVEN if kinks]
         if not self.converges or kinks:
-            phases = MORE_PHASES if self.scene.friction or kinks else PHASES
+            phases = MORE_PHASES if self.model.law.has_zones or kinks else PHASES
             beside += [self.model.shifted(phase) for phase in phases]
         return beside, [self.model.resized(factor) for factor in FINER if self.converges]
 
@@ -215,15 +216,15 @@ class Reduction:
         each = [self._apart([other]) for other in others]
         return {name: sum(one[name] for one in each) + in_squares(self.moves, name) for name in self.own}
 
-    def _of_shape(self, shape: Shape) -> Reduced | None:
+    def _of_shape(self, shape: Shape) -> Particles | None:
         """The model of another body; None of one that is no contact, as where its edge would jump at a corner."""
         scene = self.scene.with_profile(shape)
         try:
-            return reduced(scene, replace(self.settings, estimate=settings_for(scene).estimate))
+            return reduced(scene, replace(self.settings, law=settings_for(scene).law))
         except SettingsError:
             return None
 
-    def _apart(self, models: Sequence[Reduced]) -> Values:
+    def _apart(self, models: Sequence[Particles]) -> Values:
         """How far results of other models are off, at most."""
         found = {name: np.zeros_like(value) for name, value in self.own.items()}
         for one in map(self.values, models):
@@ -360,7 +361,7 @@ def budgeted(
     missed = _missed(case, trace, force_error.common)
     traces = [trace.perturbed(sign * shape, moved=missed) for shape in shapes for sign in WAYS]
     # Where an interaction is so much stronger or weaker, a contact is as much wider or narrower at most.
-    strength = case.settings.estimate.pull_off_force() or float(np.max(np.abs(trace.force), initial=0.0))
+    strength = case.settings.law.pull_off_force() or float(np.max(np.abs(trace.force), initial=0.0))
     if force_error.law > 0.0 and strength > 0.0:
         traces += [trace.perturbed(radius_factor=1.0 + sign * force_error.law / strength) for sign in (1.0, -1.0)]
     solver = _changes(case.read, values, traces)
@@ -422,10 +423,10 @@ def _stiffness(case: Reduction, displacement: Array) -> Array:
     """dF/dd [FU/LU] at displacements (m,) [LU] of the model, at least that of a particle."""
     settings, model = case.settings, case.model
     if settings.is_toothed:
-        return np.full_like(displacement, settings.estimate.stuck_stiffness(settings.largest_displacement))
-    step = BEFORE * abs(model.deepest - model.apart) or model.estimate.spacing
+        return np.full_like(displacement, settings.law.stuck_stiffness(settings.largest_displacement))
+    step = BEFORE * abs(model.deepest - model.apart) or model.law.spacing
     rise = model.held(displacement) - model.held(displacement - step)
-    return np.maximum(rise / step, model.estimate.stiffness)
+    return np.maximum(rise / step, model.law.stiffness)
 
 
 def _changes(read: Reader, values: Values, perturbed: list[Trace], missing: bool = False) -> Values:

@@ -21,7 +21,8 @@ from contact1d.workflow.continuation.budget import Reduction
 from contact1d.workflow.continuation.model_branch import ModelBranch
 from contact1d.workflow.continuation.outcome import Agreement
 from contact1d.workflow.continuation.state import State
-from contact1d.workflow.model.reduced import Array, Path, Reduced, legs, path_of
+from contact1d.workflow.laws.particles import Array, Particles
+from contact1d.workflow.laws.path import Path, legs, path_of
 from contact1d.workflow.scene import Scene
 
 PLAN, ABSOLUTE = 1e-9, 1e-5
@@ -126,16 +127,16 @@ def energy(case: Reduction, work: Work, doubt: float = 0.0) -> dict[str, Agreeme
     return {"energy": Agreement(abs(missing) / size if size else 0.0, allowed, words)}
 
 
-def _missing(model: Reduced, work: Work, finer: int) -> tuple[float, float, float, float] | None:
+def _missing(model: Particles, work: Work, finer: int) -> tuple[float, float, float, float] | None:
     """Work that is neither stored nor lost, the work, what is stored and lost, and the size of it [FU·LU]."""
-    path = work.path if work.kinetic or model.in_time else _dense(work.path, model, finer)
+    path = work.path if work.kinetic or model.law.in_time else _dense(work.path, model, finer)
     if (found := model.energies(path)) is None:
         return None
     stored, lost = found
     if work.kinetic:
         whole, done = work.kinetic
         return done - stored - lost, done, stored + lost, whole
-    followed = None if model.in_time and work.forces is not None else model.follow(path)
+    followed = None if model.law.in_time and work.forces is not None else model.follow(path)
     forces = followed.total if followed else np.asarray(work.forces)
     if forces[0] != 0.0:  # work begins there; what was gained and lost before is no part of it
         first = {name: column[:1] for name, column in vars(path).items() if column is not None}
@@ -152,23 +153,23 @@ def _missing(model: Reduced, work: Work, finer: int) -> tuple[float, float, floa
 
 def _denser(case: Reduction, work: Work) -> Work:
     """The same of a history with twice the load steps."""
-    if work.kinetic or not case.model.in_time:
+    if work.kinetic or not case.model.law.in_time:
         return work
     branch = ModelBranch(case.scene, case.settings, case.model, 2, 0.0)
     case.script(branch)
     return Work(branch.path)
 
 
-def _dense(path: Path, model: Reduced, finer: int) -> Path:
+def _dense(path: Path, model: Particles, finer: int) -> Path:
     """Equilibria along a path from apart on, with as many states as the work along it needs."""
-    start = min(0.0, model.apart) - NEAREST * model.estimate.spacing  # below that nothing is felt
+    start = min(0.0, model.apart) - NEAREST * model.law.spacing  # below that nothing is felt
     places = np.append(start, np.maximum(path.displacement, start))
     if path.along.any():
         each = np.where(np.diff(places) != 0.0, EACH_STEP, 1) * finer
         steps, moved = np.arange(places.size), np.append(path.along[:1], path.along)
         at = np.append(0.0, np.concatenate([step + np.arange(1, count + 1) / count for step, count in enumerate(each)]))
         return Path(np.interp(at, steps, places), np.interp(at, steps, moved), np.zeros_like(at))
-    near = model.estimate.spacing * np.geomspace(NEAREST, 1.0, BESIDE)
+    near = model.law.spacing * np.geomspace(NEAREST, 1.0, BESIDE)
     beside = np.asarray([jump + side for jump in model.jumps for side in (-near, near)]).ravel()
     ends = places[[0, *(leg.stop - 1 for leg in legs(places))]].tolist()
     found, whole = [places[:1]], float(np.ptp(places)) or 1.0

@@ -22,8 +22,11 @@ from contact1d.workflow.deck.steps import Fly, Launch, Phase, numbered
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.engine.session import Engine
-from contact1d.workflow.model.reduced import FLIGHT, STRETCHES, History, Reduced, is_over, reduced, stretch
-from contact1d.workflow.model.reduced import Path as Motion
+from contact1d.workflow.laws.particles import Particles
+from contact1d.workflow.laws.path import History
+from contact1d.workflow.laws.path import Path as Motion
+from contact1d.workflow.model.free import FLIGHT, STRETCHES, is_over, stretch
+from contact1d.workflow.model.reduced import reduced
 
 MOST_STRETCHES = 100
 """How long an impact lasts at most, over the time of a fall to the deepest displacement."""
@@ -150,7 +153,7 @@ class ContactBranch:
         """Prepare a contact; what `meanwhile` does costs no time: LAMMPS reads the bodies then."""
         self.context, self._meanwhile = context, meanwhile
         self.scene, self.settings = context.deck.scene, context.deck.settings
-        self.model: Reduced = reduced(self.scene, self.settings)
+        self.model: Particles = reduced(self.scene, self.settings)
         self.states: list[State] = []
         self.legs: list[int] = []
         self.searches: dict[int, Search] = {}
@@ -187,7 +190,7 @@ class ContactBranch:
     @property
     def scale(self) -> float:
         """The force maximum that is expected [FU]."""
-        return self.settings.estimate.pull_off_force()
+        return self.settings.law.pull_off_force()
 
     def by_model(self) -> Array | None:
         """Forces [FU] of the model in all states, (m,); None where it is no copy of the deck."""
@@ -206,6 +209,10 @@ class ContactBranch:
     def visit(self, positions: Sequence[float] | Array, along: Sequence[float] | None = None) -> None:
         """Go to displacements [LU]. Raises UntrustedError under load control."""
         raise UntrustedError('a plate under a load has no prescribed displacement: use method = "quasistatic"')
+
+    def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
+        """Hold for a time. Raises UntrustedError where load steps take none."""
+        raise UntrustedError('a load step at rest takes no time: use method = "dynamic"')
 
     def follow(self, history: History) -> None:
         """Go through a history. Raises UntrustedError where load steps are not those of springs alone (`stepped`)."""

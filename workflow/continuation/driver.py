@@ -8,7 +8,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.workflow.model.reduced import History, Reduced
+from contact1d.workflow.laws.particles import Particles
+from contact1d.workflow.laws.path import History
 from contact1d.workflow.model.settings import Settings
 
 
@@ -23,7 +24,7 @@ class Driver(Protocol):
         """The numbers of the run."""
 
     @property
-    def model(self) -> Reduced:
+    def model(self) -> Particles:
         """The reduced model."""
 
     @property

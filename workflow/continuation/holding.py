@@ -72,8 +72,8 @@ class Held:
 def stiffness_under(settings: Settings, load: float) -> float:
     """Contact stiffness [FU/LU] under a load [FU]; where pairs separate one by one, of all that ever touch."""
     if settings.is_toothed:
-        return settings.estimate.stuck_stiffness(settings.largest_displacement)
-    return settings.estimate.stiffness_under(load)
+        return settings.law.stuck_stiffness(settings.largest_displacement)
+    return settings.law.stiffness_under(load)
 
 
 def damping_under(settings: Settings, load: float) -> float:
@@ -109,7 +109,7 @@ def hold_row(scene: Scene, settings: Settings, load: float, scale: float, start:
     damping = damping_under(settings, load)
     inertia = _inertia(scene, settings)
     drag = settings.drag(damping)
-    parted = settings.estimate.parted(PARTING_SHARE) if load < 0.0 else _apart(settings)
+    parted = settings.law.parted(PARTING_SHARE) if load < 0.0 else _apart(settings)
     steps = max(FEWEST_STEPS, math.ceil(PATIENCE * settings.motion.settle_time / settings.motion.time_step))
     rest = at_rest(settings, scale) / inertia
     return Hold(int(start), load, damping, drag / inertia, rest, parted, _through(settings), steps)
@@ -190,13 +190,13 @@ def _inertia(scene: Scene, settings: Settings) -> float:
 
 def _apart(settings: Settings) -> float:
     """Displacement [LU] at which the bodies are certainly out of each other's reach."""
-    return settings.forces.rest - settings.forces.cutoff - settings.estimate.spacing
+    return settings.forces.rest - settings.forces.cutoff - settings.law.spacing
 
 
 def _through(settings: Settings) -> float:
     """Displacement [LU] beyond what a plate without any damping would shoot to: the bodies went through each other."""
     way = settings.largest_displacement - settings.forces.rest + settings.forces.cutoff
-    return settings.largest_displacement + 2.0 * max(way, settings.estimate.spacing)
+    return settings.largest_displacement + 2.0 * max(way, settings.law.spacing)
 
 
 def _lost(contact: Contact, state: State, load: float) -> bool:

@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 
 from contact1d.workflow.continuation.state import radius_rule
 from contact1d.workflow.continuation.trace import Trace, of_model
-from contact1d.workflow.model.reduced import History, Path, Reduced, impact, swing
+from contact1d.workflow.laws.particles import Particles
+from contact1d.workflow.laws.path import History, Path
+from contact1d.workflow.model.free import impact, swing
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 
@@ -21,7 +23,7 @@ COARSE, DENSE, FINE, ZOOMS = 48, 100, 30, 2
 """Positions of the first look for the force maximum, on a rigid plane and between particles, and of each closer one,
 and how many of these: none where the curve is smooth, since the model's forces are straight between the points of a
 grid, whose corners would move a top."""
-BESIDE = 8.0
+BESIDE = 32.0
 """Part of the distance of two positions in which those beside a force maximum are, three on either side."""
 BETWEEN = 8
 """Intermediate positions towards a force."""
@@ -56,7 +58,7 @@ class ModelBranch:
         marks: names under which states are reported, by the number of the state.
     """
 
-    def __init__(self, scene: Scene, settings: Settings, model: Reduced, dense: int, shift: float) -> None:
+    def __init__(self, scene: Scene, settings: Settings, model: Particles, dense: int, shift: float) -> None:
         """Begin apart."""
         self.scene, self.settings, self.model, self.dense, self.shift = scene, settings, model, dense, shift
         self._phase, self._leg = "", -1
@@ -68,7 +70,7 @@ class ModelBranch:
     @property
     def scale(self) -> float:
         """The force maximum that is expected [FU]."""
-        return self.settings.estimate.pull_off_force()
+        return self.settings.law.pull_off_force()
 
     def begin(self, name: str) -> None:
         """Begin a phase."""
@@ -99,7 +101,7 @@ class ModelBranch:
 
     def _between(self, start: float, end: float, count: int) -> Array:
         """So many positions [LU] of a step, its end the last, and others on both sides of each jump."""
-        near = NEAR * self.model.estimate.spacing
+        near = NEAR * self.model.law.spacing
         beside = [at + side for at in self.model.jumps for side in (-near, near)]
         inner = [at for at in beside if min(start, end) < at < max(start, end)]
         found = np.unique([*np.linspace(start, end, count + 1)[1:], *inner])
@@ -171,7 +173,7 @@ class ModelBranch:
 
     def open(self) -> None:
         """Pull the bodies apart."""
-        self._add(np.append(self._beyond, self.model.apart - self.settings.estimate.spacing))
+        self._add(np.append(self._beyond, self.model.apart - self.settings.law.spacing))
         self._beyond = np.empty(0)
 
     @property

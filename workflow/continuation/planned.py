@@ -22,7 +22,8 @@ from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trust import DigitsError, TensionError, require_trust
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import Phase, numbered, swept
-from contact1d.workflow.model.reduced import Followed, History, Path, Reduced
+from contact1d.workflow.laws.particles import Particles
+from contact1d.workflow.laws.path import Followed, History, Path
 from contact1d.workflow.scene import Bodies
 
 Array = NDArray[np.float64]
@@ -41,13 +42,13 @@ class Plan:
     """
 
     deck: Deck
-    model: Reduced
+    model: Particles
     path: Path
     names: Sequence[str]
     marks: Collection[int]
 
     @classmethod
-    def of(cls, deck: Deck, model: Reduced, script: Script) -> Plan:
+    def of(cls, deck: Deck, model: Particles, script: Script) -> Plan:
         """What a script does on the model."""
         branch = ModelBranch(deck.scene, deck.settings, model, 1, 0.0)
         script(branch)

@@ -10,6 +10,7 @@ from typing import ClassVar
 
 from contact1d.analysis.pressure import Profile, ZonedProfile, end_pressure_share
 from contact1d.analysis.radius import ContactRadius, compressive_radius, held_radius, tensile_radius
+from contact1d.workflow.laws import law_of
 from contact1d.workflow.model.settings import CALIBRATION
 from contact1d.workflow.scene import Bodies, Scene
 
@@ -118,15 +119,14 @@ class ToTheEdge(RadiusRule):
 def radius_rule(scene: Scene, tolerance: float) -> RadiusRule:
     """The one of a scene; `tolerance` limits the residual of a pressure."""
     share = CALIBRATION.residual * tolerance
+    law = law_of(scene)
     if scene.bodies.own_count is not None:
-        return ToTheEdge(scene.bodies, share, bool(scene.adhesion))
-    if scene.viscoelasticity and scene.is_stepped:
+        return ToTheEdge(scene.bodies, share, law.holds)
+    if law.tells_edges and scene.is_stepped:
         return Zoned(scene.bodies, share)
     if not scene.adheres:
         return Compressed(scene.bodies, share)
-    if scene.adhesion and (scene.adhesion.range or scene.adhesion.rate):
-        return Zoned(scene.bodies, share)
-    return (Held if scene.adhesion else InTension)(scene.bodies, share)
+    return (Held if law.holds else InTension)(scene.bodies, share)
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 from contact1d.analysis.pressure import Profile, ZonedProfile
 from contact1d.analysis.radius import ContactRadius
 from contact1d.workflow.continuation.state import RadiusRule, State
-from contact1d.workflow.model.reduced import CohesiveCells, Followed, Path, Reduced, impact
+from contact1d.workflow.laws.particles import Particles
+from contact1d.workflow.laws.path import Followed, Path
+from contact1d.workflow.model.free import impact
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Impact, Scene
 
@@ -82,7 +84,7 @@ class Trace:
     profile: Callable[[int], Profile] = field(repr=False)
     contact: Callable[[int], ContactRadius | None] = field(repr=False)
     rule: RadiusRule = field(repr=False)
-    model: Reduced = field(repr=False)
+    model: Particles = field(repr=False)
     searches: Mapping[int, Search] = field(default_factory=dict)
     wanted: Mapping[int, float] = field(default_factory=dict)
     given: str = "displacement"
@@ -128,7 +130,7 @@ class Trace:
 
     def reach(self, state: int) -> float | None:
         """How far an attraction with a range goes, c [LU]; None of others."""
-        if not (isinstance(self.profile(state), ZonedProfile) and isinstance(self.model, CohesiveCells)):
+        if not self.model.law.has_range or not hasattr(self.profile(state), "reach"):
             return None
         return self._there(state, lambda i: float(getattr(self.profile(i), "reach", 0.0)))
 
@@ -145,7 +147,7 @@ class Trace:
         value, d = length(state), self.displacement - moved
         if not moved[state]:
             return value
-        rate = slope(d, state, length) or self.model.estimate.radius_rate(float(d[state]))
+        rate = slope(d, state, length) or self.model.law.radius_rate(float(d[state]))
         return value + float(moved[state]) * rate
 
     def phases(self, *names: str) -> Trace:
@@ -181,7 +183,7 @@ class Trace:
             contact=lambda i: self.contact(int(at[i])),
         )
 
-    def again(self, scene: Scene, settings: Settings, model: Reduced) -> dict[str, Array]:
+    def again(self, scene: Scene, settings: Settings, model: Particles) -> dict[str, Array]:
         """What is not prescribed of each state, on another model of the particles; a free motion is its own."""
         if self.given == "force":
             return {"displacement": model.carrying(self.time, self.force)[0]}
@@ -223,7 +225,7 @@ def legs_by_phase(phases: Sequence[str]) -> NDArray[np.int64]:
 
 def of_states(
     states: Sequence[State],
-    model: Reduced,
+    model: Particles,
     leg: Sequence[int] | None = None,
     searches: Mapping[int, Search] | None = None,
     time_step: float = 0.0,
@@ -254,10 +256,10 @@ def of_states(
 
 
 def of_model(
-    phase: Sequence[str], leg: Sequence[int], path: Path, followed: Followed, rule: RadiusRule, model: Reduced
+    phase: Sequence[str], leg: Sequence[int], path: Path, followed: Followed, rule: RadiusRule, model: Particles
 ) -> Trace:
     """The trace of the reduced model along a path, with unloaded particles on both sides of the contact."""
-    spacing = model.estimate.spacing
+    spacing = model.law.spacing
     beside = spacing * np.arange(1, BESIDE + 1)
     x = np.concatenate([followed.x[0] - beside[::-1], followed.x, followed.x[-1] + beside])
     none = np.zeros_like(x)

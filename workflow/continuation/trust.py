@@ -106,7 +106,7 @@ def require_no_contradiction(settings: Settings, tension: float, uncertainty: fl
 def _cut(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[str, str]:
     """A warning where a chain ends too near to its contact."""
     share = max(end_pressure_share(state.profile) for state in states)
-    ends = reflected(scene, settings.estimate, settings.largest_displacement, settings.chains.upper)
+    ends = reflected(scene, settings.law, settings.largest_displacement, settings.chains.upper)
     if ends > settings.tolerance:
         why = (
             f"neighbour springs spread the load over {decay_length(scene):.3g} LU to each side, and the chain of "
@@ -135,7 +135,7 @@ def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[
         )
     if slow := slowness(scene, settings):
         found["slow"] = slow
-    if settings.estimate.snaps and not scene.experiment.way_is_given:
+    if settings.law.snaps and not scene.experiment.way_is_given:
         found["snaps"] = (
             "the gradient of a pair's attraction exceeds the stiffness of its springs, so that pairs snap in and snap "
             "out: there are several equilibria under one load, and the loading history decides which one is reached. "

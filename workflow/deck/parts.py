@@ -15,7 +15,8 @@ from contact1d.workflow.deck.effects import LEAST_SLENDERNESS, Contribution, Sta
 from contact1d.workflow.deck.effects.interaction import SKIN
 from contact1d.workflow.deck.lattice import bodies
 from contact1d.workflow.deck.units import DeckUnits
-from contact1d.workflow.model.chain import MIX_UP, SettingsError
+from contact1d.workflow.errors import SettingsError
+from contact1d.workflow.model.chain import MIX_UP
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 

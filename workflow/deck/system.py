@@ -23,13 +23,8 @@ from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.effects import number, sphere_radius
 from contact1d.workflow.deck.lattice import Body, bodies, period
 from contact1d.workflow.deck.parts import margins
-from contact1d.workflow.model.adhesion import cells_of
-from contact1d.workflow.model.cohesive import ZonedEstimate
 from contact1d.workflow.model.motion import inertia
-from contact1d.workflow.model.relaxing import edges_of
 
-CELLS, EDGES = "adhesion.cells", "retardation.cells"
-"""What each particle has of an adhesive contact, and of one with dashpots."""
 Integers = NDArray[np.int64]
 CHUNK = 100_000
 FAR_MASS = 1e-12
@@ -178,22 +173,9 @@ def write_system(deck: Deck, folder: Path) -> None:
     if settings.forces.table:
         write_table(settings.forces.table, settings.forces.table_from, folder / "interaction.table")
     x, unit = bodies(deck.scene, deck.settings)[0].particles[:, 0], deck.units.to_deck(1.0, "LU")
-    if scene.adhesion:
-        _write_columns(_adhesive_cells(deck, x, unit), folder / CELLS)
-    if scene.viscoelasticity and scene.viscoelasticity.retardation_time:
-        edges = edges_of(deck.settings.estimate.profile, x, deck.settings.estimate.spacing)
-        _write_columns({"width": unit * edges.widths, "rise": unit * edges.rises}, folder / EDGES)
-
-
-def _adhesive_cells(deck: Deck, x: NDArray[np.float64], unit: float) -> dict[str, NDArray[np.float64]]:
-    """The columns of `Cells` of `model.adhesion` or `model.cohesive`; `unit` in place of 1 LU."""
-    estimate = deck.settings.estimate
-    if isinstance(estimate, ZonedEstimate):
-        zones = estimate.zones(x)
-        powers = {"inner": 1, "outer": 1, "below": 2, "above": 2, "sides": 0}
-        return {name: unit**power * getattr(zones, name) for name, power in powers.items()}
-    cells = cells_of(deck.scene, estimate, x)
-    return {name: unit * getattr(cells, name) for name in ("hold", "width", "fall")} | {"bend": cells.bend}
+    law = deck.settings.law
+    if columns := law.columns(deck.scene.bodies, x):
+        _write_columns({name: unit**power * one for name, (power, one) in columns.items()}, folder / law.file)
 
 
 def _write_columns(columns: Mapping[str, NDArray[np.float64]], path: Path) -> None:

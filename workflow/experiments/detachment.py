@@ -133,7 +133,7 @@ class Ramp:
 
 def ramp_of(scene: Scene, settings: Settings, experiment: PullOff) -> Ramp:
     """The staircase: its steps are a share of the tension, or more where they would have too few timesteps."""
-    estimate, step = settings.estimate, settings.motion.time_step
+    estimate, step = settings.law, settings.motion.time_step
     spring = (experiment.stiffness or estimate.stiffness_under(0.0)) if experiment.draws_off else 0.0
     rate = experiment.loading_rate or spring * (experiment.velocity or 0.0)
     largest = estimate.pull_off_force()

@@ -26,7 +26,7 @@ from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.continuation.trust import ThroughError, doubts
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import Phase
-from contact1d.workflow.model.reduced import Path
+from contact1d.workflow.laws.path import Path
 from contact1d.workflow.model.settings import Settings, slower
 from contact1d.workflow.scene import Kind, Scene
 from contact1d.workflow.units import ENERGY

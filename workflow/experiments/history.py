@@ -16,7 +16,8 @@ from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.outcome import Outcome, Reading
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
-from contact1d.workflow.model.reduced import History as Moments
+from contact1d.workflow.laws import law_of
+from contact1d.workflow.laws.path import History as Moments
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import History, Scene
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, MEAN_PRESSURE, TIME
@@ -69,7 +70,7 @@ class HistoryExperiment(Scripted[History]):
             found["relaxation"] = Reading(float(abs(free[last] - free[first])), unit, scale=float(np.abs(free).max()))
         if parted and force.any():
             if not touches(trace)[0]:
-                whole = None if scene.viscoelasticity or scene.adhesion else _work(d, force)  # springs lose nothing
+                whole = _work(d, force) if law_of(scene).is_lossless else None
                 found["dissipated_energy"] = Reading(float(np.trapezoid(force, d)), ENERGY, scale=whole)
             found["contact_time"] = lost(trace, _touched(trace, by_force))
         return found if self._is_stiff(scene) else found | _slopes(trace)
@@ -186,7 +187,7 @@ def _whole(trace: Trace, corner: int, states: Sequence[int]) -> list[float]:
     A slope counts them, while forces that fall to 0 at the edge do not show how many there are. The end of a body is
     that of a particle, and some laws have parts of one.
     """
-    estimate, radius = trace.model.estimate, trace.radius(corner) or 0.0
+    estimate, radius = trace.model.law, trace.radius(corner) or 0.0
     if trace.model.shares_edges or radius >= estimate.profile.reach:
         return [float(trace.force[i]) for i in states]
     pressure = np.asarray([trace.profile(i).pressure for i in states])

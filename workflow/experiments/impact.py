@@ -18,7 +18,9 @@ from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.deck.steps import Fly, Launch, Phase
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
 from contact1d.workflow.experiments.history import lost
-from contact1d.workflow.model.reduced import FLIGHT, Path, impact, reduced, stretch
+from contact1d.workflow.laws.path import Path
+from contact1d.workflow.model.free import FLIGHT, impact, stretch
+from contact1d.workflow.model.reduced import reduced
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Impact, Plate, Scene
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH, NUMBER
@@ -54,9 +56,9 @@ class ImpactExperiment(Scripted[Impact]):
         back = float((d[-2] - d[-1]) / (time[-1] - time[-2])) / velocity if parted else 0.0
         deepest = _top(trace, d)
         # The surface has not been touched before, so that a body that relaxes has the contact of its displacement.
-        own = settings.estimate.half_width(deepest, settings.estimate.rest) if scene.viscoelasticity else 0.0
+        own = settings.law.half_width(deepest, settings.law.rest) if settings.law.touched else 0.0
         widest = own or _top(trace, np.asarray([trace.radius(i) or 0.0 for i in range(len(trace))]))
-        lossless = not (scene.viscoelasticity or scene.adhesion)
+        lossless = settings.law.is_lossless
         found = {
             "restitution": Reading(back, NUMBER, scale=None if back else 1.0),
             "dissipated_energy": Reading(energy * (1.0 - back**2), ENERGY, scale=energy if lossless else None),

@@ -27,7 +27,9 @@ from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import Displace, DisplaceInTime, Phase, Row, displacements
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
 from contact1d.workflow.experiments.thermal import CERTAIN, averaged, thermal_rows
-from contact1d.workflow.model.reduced import Reduced, path_of, reduced
+from contact1d.workflow.laws.particles import Particles
+from contact1d.workflow.laws.path import path_of
+from contact1d.workflow.model.reduced import reduced
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Path, Scene
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH
@@ -60,7 +62,7 @@ class PathExperiment(Scripted[Path]):
         asked = np.asarray([one for _, one in positions])
         reported = tuple(compress(states, asked))
         # Where pairs snap, all rows show the jumps; else the same positions there and back show what a curve loses.
-        seen = np.flatnonzero(np.logical_or.accumulate(asked) if settings.estimate.snaps else asked)
+        seen = np.flatnonzero(np.logical_or.accumulate(asked) if settings.law.snaps else asked)
         ends = {"deepest": max(reported, key=lambda s: s.displacement), "final": reported[-1]}
         strongest = (ends["deepest"], min((states[i] for i in seen), key=lambda s: s.force), ends["final"])
         errors = self.force_errors(scene, settings, states, strongest)
@@ -79,7 +81,7 @@ class PathExperiment(Scripted[Path]):
         checks |= {} if self.is_statistical else consistency.balance(scene, states)
         return Outcome(results, reported, ends, phases, warnings, rows=rows, moves=case.moves, consistency=checks)
 
-    def _plan(self, deck: Deck, model: Reduced) -> Plan:
+    def _plan(self, deck: Deck, model: Particles) -> Plan:
         """Its load steps on a rigid plane; a phase is written at its end."""
         parts = stretches([position for position, _ in way(deck.scene, deck.settings)])
         names = [name for name, stretch in parts for _ in stretch]
@@ -109,7 +111,7 @@ class PathExperiment(Scripted[Path]):
         ends = [trace.radius(state) is None for state in (0, len(trace) - 1)]
         return ends[0] == ends[1] and closes(*trace.lists, settings.tolerance)
 
-    def _in_half_steps(self, context: RunContext, model: Reduced) -> dict[str, list[Trace]]:
+    def _in_half_steps(self, context: RunContext, model: Particles) -> dict[str, list[Trace]]:
         """The same states of a second run with twice as many; none where no particle can move aside.
 
         Chains that may buckle along x jump to another equilibrium between two load steps; to which depends on these.
@@ -139,7 +141,7 @@ class PathExperiment(Scripted[Path]):
             passed += len(stretch)
             parts = {
                 UNSEEN: [position for i, (position, _) in rows if i < first],
-                name: [position for i, (position, asked) in rows if i >= first and (asked or settings.estimate.snaps)],
+                name: [position for i, (position, asked) in rows if i >= first and (asked or settings.law.snaps)],
             }
             for phase, positions in parts.items():
                 if positions:
@@ -153,12 +155,12 @@ class PathExperiment(Scripted[Path]):
         errors, d = {"sampling": work.uncertainty}, trace.displacement
         if self.closes(trace, settings):
             # Springs lose nothing, nor does a contact that is held all along, where particles neither snap nor buckle.
-            may_jump = settings.estimate.attracts and (settings.snaps or scene.horizontal or _is_unstable(trace))
+            may_jump = settings.law.attracts and (settings.snaps or scene.horizontal or _is_unstable(trace))
             known = not (self.is_statistical or may_jump)
             scale = work.whole if known else None
             return {"dissipated_energy": Reading(work.area, ENERGY, errors, scale=scale, prescribed=known)}
         ends = (0, len(trace) - 1)
-        first, last = (settings.estimate.energy(float(d[i]), trace.radius(i) or 0.0) for i in ends)
+        first, last = (settings.law.energy(float(d[i]), trace.radius(i) or 0.0) for i in ends)
         if first is None or last is None or not _is_unstable(trace):
             return {}
         return {"instability_energy": Reading(work.area - (last - first), ENERGY, errors)}
@@ -177,7 +179,7 @@ class PathExperiment(Scripted[Path]):
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
         """What the last unloading has, or without adhesion the deepest state; and the energy that is lost."""
-        found = _adhesion(trace, settings) if settings.estimate.attracts else _largest(trace)
+        found = _adhesion(trace, settings) if settings.law.attracts else _largest(trace)
         return found | self._lost(trace, scene, settings)
 
     def advice(self, scene: Scene) -> str:
@@ -186,7 +188,7 @@ class PathExperiment(Scripted[Path]):
 
     def _missing(self, results: Mapping[str, Result], case: Reduction, phases: Sequence[Phase]) -> dict[str, str]:
         """Warnings of results that the path does not reach."""
-        if not case.model.estimate.attracts:
+        if not case.model.law.attracts:
             return {}
         warnings: dict[str, str] = {}
         if _passes_jump(case) and not any(name.startswith(LOSSES) for name in results):
@@ -342,7 +344,7 @@ def way(scene: Scene, settings: Settings) -> list[tuple[float, bool]]:
     Where pairs snap, a path begins before the first of them joins. With `start = "contact"` it then goes to the largest
     displacement before the first one.
     """
-    experiment, estimate, before = scene.experiment, settings.estimate, 0.0
+    experiment, estimate, before = scene.experiment, settings.law, 0.0
     assert isinstance(experiment, Path)
     asked = experiment.places()
     if settings.snaps:

@@ -21,7 +21,10 @@ from contact1d.workflow.continuation.trust import require_no_contradiction
 from contact1d.workflow.deck.steps import Phase, displacements
 from contact1d.workflow.experiments.detachment import planned_detachment, pull_off_thermal
 from contact1d.workflow.experiments.experiment import Scripted
-from contact1d.workflow.model.reduced import History, Path, RatedCells, reduced
+from contact1d.workflow.laws import law_of
+from contact1d.workflow.laws.particles import Particles
+from contact1d.workflow.laws.path import History, Path
+from contact1d.workflow.model.reduced import reduced
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import PullOff, Scene
 from contact1d.workflow.units import FORCE, LENGTH
@@ -46,13 +49,13 @@ class PullOffExperiment(Scripted[PullOff]):
 
     def is_sampled(self, scene: Scene) -> bool:
         """With an edge that takes time."""
-        return bool(scene.adhesion and scene.adhesion.rate)
+        return law_of(scene).in_time
 
     def script(self, branch: Driver, scene: Scene) -> None:
         """Compress, unload to F = 0, retract to the force maximum, separate; as many times as there are cycles."""
         preload, model = self.given(scene).preload, branch.model
         scale = max(preload, branch.scale)
-        if model.in_time:
+        if model.law.in_time:
             branch.follow(_pulled(model, self.given(scene)))
             return
         for _ in range(self.given(scene).cycles or 1):
@@ -91,7 +94,7 @@ class PullOffExperiment(Scripted[PullOff]):
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The schedule by the model."""
-        preload, tension = self.given(scene).preload, settings.estimate.pull_off_force()
+        preload, tension = self.given(scene).preload, settings.law.pull_off_force()
         if scene.method == "dynamic":
             tensions = [float(-t) for t in np.linspace(0.0, LARGEST_TENSION * tension, TENSIONS + 1)[1:]]
             return (
@@ -119,7 +122,7 @@ class PullOffExperiment(Scripted[PullOff]):
         return super().advice(scene) + since
 
 
-def _pulled(model: RatedCells, given: PullOff) -> History:
+def _pulled(model: Particles, given: PullOff) -> History:
     """Down to the preload and back at the velocity, with load steps at equal ways of the edge."""
     assert given.velocity is not None
     deepest = model.displacement_at(given.preload)
@@ -134,7 +137,7 @@ def _pulled(model: RatedCells, given: PullOff) -> History:
         path = Path(places, np.zeros_like(places), time)
         return model.follow(path).total[down.size :], path
 
-    back = model.estimate.pulled(deepest, given.velocity, RATED_STEPS)[1:]
+    back = model.moments(deepest, given.velocity, RATED_STEPS)[1:]
     force, _ = pull(back)
     first = max(NEAR_ZERO, int(np.argmax(force < 0.0)))
     near = slice(first - NEAR_ZERO, first + NEAR_ZERO)  # a load step at F = 0, by t(F)

@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import compress, pairwise
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,8 +30,10 @@ from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.lattice import places
 from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
-from contact1d.workflow.model.friction import Sliders, Stop, sliders_of, stops, without_rests
-from contact1d.workflow.model.reduced import Path, Reduced, Sliding, reduced
+from contact1d.workflow.laws.friction import Sliders, SlidingSprings, Stop, sliders_of, stops, without_rests
+from contact1d.workflow.laws.particles import Particles
+from contact1d.workflow.laws.path import Path
+from contact1d.workflow.model.reduced import reduced
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Friction, Scene, Tangential
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH
@@ -95,8 +98,8 @@ class TangentialExperiment(Scripted[Tangential]):
 
     def script(self, branch: Driver, scene: Scene) -> None:
         """The stops of the model's particles, those that change nothing left out."""
-        assert isinstance(branch.model, Sliding)
-        for name, stretch in stretches(passed(scene, branch.model.chain, branch.settings, sparse=True)):
+        model = cast("SlidingSprings", branch.model)
+        for name, stretch in stretches(passed(scene, model.chain, branch.settings, sparse=True)):
             branch.begin(name)
             branch.visit(*zip(*(stop for stop, _ in stretch), strict=True))
 
@@ -135,7 +138,7 @@ class TangentialExperiment(Scripted[Tangential]):
             found["dissipated_energy_per_cycle"] = _energy(rows[start:], 4.0 * lost, scene)  # its path is 4 u_m
         return found
 
-    def _plan(self, deck: Deck, model: Reduced) -> Plan:
+    def _plan(self, deck: Deck, model: Particles) -> Plan:
         """The load comes on in one row, then a phase for each stretch to the right ("forward") or to the left."""
         parts = stretches(passed(deck.scene, _chain(deck.scene, deck.settings), deck.settings))
         names = [name for name, stretch in parts for _ in stretch]

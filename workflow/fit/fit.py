@@ -204,7 +204,7 @@ def _judge(found: Found) -> None:
 
 
 MISFIT = 3.0
-"""Reduced χ² of a warning: with a memory of 20 in 1000 points that of the right model is below 2."""
+"""Particles χ² of a warning: with a memory of 20 in 1000 points that of the right model is below 2."""
 DECISIVE = 10.0
 """Difference of criteria that counts as very strong (Kass and Raftery)."""
 

@@ -24,7 +24,8 @@ from contact1d.analysis.theory.indenters import PowerLaw
 from contact1d.digits import apart
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.errors import Contact1dError, FolderError, RunError
-from contact1d.workflow.model.pairs import ContactEstimate, particles_estimate
+from contact1d.workflow.laws.law import Law
+from contact1d.workflow.laws.pairs import of_pairs
 from contact1d.workflow.model.settings import interaction_law
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.runs.finished import Run, load_run
@@ -273,12 +274,12 @@ def _estimated(scene: Scene) -> Array:
     law = interaction_law(scene)
     assert law is not None
     cutoff, rest = law.cutoff_for(TAIL), law.force_free_distance()
-    estimate = particles_estimate(law, scene.bodies, scene.bodies.spacing, scene.bulk_stiffness, cutoff, rest, POINTS)
+    estimate = of_pairs(law, scene.bodies, scene.bodies.spacing, scene.bulk_stiffness, cutoff, rest, POINTS)
     radius = estimate.half_width(estimate.displacement_at(0.0), _largest_tension(estimate))
     return np.log([estimate.pull_off_force(), radius])
 
 
-def _largest_tension(estimate: ContactEstimate) -> float:
+def _largest_tension(estimate: Law) -> float:
     """The undeformed gap [LU] of the force maximum, between the points of the grid by a parabola."""
     force = estimate.force
     i = min(max(int(np.argmin(force)), 1), len(force) - 2)

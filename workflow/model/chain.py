@@ -13,9 +13,9 @@ from itertools import pairwise
 import numpy as np
 
 from contact1d.digits import apart, digits_apart
-from contact1d.workflow.errors import Contact1dError
+from contact1d.workflow.errors import SettingsError
+from contact1d.workflow.laws.law import FARTHEST_RATIO, Law
 from contact1d.workflow.model.dynamics import DriveLeg
-from contact1d.workflow.model.pairs import ContactEstimate
 from contact1d.workflow.scene import Bodies, Scene, Tangential
 
 CHAIN_MARGIN = 1.1
@@ -24,10 +24,6 @@ FALL_SHARE = 1e-5
 """A profile counts as falling where it does by more than this share of its height."""
 ROUND_OFF = 1e-9
 """Relative, of a length that a chain only just fits into."""
-
-
-class SettingsError(Contact1dError, ValueError):
-    """A scene whose numbers, each allowed, give no computable system; the message says which and what to change."""
 
 
 def require_room(bodies: Bodies) -> None:
@@ -99,14 +95,14 @@ def decay_length(scene: Scene) -> float:
     return scene.bodies.spacing / math.acosh(1.0 + 0.5 * softest / scene.neighbours.stiffness)
 
 
-def reflected(scene: Scene, estimate: ContactEstimate, largest: float, particles: int) -> float:
+def reflected(scene: Scene, estimate: Law, largest: float, particles: int) -> float:
     """Share of a displacement at the contact edge that the ends of the chain reflect, exp(−2 L/ℓ), L apart."""
     decay = decay_length(scene)
     beyond = 0.5 * particles * scene.bodies.spacing - _edge(estimate, largest)
     return math.exp(-2.0 * max(beyond, 0.0) / decay) if decay > 0.0 else 0.0
 
 
-def chains_of(scene: Scene, estimate: ContactEstimate, largest: float, share: float) -> tuple[int, int]:
+def chains_of(scene: Scene, estimate: Law, largest: float, share: float) -> tuple[int, int]:
     """Particles of the upper and of the lower body, those left open chosen.
 
     The upper one by `chain_length`; the lower one the same, and longer by the way on both sides in a slide.
@@ -121,12 +117,12 @@ def chains_of(scene: Scene, estimate: ContactEstimate, largest: float, share: fl
     return bodies.upper_particles or needed, below + beside
 
 
-def _edge(estimate: ContactEstimate, largest: float) -> float:
+def _edge(estimate: Law, largest: float) -> float:
     """Half-width [LU] up to the force maximum, or without attraction up to where nothing is felt."""
     return estimate.half_width(max(largest, 0.0), float(estimate.gap[int(estimate.force.argmin())]))
 
 
-def felt_up_to(estimate: ContactEstimate, largest: float, share: float) -> float:
+def felt_up_to(estimate: Law, largest: float, share: float) -> float:
     """Undeformed gap [LU] beyond which no force is more than a share of the largest of a contact; r₀ if none has any.
 
     `largest`: displacement [LU] of the contact.
@@ -136,7 +132,7 @@ def felt_up_to(estimate: ContactEstimate, largest: float, share: float) -> float
     return float(estimate.gap[force > share * borne.max()][-1]) if borne.any() else estimate.rest
 
 
-def chain_length(scene: Scene, estimate: ContactEstimate, largest: float, share: float) -> int:
+def chain_length(scene: Scene, estimate: Law, largest: float, share: float) -> int:
     """Particles of an automatic chain: up to where a force, and the reflection by the end, is at most this share.
 
     A flat punch has its own length; no chain is longer than its profile is wide.
@@ -166,8 +162,6 @@ LARGE, USUALLY_FELT = 20_000, 10.0
 """Particles per body, each within reach of so many opposite ones, from which on a run takes minutes."""
 SHARPEST_RATIO = 1e3
 """Height of the particles beside an apex over cutoff and spacing: so far even neighbour springs bring none."""
-FARTHEST_RATIO = 1e9
-"""Displacement over cutoff and spacing: LAMMPS limits the number of bins, and coordinates lose digits."""
 DIGIT_SHARE = 0.1
 """Force that the last digit of a position may be, over one particle's and the tolerance: that of a converged state."""
 MIX_UP = "All lengths (spacing, radius, ranges) are in LU: are some of them in another unit?"

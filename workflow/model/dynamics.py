@@ -10,7 +10,7 @@ import math
 from dataclasses import MISSING, dataclass, field
 from typing import Any
 
-from contact1d.workflow.model.pairs import ContactEstimate
+from contact1d.workflow.laws.law import Law
 from contact1d.workflow.scene import Cantilever, Damping, Impact, Scene, Slide
 
 RELAXING_STEP = 0.5
@@ -94,7 +94,7 @@ class Motion:
 def motion_of(
     scene: Scene,
     tolerance: float,
-    estimate: ContactEstimate,
+    estimate: Law,
     largest: float,
     particles: int,
     stiffest: float,

@@ -11,8 +11,8 @@ from __future__ import annotations
 import math
 
 from contact1d.digits import apart
-from contact1d.workflow.errors import SceneEdit
-from contact1d.workflow.model.chain import SettingsError, felt_up_to
+from contact1d.workflow.errors import SceneEdit, SettingsError
+from contact1d.workflow.model.chain import felt_up_to
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Cantilever, Scene, Slide
 
@@ -34,7 +34,7 @@ SHORTEST = 4.0
 
 def contact_half_width(scene: Scene, settings: Settings) -> float:
     """Half-width [LU] in which upper particles feel more than the tolerance's share of the largest force."""
-    estimate, largest = settings.estimate, settings.largest_displacement
+    estimate, largest = settings.law, settings.largest_displacement
     half = estimate.half_width(max(largest, 0.0), felt_up_to(estimate, largest, scene.accuracy.tolerance))
     return min(half, 0.5 * (settings.chains.upper - 1) * scene.bodies.own_spacing)
 

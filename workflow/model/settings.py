@@ -29,7 +29,13 @@ from contact1d.analysis.pressure import Profile, left_out
 from contact1d.digits import apart
 from contact1d.potentials import DoubleExponential, Exponential
 from contact1d.potentials.table import FEWEST_POINTS, Table, table_for
-from contact1d.workflow.model.chain import SettingsError as SettingsError
+from contact1d.workflow.errors import SettingsError as SettingsError
+from contact1d.workflow.laws import law_of
+from contact1d.workflow.laws.law import Law, NotCarriedError, stopped_at
+from contact1d.workflow.laws.pairs import of_pairs
+from contact1d.workflow.laws.relaxing import creep
+from contact1d.workflow.laws.shape import Profile as Undeformed
+from contact1d.workflow.laws.shape import Splined, Tabulated, tabulated
 from contact1d.workflow.model.chain import (
     chains_of,
     reaches_too_far,
@@ -42,18 +48,7 @@ from contact1d.workflow.model.chain import (
     require_rows,
     require_travel,
 )
-from contact1d.workflow.model.cohesive import estimate_on_plane, stopped_at
 from contact1d.workflow.model.dynamics import Motion, measured, motion_of, whole_steps
-from contact1d.workflow.model.pairs import (
-    ContactEstimate,
-    NotCarriedError,
-    Splined,
-    Tabulated,
-    particles_estimate,
-    tabulated,
-)
-from contact1d.workflow.model.pairs import Profile as Undeformed
-from contact1d.workflow.model.relaxing import creep
 from contact1d.workflow.scene import Impact, Interaction, Plate, Scene
 from contact1d.workflow.scene.remedies import less_compression
 
@@ -164,7 +159,7 @@ def cutoff_for(scene: Scene, law: DoubleExponential, share: float, tolerance: fl
     return reach
 
 
-def innermost_distance(estimate: ContactEstimate, cutoff: float, displacement: float) -> float:
+def innermost_distance(estimate: Law, cutoff: float, displacement: float) -> float:
     """Distance [LU] of the predictor's innermost pair at a displacement [LU]; its grid ends at the cutoff [LU]."""
     grid = cutoff / estimate.gap.size * np.arange(1, estimate.gap.size + 1)
     return float(np.interp(estimate.rest - displacement, estimate.gap, grid))
@@ -253,7 +248,7 @@ class Forces:
         """Longest range of the interaction [LU]; 0 without one."""
         return 0.0
 
-    def with_table(self, scene: Scene, estimate: ContactEstimate, largest: float, error: float) -> Forces:
+    def with_table(self, scene: Scene, estimate: Law, largest: float, error: float) -> Forces:
         """With a table of the law that follows it to an error [FU] from the smallest distance on that is expected."""
         return self
 
@@ -302,7 +297,7 @@ class PairForces(Forces):
         """Longest range of the interaction [LU]."""
         return self.law.longest_range
 
-    def with_table(self, scene: Scene, estimate: ContactEstimate, largest: float, error: float) -> Forces:
+    def with_table(self, scene: Scene, estimate: Law, largest: float, error: float) -> Forces:
         """See `Forces`; `largest`: the displacement [LU]."""
         nearest = self.closest * (1.0 if scene.noise else NEAR_SHARE)
         innermost = innermost_distance(estimate, self.cutoff, largest) - thermal_motion(scene)
@@ -383,13 +378,13 @@ class Settings:
 
     Attributes:
         tolerance: that all of this is for; that of a refined pass is smaller than the scene's.
-        estimate: the predictor.
+        law: of the contact.
         forces, chains, increments, motion: see these.
         largest_displacement: what the predictor expects [LU].
     """
 
     tolerance: float
-    estimate: ContactEstimate
+    law: Law
     forces: Forces
     chains: Chains
     increments: Increments
@@ -409,12 +404,12 @@ class Settings:
     @property
     def snaps(self) -> bool:
         """Whether particles snap to the opposite ones and off them."""
-        return self.estimate.snaps
+        return self.law.snaps
 
     @cached_property
     def is_toothed(self) -> bool:
         """Whether the tensile force has several maxima: pairs separate one by one; they snap, or nearly so."""
-        return self.snaps or (self.is_smooth and self.estimate.tooth(self.chains.upper) < math.inf)
+        return self.snaps or (self.is_smooth and self.law.tooth(self.chains.upper) < math.inf)
 
     @property
     def is_smooth(self) -> bool:
@@ -427,7 +422,7 @@ class Settings:
 
         Of the predictor, whose grid of distances ends at the cutoff; (0, 0) on a rigid plane.
         """
-        force = self.estimate.force
+        force = self.law.force
         at = int(force.argmin())
         return self.forces.cutoff * (at + 1) / force.size, max(0.0, -float(force[at]))
 
@@ -447,7 +442,7 @@ class Settings:
 
     def let_go_early(self, move: float) -> float:
         """Premature detachment [LU] of a pair under displacement increments `move` [LU]."""
-        return self.estimate.let_go_early(move, self.forces.residual)
+        return self.law.let_go_early(move, self.forces.residual)
 
     def in_smaller_steps(self, part: float) -> Settings:
         """The same, with increments and moves, also those of a relaxation, scaled by this factor.
@@ -528,7 +523,7 @@ def slower(scene: Scene, settings: Settings) -> list[tuple[Scene, Settings]]:
     return [*found, (heavier, replace(settings, motion=motion))] if motion != own else found
 
 
-def _stopped(scene: Scene, estimate: ContactEstimate) -> float:
+def _stopped(scene: Scene, estimate: Law) -> float:
     """Displacement [LU] at which a body that hits the plane is at rest, one that relaxes meanwhile deeper.
 
     Raises:
@@ -588,7 +583,7 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
         largest = estimate.displacement_at(load * creep(scene.viscoelasticity, scene.experiment.lasts or 0.0))
     chains = _chains(scene, estimate, forces, largest, calibration.chain * tolerance)
     # A punch that adheres and carries nothing is not deep, and yet its springs hold it up to its limit.
-    scale = forces.scale_of(scene, max(largest, -estimate.parted(0.0)) if scene.adhesion else largest)
+    scale = forces.scale_of(scene, max(largest, -estimate.parted(0.0)) if estimate.holds else largest)
     require_digits(scene, chains.upper, forces.rest + largest, tolerance * scale)
     forces = replace(forces, scale=scale, residual=calibration.residual * tolerance * scale)
     forces = forces.with_table(scene, estimate, largest, calibration.table * tolerance * scale)
@@ -602,32 +597,29 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     return Settings(tolerance, estimate, forces, chains, increments, motion, largest)
 
 
-def _forces(scene: Scene, tolerance: float, calibration: Calibration) -> tuple[Forces, ContactEstimate]:
+def _forces(scene: Scene, tolerance: float, calibration: Calibration) -> tuple[Forces, Law]:
     """Springs, plane and interaction, without table and scales; the predictor of the contact that they make."""
     law, bodies, spring = interaction_law(scene), scene.bodies, scene.bulk_stiffness
     shape: Undeformed = bodies
     if bodies.profile.slow:  # with a range the predictor's shape is that of the deck
-        exact = scene.adhesion and scene.adhesion.range
-        shape = tabulated(bodies, bodies.spacing, Splined if exact else Tabulated)
+        shape = tabulated(bodies, bodies.spacing, Splined if law_of(scene).has_range else Tabulated)
     if law is None:
         plane = plane_stiffness_of(scene, tolerance)
         bond = spring if scene.stands else _beside_plane(spring, plane)
-        return Forces(bulk_stiffness=bond, plane_stiffness=plane), estimate_on_plane(scene, shape)
+        return Forces(bulk_stiffness=bond, plane_stiffness=plane), law_of(scene).of(scene, shape)
     cutoff = cutoff_for(scene, law, calibration.cutoff * tolerance, tolerance)
     require_reach(scene, cutoff)
     rest, closest = cutoff, CLOSEST_SHARE * law.repulsion.range
     if law.attraction is not None:
         rest = law.force_free_distance()
         closest = CLOSEST_SHARE * rest
-    estimate = particles_estimate(
-        law, shape, bodies.own_spacing, spring, cutoff, rest, chains=scene.chains, row=bodies.spacing
-    )
+    estimate = of_pairs(law, shape, bodies.own_spacing, spring, cutoff, rest, chains=scene.chains, row=bodies.spacing)
     _require_carried(scene)
     table = Table(law, cutoff, FEWEST_POINTS)  # until it is known how near particles come
     return PairForces(bulk_stiffness=spring, table=table, cutoff=cutoff, rest=rest, closest=closest), estimate
 
 
-def _chains(scene: Scene, estimate: ContactEstimate, forces: Forces, largest: float, share: float) -> Chains:
+def _chains(scene: Scene, estimate: Law, forces: Forces, largest: float, share: float) -> Chains:
     """As many particles as the contact needs, or as the scene gives. Raises SettingsError where they do not fit."""
     upper, lower = chains_of(scene, estimate, largest, share)
     require_body(scene.bodies, largest, upper)

@@ -19,10 +19,10 @@ from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.failure import NO_MEMORY, TOO_LONG, TOO_WIDE
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.engine.session import EngineError
-from contact1d.workflow.errors import FolderError, RunError
+from contact1d.workflow.errors import FolderError, RunError, SettingsError
 from contact1d.workflow.experiments import perform, planned
 from contact1d.workflow.experiments.spacing import with_spacing
-from contact1d.workflow.model.chain import MIX_UP, SettingsError, in_words, require_steps
+from contact1d.workflow.model.chain import MIX_UP, in_words, require_steps
 from contact1d.workflow.model.motion import require_way
 from contact1d.workflow.model.settings import Settings, settings_for
 from contact1d.workflow.runs.accuracy import reported, require_consistency, require_results, with_checks

@@ -19,7 +19,7 @@ def adhesion(scene: Scene, settings: Settings) -> Contribution:
         modulus, stress = scene.bulk_stiffness / scene.bodies.spacing, own.work / own.range if own.range else 0.0
         stiffness |= {"adhesion_modulus": number(modulus), "adhesion_stress": number(stress)}
         return Contribution("adhesion", Stage.CONTACT, ("cohesion",), stiffness)
-    last = settings.estimate.parted(0.0) / settings.estimate.spacing
+    last = settings.law.parted(0.0) / settings.law.spacing
     variables = stiffness | {
         "adhesion_touch": number(-TOUCH * scene.bodies.spacing),
         "adhesion_last": number(last * scene.bodies.spacing),

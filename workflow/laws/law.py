@@ -1,4 +1,4 @@
-"""A predictor of the contact before LAMMPS runs: independent opposite pairs under the undeformed profile.
+"""What every contact law answers; by itself the curve of independent opposite pairs under the undeformed profile.
 
 A particle on each side, each on its spring k, at the actual distance r have the undeformed gap
 
@@ -11,113 +11,32 @@ h is the profile. This chooses chain lengths, first steps and time scales; no re
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
-from functools import cache, cached_property, lru_cache
-from itertools import pairwise
-from typing import Any, Protocol
+from functools import cache, cached_property
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.curve_marks import tops
-from contact1d.potentials import DoubleExponential
+from contact1d.workflow.laws.shape import Profile
+from contact1d.workflow.scene import Impact, Scene
+
+if TYPE_CHECKING:
+    from contact1d.workflow.laws.particles import Particles
 
 Array = NDArray[np.float64]
-NEAREST, WIDEST, BESIDE, MOST_KINKS = 1e-9, 0.1, 60, 100
-"""Distances from a kink over its own position between which positions are added in geometric progression, how many on
-each side, and at how many kinks."""
-PLACES, NEAR = 1000, 0.01
-"""Positions at which a profile is tabulated, and the first one beyond its apex over the spacing."""
-
-
-def places_within(reach: float, spacing: float, phase: float) -> Array:
-    """All x = (i + φ) s with |x| ≤ reach [LU] in order, i a whole number: of particles whose apex is φ s off one."""
-    first, last = math.ceil(-reach / spacing - phase), math.floor(reach / spacing - phase)
-    return np.asarray(spacing * (np.arange(first, last + 1) + phase), dtype=np.float64)
-
-
-class Profile(Protocol):
-    """The undeformed shape of the upper body."""
-
-    def height(self, x: Array) -> Array:
-        """Height [LU] at x [LU]."""
-
-    @property
-    def reach(self) -> float:
-        """Half-width [LU] of the body."""
-
-    @property
-    def kinks(self) -> tuple[float, ...]:
-        """Positions [LU] at which its slope jumps."""
-
-    def __hash__(self) -> int:
-        """The same for equal bodies, which share their estimate."""
-
-
-@dataclass(frozen=True, eq=False)
-class Tabulated:
-    """A profile given by its `heights` [LU] at ascending `places` [LU] from 0, linear between them.
-
-    For a measured one, whose transform takes long: a predictor asks thousands of times.
-    """
-
-    places: Array
-    heights: Array
-    kinks: tuple[float, ...] = ()
-
-    def height(self, x: Array) -> Array:
-        """Height [LU] at x [LU]."""
-        return np.interp(np.abs(x), self.places, self.heights)
-
-    @property
-    def reach(self) -> float:
-        """Half-width [LU] of the body."""
-        return float(self.places[-1])
-
-
-@dataclass(frozen=True, eq=False)
-class Splined(Tabulated):
-    """The same by cubics, each stretch between kinks by its own: of a parabola to 1e-12 of its height."""
-
-    @cached_property
-    def _curve(self) -> Any:
-        from scipy.interpolate import CubicSpline, PPoly
-
-        kinks = [int(at) for at in np.searchsorted(self.places, self.kinks) if 3 < at < self.places.size - 4]
-        parts = [slice(first, last + 1) for first, last in pairwise([0, *kinks, self.places.size - 1])]
-        cubics = [CubicSpline(self.places[part], self.heights[part]).c for part in parts]
-        return PPoly(np.concatenate(cubics, axis=1), self.places)
-
-    def height(self, x: Array) -> Array:
-        """Height [LU] at x [LU]."""
-        return np.asarray(self._curve(np.minimum(np.abs(x), self.reach)))
-
-
-def tabulated(profile: Profile, spacing: float, kind: type[Tabulated] = Tabulated) -> Tabulated:
-    """The profile, which must be finite, at positions in geometric series: those of a parabola to 1e-4 of its height.
-
-    That holds for a reach of 0.1 to 1e10 spacings [LU]; closer to the apex than NEAR spacings it is a line.
-    """
-    places = beside_kinks(np.concatenate([[0.0], np.geomspace(NEAR * spacing, profile.reach, PLACES)]), profile)
-    return kind(places, profile.height(places), profile.kinks)
-
-
-def beside_kinks(places: Array, profile: Profile) -> Array:
-    """Rising positions [LU] with the kinks of a profile, and others ever nearer to them: g rises as a root there."""
-    most = float(places[-1])
-    near = np.append(0.0, np.geomspace(NEAREST, WIDEST, BESIDE))
-    found = [one * (1.0 + sign * near) for one in profile.kinks[:MOST_KINKS] for sign in (1.0, -1.0)]
-    every = np.unique(np.concatenate([places, *found]))
-    return np.asarray(every[every <= most])
-
-
-GRID = 4000
+FEWEST = 4.0
+"""Least half-width up to which particles are counted, over the spacing."""
 CONTACT_POINTS = 401
 BRANCH_POINTS, COARSE_POINTS = 400, 40
 FARTHEST = 1e12
 """Displacement over spacing and force-free distance beyond which none is sought: no deck holds it
-(`chain.require_travel`)."""
+(`model.chain.require_travel`)."""
+FARTHEST_RATIO = 1e9
+"""Displacement over cutoff and spacing: LAMMPS limits the number of bins, and coordinates lose digits."""
 CUTS, PARTS = 5, 17
 """How often the bracket of a displacement is cut, and at how many positions: then the force is straight in it to 1e-10.
 `scipy.optimize.brentq` would do it too, but its import takes a quarter of the time of a whole small run."""
@@ -134,6 +53,8 @@ UNRELAXED = 20.0
 tolerances of 1e-2 and 1e-3."""
 ROUNDS, EDGES = 12, 33
 """How often a bracket is cut, and at how many positions: a bisection's step takes as long, and 60 give all digits."""
+STOPPING = 200
+"""Displacements at which the force is looked at up to where a body stops."""
 
 
 class NotCarriedError(ValueError):
@@ -146,10 +67,19 @@ class NotCarriedError(ValueError):
 
 
 @dataclass(frozen=True, eq=False)
-class ContactEstimate:
-    """Independent pairs under a profile. Successive scenes share it with its cached results.
+class Law(ABC):
+    """The contact of a body. Successive scenes share it with its cached results.
 
     Attributes:
+        in_time: whether forces depend on how fast a path is gone.
+        tells_edges: whether each load step on a rigid plane knows where the contact ends.
+        holds: whether a contact on a rigid plane adheres.
+        has_range: whether that attraction goes beyond the contact.
+        is_linear: whether the load of a particle on a rigid plane is a straight line of its height.
+        is_lossless: whether a closed path loses nothing.
+        has_zones: whether the contact has edges inside of its own.
+        touched: whether a state depends on what has been touched before.
+        file: of the columns that the deck has of each particle; "" without.
         gap: undeformed gap G [LU] over a grid of distances, made monotone where pairs would snap.
         force: force [FU] of one particle on that grid.
         rest: distance r₀ [LU] of the apexes at displacement 0.
@@ -160,6 +90,16 @@ class ContactEstimate:
         bend: |d²G/dr²| at the limit point of a joined pair [1/LU]; 0 where none snaps.
         outer: where pairs snap, the gap made monotone from outside [LU]: on it a pair comes near.
     """
+
+    in_time: ClassVar[bool] = False
+    tells_edges: ClassVar[bool] = False
+    holds: ClassVar[bool] = False
+    has_range: ClassVar[bool] = False
+    is_linear: ClassVar[bool] = True
+    is_lossless: ClassVar[bool] = True
+    has_zones: ClassVar[bool] = False
+    touched: ClassVar[bool] = False
+    file: ClassVar[str] = ""
 
     gap: Array
     force: Array
@@ -174,6 +114,32 @@ class ContactEstimate:
     def __getstate__(self) -> dict[str, Any]:
         """What goes to another process: not what was found before, which keeps functions."""
         return {one.name: getattr(self, one.name) for one in fields(self)}
+
+    @classmethod
+    @abstractmethod
+    def applies(cls, scene: Scene) -> bool:
+        """Whether it is the law of a scene, of those that no law before it in `laws.LAWS` has."""
+
+    @classmethod
+    @abstractmethod
+    def of(cls, scene: Scene, profile: Profile) -> Law:
+        """The law of a scene on a rigid plane, of a body of a profile.
+
+        Raises:
+            SettingsError: the body has no such contact.
+        """
+
+    @abstractmethod
+    def particles(self, x: Array, deepest: float) -> Particles:
+        """Particles at rising positions [LU]; `deepest`: largest displacement that is expected [LU]."""
+
+    def extent(self, deepest: float, half: float) -> float:
+        """Half-width [LU] up to which particles count, of a chain's `half`, at a displacement [LU]."""
+        return max(self.half_width(max(deepest, 0.0), self.felt), FEWEST * self.spacing)
+
+    def columns(self, body: Profile, x: Array) -> Mapping[str, tuple[int, Array]]:
+        """What the deck has of each particle of a body at positions x [LU]: by name, as powers of a length."""
+        return {}
 
     @cached_property
     def attracts(self) -> bool:
@@ -220,6 +186,28 @@ class ContactEstimate:
             cell = (self.profile.height(places[1:-1]) < height).sum(axis=0)
             inner, outer = places[cell, column], places[cell + 1, column]
         return np.where(height <= 0, self.spacing, outer)
+
+    @property
+    def deepest_known(self) -> float:
+        """Displacement [LU] up to which F is known; a contact that covers its body only gets deeper."""
+        return math.inf
+
+    def stopped(self, energy: float) -> float:
+        """Displacement [LU] at which ∫F dd is an energy [FU·LU]; infinite where that lies beyond what is known."""
+        deepest, last = self.spacing, self.deepest_known
+
+        def stored(displacement: float) -> float:
+            places = np.linspace(0.0, displacement, STOPPING)
+            return float(np.trapezoid(self.contact_forces(places), places))
+
+        from scipy.optimize import brentq
+
+        while stored(min(deepest, last)) < energy:
+            if deepest >= last:
+                return math.inf
+            deepest *= 2.0
+        deepest = min(deepest, last)  # a share of it, since the root is found to an absolute error
+        return deepest * float(brentq(lambda share: stored(share * deepest) - energy, 0.0, 1.0))
 
     def radius_rate(self, displacement: float) -> float:
         """da/dd at a displacement [LU]."""
@@ -368,58 +356,13 @@ class ContactEstimate:
         return float(np.interp(force, forces, places))
 
 
-def row_force(law: DoubleExponential, r: Array, spacing: float, cutoff: float) -> Array:
-    """Force [FU] of a straight chain of opposite particles on the one facing it, at distances r [LU], shape (n,)."""
-    offsets = spacing * np.arange(int(cutoff / spacing) + 1)
-    distance = np.hypot(r[:, None], offsets[None, :])
-    forces = np.where(distance <= cutoff, law.force(distance), 0.0) * r[:, None] / distance
-    return np.asarray(np.concatenate([forces[:, :0:-1], forces], axis=1).sum(axis=1))
+def stopped_at(scene: Scene, law: Law, softer: float = 1.0) -> float:
+    """Displacement [LU] at which a body that hits the plane is at rest: ∫F dd = ½ M v²; 0 without a velocity.
 
-
-@lru_cache(maxsize=16)  # scenes run one after the other mostly share bodies and law
-def particles_estimate(
-    law: DoubleExponential,
-    profile: Profile,
-    spacing: float,
-    stiffness: float,
-    cutoff: float,
-    rest: float,
-    points: int = GRID,
-    chains: int = 2,
-    row: float | None = None,
-) -> ContactEstimate:
-    """The predictor for particles held by springs `stiffness` [FU/LU] each, in two chains or in the upper one alone.
-
-    `row`: spacing [LU] of the opposite row where it differs.
+    F is that of the elastic body, or so many times less. Infinite where that lies beyond what is known of the contact.
     """
-    r, force = _row_over(law, row or spacing, cutoff, points)
-    undeformed = r - chains * force / stiffness
-    rising = np.arange(points) * 1e-12 * cutoff
-    gap = np.maximum.accumulate(undeformed) + rising
-    falls = np.diff(undeformed) < 0.0
-    outer = np.minimum.accumulate(undeformed[::-1])[::-1] + rising if falls.any() else None
-    first = max(int(falls.argmax()) - 1, 0)
-    bend = abs(float(np.diff(undeformed, 2)[first])) / (cutoff / points) ** 2 if falls.any() else 0.0
-    gap.flags.writeable = False
-    return ContactEstimate(gap, force, rest, profile, spacing, stiffness / chains, bool(falls.any()), bend, outer)
-
-
-@lru_cache(maxsize=16)  # a law is mostly that of several bodies
-def _row_over(law: DoubleExponential, spacing: float, cutoff: float, points: int) -> tuple[Array, Array]:
-    """Distances [LU] up to the cutoff, and the `row_force` [FU] there."""
-    r = np.linspace(cutoff / points, cutoff, points)
-    force = row_force(law, r, spacing, cutoff)
-    r.flags.writeable = force.flags.writeable = False
-    return r, force
-
-
-TOUCHING, DECADES = 1e-16, 60
-"""Overlap over the largest one up to which that of a spring on a plane keeps its digits, and over how many gaps."""
-
-
-@lru_cache(maxsize=16)  # as particles_estimate
-def plane_estimate(profile: Profile, spacing: float, stiffness: float) -> ContactEstimate:
-    """The predictor for one chain on a rigid plane: one-sided springs `stiffness` [FU/LU]."""
-    deepest = 1e6 * spacing
-    gap = np.append(-np.geomspace(deepest, TOUCHING * deepest, DECADES), 0.0)  # straight lines keep their digits
-    return ContactEstimate(gap, -stiffness * gap, 0.0, profile, spacing, stiffness)
+    if not isinstance(scene.experiment, Impact):
+        return 0.0
+    assert scene.plate
+    assert scene.plate.mass != "auto"
+    return law.stopped(0.5 * softer * scene.plate.mass * scene.experiment.velocity**2)

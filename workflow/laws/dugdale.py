@@ -22,8 +22,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.polynomial import gauss
-from contact1d.workflow.model.chain import SettingsError
-from contact1d.workflow.model.pairs import Profile, beside_kinks
+from contact1d.workflow.errors import SettingsError
+from contact1d.workflow.laws.shape import Profile, beside_kinks
 
 Array = NDArray[np.float64]
 NODES, PANEL = 48, 8

@@ -21,13 +21,19 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.workflow.model.pairs import Profile
-from contact1d.workflow.scene import Viscoelasticity
+from contact1d.workflow.laws.pairs import Independent, on_plane
+from contact1d.workflow.laws.particles import Particles
+from contact1d.workflow.laws.path import Followed, Path
+from contact1d.workflow.laws.shape import Profile
+from contact1d.workflow.scene import Scene, Viscoelasticity
 
 Array = NDArray[np.float64]
 NARROWEST = 1e-12
@@ -38,6 +44,16 @@ STAGE = 1.0 - 0.5**0.5
 """Part of a step at which the first of its two stages is."""
 SUDDEN, MOMENTS = 1e-6, 200
 """Time over the shortest one of a body in which something happens at once; steps of the creep of one spring."""
+EDGE = 0.02
+"""How far an edge with a jump may be off, over the spacing: measured beside rings, a third of it at most."""
+AGAIN = 0.1
+"""The same of one that comes back over a surface that has not recovered: margins are no straight lines there."""
+JUMPS = 1e-6
+"""Least overlap at an edge over the displacement that makes a jump there: less is round-off of the edge."""
+FINER = 20
+"""Places of a body for each of its particles, between which its heights are straight."""
+NEAREST = 1e-9
+"""Distance from the limit point, over that to the largest displacement, from which positions are examined."""
 
 
 @dataclass(frozen=True)
@@ -230,3 +246,191 @@ def creep(law: Viscoelasticity | None, time: float) -> float:
         place, velocity = spring.under(1.0, 1.0, alone, step)
         spring.go(place, step, velocity)
     return spring.place
+
+
+@dataclass(frozen=True, eq=False)
+class Relaxing(Independent):
+    """A body that relaxes; by itself the curve at once.
+
+    Attributes:
+        material: its springs, arms and dashpots.
+    """
+
+    in_time: ClassVar[bool] = True
+    tells_edges: ClassVar[bool] = True
+    is_linear: ClassVar[bool] = False
+    is_lossless: ClassVar[bool] = False
+    touched: ClassVar[bool] = True
+    file: ClassVar[str] = "retardation.cells"
+
+    material: Viscoelasticity = field(default_factory=Viscoelasticity)
+
+    @classmethod
+    def applies(cls, scene: Scene) -> bool:
+        """Of [viscoelasticity]."""
+        return scene.viscoelasticity is not None
+
+    @classmethod
+    def of(cls, scene: Scene, profile: Profile) -> Self:
+        """See `Law`."""
+        found: Self = on_plane(cls, profile, scene.bodies.spacing, scene.bulk_stiffness, scene.the(Viscoelasticity))
+        return found
+
+    def particles(self, x: Array, deepest: float) -> RelaxingSprings:
+        """See `Law`."""
+        return RelaxingSprings(self, x, deepest)
+
+    def columns(self, body: Profile, x: Array) -> Mapping[str, tuple[int, Array]]:
+        """See `Law`; of dashpots."""
+        if not self.material.retardation_time:
+            return {}
+        edges = edges_of(self.profile, x, self.spacing)
+        return {"width": (1, edges.widths), "rise": (1, edges.rises)}
+
+
+@dataclass(frozen=True, eq=False)
+class RelaxingSprings(Particles):
+    """The particles of a body that relaxes."""
+
+    law: Relaxing
+
+    dense: ClassVar[int] = 4
+
+    @property
+    def shares_edges(self) -> bool:
+        """With dashpots; the line load of others falls to 0 at an edge."""
+        return bool(self.law.material.retardation_time)
+
+    @cached_property
+    def _cells(self) -> tuple[Edges, NDArray[np.intp], Array]:
+        """Cells that come to touch alike, each once, by rising height, which is whose, and how many of each."""
+        every = vars(edges_of(self.shape, self.x, self.law.spacing))
+        found, own = np.unique(np.stack([*every.values()]), axis=1, return_inverse=True)
+        return Edges(*found), own, np.bincount(own).astype(np.float64)
+
+    @property
+    def apart(self) -> float:
+        """Where a body that is untouched feels nothing [LU]."""
+        return 0.0
+
+    @property
+    def parted(self) -> None:
+        """See `Particles.parted`."""
+        return
+
+    def held(self, displacements: Array) -> Array:
+        """F [FU] of a body that has had no time."""
+        cells, _, counts = self._cells
+        return np.asarray(self.law.stiffness * (np.maximum(displacements[:, None] - cells.heights, 0.0) @ counts))
+
+    def spent(self, times: Array) -> Array:
+        """Durations (m,) [TU] of load steps that end at times (m,) [TU]; the first happens at once."""
+        return np.diff(times, prepend=times[0] - SUDDEN * self.law.material.shortest_time)
+
+    def carrying(self, times: Array, forces: Array) -> tuple[Array, Array]:
+        """See `Particles.carrying`; each follows from those before."""
+        cells, _, counts = self._cells
+        memory, before, found = Memory(self.law.material, cells), 0.0, []
+        for force, time in zip((forces / self.law.stiffness).tolist(), self.spent(times).tolist(), strict=True):
+            place, velocity = memory.under(force, before, counts, time)
+            memory.go(place, time, velocity)
+            found.append((place, velocity))
+            before = force
+        places, velocities = zip(*found, strict=True)
+        return np.asarray(places), np.asarray(velocities)
+
+    def feeling(self) -> Callable[[float, float, float], float]:
+        """See `Particles.feeling`."""
+        cells, _, counts = self._cells
+        memory = Memory(self.law.material, cells)
+
+        def force(place: float, time: float, velocity: float) -> float:
+            pressed, _ = memory.pressed(place, time, velocity)
+            memory.go(place, time, velocity)
+            return self.law.stiffness * float(pressed @ counts)
+
+        return force
+
+    def prescribed(self, path: Path) -> dict[str, Array]:
+        """With the time that each load step takes and the velocity of the body at its end."""
+        spent, velocity = self.spent(path.time), path.velocity
+        if velocity is None:
+            velocity = np.diff(path.displacement, prepend=0.0) / spent
+        return {"displacement": path.displacement, "duration": spent, "velocity": velocity}
+
+    def carried(self, columns: Mapping[str, Array]) -> Followed:
+        """A load step from each state to the next, in the time between them; see `Particles.carried`."""
+        cells, own, counts = self._cells
+        memory = Memory(self.law.material, cells)
+        displacement, spent, velocities = (columns[name] for name in ("displacement", "duration", "velocity"))
+        each, margin = np.empty((2, displacement.size, counts.size))
+        moves = zip(displacement.tolist(), spent.tolist(), velocities.tolist(), strict=True)
+        for i, (place, time, velocity) in enumerate(moves):
+            each[i], margin[i] = memory.pressed(place, time, velocity)
+            memory.go(place, time, velocity)
+        each *= self.law.stiffness
+        edge = self._edges(margin)
+        doubt: Array = AGAIN * self.law.spacing * _returned(edge).astype(np.float64)
+        if self.shares_edges:
+            spacing = self.law.spacing
+            doubt += np.abs(0.5 * spacing * memory.width(margin, counts) - edge) + EDGE * spacing * (edge > 0.0)
+        zone = (edge, edge, self._jumps(edge, displacement, velocities), doubt)
+        return Followed(self.x, each @ counts, lambda state: each[state][own], zone=zone)
+
+    def energies(self, path: Path) -> tuple[float, float]:
+        """Of springs and arms, those included whose particles have left; what dashpots lose."""
+        cells, _, counts = self._cells
+        memory, lost = Memory(self.law.material, cells), 0.0
+        columns = self.prescribed(path).values()
+        for place, time, velocity in zip(*(one.tolist() for one in columns), strict=True):
+            lost += float(memory.losing(place, time, velocity) @ counts)
+            memory.go(place, time, velocity)
+        stiffness = self.law.stiffness
+        return stiffness * float(memory.stored @ counts), stiffness * lost
+
+    def _jumps(self, edge: Array, displacement: Array, velocity: Array) -> Array:
+        """The line load at an edge [FU/LU], what dashpots push where it does not recede."""
+        retarded, estimate = self.law.material.retardation_time or 0.0, self.law
+        push = displacement - estimate.profile.height(edge) + retarded * velocity
+        grows = (edge > 0.0) & (velocity >= 0.0) & (push > JUMPS * np.abs(displacement)) & (retarded > 0.0)
+        return np.where(grows, estimate.stiffness / estimate.spacing * push, 0.0)
+
+    @cached_property
+    def _places(self) -> tuple[Array, Array]:
+        """Heights [LU], rising, and where the body has them [LU]."""
+        x = np.linspace(0.0, float(np.abs(self.x).max()), FINER * self.x.size)
+        return np.asarray(self.law.profile.height(x), dtype=np.float64), x
+
+    def _edges(self, margin: Array) -> Array:
+        """a [LU] of states whose overlaps are (m, n) [LU], (m,): where these fall to 0, straight over the height.
+
+        Where the contact grows the overlap has a kink at a, and only the next two free particles tell; where it
+        shrinks, the last particle and the next are nearer.
+        """
+        heights, touching = self._cells[0].heights, margin > 0.0
+        end = heights.size - 1
+        last = end - np.argmax(touching[:, ::-1], axis=1)
+        rows, after = np.arange(last.size), np.minimum(last + 1, end)
+
+        def crossing(first: NDArray[np.intp], second: NDArray[np.intp]) -> Array:
+            one, other = margin[rows, first], margin[rows, second]
+            share = np.divide(one, one - other, out=np.zeros_like(one), where=one > other)
+            place = heights[first] + share * (heights[second] - heights[first])
+            return np.interp(np.clip(place, heights[last], heights[after]), *self._places)
+
+        ahead, across = crossing(after, np.minimum(last + 2, end)), crossing(last, after)
+        shrinks = np.append(False, ahead[1:] < ahead[:-1])
+        reach = self.law.profile.reach
+        inside = np.where(last == end, min(reach, self._reach), np.where(shrinks, across, ahead))
+        return np.where(touching.any(axis=1), inside, 0.0)
+
+
+def _returned(edge: Array) -> NDArray[np.bool_]:
+    """In which states an edge has receded, and grown since, but not yet as far as it was."""
+    found, most, least = np.zeros(edge.size, dtype=bool), 0.0, 0.0
+    for i, here in enumerate(edge.tolist()):
+        if here >= most * (1.0 - NEAREST):
+            most = least = here
+        least = min(least, here)
+        found[i] = here > least * (1.0 + NEAREST)
+    return found

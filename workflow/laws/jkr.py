@@ -19,15 +19,21 @@ Sources: V. L. Popov, M. Heß, Method of Dimensionality Reduction in Contact Mec
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.workflow.model.chain import FARTHEST_RATIO, SettingsError
-from contact1d.workflow.model.pairs import ContactEstimate, Profile, beside_kinks
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.errors import SettingsError
+from contact1d.workflow.laws.law import FARTHEST_RATIO, Law, stopped_at
+from contact1d.workflow.laws.pairs import Springs, springs
+from contact1d.workflow.laws.particles import Particles
+from contact1d.workflow.laws.path import Followed, Path
+from contact1d.workflow.laws.shape import Profile, beside_kinks
+from contact1d.workflow.scene import Adhesion, Scene
 
 Array = NDArray[np.float64]
 PLACES = 4000
@@ -51,6 +57,8 @@ BENDS, WHOLE = 401, 1.0 - 1e-9
 of the share is an error of the force: at a kink between two cells all lattices have the same one, so none shows it."""
 SOFTEST = 0.998
 """Tension over the largest one at which a contact counts as softest."""
+TOUCH = 1e-9
+"""Distance over the spacing at which bodies touch: round-off of a displacement of 0."""
 
 
 def elongation(x: Array, modulus: float, work: float) -> Array:
@@ -106,7 +114,7 @@ class Cells:
 
 
 @dataclass(frozen=True)
-class AdhesiveEstimate(ContactEstimate):
+class Jkr(Law):
     """JKR's own curve by quadrature, in place of independent pairs.
 
     Attributes:
@@ -114,8 +122,62 @@ class AdhesiveEstimate(ContactEstimate):
         known: the greatest position up to which it is known [LU].
     """
 
+    holds: ClassVar[bool] = True
+    is_lossless: ClassVar[bool] = False
+    file: ClassVar[str] = "adhesion.cells"
+
     work: float = field(kw_only=True)
     known: float = field(kw_only=True)
+
+    @classmethod
+    def applies(cls, scene: Scene) -> bool:
+        """Of [adhesion]."""
+        return scene.adhesion is not None
+
+    @classmethod
+    def of(cls, scene: Scene, profile: Profile) -> Law:
+        """Known as far as the experiment needs.
+
+        Raises:
+            SettingsError: the contact would be as wide as the body, or its edge would jump.
+        """
+        given, load = max([0.0, *scene.experiment.places()]), scene.experiment.compression or 0.0
+        spacing, stiffness = scene.bodies.spacing, scene.bulk_stiffness
+        common = *springs(spacing, stiffness), profile, spacing, stiffness
+        law, wanted, known = None, given, spacing
+        while law is None or not (law.known == profile.reach or law.is_beyond(wanted, load)):
+            law = Jkr(*common, work=scene.the(Adhesion).work, known=min(known, profile.reach))
+            wanted = max(given, stopped_at(scene, law))
+            known *= 2.0
+        found = cls.from_jkr(law, scene, wanted, load)
+        if scene.bodies.own_count is None:
+            widest = float(found.radii(np.asarray([max(wanted, found.displacement_at(load))]))[0])
+            if widest > SPANNED * profile.reach:
+                raise SettingsError(
+                    f"the adhesive contact would cover the body, which ends at {profile.reach:.6g} LU: JKR's theory is "
+                    "for a contact much smaller than the body. Lower adhesion.work_of_adhesion, the load or the "
+                    "displacement"
+                )
+        found.require_one_edge()
+        return found
+
+    @classmethod
+    def from_jkr(cls, jkr: Jkr, scene: Scene, wanted: float, load: float) -> Jkr:
+        """The law whose limit this is, as far as a displacement [LU] and a load [FU] need."""
+        return jkr
+
+    def particles(self, x: Array, deepest: float) -> Particles:
+        """See `Law`; springs alone where W = 0."""
+        return JkrCells(self, x, deepest) if self.attracts else Springs(self, x, deepest)
+
+    def extent(self, deepest: float, half: float) -> float:
+        """See `Law`: all of a chain."""
+        return half if self.attracts else super().extent(deepest, half)
+
+    def columns(self, body: Profile, x: Array) -> Mapping[str, tuple[int, Array]]:
+        """See `Law`."""
+        cells = self.cells(x, body)
+        return {"hold": (1, cells.hold), "width": (1, cells.width), "fall": (1, cells.fall), "bend": (0, cells.bend)}
 
     @property
     def modulus(self) -> float:
@@ -146,6 +208,11 @@ class AdhesiveEstimate(ContactEstimate):
             far = h[-1:] + FARTHEST_RATIO * self.spacing
             x, h, area = np.append(x, x[-1:]), np.append(h, far), np.append(area, area[-1:])
         return x, h, 2.0 * self.modulus * (x * h - area), int(np.argmin(h))
+
+    @property
+    def deepest_known(self) -> float:
+        """See `Law`."""
+        return self.end[1] if self.known < self.profile.reach else math.inf
 
     @property
     def end(self) -> tuple[float, float, float]:
@@ -265,7 +332,74 @@ class AdhesiveEstimate(ContactEstimate):
         return math.inf
 
 
-def cells_of(scene: Scene, estimate: ContactEstimate, x: Array) -> Cells:
-    """The cells of particles at positions x [LU] of a scene with [adhesion]."""
-    assert isinstance(estimate, AdhesiveEstimate)
-    return estimate.cells(x, scene.bodies)
+@dataclass(frozen=True, eq=False)
+class JkrCells(Particles):
+    """The cells of a chain on a rigid plane, which adhere from touch to where fixed grips lose all of it at once."""
+
+    law: Jkr
+
+    @property
+    def shares_edges(self) -> bool:
+        """Always."""
+        return True
+
+    @cached_property
+    def _cells(self) -> Cells:
+        return self.law.cells(self.x, self.shape)
+
+    @cached_property
+    def _once(self) -> tuple[Cells, NDArray[np.intp]]:
+        """The cells of which both sides have one, each once, and how many there are."""
+        _, first, count = np.unique(np.abs(self.x), return_index=True, return_counts=True)
+        return Cells(*(column[first] for column in vars(self._cells).values())), count
+
+    @property
+    def apart(self) -> float:
+        """Where fixed grips lose the contact [LU]."""
+        return self.law.fixed_grips[1]
+
+    def held(self, displacements: Array) -> Array:
+        """F [FU] while it is held."""
+        cells, count = self._once
+        return np.asarray(self.law.stiffness * (cells.lengths(displacements) @ count))
+
+    @property
+    def limits(self) -> tuple[float, ...]:
+        """There."""
+        return (self.apart,)
+
+    @property
+    def jumps(self) -> tuple[float, ...]:
+        """There, and at touch."""
+        return (self.apart, 0.0)
+
+    def _holds(self, displacements: Array) -> NDArray[np.bool_]:
+        """Whether there is a contact at each of the displacements of a path, (m,)."""
+        held, now, apart = np.zeros(displacements.size, dtype=bool), False, self.apart
+        for i, displacement in enumerate(displacements.tolist()):
+            now = displacement >= -TOUCH * self.law.spacing or (now and displacement >= apart)
+            held[i] = now
+        return held
+
+    def energies(self, path: Path) -> tuple[float, float]:
+        """U(d, a) of JKR; what it jumps by where the contact is made, at touch, or lost, under fixed grips."""
+        held = self._holds(path.displacement)
+
+        def energy(displacement: float) -> float:
+            return self.law.energy(displacement, float(self.law.radii(np.asarray([displacement]))[0])) or 0.0
+
+        made, lost = (np.count_nonzero(np.diff(held.astype(int), prepend=0) == way) for way in (1, -1))
+        end = energy(float(path.displacement[-1])) if held[-1] else 0.0
+        return end, lost * energy(self.apart) - made * energy(0.0)
+
+    def carried(self, columns: Mapping[str, Array]) -> Followed:
+        """Nothing is felt before touch; see `Particles.carried`."""
+        displacements = columns["displacement"]
+        held = self._holds(displacements)
+        total = np.where(held, self.held(displacements), 0.0)
+
+        def force(state: int) -> Array:
+            lengths = self._cells.lengths(displacements[state : state + 1])[0]
+            return np.asarray(self.law.stiffness * lengths * held[state])
+
+        return Followed(self.x, total, force)

@@ -1,0 +1,120 @@
+"""Contacts whose edges each load step gives: a particle has the integral of the line load over its cell.
+
+Integrals of neighbours add up, so that F is exact at every spacing.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.workflow.laws.dugdale import Dugdale, Zone
+from contact1d.workflow.laws.jkr import Jkr
+from contact1d.workflow.laws.particles import Particles
+from contact1d.workflow.laws.path import Followed
+from contact1d.workflow.laws.shape import Profile
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Cells:
+    """What the cell of each particle spans on one side of the axis; arrays (n,).
+
+    Attributes:
+        inner, outer: its ends [LU].
+        below, above: G there [LU²].
+        sides: 2 of a particle on the axis, which has a cell on either side; else 1.
+    """
+
+    inner: Array
+    outer: Array
+    below: Array
+    above: Array
+    sides: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Zoned(Jkr):
+    """A contact whose edges each load step gives.
+
+    Attributes:
+        surface: f, whose transform the profile is.
+    """
+
+    tells_edges: ClassVar[bool] = True
+
+    surface: Profile = field(kw_only=True)
+
+    @property
+    @abstractmethod
+    def equations(self) -> Dugdale:
+        """Its equations."""
+
+    def columns(self, body: Profile, x: Array) -> Mapping[str, tuple[int, Array]]:
+        """See `Law`."""
+        zones, powers = self.zones(x), {"inner": 1, "outer": 1, "below": 2, "above": 2, "sides": 0}
+        return {name: (power, getattr(zones, name)) for name, power in powers.items()}
+
+    def zones(self, x: Array) -> Cells:
+        """The cells of particles at positions x, (n,) [LU]."""
+        at, half = np.abs(x), 0.5 * self.spacing
+        inner, outer = np.maximum(at - half, 0.0), at + half
+        sides = np.where(at < 0.25 * self.spacing, 2.0, 1.0)
+        # Beyond the body nothing is known, and nothing carries.
+        below, above = (self.equations.area(np.minimum(end, self.known)) for end in (inner, outer))
+        return Cells(inner, outer, below, above, sides)
+
+    def loads(self, cells: Cells, zone: Zone, state: int) -> Array:
+        """∫ q dx [FU] over each cell in a state."""
+        a, c, d = (float(column[state]) for column in (zone.edge, zone.reach, zone.displacement))
+        end = np.minimum(cells.outer, a)
+        area = np.where(cells.outer < a, cells.above, self.equations.area(np.asarray([a]))[0])
+        pressed = self.modulus * np.where(cells.inner < a, d * (end - cells.inner) - (area - cells.below), 0.0)
+        low, high = (np.minimum(np.maximum(one, a), c) for one in (cells.inner, cells.outer))
+        return np.asarray(
+            cells.sides * (pressed - 2.0 * self.equations.stress * (_half_disc(high, c) - _half_disc(low, c)))
+        )
+
+
+def _half_disc(x: Array, radius: float) -> Array:
+    """∫₀ˣ √(c² − x²) dx [LU²]."""
+    root = np.sqrt((radius - x) * (radius + x))
+    return np.asarray(0.5 * (x * root + radius**2 * np.arctan2(x, root)))
+
+
+@dataclass(frozen=True, eq=False)
+class ZonedCells(Particles):
+    """The cells of a chain on a rigid plane, the edges of whose contact each load step gives."""
+
+    law: Zoned
+
+    @property
+    def shares_edges(self) -> bool:
+        """Always."""
+        return True
+
+    def _edges_of(self, zone: Zone) -> dict[str, Array]:
+        """The columns of load steps: d, a, c and the mean of g(x) over the contact."""
+        area = self.law.equations.area(zone.edge)
+        height = np.divide(area, zone.edge, out=np.zeros_like(area), where=zone.edge > 0.0)
+        return {"displacement": zone.displacement, "edge": zone.edge, "reach": zone.reach, "height": height}
+
+    def carried(self, columns: Mapping[str, Array]) -> Followed:
+        """See `Particles.carried`; the line load jumps at an edge beyond which there is no attraction."""
+        estimate, law, cells = self.law, self.law.equations, self.law.zones(self.x)
+        d, edge, reach = (columns[name] for name in ("displacement", "edge", "reach"))
+        zone = Zone(edge, reach, d, law.forces(edge, np.sqrt((reach - edge) * (reach + edge)), d))
+        ends = (reach == edge) & (edge > 0.0)
+        jump = np.where(ends, estimate.modulus * (d - estimate.profile.height(edge)), 0.0)
+        # The part of a cell in the ring of attraction is a difference of the discs up to its ends.
+        lost = float(np.finfo(np.float64).eps) * 2.0 * law.stress * reach**2
+        return Followed(
+            self.x, zone.force, lambda state: estimate.loads(cells, zone, state), zone=(edge, reach, jump),
+            round_off=lost,
+        )  # fmt: skip
