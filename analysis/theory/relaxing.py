@@ -69,8 +69,8 @@ class Indented:
         kept = 1.0 - sum(g for g, _ in self.terms)
         found = kept * (d[-1] - d[0])
         for g, tau in self.terms:
-            rates = np.diff(d) / np.diff(ends)
-            found += g * tau * float(rates @ np.diff(np.exp(-(time - ends) / tau)))
+            age, spans = (time - ends) / tau, np.diff(ends) / tau  # of long times a difference has no digits
+            found -= g * float(np.diff(d) / spans @ (np.exp(-age[1:]) * np.expm1(-spans)))
         return float(found)
 
     def lost(self, end: float) -> float | None:

@@ -55,7 +55,7 @@ def pairs(shape: str, stiffness: float = 0.7, points: int = 4000) -> Law:
 @pytest.mark.parametrize("shape", SHAPES)
 def test_half_widths_are_roots_of_the_height_at_most_the_bodys_own(shape: str, spacing: float) -> None:
     profile = body(shape)
-    found = Law(np.array([-1.0, 0.3]), np.array([1.0, 0.0]), 0.1, profile, spacing, 1.0)
+    found = Independent(np.array([-1.0, 0.3]), np.array([1.0, 0.0]), 0.1, profile, spacing, 1.0)
     displacements = np.array([-0.5, -0.2, -0.2 + 1e-9, -0.1, 0.0, 0.3, 2.0, 5.0, 5.9, 1e3])
     for d, width in zip(displacements.tolist(), found.half_widths(displacements, 0.3).tolist(), strict=True):
         height = 0.3 - 0.1 + d

@@ -2,7 +2,7 @@
 
     p(r) = (1/pi) [q(e)/sqrt(e^2 - r^2) - int_r^e q'(x)/sqrt(x^2 - r^2) dx],    F = 2 int_0^e q dx
 
-with q linear between the springs (beside the apex q(0) - c x^n), so that the integral is a sum of arcosh. The edge e
+with q linear between the springs (on the axis q(0) - c x^n), so that the integral is a sum of arcosh. The edge e
 lies where q falls to 0, or where the gap does: there Kelvin and Voigt's q jumps to E (u + T u'), u = d - g(e); at the
 end of a body q jumps, too. The springs are those of `recovering`, each with events in its own time; `rings` has the
 same pressures without any springs.
@@ -56,8 +56,12 @@ class Line:
             return 0.0
         slope = np.diff(q) / np.diff(x)
         if r == 0.0:
-            apex = n / (n - 1.0) if n > 1.0 else math.inf
-            inner = (apex * slope[0] if slope[0] else 0.0) + float(slope[1:] @ np.log(x[2:] / x[1:-1]))
+            if n <= 1.0:
+                return (
+                    math.inf if slope[0] else (float(q[-1]) / e - float(slope[1:] @ np.log(x[2:] / x[1:-1]))) / math.pi
+                )
+            # q - c x^n between the springs, too: straight lines miss 1e-4 of a blunt cone.
+            inner = n / (n - 1.0) * float(np.diff(q) @ (np.diff(x ** (n - 1.0)) / np.diff(x**n)))
         else:
             inner = float(slope @ np.diff(np.arccosh(np.maximum(x / r, 1.0))))
         return (float(q[-1]) / math.sqrt((e - r) * (e + r)) - inner) / math.pi

@@ -368,7 +368,9 @@ def _largest(
     noise, top, unsure = NOISE * scene.accuracy.tolerance, int(p.argmax()), bool(shape.alternatives or shape.deviations)
     # A jump at the edge is a pole, and where the slope jumps inside p is a logarithm.
     smooth = p[top] > 0.0 and not (shape.has_edge or any(kink < state.radius.value for kink in shape.kinks))
-    smooth &= (top == 0 and state.jump is None) or fine.at_edge <= noise * p[top] * fine.edge
+    # A jump that the law tells is one, however small; particles show no better than their errors.
+    pole = 0.0 if state.jump is not None else noise * p[top] * fine.edge
+    smooth &= (top == 0 and state.jump is None) or fine.at_edge <= pole
     smooth &= top == 0 or len(levels) == 3
     near = np.linspace(r[max(0, top - 1)], r[min(top + 1, r.size - 1)], BETWEEN)
     hidden = any(kink < state.radius.value for one in shape.alternatives for kink in one.kinks)

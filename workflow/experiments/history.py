@@ -182,19 +182,24 @@ def _between(trace: Trace) -> float:
 
 
 def _whole(trace: Trace, corner: int, states: Sequence[int]) -> list[float]:
-    """F [FU] of states with as many particles as fit into the contact of one of them, and not a whole number.
+    """F [FU] of states of the body: a sum over particles misses E* g′(a) y² at its edge, y from the last cell to there.
 
-    A slope counts them, while forces that fall to 0 at the edge do not show how many there are. The end of a body is
-    that of a particle, and some laws have parts of one.
+    Its slope has a whole number of particles, and not as many as fit into the contact. Behind the corner the edge goes
+    with the displacement, y dy/dd = y/g′(a). The end of a body is that of a particle, and some laws have parts of one.
     """
-    estimate, radius = trace.model.law, trace.radius(corner) or 0.0
-    if trace.model.shares_edges or radius >= estimate.profile.reach:
-        return [float(trace.force[i]) for i in states]
-    pressure = np.asarray([trace.profile(i).pressure for i in states])
-    touching = np.flatnonzero(pressure.all(axis=0))
-    missing = 2.0 * radius - estimate.spacing * touching.size
-    edge = pressure[:, touching[[0, -1]]].mean(axis=1) if touching.size else np.zeros(len(states))
-    return list(map(float, estimate.spacing * pressure[:, touching].sum(axis=1) + missing * edge))
+    law, force = trace.model.law, [float(trace.force[i]) for i in states]
+    radius, modulus = trace.radius(corner) or 0.0, law.stiffness / law.spacing
+    if trace.model.shares_edges or radius >= law.profile.reach:
+        return force
+    found = []
+    for i, own in zip(states, force, strict=True):
+        at = min(i, corner)
+        edge = trace.radius(at) or 0.0
+        missed = edge - 0.5 * law.spacing * np.count_nonzero(trace.profile(at).pressure)
+        low, high = law.profile.height(edge + 0.5 * law.spacing * np.asarray([-1.0, 1.0])).tolist()
+        moved = float(trace.displacement[i] - trace.displacement[at])
+        found.append(own + modulus * ((high - low) / law.spacing * missed**2 + 2.0 * missed * moved))
+    return found
 
 
 def _work(d: NDArray[np.float64], force: NDArray[np.float64]) -> float:

@@ -401,6 +401,15 @@ class RelaxingSprings(Particles):
         x = np.linspace(0.0, float(np.abs(self.x).max()), FINER * self.x.size)
         return np.asarray(self.law.profile.height(x), dtype=np.float64), x
 
+    def _at(self, heights: Array) -> Array:
+        """Where the body has heights (m,) [LU], by a secant from the straight line between two places [LU]."""
+        known, x = self._places
+        found, shape = np.interp(heights, known, x), self.law.profile
+        cell = np.clip(np.searchsorted(known, heights), 1, x.size - 1)
+        rise, wide = known[cell] - known[cell - 1], x[cell] - x[cell - 1]
+        missed = np.divide(heights - shape.height(found), rise, out=np.zeros_like(found), where=rise > 0.0)
+        return np.clip(found + wide * missed, x[cell - 1], x[cell])
+
     def _edges(self, margin: Array) -> Array:
         """a [LU] of states whose overlaps are (m, n) [LU], (m,): where these fall to 0, straight over the height.
 
@@ -416,7 +425,7 @@ class RelaxingSprings(Particles):
             one, other = margin[rows, first], margin[rows, second]
             share = np.divide(one, one - other, out=np.zeros_like(one), where=one > other)
             place = heights[first] + share * (heights[second] - heights[first])
-            return np.interp(np.clip(place, heights[last], heights[after]), *self._places)
+            return self._at(np.clip(place, heights[last], heights[after]))
 
         ahead, across = crossing(after, np.minimum(last + 2, end)), crossing(last, after)
         shrinks = np.append(False, ahead[1:] < ahead[:-1])
