@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -57,6 +58,7 @@ class ModelBranch:
         self.scene, self.settings, self.model, self.dense, self.shift = scene, settings, model, dense, shift
         self._phase, self._leg = "", -1
         self._rises: bool | None = None
+        self._given = "displacement"
         self._rows: list[Row] = []
 
     @property
@@ -124,6 +126,7 @@ class ModelBranch:
         """Displacements or forces over time, and others between them."""
         history = history.denser(self.dense)
         self._leg += 1
+        self._given = "force" if history.by_force else self._given
         self._add_path(history.phases, history.path(self.model))
 
     def fly(self, velocity: float) -> None:
@@ -167,6 +170,7 @@ class ModelBranch:
         path = self.path
         rule = radius_rule(self.scene, self.settings.tolerance)
         found = of_model(phases, legs, path, self.model.follow(path), rule, self.model)
+        found = replace(found, given=self._given)
         return found if whole else found.chosen([i for i, name in enumerate(phases) if name != UNSEEN])
 
     def _turn(self, rises: bool) -> None:
