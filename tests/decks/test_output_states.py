@@ -21,13 +21,12 @@ from tests.scenes import chains
 SINGLE = 1e-6  # relative: states.npz is in single precision
 ROUND_OFF = 1e-12
 FEW = 6
-MICRO = {"particles": 40, "spacing": 1e-6, "profile": {"kind": "parabola", "radius": 1e-4}, "bulk_stiffness": 8e5}
 FRICTION: dict[str, Any] = {
     "bodies": PLANE["bodies"] | {"reduction": "mdr", "particles": "auto"},
     "friction": {"coefficient": 0.3},
     "experiment": {"kind": "tangential", "normal_force": [4.0, 2.0, 3.0], "displacements": [0.1, 0.2, 0.0]},
 }
-NAMES = ("load_thermal", "pull_off_dynamic", "plane_adhesion", "slide")
+NAMES = ("load_thermal", "pull_off_dynamic", "plane_adhesion", "slide", "units")
 SCENES = {name: OTHERS[name] for name in NAMES} | {
     "snapping": chains(
         20.0,
@@ -37,10 +36,6 @@ SCENES = {name: OTHERS[name] for name in NAMES} | {
         experiment={"kind": "pull_off", "preload": 0.05},
     ),
     "tangential": FRICTION,
-    "units": {
-        "bodies": MICRO | {"lower": "rigid_plane"},
-        "experiment": {"kind": "path", "displacements": {"from": 0.0, "to": 5e-7, "steps": 5}},
-    },
 }
 """Every way to move, both methods, chains and plane, rows that are steps of one run and rows that are not."""
 

@@ -205,12 +205,11 @@ def test_exponent_50_is_nearly_a_flat_punch(reduction: str, tmp_path: Path) -> N
     assert abs(radius["value"] - 20.0 * (0.5 / factor) ** 0.02) < radius["uncertainty"]
 
 
-@pytest.mark.parametrize("reduction", ["geike_popov", "mdr"])
-def test_table_of_5000_points_is_its_formula(reduction: str, tmp_path: Path) -> None:
+def test_table_of_5000_points_is_its_formula(tmp_path: Path) -> None:
     r = 0.02 * np.arange(5000)
     profile = {"kind": "table", "r": r.tolist(), "z": (r**2 / 100.0).tolist()}
-    finished = done(tmp_path, tables(profile, path(0.1, 0.5), reduction=reduction))
-    heights = finished.outcome.states[-1].profile.x ** 2 / (50.0 if reduction == "mdr" else 100.0)
+    finished = done(tmp_path, tables(profile, path(0.1, 0.5), reduction="geike_popov"))
+    heights = finished.outcome.states[-1].profile.x ** 2 / 100.0
     assert finished.document["largest_force"]["value"] == pytest.approx(exact(finished, heights), rel=FORCE)
 
 

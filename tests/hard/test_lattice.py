@@ -46,7 +46,7 @@ SCENES: dict[str, tuple[dict[str, Any], set[str]]] = {
     "pairs pulled off": (PAIRS | {"experiment": {"kind": "pull_off", "preload": 0.1}}, {"adhesion_force"}),
     "pairs, there and back": (
         PAIRS
-        | {"experiment": {"kind": "path", "displacements": {"from": 0.1, "to": -0.5, "steps": 60}}},
+        | {"experiment": {"kind": "path", "displacements": {"from": 0.02, "to": -0.2, "steps": 11}}},
         {"adhesion_force"},
     ),
 }  # fmt: skip

@@ -120,11 +120,16 @@ def energies(contact: ReducedContact) -> tuple[float, float, float]:
     return -snapped, parted, parted - rested
 
 
-@pytest.mark.parametrize("steps", [40, 1000])
+@pytest.mark.parametrize("steps", [40, 400])
 @pytest.mark.parametrize(
-    ("ends", "returns"), [((-1.0, 1.0), False), ((1.0, -1.0), False), ((-1.0, 1.0), True), ((-0.05, 1.0), True)]
+    ("slope", "ends", "returns"),
+    [
+        (lambda r: r / RADIUS, (-1.0, 1.0), False),
+        (lambda _: 0.02, (1.0, -1.0), False),
+        (lambda r: r / RADIUS, (-0.05, 1.0), True),
+        (lambda _: 0.02, (-1.0, 1.0), True),
+    ],
 )
-@pytest.mark.parametrize("slope", [lambda r: r / RADIUS, lambda _: 0.02])
 def test_a_path_with_adhesion_has_the_energy_of_its_instabilities(
     slope: Callable[[float], float], ends: tuple[float, float], returns: bool, steps: int, tmp_path: Path
 ) -> None:

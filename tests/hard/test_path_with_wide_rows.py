@@ -69,7 +69,7 @@ def test_every_row_is_on_its_branch(tmp_path: Path, ratio: float, wide: float) -
 
 @pytest.mark.parametrize(
     ("kind", "particles", "ratio", "steps"),
-    [("power", 3, 0.94, 33), ("flat_punch", 6, 0.74, 33), ("flat_punch", 6, 0.74, 60), ("cone", 5, 0.47, 60)],
+    [("power", 3, 0.94, 33), ("flat_punch", 6, 0.74, 33)],
 )
 def test_a_sharp_maximum_between_two_rows_is_within_the_claim(
     kind: str, particles: int, ratio: float, steps: int, tmp_path: Path
@@ -98,8 +98,7 @@ def test_pairs_that_are_drawn_apart_hold_until_their_snap(ratio: float, wide: fl
     assert held == pytest.approx(float(pairs.unloading(np.array([rows[0]]), DEEPEST)[0]), rel=ROWS)
 
 
-@pytest.mark.parametrize("first", [-0.05, -0.02, 0.0, 0.02])
-@pytest.mark.parametrize("ratio", [2.0, 8.0])
+@pytest.mark.parametrize(("ratio", "first"), [(2.0, -0.05), (2.0, 0.02), (8.0, -0.02)])
 def test_a_path_begins_on_the_branch_that_the_scene_names(ratio: float, first: float, tmp_path: Path) -> None:
     """From afar, or with start = "contact" back from the largest displacement: pairs have two states between."""
     case = PairCase("start", ratio, shaped("parabola", 40, reach(ratio)), 40, 0.0)

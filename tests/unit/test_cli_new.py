@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import tomllib
+from itertools import cycle
 from pathlib import Path
 from typing import Any
 
@@ -43,7 +44,7 @@ def test_a_new_scene_is_right_as_it_stands(kind: str, tmp_path: Path) -> None:
     assert set_ == starter_scene(kind)
 
 
-ON_THE_PLANE = [(kind, profile) for kind in KINDS if kind != "slide" for profile in ("parabola", "cone", "flat_punch")]
+ON_THE_PLANE = zip([kind for kind in KINDS if kind != "slide"], cycle(("flat_punch", "parabola", "cone")), strict=False)
 
 
 @pytest.mark.parametrize(("kind", "profile"), [*ON_THE_PLANE, ("load", "power"), ("load", "circle"), ("slide", None)])

@@ -13,6 +13,9 @@ SIXTH = 0.5  # the constant of the interpolation error of this function, generou
 FOURTH = 0.5  # the same of the vertex's place
 CUBIC = 1e-5  # the fit is a parabola: its error is the third derivative times the square of the step
 
+FAR, ORIGIN = 512.0, 1e-6
+"""An origin [LU]; absolute: a place that far away has lost nine digits of a small difference of heights."""
+
 
 def falling(values: np.ndarray) -> list[float]:
     return np.sort(values)[::-1].tolist()
@@ -190,3 +193,19 @@ def test_a_smooth_crossing_is_exact_on_a_cubic_and_straight_at_both_ends() -> No
 )
 def test_tops_are_where_a_fall_begins_that_is_no_noise(tension: list[float], fall: float, found: list[int]) -> None:
     assert tops(tension, fall) == found
+
+
+@pytest.mark.parametrize("jumps", [False, True])
+def test_marks_do_not_depend_on_the_origin(jumps: bool) -> None:
+    random = np.random.default_rng(8)
+    d = np.cumsum(random.integers(1, 9, size=40))[::-1] / 8.0
+    force = (random.uniform(size=40) - 0.5 if jumps else 0.3 - np.exp(-(((d - d[20] - 0.1) / 5.0) ** 2))).tolist()
+    here, there = (largest_tension(places, force) for places in (d, d + FAR))
+    assert there.position - FAR == pytest.approx(here.position, abs=ORIGIN)
+    for name in ("index", "misplaced", "tension", "uncertainty", "smooth"):
+        assert getattr(there, name) == pytest.approx(getattr(here, name), rel=ORIGIN, abs=ORIGIN)
+    tooth = [here.position + 0.25]
+    exact = promised(d, force, tooth)
+    assert promised(d + FAR, force, [tooth[0] + FAR]) == pytest.approx(exact, rel=ORIGIN, nan_ok=True)
+    assert smooth_crossing(d + FAR, force, 0.0) - FAR == pytest.approx(smooth_crossing(d, force, 0.0), abs=ORIGIN)
+    assert rivals(d + FAR, force, there) == pytest.approx(rivals(d, force, here), abs=ORIGIN)

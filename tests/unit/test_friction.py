@@ -75,6 +75,9 @@ def test_a_slip_is_a_jump_and_smooth_sliding_none() -> None:
     wavy = time - 0.12 * np.sin(2.0 * np.pi * time)  # η = 0.75: four times as fast at its fastest
     assert slips(time, wavy, 1.0, 1.0) == []
     assert [slip.size for slip in slips(time, -steps, 1.0, -1.0)] == pytest.approx([-1.0] * 4)
+    assert [slip.size for slip in slips(time, steps / 128.0, 1.0 / 128.0, 1.0 / 128.0)] == [
+        s.size / 128.0 for s in found
+    ]
 
 
 def test_the_largest_friction_is_looked_for_before_the_plate_has_slid() -> None:

@@ -61,11 +61,6 @@ def test_surface_energy_is_half_the_work_of_adhesion() -> None:
     assert by_energy.work_of_adhesion == pytest.approx(by_work.work_of_adhesion, rel=ROUND_OFF) == 0.1
 
 
-def test_body_on_a_rigid_one_has_its_own_modulus() -> None:
-    contact = read_contact(LOADED | {"lower": "rigid"})
-    assert contact.contact_modulus == pytest.approx(210e9 / (1.0 - 0.3**2), rel=ROUND_OFF)
-
-
 def test_range_that_nobody_gave_is_the_usual_one() -> None:
     known = {"radius": "1 um", "contact_modulus": "1 GPa", "surface_energy": 0.05}
     assert read_contact(known).range == 0.3e-9

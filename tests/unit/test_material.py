@@ -54,14 +54,6 @@ def test_layer_has_the_contact_modulus_with_the_mdr_and_half_of_it_with_geike_an
     assert material.layer_stiffness("geike_popov") == 1.5e9
 
 
-@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
-def test_layer_of_geike_and_popov_is_their_equation_3(nu: float) -> None:
-    """c_n = G/2(1 − ν), two equal spheres."""
-    body = Elastic(youngs_modulus=7.0, poisson_ratio=nu)
-    by_hand = 7.0 / (2.0 * (1.0 + nu)) / (2.0 * (1.0 - nu))
-    assert Material(upper=body, lower=body).layer_stiffness("geike_popov") == pytest.approx(by_hand, rel=ROUND_OFF)
-
-
 # Springs and units.
 
 
@@ -132,14 +124,6 @@ def test_table_1_of_the_paper(radius: float, a_0: float, f_a: float, length: flo
     assert scales.force == pytest.approx(by_hand * 1.0 / gamma, rel=ROUND_OFF)
     assert scales.length == pytest.approx(length, abs=PRINTED["LU"])
     assert scales.force == pytest.approx(force, abs=PRINTED["FU"])
-
-
-def test_units_by_jkr_turn_the_run_into_the_material() -> None:
-    """In SI, the run's F_A and a₀ are 3πγR and (9πγR²/E*)^{1/3} of the sphere of R metres."""
-    scales = jkr_scales(Quantity(1.3, 0.0, "FU"), Quantity(25.0, 0.0, "LU"), 800.0, 5e6, 0.03)
-    radius = 800.0 * scales.length
-    assert 1.3 * scales.force == pytest.approx(3.0 * math.pi * 0.03 * radius, rel=ROUND_OFF)
-    assert 25.0 * scales.length == pytest.approx(math.cbrt(9.0 * math.pi * 0.03 * radius**2 / 5e6), rel=ROUND_OFF)
 
 
 def test_uncertainty_of_the_units_is_that_of_the_run() -> None:

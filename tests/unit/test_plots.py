@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from contact1d import Run
 from contact1d.analysis import figures, plots
 from contact1d.analysis.chart import Axis, Chart
 from contact1d.analysis.curve import Columns
@@ -118,20 +119,24 @@ def test_the_branches_are_drawn_as_measured(curve: Columns) -> None:
     assert "(FU)" in axis.get_ylabel()
 
 
-def test_jkr_over_displacement_obeys_its_own_equations(tmp_path: Path) -> None:
-    """Two spheres of R: effective radius R/2, radii a/2, E* and W from F_A and a₀ (Johnson, Kendall, Roberts 1971)."""
+@pytest.fixture(scope="module")
+def pulled(tmp_path_factory: pytest.TempPathFactory) -> Run:
     pull = {"kind": "pull_off", "preload": 0.2}
     tables = chains(50.0, bodies={"particles": 40}, accuracy={"tolerance": 1e-2}, experiment=pull)
-    done = run(scene_from_dict(tables), tmp_path / "run", figures=False)
-    tension, effective = done.results.adhesion_force.value, 25.0
-    radius = done.results.zero_load_radius.value / 2.0
+    return run(scene_from_dict(tables), tmp_path_factory.mktemp("pulled"), figures=False)
+
+
+def test_jkr_over_displacement_obeys_its_own_equations(pulled: Run) -> None:
+    """Two spheres of R: effective radius R/2, radii a/2, E* and W from F_A and a₀ (Johnson, Kendall, Roberts 1971)."""
+    tension, effective = pulled.results.adhesion_force.value, 25.0
+    radius = pulled.results.zero_load_radius.value / 2.0
     work = tension / (1.5 * math.pi * effective)
     modulus = 4.5 * math.pi * work * effective**2 / radius**3
     a = np.linspace(0.05, 1.3, 400) * radius
     displacement = a**2 / effective - np.sqrt(2.0 * math.pi * a * work / modulus)
     force = 4.0 * modulus * a**3 / (3.0 * effective) - np.sqrt(8.0 * math.pi * modulus * work * a**3)
-    drawn = lines(done.plot("force_displacement").axes[0])["JKR, same $F_A$ and $a_0$"]
-    shown = (displacement >= done.curve.displacement.min()) & (drawn[:, 1].max() * (1.0 + ROUND_OFF) >= force)
+    drawn = lines(pulled.plot("force_displacement").axes[0])["JKR, same $F_A$ and $a_0$"]
+    shown = (displacement >= pulled.curve.displacement.min()) & (drawn[:, 1].max() * (1.0 + ROUND_OFF) >= force)
     np.testing.assert_allclose(drawn, np.column_stack([displacement, force])[shown], atol=ROUND_OFF)
     assert force.min() == pytest.approx(-tension, abs=GRID * tension)
 
@@ -153,17 +158,14 @@ def test_hertz_is_the_integral_of_the_springs_under_the_parabola(reduction: str,
     np.testing.assert_array_equal(again, force)
 
 
-def test_force_over_radius_is_normalised_and_leaves_out_what_has_no_radius(tmp_path: Path) -> None:
-    pull = {"kind": "pull_off", "preload": 0.2}
-    tables = chains(50.0, bodies={"particles": 40}, accuracy={"tolerance": 1e-2}, experiment=pull)
-    done = run(scene_from_dict(tables), tmp_path / "run", figures=False)
-    adhesion, zero_load = done.results.adhesion_force.value, done.results.zero_load_radius.value
-    found = lines(done.plot("force_radius").axes[0])
+def test_force_over_radius_is_normalised_and_leaves_out_what_has_no_radius(pulled: Run) -> None:
+    adhesion, zero_load = pulled.results.adhesion_force.value, pulled.results.zero_load_radius.value
+    found = lines(pulled.plot("force_radius").axes[0])
     points = found["unloading"][np.isfinite(found["unloading"][:, 0])]
-    rows = (done.curve.branch == "unloading") & (done.curve.contact_radius > 0.0)
-    rows = np.flatnonzero(rows)[np.argsort(done.curve.contact_radius[rows])]
-    np.testing.assert_allclose(points[:, 0] * zero_load, done.curve.contact_radius[rows], rtol=ROUND_OFF)
-    np.testing.assert_allclose(points[:, 1] * adhesion, done.curve.force[rows], rtol=ROUND_OFF)
+    rows = (pulled.curve.branch == "unloading") & (pulled.curve.contact_radius > 0.0)
+    rows = np.flatnonzero(rows)[np.argsort(pulled.curve.contact_radius[rows])]
+    np.testing.assert_allclose(points[:, 0] * zero_load, pulled.curve.contact_radius[rows], rtol=ROUND_OFF)
+    np.testing.assert_allclose(points[:, 1] * adhesion, pulled.curve.force[rows], rtol=ROUND_OFF)
     assert set(found) == {"loading", "unloading", "JKR"}  # a theory of two dimensions has no place beside a body
     jkr = found["JKR"]
     np.testing.assert_allclose(jkr[:, 1], 4.0 * jkr[:, 0] ** 3 - 4.0 * jkr[:, 0] ** 1.5, atol=ROUND_OFF)
@@ -194,12 +196,9 @@ def test_a_hold_is_drawn_over_time(kind: str, tmp_path: Path) -> None:
     assert f'"title": "{kind.capitalize()} over time"' in page
 
 
-def test_the_pull_off_force_is_drawn_across_with_its_uncertainty(tmp_path: Path) -> None:
-    pull = {"kind": "pull_off", "preload": 0.2}
-    tables = chains(50.0, bodies={"particles": 40}, accuracy={"tolerance": 1e-2}, experiment=pull)
-    done = run(scene_from_dict(tables), tmp_path / "run", figures=False)
-    tension = done.results.adhesion_force
-    (axis,) = done.plot("force_displacement").axes
+def test_the_pull_off_force_is_drawn_across_with_its_uncertainty(pulled: Run) -> None:
+    tension = pulled.results.adhesion_force
+    (axis,) = pulled.plot("force_displacement").axes
     (across,) = (points for name, points in lines(axis).items() if name.startswith("$F_A$"))
     np.testing.assert_array_equal(across, [[axis.get_xlim()[i], -tension.value] for i in (0, 1)])
     (band,) = axis.patches

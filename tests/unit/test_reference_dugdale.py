@@ -14,8 +14,8 @@ import pytest
 from scipy.integrate import quad, simpson
 from scipy.special import ellipkm1
 
-from validation.references.axisymmetric import Body, Contact
-from validation.references.dugdale import Cohesive, State
+from validation.references.axisymmetric import Body
+from validation.references.dugdale import Cohesive
 from validation.references.dugdale_elements import Elements, pressed_down
 from validation.references.interaction import Floats
 from validation.references.maugis import LAMBDA_OVER_TABOR, Reduced, of_tabor
@@ -88,12 +88,6 @@ def test_a_wide_zone_is_dmt_s_and_a_narrow_one_jkr_s() -> None:
     assert -soft.snap_out.load == pytest.approx(5.0 / 6.0, rel=1e-8)
 
 
-def test_the_energy_is_jkr_s_where_the_zone_is_narrow() -> None:
-    one = paraboloid(1000.0)
-    last = one.snap_out
-    assert one.energy(last) == pytest.approx(Contact(PARABOLA, 1.0, 1.0).energy(last.a), rel=3e-3)
-
-
 @pytest.mark.parametrize("parameter", [10.0, 30.0, 100.0])
 def test_the_pull_off_force_comes_near_jkr_s_as_the_square(parameter: float) -> None:
     """0.10920 is the limit; the next order is about −0.1/λ of it at λ = 10."""
@@ -119,28 +113,7 @@ def test_a_paraboloid_by_quadrature_is_maugis_s(mu: float) -> None:
     assert (body.fold is not None) == exact.reduced.has_fold == (mu > 0.84)
 
 
-@pytest.mark.parametrize("body", [PARABOLA, CONE, QUARTIC, WORN, TIP])
-@pytest.mark.parametrize("mu", [0.1, 1.0, 10.0])
-def test_slopes_are_those_of_the_states(body: Body, mu: float) -> None:
-    one = tip_of(body, mu)
-    for a in (0.3, 0.7, 1.4):
-        h = 1e-4 * a
-        near, far = ([one.state(a + sign * k * h) for sign in (1, -1)] for k in (1, 2))
-
-        def rate(
-            value: Callable[[State], float], near: list[State] = near, far: list[State] = far, h: float = h
-        ) -> float:
-            first, second = (value(pair[0]) - value(pair[1]) for pair in (near, far))
-            return (8.0 * first - second) / (12.0 * h)
-
-        dd, df = one.slopes(a)
-        scale = max(abs(one.state(a).displacement), one.reach) / a
-        assert dd == pytest.approx(rate(lambda s: s.displacement), rel=1e-7, abs=1e-7 * scale)
-        assert df == pytest.approx(rate(lambda s: s.force), rel=1e-7, abs=1e-7 * abs(one.state(a).force) / a)
-
-
-@pytest.mark.parametrize("body", [PARABOLA, CONE, QUARTIC])
-@pytest.mark.parametrize("mu", [0.1, 5.0])
+@pytest.mark.parametrize(("body", "mu"), [(PARABOLA, 0.1), (QUARTIC, 5.0)])
 def test_the_surface_under_the_pressure_has_no_gap_in_contact_and_the_range_at_c(body: Body, mu: float) -> None:
     """u(r) = (4/πE*) ∫ p s K(k)/(r + s) ds, 1 − k² = ((r − s)/(r + s))²: no transform at all."""
     one, a = tip_of(body, mu), 0.8
@@ -166,8 +139,7 @@ def test_the_surface_under_the_pressure_has_no_gap_in_contact_and_the_range_at_c
 
 
 @pytest.mark.parametrize("name", BODIES)
-@pytest.mark.parametrize("mu", [0.1, 1.0, 5.0])
-@pytest.mark.parametrize("a", [0.5, 1.7])
+@pytest.mark.parametrize(("mu", "a"), [(0.1, 1.7), (5.0, 0.5)])
 def test_boundary_elements_come_near_as_the_third_power(name: str, mu: float, a: float) -> None:
     body, height = BODIES[name]
     exact = tip_of(body, mu).state(a)

@@ -10,7 +10,7 @@ from validation.references.energy import EnergySurface
 from validation.references.interaction import Exponential, PairInteraction
 from validation.references.model import ChainModel
 from validation.references.newton import Descent, is_stable, minimise
-from validation.references.solver import State, trace
+from validation.references.solver import trace
 
 SOLVER = 1e-9
 """Forces: the descent stops at 1e-10 k a per particle, then polishes; brentq stops at 1e-14 LU."""
@@ -59,12 +59,6 @@ def test_force_is_the_slope_of_the_energy_along_the_path() -> None:
     assert slope == pytest.approx(here.force, abs=1e-6)  # central difference: step^2 F''/6 with F'' ~ 30 FU/LU^2
 
 
-def test_profile_as_heights_is_the_same_as_radius() -> None:
-    by_radius = ChainModel(40, 0.83, PAPERLIKE, radius=300.0)
-    by_heights = ChainModel(40, 0.83, PAPERLIKE, heights=by_radius.places() ** 2 / 600.0)
-    assert trace(by_radius, [0.1])[0].force == trace(by_heights, [0.1])[0].force
-
-
 def _fold_gaps(k: float) -> tuple[float, float]:
     """Return the undeformed gaps of jump-out and jump-in of one pair: f'(r) = k/2."""
 
@@ -91,12 +85,6 @@ def test_a_pair_snaps_at_its_folds_and_not_before() -> None:
     assert states[40].smallest_distance < steepest
     assert states[42].smallest_distance < steepest
     assert states[43].smallest_distance > steepest
-
-
-def test_path_does_not_depend_on_its_steps_without_folds() -> None:
-    model = ChainModel(60, 0.83, PAPERLIKE, radius=300.0, neighbour_stiffness=0.3)
-    coarse, fine = trace(model, [-1.0, 0.3])[-1], trace(model, np.linspace(-1.0, 0.3, 80))[-1]
-    assert coarse.force == pytest.approx(fine.force, abs=SOLVER)
 
 
 def test_an_aligned_pair_buckles_where_theory_says() -> None:
@@ -140,10 +128,3 @@ def test_a_broken_energy_is_an_error() -> None:
     descent = Descent(step_limit=0.05, gradient_tolerance=1e-10, preferred=np.ones(1))
     with pytest.raises(RuntimeError, match="downhill"):
         minimise(lambda u: (float("nan"), np.ones(1)), lambda u: np.ones((1, 1)), np.zeros(1), descent)
-
-
-def test_states_are_frozen() -> None:
-    state = trace(ChainModel(1, 1.0, PAPERLIKE, heights=np.zeros(1)), [0.0])[0]
-    assert isinstance(state, State)
-    with pytest.raises(AttributeError):
-        state.force = 1.0

@@ -17,7 +17,7 @@ from validation.references.mindlin import (
     mindlin_stick_radius,
     raised_load_force,
 )
-from validation.references.spring_sliders import SpringSliders, displacement_under
+from validation.references.spring_sliders import SpringSliders
 
 N, MU, SLIDING = 40.0, 0.3, 0.36
 QUADRATURE = 1e-10
@@ -91,21 +91,6 @@ def springs(count: int = 2000, radius: float = 1000.0, normal: float = 1.0, tang
     return SpringSliders((x**2 / radius).tolist(), normal * spacing, tangential * spacing, MU)
 
 
-def test_many_springs_are_mindlin_with_reversals() -> None:
-    """E* = 1, G* = 0.8, R = 1000, d = 0.9: N = (4/3) √R d^{3/2}."""
-    chain = springs()
-    places = [0.1, 0.25, -0.1, -0.2, 0.05, 0.3]
-    chain.move(0.9, 0.0)
-    load = 4.0 / 3.0 * math.sqrt(1000.0) * 0.9**1.5
-    assert chain.normal_force == pytest.approx(load, rel=EDGES)
-    found = []
-    for place in places:
-        chain.move(0.9, place)
-        found.append(chain.tangential_force)
-    expected = mindlin_path(places, load, MU, sliding_displacement(MU, 0.8, 0.9))
-    assert found == pytest.approx(expected, abs=20.0 * EDGES * MU * load)
-
-
 def test_many_springs_are_mindlin_and_deresiewicz_under_a_raised_load() -> None:
     loads, depths = [], (0.6, 0.9)
     slidings = tuple(sliding_displacement(MU, 0.8, depth) for depth in depths)
@@ -118,34 +103,3 @@ def test_many_springs_are_mindlin_and_deresiewicz_under_a_raised_load() -> None:
             chain.move(*stop)
         expected = raised_load_force(place, turn, (loads[0], loads[1]), (slidings[0], slidings[1]), MU)
         assert chain.tangential_force == pytest.approx(expected, abs=20.0 * EDGES * MU * loads[1])
-
-
-def test_an_oblique_way_within_the_cone_of_friction_never_slips() -> None:
-    """F_x/F_N = k_t u/k_n d throughout (Mindlin and Deresiewicz)."""
-    chain = springs(200)
-    chain.move(0.9, 0.3)
-    assert chain.tangential_force == pytest.approx(0.8 * 0.3 / 0.9 * chain.normal_force, rel=1e-13)
-    assert chain.dissipated == pytest.approx(0.0, abs=1e-13 * chain.work)
-    steeper = springs(200)
-    steeper.move(0.9, 0.36)
-    assert steeper.tangential_force == pytest.approx(MU * steeper.normal_force, rel=1e-13)
-
-
-def test_what_is_dissipated_in_a_cycle_is_the_area_of_its_loop() -> None:
-    chain, turn = springs(), 0.2
-    for stop in (0.0, turn, -turn, turn):
-        chain.move(0.9, stop)
-    before = chain.dissipated
-    for stop in (-turn, turn):
-        chain.move(0.9, stop)
-    load = 4.0 / 3.0 * math.sqrt(1000.0) * 0.9**1.5
-    area = mindlin_loop_area(turn, load, MU, sliding_displacement(MU, 0.8, 0.9))
-    assert chain.dissipated - before == pytest.approx(area, rel=1e-4)
-
-
-def test_a_force_of_a_chain_is_carried_where_it_says() -> None:
-    chain = springs(50)
-    for force in (1e-6, 0.3, 20.0):
-        d = displacement_under(force, chain.heights, chain.normal)
-        chain.move(d, 0.0)
-        assert chain.normal_force == pytest.approx(force, rel=1e-12)

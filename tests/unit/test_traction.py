@@ -68,8 +68,9 @@ def of_a_table(kind: str, inside: float, adheres: bool, folder: Path) -> tuple[R
 
 @pytest.mark.filterwarnings("ignore:The occurrence of roundoff")  # the quadrature is asked for its last digits
 @pytest.mark.parametrize("adheres", [False, True])
-@pytest.mark.parametrize("inside", [FEW, MANY])
-@pytest.mark.parametrize("kind", ["rounded_punch", "worn_ball", "two_radii", "steps"])
+@pytest.mark.parametrize(
+    ("kind", "inside"), [("rounded_punch", FEW), ("worn_ball", MANY), ("two_radii", FEW), ("steps", MANY)]
+)
 def test_a_pressure_of_a_table_is_within_its_uncertainty_or_null(
     kind: str, inside: float, adheres: bool, tmp_path: Path
 ) -> None:

@@ -20,29 +20,33 @@ from validation.page import speed_table, summary, tables_page
 from validation.paper import STUDIES as PAPER
 from validation.row import Row, at_most
 from validation.speed import STUDIES as SPEED
-from validation.study import Bench, Findings, Study, answered, conduct, read_record
+from validation.study import Bench, Findings, Record, Study, answered, conduct, read_record
 
 
 def broken(bench: Bench) -> Findings:
     raise RuntimeError("a study that does not end")
 
 
-def test_a_study_runs_its_scenes_once_and_a_refusal_is_a_row_that_fails(tmp_path: Path) -> None:
-    record = conduct([PUNCH], tmp_path, workers=1)
+@pytest.fixture(scope="module")
+def conducted(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Record]:
+    folder = tmp_path_factory.mktemp("study")
+    return folder, conduct([PUNCH], folder, workers=1)
+
+
+def test_a_study_runs_its_scenes_once_and_a_refusal_is_a_row_that_fails(conducted: tuple[Path, Record]) -> None:
+    folder, record = conducted
     assert [(row.name, row.verdict) for row in record.rows] == [("force", "PASS"), ("refused", "FAIL")]
     assert record.rows[1].bound.source.startswith("refused before anything ran: ")
-    assert (tmp_path / "small.png").stat().st_size > 1000
-    results = tmp_path / "runs" / "small" / "punch" / "results.json"
+    assert (folder / "small.png").stat().st_size > 1000
+    results = folder / "runs" / "small" / "punch" / "results.json"
     made = results.stat().st_mtime_ns
-    again = conduct([PUNCH], tmp_path, workers=1)
+    again = conduct([PUNCH], folder, workers=1)
     assert results.stat().st_mtime_ns == made
-    assert [row.as_data() for row in read_record(tmp_path / "record.json").rows] == [
-        row.as_data() for row in again.rows
-    ]
+    assert [row.as_data() for row in read_record(folder / "record.json").rows] == [row.as_data() for row in again.rows]
 
 
-def test_a_record_says_at_which_commit_it_was_measured_and_its_age_is_printed(tmp_path: Path) -> None:
-    (answer,) = conduct([PUNCH], tmp_path, workers=1).answers
+def test_a_record_says_at_which_commit_it_was_measured_and_its_age_is_printed(conducted: tuple[Path, Record]) -> None:
+    (answer,) = conducted[1].answers
     assert Measured(answer.date, answer.commit) == today()
     assert all(answer.commit for answer in read_record(RESULTS / "paper.json").answers)
     done = CliRunner().invoke(app, ["ages"])

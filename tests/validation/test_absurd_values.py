@@ -67,10 +67,9 @@ def test_a_range_that_is_just_long_enough_is_jkrs(tmp_path: Path) -> None:
 def test_a_long_time_of_a_term_is_elastic_and_a_slow_impact_is_hertz_too(tmp_path: Path) -> None:
     """Hertz's largest depth goes with v^(4/5)."""
     elastic = contact1d.run(impact()).results
-    for share, time in ((0.3, "1e15 s"), (1.0, "1e25 s")):
-        relaxing = contact1d.run(impact(terms=[{"share": share, "time": time}])).results
-        assert relaxing.peak_force.value == pytest.approx(elastic.peak_force.value, rel=1e-3)
-        assert relaxing.restitution.value == pytest.approx(1.0, rel=1e-5)
+    relaxing = contact1d.run(impact(terms=[{"share": 1.0, "time": "1e25 s"}])).results
+    assert relaxing.peak_force.value == pytest.approx(elastic.peak_force.value, rel=1e-3)
+    assert relaxing.restitution.value == pytest.approx(1.0, rel=1e-5)
     slow = contact1d.run(impact("2e-13 m/s")).results
     assert slow.peak_displacement.value == pytest.approx(1e-12**0.8 * elastic.peak_displacement.value, rel=1e-3)
 

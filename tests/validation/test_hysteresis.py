@@ -34,7 +34,7 @@ COINCIDE = 1e-5
 DIFFER = 0.5
 """The same for springs of a quarter of the critical stiffness; measured 0.97."""
 AREA = 0.01
-"""Relative, of the energy lost in a round; measured 1e-3: some sixty particles jump, each up to an increment late."""
+"""Relative, of the energy lost in a round; measured 2e-3: some thirty particles jump, each up to an increment late."""
 NOTHING = 1e-3
 """Claimed for an area that is none, over the work of the way there: residual forces and what the table leaves."""
 A, RANGE_A, B, RANGE_B = 0.0024, 0.015, 0.0012, 0.03
@@ -93,7 +93,7 @@ def round_trip(
     """Loading and unloading states of a path there and back, both by rising displacement, and what it dissipates."""
     displacements = {"from": lowest, "to": 0.1, "steps": steps, "return": True}
     path = {"kind": "path", "method": "quasistatic", "displacements": displacements}
-    outcome = run_tables(chains(2000.0, stiffness, (A, RANGE_A, B, RANGE_B), experiment=path)).outcome
+    outcome = run_tables(chains(500.0, stiffness, (A, RANGE_A, B, RANGE_B), experiment=path)).outcome
     states = outcome.states
     loading = [state for state in states if state.phase == "loading"]
     unloading = [state for state in states if state.phase == "unloading"]
@@ -101,7 +101,7 @@ def round_trip(
 
 
 def test_stiff_springs_have_one_curve(run_tables: RunTables) -> None:
-    loading, unloading, energy = round_trip(run_tables, 1.2 * CRITICAL_STIFFNESS, -0.15, 80)
+    loading, unloading, energy = round_trip(run_tables, 1.2 * CRITICAL_STIFFNESS, -0.15, 20)
     there, back = (np.array([state.force for state in branch]) for branch in (loading, unloading))
     assert [s.displacement for s in loading] == pytest.approx([s.displacement for s in unloading], abs=1e-12)
     assert np.abs(there - back).max() < COINCIDE * -back.min()
@@ -121,7 +121,7 @@ def test_soft_springs_have_two(run_tables: RunTables) -> None:
     assert (there - back).max() > DIFFER * -back.min()
     x = loading[-1].profile.x
     rest = float(np.log(A * RANGE_B / (B * RANGE_A)) / (1.0 / RANGE_A - 1.0 / RANGE_B))
-    snapped = np.count_nonzero(rest + x**2 / 4000.0 - d[-1] < pair.on)
+    snapped = np.count_nonzero(rest + x**2 / 1000.0 - d[-1] < pair.on)
     assert np.trapezoid(there - back, d) == pytest.approx(snapped * pair.area, rel=AREA)
     assert energy.unit == "FU·LU"
     assert energy.value == pytest.approx(snapped * pair.area, rel=AREA)

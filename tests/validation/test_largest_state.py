@@ -49,7 +49,6 @@ def path(displacement: float) -> tuple[Run, float]:
     ("made", "size", "broken"),
     [
         (impact, 0.01, {"yield"}),
-        (impact, 200.0, {"yield", "slope"}),
         (impact, 3000.0, {"yield", "slope", "body_size"}),
         (history, 0.1e-9, set()),
         (history, 60e-6, {"yield", "slope"}),

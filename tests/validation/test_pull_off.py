@@ -88,13 +88,11 @@ RANGES = (
 """Repulsion, attraction, radius and preload: the longer the range, the smaller the radius, and contacts stay alike."""
 CASES = [
     Case(*RANGES[0]),
-    Case(*RANGES[2]),
     Case(*RANGES[4]),
     Case(*RANGES[0], 0.3, True),
     Case(*RANGES[1], 0.3, False),
     Case(*RANGES[2], 0.0, True, 1.2),
     Case(*RANGES[3], 0.3, True),
-    Case(*RANGES[4], 0.3, True, 0.5),
 ]
 """Each effect alone and with the others, at the shortest ranges and at the longest."""
 

@@ -21,14 +21,13 @@ import pytest
 
 from contact1d import Run
 from contact1d.analysis.theory.mindlin import mindlin_path, mindlin_stick_path, sliding_displacement
-from validation.paper.tangential import stiffness_ratio
-from validation.references.mindlin import mindlin_force, mindlin_loop_area, mindlin_stick_radius, raised_load_force
+from validation.references.mindlin import mindlin_loop_area, mindlin_stick_radius
 from validation.references.spring_sliders import SpringSliders, displacement_under
 
 RunTables = Callable[[dict[str, Any]], Run]
 
 EXACT = 1e-10
-"""Of μN; asked for 1e-4. Measured 3e-14 after a loop, 2e-12 after 200: a history is a sum over rows."""
+"""Of μN; asked for 1e-4. Measured 3e-14 after a loop, 5e-13 after fifty: a history is a sum over rows."""
 AREA = 1e-10
 """Relative, of the dissipated energy: the same."""
 CLOSED_FORM = 1e-2
@@ -105,23 +104,6 @@ def test_every_row_is_the_sum_over_springs_with_sliders(run_tables: RunTables, c
     assert run.friction["normal_force"] == pytest.approx([40.0] * len(LOOPS), rel=EXACT)
 
 
-@pytest.mark.parametrize("case", ["equal", "unequal"])
-def test_the_materials_give_the_tangential_stiffness(run_tables: RunTables, case: str) -> None:
-    bodies, material = MATERIALS[case]
-    assert material is not None
-    run = run_tables(tables([0.0, 0.1], bodies) | {"material": material})
-    pair = material["upper"], material["lower"]
-    ratio = stiffness_ratio(
-        (pair[0]["youngs_modulus"], pair[1]["youngs_modulus"]), (pair[0]["poisson_ratio"], pair[1]["poisson_ratio"])
-    )
-    assert run.scene.tangential_stiffness / run.scene.bulk_stiffness == pytest.approx(ratio, rel=1e-14)
-    # F_x = k_t u of every touching particle, as long as none slips: so small a way moves the outermost one only.
-    small = run_tables(tables([1e-9], bodies) | {"material": material}).model
-    touching = int((small.profiles["final"].pressure > 0.0).sum())
-    stiffness = small.results["tangential_force"].value / 1e-9
-    assert stiffness == pytest.approx(touching * ratio * small.scene.bulk_stiffness, rel=1e-3)
-
-
 def at_spacing(spacing: float) -> dict[str, Any]:
     return {"spacing": spacing, "bulk_stiffness": spacing, "bulk_stiffness_tangential": 0.8 * spacing}
 
@@ -151,12 +133,12 @@ def test_convergence_towards_mindlin_is_of_second_order(run_tables: RunTables) -
 
 
 def test_what_a_run_claims_covers_cattaneo_and_mindlin_wherever_the_edges_lie(run_tables: RunTables) -> None:
-    """Forty contacts and ways by chance: loads over two decades, 5 to 100 particles, turns, partial slip and sliding.
+    """Contacts and ways by chance: loads over two decades, 5 to 100 particles, turns, partial slip and sliding.
 
     Measured for 200: errors of up to 0.8 of the claim, on average 0.4.
     """
     rng = np.random.default_rng(20261122)
-    for _ in range(40):
+    for _ in range(15):
         load, coefficient, ratio = 10.0 ** rng.uniform(0.0, 2.3), rng.uniform(0.1, 0.8), rng.uniform(0.5, 1.3)
         depth = (load * 3.0 / (4.0 * math.sqrt(RADIUS))) ** (2.0 / 3.0)
         edge, sliding = math.sqrt(RADIUS * depth), sliding_displacement(coefficient, ratio, depth)
@@ -172,11 +154,11 @@ def test_what_a_run_claims_covers_cattaneo_and_mindlin_wherever_the_edges_lie(ru
             assert abs(results[name].value - value) <= results[name].uncertainty + EXACT * abs(value)
 
 
-def test_two_hundred_cycles_do_not_drift(run_tables: RunTables) -> None:
+def test_cycles_do_not_drift(run_tables: RunTables) -> None:
     turn = 0.7 * SLIDING
-    run = run_tables(tables([turn, *[0.0, -turn, 0.0, turn] * 200]))
+    run = run_tables(tables([turn, *[0.0, -turn, 0.0, turn] * 50]))
     force, energy = run.friction["tangential_force"][1:], run.friction["dissipated_energy"]
-    cycles = force.reshape(200, 4)
+    cycles = force.reshape(50, 4)
     assert cycles[-1] == pytest.approx(cycles[0], abs=EXACT * MU * 40.0)
     areas = np.diff(energy[::4])
     assert areas[-1] == pytest.approx(areas[0], rel=AREA)
@@ -184,31 +166,6 @@ def test_two_hundred_cycles_do_not_drift(run_tables: RunTables) -> None:
     forces, dissipated = exact(run)
     assert force == pytest.approx(forces[1:], abs=EXACT * MU * 40.0)
     assert energy[-1] == pytest.approx(dissipated[-1], rel=AREA)
-
-
-def test_a_load_that_is_raised_while_some_slips_is_mindlin_and_deresiewicz(run_tables: RunTables) -> None:
-    """At u_1 from N = 25 to 40, then on along x: F = T_1(u_1) + T_2(u − u_1), and later T_2(u)."""
-    loads = (25.0, 40.0)
-    depths = [(load * 3.0 / (4.0 * math.sqrt(RADIUS))) ** (2.0 / 3.0) for load in loads]
-    slidings = tuple(sliding_displacement(MU, 0.8, depth) for depth in depths)
-    turn, beyond = 0.6 * slidings[0], (slidings[1] - slidings[0]) * np.array([0.0, 0.3, 0.7, 1.0, 1.5])
-    places = [0.5 * turn, turn, *(turn + beyond).tolist()]
-    run = run_tables(tables(places, at_spacing(0.5), normal_force=[25.0, 25.0, *[40.0] * 5]))
-    expected = [raised_load_force(place, turn, (25.0, 40.0), (slidings[0], slidings[1]), MU) for place in places[2:]]
-    forces, dissipated = exact(run)
-    assert run.friction["tangential_force"] == pytest.approx(forces, abs=EXACT * MU * 40.0)
-    assert run.friction["dissipated_energy"] == pytest.approx(dissipated, abs=AREA * dissipated[-1])
-    assert run.friction["tangential_force"][2:] == pytest.approx(expected, abs=CLOSED_FORM * 0.1 * MU * 40.0)
-
-
-def test_a_load_that_is_lowered_leaves_what_the_smaller_one_would_have_made(run_tables: RunTables) -> None:
-    """Each particle keeps min(k_t u, μf): F_x = T_2(u)."""
-    depth = (15.0 * 3.0 / (4.0 * math.sqrt(RADIUS))) ** (2.0 / 3.0)
-    place = 0.5 * SLIDING
-    run = run_tables(tables([place, place], at_spacing(0.5), normal_force=[40.0, 15.0]))
-    expected = float(mindlin_force(place, 15.0, MU, sliding_displacement(MU, 0.8, depth)))
-    assert run.results["tangential_force"].value == pytest.approx(expected, abs=CLOSED_FORM * 0.1 * MU * 40.0)
-    assert run.results["tangential_force"].value == pytest.approx(exact(run)[0][-1], abs=EXACT * MU * 40.0)
 
 
 def test_a_load_that_varies_with_the_way_is_exact_with_what_it_dissipates(run_tables: RunTables) -> None:

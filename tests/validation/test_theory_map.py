@@ -57,16 +57,6 @@ def test_zones(tabor: float, load: float, theory: Theory) -> None:
     assert any(character.isdigit() for character in verdict.reason)
 
 
-def test_more_load_ends_in_hertz_and_more_softness_in_jkr() -> None:
-    for tabor in (0.01, 0.05, 0.5, 3.0, 30.0):
-        zones = [valid_theory(tabor, 10.0**power).theory for power in (-1.0, 0.0, 1.0, 2.0, 3.0, 4.0)]
-        assert zones[-1] is Theory.HERTZ
-        first = zones.index(Theory.HERTZ)
-        assert all(zone is Theory.HERTZ for zone in zones[first:])
-    order = [valid_theory(tabor, 0.0).theory for tabor in (0.01, 0.05, 0.5, 50.0)]
-    assert order == [Theory.RIGID, Theory.DMT, Theory.MAUGIS, Theory.JKR]
-
-
 def test_tabor_number_is_a_stretch_over_the_range() -> None:
     mu = MaugisDugdale(RADIUS, MODULUS, ADHESION, RANGE).tabor
     assert mu == pytest.approx((RADIUS * ADHESION**2 / (MODULUS**2 * RANGE**3)) ** (1.0 / 3.0), rel=ROUND_OFF)

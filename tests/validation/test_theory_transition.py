@@ -1,7 +1,7 @@
 """Claim: between the stiff sphere of DMT and the soft one of JKR lies Maugis and Dugdale's, with both as its limits.
 
 Limits with their rates; independent numerics: the same cohesive contact with units, built from springs and quadrature
-without Maugis' formulae. DMT's force is Derjaguin's integral of any attraction.
+without Maugis' formulae.
 """
 
 from __future__ import annotations
@@ -149,14 +149,6 @@ def test_lambda_of_tabor() -> None:
     assert contact.transition / contact.tabor == pytest.approx(1.127, abs=5e-4)
     surface = MaugisDugdale(RADIUS, MODULUS, ADHESION, 0.01 / LENNARD_JONES_STRESS)
     assert surface.transition / contact.tabor == pytest.approx(1.157, abs=5e-4)
-
-
-def test_dmt_pull_off_is_derjaguins_integral_of_the_attraction() -> None:
-    """2 pi R int sigma(h) dh over a rigid paraboloid that touches at h = z_0."""
-    z_0 = 0.01
-    whole = quad(lambda h: 8.0 * ADHESION / (3.0 * z_0) * ((z_0 / h) ** 3 - (z_0 / h) ** 9), z_0, math.inf)[0]
-    sphere = Dmt(RADIUS, MODULUS, ADHESION)
-    assert sphere.pull_off_force() == pytest.approx(2.0 * math.pi * RADIUS * whole, rel=QUADRATURE)
 
 
 def test_dmt_is_hertz_pressed_by_its_attraction() -> None:

@@ -14,9 +14,7 @@ from contact1d import Run, SceneError, run
 from contact1d.workflow.scene import scene_from_dict
 
 E, R = 1.0, 1.0
-HERTZ = 4.0 / 3.0 * E * math.sqrt(R)
 SOLID = [{"share": 0.5, "time": 1.0}]
-ARMS = [*SOLID, {"share": 0.2, "time": 9.0}]
 
 
 def scene(experiment: dict[str, Any], spacing: float = 0.02, profile: Any = None, **tables: Any) -> dict[str, Any]:

@@ -369,7 +369,7 @@ def _largest(
     # A jump at the edge is a pole, and where the slope jumps inside p is a logarithm.
     smooth = p[top] > 0.0 and not (shape.has_edge or any(kink < state.radius.value for kink in shape.kinks))
     # A jump that the law tells is one, however small; particles show no better than their errors.
-    pole = 0.0 if state.jump is not None else noise * p[top] * fine.edge
+    pole = 0.0 if state.zone else noise * p[top] * fine.edge
     smooth &= (top == 0 and state.jump is None) or fine.at_edge <= pole
     smooth &= top == 0 or len(levels) == 3
     near = np.linspace(r[max(0, top - 1)], r[min(top + 1, r.size - 1)], BETWEEN)

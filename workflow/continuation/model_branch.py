@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -63,6 +64,7 @@ class ModelBranch:
         self.scene, self.settings, self.model, self.dense, self.shift = scene, settings, model, dense, shift
         self._phase, self._leg = "", -1
         self._rises: bool | None = None
+        self._given = "displacement"
         self._rows: list[Row] = []
         self._beyond = np.empty(0)
         self.marks: dict[int, list[str]] = {}
@@ -132,6 +134,7 @@ class ModelBranch:
         """Displacements or forces over time, and others between them; phases are reported at their ends."""
         history = history.denser(self.dense)
         self._leg += 1
+        self._given = "force" if history.by_force else self._given
         self._add_path(history.phases, history.path(self.model))
         for i, (one, other) in enumerate(pairwise([*history.phases, ""])):
             if one != other and one in history.marks:
@@ -208,6 +211,7 @@ class ModelBranch:
         phases, legs, path = self.phases, self.legs, self.path
         rule = radius_rule(self.scene, self.settings.tolerance)
         found = of_model(phases, legs, path, self.model.follow(path), rule, self.model)
+        found = replace(found, given=self._given)
         return found if whole else found.chosen([i for i, name in enumerate(phases) if name != UNSEEN])
 
     def _turn(self, rises: bool) -> None:

@@ -32,6 +32,8 @@ RATES = 3
 """States on one side of a corner that give the rates there."""
 SAMPLED, DIGITS = 1e-4, 1e-7
 """Errors at least, relative, of the rates that a few states show, and of a time that is found between two."""
+MOST_BEYOND = 2.0
+"""Load steps from the last state that presses to where the body has parted, at most: its particles part before."""
 ROUNDED = 9
 """Decimals of parts of a leg: none is as short as round-off."""
 PHASES = {1.0: "loading", -1.0: "unloading", 0.0: "holding"}
@@ -232,14 +234,39 @@ def lost(trace: Trace, touched: float = 0.0) -> Reading:
     last, place, d = max(1, int(np.flatnonzero(touches(trace))[-1])), trace.model.parted, trace.displacement
     if place is not None:  # the particles next to the axis may be lost before
         last += int(np.argmax(d[last + 1 :] <= place))
-    start, time, end = trace.time[last - 1 : last + 2].tolist()
+    time, end = trace.time[last : last + 2].tolist()
     part, doubt, digits = 0.0, 0.0, 0.0 if place is None else DIGITS
     if place is not None:
         part = float((d[last] - place) / (d[last] - d[last + 1])) if d[last] > d[last + 1] else 0.0
+    elif trace.given == "force":
+        part = 1.0
     elif trace.force[last] < 0.0:
         part = doubt = 0.5
     elif trace.phase[last + 1] == trace.phase[last]:  # else at a corner, where dashpots push no more
-        before, here = (float(np.abs(trace.profile(i).pressure).max()) for i in (last - 1, last))
-        part = here / (before - here) * (time - start) / (end - time) if before > here else 1.0
-    found = time + min(max(part, 0.0), 1.0) * (end - time)
+        ends = [fallen(trace, last, count) for count in (3, 5)]
+        part, other = (min(max((one - time) / (end - time), 0.0), MOST_BEYOND) for one in ends)
+        doubt = abs(part - other)
+    found = time + part * (end - time)
     return Reading(found - touched, TIME, {"sampling": MARGIN * doubt * (end - time) + digits * (found - touched)})
+
+
+def fallen(trace: Trace, last: int, count: int) -> float:
+    """When the pressure on the axis falls to 0 [TU], on a line through the last two states that show it.
+
+    A pressure there is straight over the height between the two particles next to the axis; of so few as `count` on a
+    side the next one counts whole. Where no such states are, the two up to the `last` that touches.
+    """
+    shown = []
+    for i in range(last, -1, -1):
+        profile = trace.profile(i)
+        beside = np.flatnonzero((profile.x >= 0.0) & (profile.pressure != 0.0))
+        if trace.phase[i] == trace.phase[last] and beside.size >= count:
+            near, far = profile.pressure[beside[:2]].tolist()
+            low, high = trace.model.shape.height(profile.x[beside[:2]]).tolist()
+            shown.append((float(trace.time[i]), near + (near - far) * low / (high - low) if high > low else near))
+        if len(shown) == 2:
+            break
+    else:
+        shown = [(float(trace.time[i]), float(trace.profile(i).pressure.max())) for i in (last, last - 1)]
+    (time, here), (start, before) = shown
+    return time + here / (before - here) * (time - start) if before > here else math.inf
