@@ -24,7 +24,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -144,11 +144,17 @@ def _graded(start: Array, end: Array, near: Array) -> Array:
 
 
 def _of_body(body: Body, r: Array, places: Sequence[float], before: float) -> Array:
+    """See `_once`: line loads through every and every second position have the same body."""
+    return _once(body, r.tobytes(), tuple(places), before)
+
+
+@lru_cache(maxsize=64)
+def _once(body: Body, distances: bytes, places: Sequence[float], before: float) -> Array:
     """(1/π) ∫ dh/t at distances r, (n,), below all the places: kinks, and the edge.
 
     h is smooth in t up to √(r² − before²), of the kink before; on the axis the remainder at 0 is that of a power of t.
     """
-    node, _ = gauss(NODES)
+    (node, _), r = gauss(NODES), np.frombuffer(distances)
     ends = np.stack([np.zeros_like(r), *(np.sqrt((place - r) * (place + r)) for place in places)], axis=1)
     width = np.diff(ends, axis=1)
     smooth = 0.5 * np.sqrt((r - before) * (r + before))

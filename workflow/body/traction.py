@@ -150,7 +150,7 @@ def body_pressures(
     return found
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Loaded:
     """The line load of a state, of which p(r) is made; that of the paper's spheres as half as wide.
 

@@ -82,17 +82,18 @@ class Plan:
         """
         states = contact.replay(self.phases, meanwhile=lambda: self.followed)
         followed, bodies, spring = self.followed, contact.scene.bodies, contact.scene.bulk_stiffness
-        lost = np.broadcast_to(followed.round_off, followed.total.shape).tolist()
-        times, zones = self.path.time.tolist(), None
         if followed.zone:
             zones = zip(*(one.tolist() for one in followed.zone), strict=True)
-        found = []
-        for state, more, time in zip(states, lost, times, strict=True):
-            profile = _zoned(bodies, spring, state, *next(zones)) if zones else state.profile
-            one = replace(state, profile=profile, residual=state.residual + more, time=time)
-            require_trust(contact.scene, contact.settings, one)
-            found.append(one)
-        return found
+            lost = np.broadcast_to(followed.round_off, followed.total.shape).tolist()
+            states = [
+                replace(one, profile=_zoned(bodies, spring, one, *zone), residual=one.residual + more)
+                for one, zone, more in zip(states, zones, lost, strict=True)
+            ]
+        if self.path.time.any():
+            states = [replace(one, time=time) for one, time in zip(states, self.path.time.tolist(), strict=True)]
+        for state in states:
+            require_trust(contact.scene, contact.settings, state)
+        return states
 
 
 def _zoned(bodies: Bodies, spring: float, state: State, edge: float, reach: float, *others: float) -> Profile:

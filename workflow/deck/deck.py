@@ -51,7 +51,7 @@ class Deck:
         """Scene and settings in these units."""
         return self.units.scene(self.scene), self.units.settings(self.settings)
 
-    @property
+    @cached_property
     def stepped(self) -> bool:
         """Whether nothing has to come to rest, so that all rows of a phase are steps of one run."""
         return self.scene.is_stepped

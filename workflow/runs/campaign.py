@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import fcntl
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -15,6 +15,7 @@ from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.continuation.trust import UntrustedError
 from contact1d.workflow.deck.deck import Deck
+from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.failure import NO_MEMORY, TOO_LONG, TOO_WIDE
 from contact1d.workflow.engine.progress import Progress, Silent
@@ -83,20 +84,22 @@ def run(
             found = f"bodies.spacing = {scene.bodies.spacing:.4g} LU for a tolerance of {scene.accuracy.tolerance:g}"
             progress.note(scales.in_words(found))
         deck = Deck(scene, settings or settings_for(scene))
-        text = _planned_text(deck)
+        phases = _planned(deck)
+        text = deck.text(phases)
     require_ranks(deck, ranks)
     folder = prepare(Path(folder))
     with alone(folder):
         _write(deck, text, folder)
         context = RunContext(deck, folder, progress, time_limit, retries, workers or cores(), ranks)
-        finished = _run(context, started, figures, refine=settings is None)
+        finished = _run(context, started, figures, phases, refine=settings is None)
         if printed:
             printed(finished)
         _draw(finished, figures)
     return finished
 
 
-def _run(context: RunContext, started: float, figures: bool | str, refine: bool) -> Run:
+def _run(context: RunContext, started: float, figures: bool | str, written: Sequence[Phase], refine: bool) -> Run:
+    """Run the deck of a context, whose in.lammps has a schedule that is `written` already."""
     scene, settings, folder = context.deck.scene, context.deck.settings, context.folder
     scales = scales_of(scene, {})
     if large := in_words(scene, settings.chains.upper, settings.forces.cutoff):
@@ -133,7 +136,8 @@ def _run(context: RunContext, started: float, figures: bool | str, refine: bool)
         write_results(folder, failure(scene, facts, timing(), context.left))
         where = f" [phase {context.phase}, step {context.timestep}]"
         raise RunError(f"{facts['message']}{_hint(str(facts['message']))}{where}", folder) from error
-    write_whole(folder / "in.lammps", last.deck.text(outcome.phases))
+    if outcome.phases != written or last.deck.settings is not settings:
+        write_whole(folder / "in.lammps", last.deck.text(outcome.phases))
     tables = tables_of(scene, reported(scene, outcome), pressures)
     write_tables(folder, scene, outcome, tables)
     document = results(scene, outcome, timing()) | formulas(scene, outcome.quantities)
@@ -191,7 +195,7 @@ def write_deck(scene: AnyScene, folder: AnyPath) -> Path:
     with _in_its_units(asked):
         scene = with_spacing(asked)
         deck = Deck(scene, settings_for(scene))
-        text = _planned_text(deck)
+        text = deck.text(_planned(deck))
     folder = prepare(Path(folder))
     with alone(folder):
         _write(deck, text, folder)
@@ -235,12 +239,12 @@ def alone(folder: Path, busy: str = "another run is active in") -> Iterator[None
             (folder / LOCK).unlink(missing_ok=True)
 
 
-def _planned_text(deck: Deck) -> str:
-    """in.lammps with the planned schedule. Raises SettingsError where its path or one of its rows is too long."""
+def _planned(deck: Deck) -> tuple[Phase, ...]:
+    """The planned schedule. Raises SettingsError where its path or one of its rows is too long."""
     require_way(deck.scene, deck.settings)
     phases = planned(deck.scene, deck.settings)
     require_steps(getattr(row, "steps", 0) for phase in phases for row in phase.rows)
-    return deck.text(phases)
+    return phases
 
 
 def _write(deck: Deck, text: str, folder: Path) -> None:
