@@ -28,14 +28,15 @@ from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import Engine, EngineError, Session
 from contact1d.workflow.engine.worker import load_lammps
-from contact1d.workflow.errors import Contact1dError, FolderError, RunError
+from contact1d.workflow.errors import Contact1dError, FolderError, RunError, SettingsError
 from contact1d.workflow.experiments import kind_of, planned
 from contact1d.workflow.experiments.spacing import with_spacing
 from contact1d.workflow.experiments.thermal import chunk_steps
 from contact1d.workflow.fit.fit import fit
 from contact1d.workflow.fit.many import fit_many
 from contact1d.workflow.identify import Target, estimated, identify, jkr_target, material_scene
-from contact1d.workflow.model.settings import CALIBRATION, Settings, SettingsError, settings_for
+from contact1d.workflow.model.calibration import CALIBRATION
+from contact1d.workflow.model.settings import Settings, settings_for
 from contact1d.workflow.runs import campaign
 from contact1d.workflow.runs.campaign import write_deck
 from contact1d.workflow.runs.finished import Run, load_run, read_run

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from contact1d import Run, RunError
-from contact1d.workflow.model.settings import SettingsError, settings_for
+from contact1d.workflow.errors import SettingsError
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import scene_from_dict
 from validation.references.interaction import Exponential, PairInteraction

@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.model.settings import SettingsError, settings_for
+from contact1d.workflow.errors import SettingsError
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.scene import read_scene, scene_from_dict
 from tests.scenes import chains

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from contact1d.workflow.model.settings import CALIBRATION, FILE, Calibration, calibration_of, settings_for
+from contact1d.workflow.model.calibration import CALIBRATION, FILE, Calibration, calibration_of
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import Scene
 from validation.tools.calibration import (
     LADDERS,

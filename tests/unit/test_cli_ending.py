@@ -20,9 +20,8 @@ from contact1d.workflow.cli import ending
 from contact1d.workflow.cli.app import app
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import EngineError
-from contact1d.workflow.errors import FolderError, RunError
+from contact1d.workflow.errors import FolderError, RunError, SettingsError
 from contact1d.workflow.identify import IdentifyError
-from contact1d.workflow.model.settings import SettingsError
 from contact1d.workflow.scene import Problem, SceneError
 
 CONTACT1D = [sys.executable, "-m", "contact1d.workflow.cli.app"]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from contact1d.potentials import DoubleExponential, Exponential
-from contact1d.workflow.model.settings import largest_holding_force, slide_cutoff
+from contact1d.workflow.model.cutoff import largest_holding_force, slide_cutoff
 
 STEP = 1e-5
 """Over the range, of a difference of energies."""

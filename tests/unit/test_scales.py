@@ -17,9 +17,11 @@ from scipy.optimize import brentq, minimize_scalar
 
 from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.laws.law import NotCarriedError
+from contact1d.workflow.model.calibration import CALIBRATION
 from contact1d.workflow.model.chain import require_apex, require_memory, require_travel
+from contact1d.workflow.model.cutoff import innermost_distance, thermal_motion
 from contact1d.workflow.model.motion import inertia
-from contact1d.workflow.model.settings import CALIBRATION, Settings, innermost_distance, settings_for, thermal_motion
+from contact1d.workflow.model.settings import Settings, settings_for
 from contact1d.workflow.scene import Scene, scene_from_dict
 from tests.scenes import LAW, chains
 

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d.workflow.model.settings import CALIBRATION, Settings, settings_for
+from contact1d.workflow.model.calibration import CALIBRATION
+from contact1d.workflow.model.settings import Settings, settings_for
 from contact1d.workflow.scene import Scene, scene_from_dict
 from tests.scenes import chains
 

@@ -14,9 +14,11 @@ import pytest
 from scipy.optimize import brentq
 
 from contact1d.workflow.errors import SettingsError
+from contact1d.workflow.model.calibration import CALIBRATION
 from contact1d.workflow.model.chain import decay_length
+from contact1d.workflow.model.cutoff import largest_holding_force
 from contact1d.workflow.model.motion import contact_half_width, require_way, too_fast
-from contact1d.workflow.model.settings import CALIBRATION, largest_holding_force, settings_for
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import Scene, scene_from_dict
 from tests.scenes import chains
 

@@ -31,15 +31,8 @@ from typing import Any
 from contact1d.workflow.continuation.outcome import LATTICE, MODEL, Result, unmet
 from contact1d.workflow.engine.progress import choose_progress
 from contact1d.workflow.errors import Contact1dError
-from contact1d.workflow.model.settings import (
-    CALIBRATION,
-    FILE,
-    Calibration,
-    Settings,
-    calibration_of,
-    meanings,
-    settings_for,
-)
+from contact1d.workflow.model.calibration import CALIBRATION, FILE, Calibration, calibration_of, meanings
+from contact1d.workflow.model.settings import Settings, settings_for
 from contact1d.workflow.runs.accuracy import main_results
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.runs.processors import pool

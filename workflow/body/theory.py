@@ -29,7 +29,7 @@ from contact1d.analysis.theory.mindlin import (
     sliding_displacement,
 )
 from contact1d.analysis.theory.relaxing import Indented
-from contact1d.workflow.model.settings import interaction_law
+from contact1d.workflow.model.cutoff import interaction_law
 from contact1d.workflow.scene import History, Scene
 from contact1d.workflow.scene.tables import SPHERES
 from contact1d.workflow.units import UNKNOWN, Quantity, Scales, scale_of

@@ -15,7 +15,6 @@ plane, of a shape g and with a jump J ∝ √a,
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -32,6 +31,7 @@ from contact1d.analysis.radius import ContactRadius, whole_cells
 from contact1d.analysis.shear import kinks_of, shear_load
 from contact1d.workflow.body.reading import stands_for_spheres
 from contact1d.workflow.continuation.state import radius_rule
+from contact1d.workflow.laws import law_of
 from contact1d.workflow.scene import Scene, Shape
 from contact1d.workflow.scene.tables import WIDER_THAN_SPHERES
 from contact1d.workflow.units import LINE_PRESSURE, MEAN_PRESSURE, Quantity
@@ -206,7 +206,7 @@ class _Loaded:
     @cached_property
     def held(self) -> bool:
         """Whether the edge leaves a particle a share of its cell, and only the particles show where it is."""
-        return self.scene.adhesion is not None and self.scene.adheres and self.zone is None
+        return law_of(self.scene).holds and self.scene.adheres and self.zone is None
 
     @cached_property
     def edge(self) -> float | None:
@@ -267,7 +267,7 @@ def _pressure(state: _Loaded, share: float, given: float) -> BodyPressure | None
     levels = [one for stride in (1, 2, 4) if (one := state.through(state.load, own * stride))]
     if not levels:
         return None
-    fine, side, pulled = levels[0], x[x.size // 2 :][::own], _attraction(scene, zone)
+    fine, side, (ring, pulled) = levels[0], x[x.size // 2 :][::own], _drawn(scene, zone)
     inside = side[(side > 0.0) & (side < fine.edge * INSIDE)]
     r = inside if fine.has_apex else np.append(0.0, inside)
     p, *coarser = (one.pressure(r) - pulled(r) for one in levels)
@@ -275,7 +275,7 @@ def _pressure(state: _Loaded, share: float, given: float) -> BodyPressure | None
     at_most = _moves(fine, fine.body or state.heights, r, -1.0 if state.is_elastic else 1.0) if state.is_alone else 0.0
     moves = np.maximum(np.abs(p), at_most)
     if zone:  # the attraction's edge goes with that of the contact
-        moves += np.abs(_attraction(scene, zone, STEP)(r) - pulled(r)) / STEP
+        moves += np.abs(_drawn(scene, zone, STEP)[1](r) - pulled(r)) / STEP
     spread = state.radius.uncertainty / state.radius.value * moves + given * np.abs(p)
     # Of a known shape nothing lies between the particles: where they are too few to show it, its edge alone is open.
     if coarser or state.body is None:
@@ -297,7 +297,6 @@ def _pressure(state: _Loaded, share: float, given: float) -> BodyPressure | None
     pieces = state.shape.slow or not state.is_elastic
     kinks = [*state.shape.kinks, *(np.arange(1, PIECES) * fine.edge / PIECES * pieces)]
     force, size = _total(fine, kinks, pulled)
-    ring = _ring(scene, zone)
     edge, stiffness = state.radius.value / state.wider, _stiffness(state, share)
     doubt = _added_up(state) / ((size - ring) or 1.0)
     return BodyPressure(
@@ -399,24 +398,12 @@ def _total(fine: LineLoad, kinks: Sequence[float], pulled: Callable[[Array], Arr
     return float(each.sum()), float(np.abs(each).sum())
 
 
-def _ring(scene: Scene, zone: ZonedProfile | None) -> float:
-    """The force [FU] of an attraction beyond the edge, −σ₀ π (c² − a²); else 0."""
-    if zone is None or scene.adhesion is None or not scene.adhesion.range:
-        return 0.0
-    return -scene.adhesion.work / scene.adhesion.range * math.pi * (zone.reach - zone.edge) * (zone.reach + zone.edge)
-
-
-def _attraction(scene: Scene, zone: ZonedProfile | None, wider: float = 0.0) -> Callable[[Array], Array]:
-    """(2σ₀/π) arctan √((c² − a²)/(a² − r²)) [FU/LU²] inside a contact whose attraction has a range; else 0.
-
-    `wider`: relative, by how much a is larger, and c with it.
-    """
-    if zone is None or scene.adhesion is None or not scene.adhesion.range:
-        return np.zeros_like
-    stress, more = scene.adhesion.work / scene.adhesion.range, wider * zone.edge
-    edge, reach = zone.edge + more, zone.reach + more
-    ring = math.sqrt((reach - edge) * (reach + edge))
-    return lambda r: 2.0 / np.pi * stress * np.arctan2(ring, np.sqrt((edge - r) * (edge + r)))
+def _drawn(scene: Scene, zone: ZonedProfile | None, wider: float = 0.0) -> tuple[float, Callable[[Array], Array]]:
+    """See `Law.drawn`; `wider`: relative, by how much a is larger, and c with it."""
+    if zone is None:
+        return 0.0, np.zeros_like
+    edge, reach = zone.edge, zone.reach
+    return law_of(scene).drawn(scene, edge + wider * edge, reach + wider * edge)
 
 
 def _moves(load: LineLoad, body: Callable[[Array], Array], r: Array, way: float) -> Array:

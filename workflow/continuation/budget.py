@@ -30,9 +30,10 @@ from contact1d.workflow.continuation.model_branch import MOST_NUMBERS, ModelBran
 from contact1d.workflow.continuation.outcome import LATTICE, Move, Reading, Result, in_squares
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace
+from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.model.reduced import reduced
-from contact1d.workflow.model.settings import Settings, SettingsError, settings_for
+from contact1d.workflow.model.settings import Settings, settings_for
 from contact1d.workflow.scene import Scene, Shape
 
 Array = NDArray[np.float64]

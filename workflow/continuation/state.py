@@ -11,7 +11,7 @@ from typing import ClassVar
 from contact1d.analysis.pressure import Profile, ZonedProfile, end_pressure_share
 from contact1d.analysis.radius import ContactRadius, compressive_radius, held_radius, tensile_radius
 from contact1d.workflow.laws import law_of
-from contact1d.workflow.model.settings import CALIBRATION
+from contact1d.workflow.model.calibration import CALIBRATION
 from contact1d.workflow.scene import Bodies, Scene
 
 OUTSIDE = 1.5

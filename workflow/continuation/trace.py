@@ -130,7 +130,7 @@ class Trace:
 
     def reach(self, state: int) -> float | None:
         """How far an attraction with a range goes, c [LU]; None of others."""
-        if not self.model.law.has_range or not hasattr(self.profile(state), "reach"):
+        if not self.model.law.has_range:
             return None
         return self._there(state, lambda i: float(getattr(self.profile(i), "reach", 0.0)))
 

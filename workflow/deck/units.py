@@ -19,7 +19,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from contact1d.potentials import DoubleExponential, Exponential
 from contact1d.potentials.table import Table as LawTable
 from contact1d.workflow.model.dynamics import Motion
-from contact1d.workflow.model.settings import Chains, Forces, Increments, Settings
+from contact1d.workflow.model.forces import Chains, Forces, Increments
+from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.scene.quantities import places
 from contact1d.workflow.scene.read import plain_data

@@ -15,8 +15,9 @@ import numpy as np
 from contact1d.analysis.pressure import Array
 from contact1d.digits import digits_apart
 from contact1d.workflow.continuation.outcome import LATTICE, LOSSES
+from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.experiments import kind_of
-from contact1d.workflow.model.settings import SettingsError, settings_for
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import Impact, Path, PullOff, Scene
 
 FEWEST, MOST = 30, 5000

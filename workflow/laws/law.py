@@ -75,7 +75,6 @@ class Law(ABC):
         tells_edges: whether each load step on a rigid plane knows where the contact ends.
         holds: whether a contact on a rigid plane adheres.
         has_range: whether that attraction goes beyond the contact.
-        is_linear: whether the load of a particle on a rigid plane is a straight line of its height.
         is_lossless: whether a closed path loses nothing.
         has_zones: whether the contact has edges inside of its own.
         touched: whether a state depends on what has been touched before.
@@ -95,7 +94,6 @@ class Law(ABC):
     tells_edges: ClassVar[bool] = False
     holds: ClassVar[bool] = False
     has_range: ClassVar[bool] = False
-    is_linear: ClassVar[bool] = True
     is_lossless: ClassVar[bool] = True
     has_zones: ClassVar[bool] = False
     touched: ClassVar[bool] = False
@@ -140,6 +138,22 @@ class Law(ABC):
     def columns(self, body: Profile, x: Array) -> Mapping[str, tuple[int, Array]]:
         """What the deck has of each particle of a body at positions x [LU]: by name, as powers of a length."""
         return {}
+
+    def creep(self, time: float) -> float:
+        """Displacement after a time [TU] under a load, over that at once."""
+        return 1.0
+
+    def sticking(self, mass: float, velocity: float, time: float) -> tuple[str, str] | None:
+        """Why a body sticks that hits the plane, and what helps; None of one that comes back.
+
+        `mass` [MU], `velocity` [LU/TU], `time` of the impact of the elastic body [TU].
+        """
+        return None
+
+    @classmethod
+    def drawn(cls, scene: Scene, edge: float, reach: float) -> tuple[float, Callable[[Array], Array]]:
+        """Force [FU] of an attraction beyond the edge of a contact, and the tension inside [FU/LU²] that it brings."""
+        return 0.0, np.zeros_like
 
     @cached_property
     def attracts(self) -> bool:

@@ -8,6 +8,7 @@ before; there are any number of such limit points, or none but that of the attra
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from itertools import pairwise
@@ -68,6 +69,16 @@ class Maugis(Zoned):
     def from_jkr(cls, jkr: Jkr, scene: Scene, wanted: float, load: float) -> Maugis:
         """See `Jkr`."""
         return _with_range(jkr, scene.the(Adhesion).range or 0.0, scene.bodies.profile, wanted, load)
+
+    @classmethod
+    def drawn(cls, scene: Scene, edge: float, reach: float) -> tuple[float, Callable[[Array], Array]]:
+        """−σ₀ π (c² − a²), and (2σ₀/π) arctan √((c² − a²)/(a² − r²))."""
+        adhesion, square = scene.the(Adhesion), (reach - edge) * (reach + edge)
+        stress, root = adhesion.work / (adhesion.range or math.inf), math.sqrt(square)
+        return (
+            -stress * math.pi * square,
+            lambda r: 2.0 / math.pi * stress * np.arctan2(root, np.sqrt((edge - r) * (edge + r))),
+        )
 
     def particles(self, x: Array, deepest: float) -> MaugisCells:
         """See `Law`."""

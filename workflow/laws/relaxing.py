@@ -42,6 +42,10 @@ SHORT = 1e-4
 """Time over that of an arm in which its length is straight: the digits of an exponential are lost."""
 STAGE = 1.0 - 0.5**0.5
 """Part of a step at which the first of its two stages is."""
+LEAST_BACK = 1e-5
+"""Restitution that is followed: with less a body creeps out for so long that it counts as stuck."""
+FLOWS = 1.96
+"""Creep over that of half the time, up to which a body comes back: 2 of a fluid. Measured of a sphere: 1.95 does."""
 SUDDEN, MOMENTS = 1e-6, 200
 """Time over the shortest one of a body in which something happens at once; steps of the creep of one spring."""
 EDGE = 0.02
@@ -235,19 +239,6 @@ class Memory:
         return np.asarray(self._share @ np.where(age < SHORT, short, exact))
 
 
-def creep(law: Viscoelasticity | None, time: float) -> float:
-    """Displacement of a spring after a time [TU] under a load, over that at once; 1 of one that is elastic."""
-    if law is None or law.retardation_time or time <= 0.0:
-        return 1.0
-    alone = np.ones(1)
-    spring = Memory(law, Edges(0.0 * alone, alone, 0.0 * alone))
-    moments = time * np.geomspace(SUDDEN * min(1.0, law.shortest_time / time), 1.0, MOMENTS)
-    for step in np.diff(moments, prepend=0.0).tolist():
-        place, velocity = spring.under(1.0, 1.0, alone, step)
-        spring.go(place, step, velocity)
-    return spring.place
-
-
 @dataclass(frozen=True, eq=False)
 class Relaxing(Independent):
     """A body that relaxes; by itself the curve at once.
@@ -258,7 +249,6 @@ class Relaxing(Independent):
 
     in_time: ClassVar[bool] = True
     tells_edges: ClassVar[bool] = True
-    is_linear: ClassVar[bool] = False
     is_lossless: ClassVar[bool] = False
     touched: ClassVar[bool] = True
     file: ClassVar[str] = "retardation.cells"
@@ -275,6 +265,30 @@ class Relaxing(Independent):
         """See `Law`."""
         found: Self = on_plane(cls, profile, scene.bodies.spacing, scene.bulk_stiffness, scene.the(Viscoelasticity))
         return found
+
+    def creep(self, time: float) -> float:
+        """See `Law`; 1 beside a dashpot, which lets nothing happen at once."""
+        if self.material.retardation_time or time <= 0.0:
+            return 1.0
+        alone = np.ones(1)
+        spring = Memory(self.material, Edges(0.0 * alone, alone, 0.0 * alone))
+        moments = time * np.geomspace(SUDDEN * min(1.0, self.material.shortest_time / time), 1.0, MOMENTS)
+        for step in np.diff(moments, prepend=0.0).tolist():
+            place, velocity = spring.under(1.0, 1.0, alone, step)
+            spring.go(place, step, velocity)
+        return spring.place
+
+    def sticking(self, mass: float, velocity: float, time: float) -> tuple[str, str] | None:
+        """See `Law`.
+
+        Dashpots, T dF/dd, stop a body by themselves, where F = M v/T, and it creeps out with d/T; and one that flows,
+        so that twice the time is twice the creep, loses what would bring it back.
+        """
+        if retarded := self.material.retardation_time:
+            out = self.displacement_at(mass * velocity / retarded) / retarded
+            return ("creeps out on its dashpots", "a shorter retardation_time") if out < LEAST_BACK * velocity else None
+        flows = self.creep(2.0 * time) > FLOWS * self.creep(time)
+        return ("flows", "longer times of terms") if flows else None
 
     def particles(self, x: Array, deepest: float) -> RelaxingSprings:
         """See `Law`."""

@@ -4,41 +4,27 @@ Each is derived from `[accuracy] tolerance` (relative, on the main results): by 
 stated beside it. The shares are in `calibration.json`, which `python -m validation.tools.calibration` writes: it turns
 every value over a ladder in a number of scenes, at tolerances of 1e-2 to 1e-5, and takes the cheapest that adds a small
 part of the tolerance at most to the errors of the main results in each of them; the residual has a set limit, too.
-
-The cutoff of a slide follows from how a particle is held along x by a straight row of opposite ones,
-
-    F_x(x, z) = Σ_j f(r_j) (x − j s)/r_j,    r_j = √((x − j s)² + z²)
-
-a small difference of large sums: at the spacing of the longest range b it is some 1e-2 of one pair's force.
 """
 
 from __future__ import annotations
 
-import json
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
-from pathlib import Path
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from contact1d.analysis.pressure import Profile, left_out
 from contact1d.digits import apart
-from contact1d.potentials import DoubleExponential, Exponential
-from contact1d.potentials.table import FEWEST_POINTS, Table, table_for
+from contact1d.potentials.table import FEWEST_POINTS, Table
 from contact1d.workflow.errors import SettingsError as SettingsError
 from contact1d.workflow.laws import law_of
 from contact1d.workflow.laws.law import Law, NotCarriedError, stopped_at
 from contact1d.workflow.laws.pairs import of_pairs
-from contact1d.workflow.laws.relaxing import creep
 from contact1d.workflow.laws.shape import Profile as Undeformed
 from contact1d.workflow.laws.shape import Splined, Tabulated, tabulated
+from contact1d.workflow.model.calibration import CALIBRATION, Calibration
 from contact1d.workflow.model.chain import (
     chains_of,
-    reaches_too_far,
     require_apex,
     require_body,
     require_digits,
@@ -48,159 +34,22 @@ from contact1d.workflow.model.chain import (
     require_rows,
     require_travel,
 )
+from contact1d.workflow.model.cutoff import cutoff_for, interaction_law
 from contact1d.workflow.model.dynamics import Motion, measured, motion_of, whole_steps
+from contact1d.workflow.model.forces import (
+    CLOSEST_SHARE,
+    MOVE_SHARE,
+    NEAR_SHARE,
+    Chains,
+    Forces,
+    Increments,
+    PairForces,
+    plane_stiffness_of,
+    stiffest_of,
+)
 from contact1d.workflow.scene import Impact, Interaction, Plate, Scene
 from contact1d.workflow.scene.remedies import less_compression
 
-FILE = Path(__file__).with_name("calibration.json")
-
-
-def _value(meaning: str) -> Any:
-    return field(metadata={"is": meaning})
-
-
-@dataclass(frozen=True)
-class Calibration:
-    """The values, each with its meaning (`meanings`); the study that measures them sets others."""
-
-    cutoff: float = _value("force at an automatic cutoff over the law's own, per unit of tolerance")
-    table: float = _value("error of the table over the force scale, per unit of tolerance")
-    residual: float = _value("norm of the forces left on the particles over the force scale, per unit of tolerance")
-    chain: float = _value("force at the end of an automatic chain over the largest one, per unit of tolerance")
-    smooth_increment: float = _value("increment of a smooth search over the longest range, at every tolerance")
-    loading_increment: float = _value(
-        "increment where pairs snap, and on a rigid plane, over the way from touch to the preload, at every tolerance"
-    )
-    still_step: float = _value("ω_max·Δt of a motion that comes to rest, without noise, at every tolerance")
-
-
-def meanings() -> dict[str, str]:
-    """What each value is, by its name."""
-    return {one.name: one.metadata["is"] for one in fields(Calibration)}
-
-
-def calibration_of(document: Mapping[str, Any]) -> Calibration:
-    """The values in the contents of `calibration.json`. Raises KeyError where one is missing."""
-    return Calibration(**{name: float(document["values"][name]["value"]) for name in meanings()})
-
-
-CALIBRATION = calibration_of(json.loads(FILE.read_text(encoding="utf-8")))
-
-
-Array = NDArray[np.float64]
-REACH = 40.0
-"""Reach of the sums, and of the longest cutoff, over the longest range."""
-ASIDE, HEIGHTS = 33, 400
-"""Positions within half a spacing, and heights, that are examined."""
-LEFT_OUT = 0.1
-"""Force of a pair at the cutoff over the largest force along x, per unit of tolerance: each pair that comes within
-reach, or leaves it, changes that by that much at once."""
-
-
-def slide_cutoff(law: DoubleExponential, spacing: float, load: float, share: float) -> float:
-    """Cutoff [LU] at which a pair's force is LEFT_OUT `share` of the largest force along x [FU].
-
-    Args:
-        law: of a pair.
-        spacing: of the row [LU].
-        load: on a particle [FU], compression positive.
-        share: the tolerance.
-    """
-    holding = max(largest_holding_force(law, spacing, load), np.finfo(float).tiny)
-    far = law.repulsion if law.attraction is None else law.attraction
-    start = far.range * math.log(far.amplitude / far.range / (LEFT_OUT * share * holding))
-    return min(max(start, law.longest_range), REACH * law.longest_range)
-
-
-def largest_holding_force(law: DoubleExponential, spacing: float, load: float) -> float:
-    """max_x F_x [FU] of a particle pressed by a load [FU] onto a rigid chain, at its height in a potential minimum."""
-    reach = math.ceil(REACH * law.longest_range / spacing) + 1
-    row: Array = np.asarray(spacing * np.arange(-reach, reach + 1), dtype=np.float64)
-    heights: Array = np.asarray(law.longest_range * np.geomspace(1e-2, 10.0, HEIGHTS))
-    _, upward = _row_forces(law, 0.5 * spacing - row, heights)
-    carried = np.flatnonzero(upward >= load)
-    height = float(heights[carried[-1]] if carried.size else heights[0])
-    x: Array = np.linspace(0.0, 0.5 * spacing, ASIDE)
-    along = [float(_row_forces(law, place - row, np.asarray([height]))[0][0]) for place in x.tolist()]
-    return float(np.max(np.abs(along)))
-
-
-def _row_forces(law: DoubleExponential, aside: Array, heights: Array) -> tuple[Array, Array]:
-    """Forces along x and z [FU] of pairs so far `aside` [LU], summed, at each of the heights [LU]."""
-    distance = np.hypot(aside[None, :], heights[:, None])
-    over = law.force(distance) / distance
-    return (over * aside).sum(axis=1), over.sum(axis=1) * heights
-
-
-THERMAL_SIGMAS = 5.0
-"""Standard deviations by which a particle's thermal motion brings it nearer."""
-
-
-def interaction_law(scene: Scene) -> DoubleExponential | None:
-    """The pair interaction of the scene, or None on a rigid plane."""
-    if scene.interaction is None:
-        return None
-    terms = scene.interaction
-    attraction = None if terms.attraction is None else Exponential(terms.attraction.amplitude, terms.attraction.range)
-    return DoubleExponential(Exponential(terms.repulsion.amplitude, terms.repulsion.range), attraction)
-
-
-def cutoff_for(scene: Scene, law: DoubleExponential, share: float, tolerance: float) -> float:
-    """The scene's cutoff [LU], or the one beyond which the force is below a share of the force scale.
-
-    In a slide also below what the tolerance leaves of the force along x.
-    """
-    given = scene.the(Interaction).cutoff
-    if given != "auto":
-        return given
-    reach = law.cutoff_for(share)
-    if scene.experiment.motion_is_result and not reaches_too_far(scene, reach):
-        return max(reach, slide_cutoff(law, scene.bodies.spacing, 0.0, tolerance))
-    return reach
-
-
-def innermost_distance(estimate: Law, cutoff: float, displacement: float) -> float:
-    """Distance [LU] of the predictor's innermost pair at a displacement [LU]; its grid ends at the cutoff [LU]."""
-    grid = cutoff / estimate.gap.size * np.arange(1, estimate.gap.size + 1)
-    return float(np.interp(estimate.rest - displacement, estimate.gap, grid))
-
-
-def thermal_motion(scene: Scene) -> float:
-    """Thermal approach [LU] of two particles on their springs: THERMAL_SIGMAS √(2 k_BT/k)."""
-    return THERMAL_SIGMAS * math.sqrt(2.0 * scene.temperature / scene.bulk_stiffness)
-
-
-def loading_step_of(most: float, step: float) -> float:
-    """The `step` [LU] if it is > 0, never more than `most` [LU]."""
-    return min(step, most) if step > 0 else most
-
-
-def plane_stiffness_of(scene: Scene, tolerance: float) -> float:
-    """One-sided stiffness of the rigid plane [FU/LU]: that of a particle, k, where particles are fixed in their body.
-
-    An effect that acts on particles has bonds for them, and a plane 1/tolerance times stiffer.
-    """
-    if scene.bodies.lower != "rigid_plane":
-        return 0.0
-    return scene.bulk_stiffness if scene.stands else _stiffest_of(scene) / tolerance
-
-
-def _stiffest_of(scene: Scene) -> float:
-    """Bulk spring and what effects add to it [FU/LU]."""
-    return scene.bulk_stiffness + sum(effect.added_stiffness for effect in scene.present)
-
-
-TABLE_MARGIN = 0.8
-"""Distance from which on a table is to follow the law, over the expected smallest one. Measured: the smallest distance
-is 0.93 to 1.004 of what the predictor of independent pairs says."""
-CLOSEST_SHARE = 0.2
-"""Smallest distance that is looked after over the force-free one (with attraction) or the repulsion's range."""
-MOVE_SHARE = 0.25
-"""Longest move of a body between two states at rest, over the smallest distance: particles stay in order, down to r
-near 0."""
-NEAR_SHARE = 0.2
-"""Least distance down to which a table follows the law and a search comes down in ever smaller moves, over `closest`: a
-table that is smoothed any earlier lets bodies pass that the interaction still carries."""
 ROWS_IN_TIME = 100
 """States of a motion that is followed for a given time."""
 FAR_SHARE = 10.0
@@ -211,165 +60,6 @@ STAGGER_SHARE = 5e-4
 No force acts in that direction, but `fix rigid` refuses a body that is nearly a line ("Bad principal moments"): the
 least moment of inertia must be more than 1e-7 of the largest, and is 12 STAGGER² = 3e-6 of it.
 """
-
-
-@dataclass(frozen=True, kw_only=True)
-class Forces:
-    """What acts on a particle on a rigid plane, which has no table, and 0 for cutoff, rest, table_from and closest.
-
-    Attributes:
-        table, cutoff, table_from: of an interaction, its cutoff [LU], and the distance [LU] from which on the table was
-            chosen to follow it.
-        rest: apex distance at displacement 0 [LU].
-        closest: smallest distance for which moves and time step are chosen [LU].
-        bulk_stiffness: normal bond of a particle to its anchor [FU/LU].
-        plane_stiffness: one-sided stiffness of the rigid plane [FU/LU]; 0 without one.
-        scale: force of one particle [FU] against which residuals are judged.
-        residual: norm of the residual forces at which a minimisation stops [FU].
-    """
-
-    bulk_stiffness: float = measured("FU/LU")
-    plane_stiffness: float = measured("FU/LU", 0.0)
-    table: Table | None = None
-    cutoff: float = measured("LU", 0.0)
-    table_from: float = measured("LU", 0.0)
-    rest: float = measured("LU", 0.0)
-    closest: float = measured("LU", 0.0)
-    scale: float = measured("FU", 0.0)
-    residual: float = measured("FU", 0.0)
-
-    @property
-    def law(self) -> DoubleExponential | None:
-        """The interaction."""
-        return None
-
-    @property
-    def range(self) -> float:
-        """Longest range of the interaction [LU]; 0 without one."""
-        return 0.0
-
-    def with_table(self, scene: Scene, estimate: Law, largest: float, error: float) -> Forces:
-        """With a table of the law that follows it to an error [FU] from the smallest distance on that is expected."""
-        return self
-
-    def scale_of(self, scene: Scene, deepest: float) -> float:
-        """The force of the deepest particle [FU], so deep [LU]."""
-        return (deepest if deepest > 0.0 else 1e-3 * scene.bodies.spacing) * scene.bulk_stiffness / 2
-
-    def stiffest(self, spacing: float) -> float:
-        """The largest stiffness [FU/LU] that the opposite body has for a particle."""
-        return self.plane_stiffness
-
-    def increments(self, spacing: float, largest: float, calibration: Calibration) -> Increments:
-        """Increments of searches, by the spacing [LU]."""
-        loading = loading_step_of(0.1 * spacing, calibration.loading_increment * largest)
-        return Increments(loading, loading, 0.0, math.inf)
-
-    def share(self, scene: Scene) -> float:
-        """Relative error of a force, before a run: the plane is not quite rigid for springs between particles."""
-        return sum(effect.added_stiffness for effect in scene.present) / self.plane_stiffness
-
-    def error(self, scene: Scene, profile: Profile) -> float:
-        """Error of the force of a measured state [FU]."""
-        return self.share(scene) * abs(scene.bodies.spacing * float(profile.pressure.sum()))
-
-
-TAIL = 10.0
-"""Force of the tail beyond the cutoff, summed over particles, over the force at the cutoff times a particle's share."""
-COMPLIANCE_FACTOR = 2.0
-"""Error of an equilibrium over that of the force on particles held in place: they follow it, and a table's error, here
-at the distances that happen to be there, is half of what it is between two entries on average."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class PairForces(Forces):
-    """What acts on a particle that feels those of the opposite chain."""
-
-    table: Table
-
-    @property
-    def law(self) -> DoubleExponential:
-        """The interaction."""
-        return self.table.law
-
-    @property
-    def range(self) -> float:
-        """Longest range of the interaction [LU]."""
-        return self.law.longest_range
-
-    def with_table(self, scene: Scene, estimate: Law, largest: float, error: float) -> Forces:
-        """See `Forces`; `largest`: the displacement [LU]."""
-        nearest = self.closest * (1.0 if scene.noise else NEAR_SHARE)
-        innermost = innermost_distance(estimate, self.cutoff, largest) - thermal_motion(scene)
-        start = max(nearest, TABLE_MARGIN * innermost)
-        return replace(self, table_from=start, table=table_for(self.law, self.cutoff, start, error))
-
-    def scale_of(self, scene: Scene, deepest: float) -> float:
-        """The force maximum of one pair [FU]; without attraction as on a plane."""
-        if self.law.attraction is None:
-            return super().scale_of(scene, deepest)
-        r = self.law.force_free_distance() + self.law.longest_range * np.linspace(0.0, 5.0, 2001)
-        return float(-self.law.force(r).min())
-
-    def stiffest(self, spacing: float) -> float:
-        """Of nearby opposite particles."""
-        rows = 1.0 + 2.0 * self.law.repulsion.range / spacing
-        return 2.0 * rows * float(self.law.stiffness(self.closest))
-
-    def increments(self, spacing: float, largest: float, calibration: Calibration) -> Increments:
-        """By the range of the interaction."""
-        move = MOVE_SHARE * self.closest
-        loading = loading_step_of(0.25 * self.range, calibration.loading_increment * largest)
-        return Increments(min(loading, move), loading, calibration.smooth_increment * self.range, move)
-
-    def share(self, scene: Scene) -> float:
-        """What table and cutoff may cause."""
-        tail = TAIL * abs(float(self.law.force(self.cutoff)))
-        return (tail + self.table.error_beyond(self.table_from)) / self.scale
-
-    def error(self, scene: Scene, profile: Profile) -> float:
-        """COMPLIANCE_FACTOR Σ |F_table(r) - f(r)| |z|/r over opposite particles, F_table = 0 beyond the cutoff."""
-        return COMPLIANCE_FACTOR * left_out(self.law, self.table, profile)
-
-
-@dataclass(frozen=True)
-class Chains:
-    """Particles of the upper body, of the lower one where it has any, and the length of the long bonds.
-
-    Attributes:
-        upper, lower: how many.
-        far: length of the long bond that makes normal and tangential stiffness differ [LU]; 0 where they do not.
-    """
-
-    upper: int
-    lower: int
-    far: float = measured("LU")
-
-
-@dataclass(frozen=True)
-class Increments:
-    """Displacement increments of a search [LU].
-
-    Attributes:
-        displacement_step: where pairs snap, and on a rigid plane.
-        loading_step: the same where particles are so far from each other that it is no danger.
-        smooth_step: elsewhere, where the force is a smooth function of the displacement.
-        longest_move: of a body between two states at rest, inf on a rigid plane: a body that is moved by more than
-            its particles' distance from the opposite ones is put behind them. A search may come nearer than `closest`,
-            in moves down to NEAR_SHARE of this.
-        part: of increments, moves and loads over the usual ones, of a search that restarts in smaller steps.
-    """
-
-    displacement_step: float = measured("LU")
-    loading_step: float = measured("LU")
-    smooth_step: float = measured("LU")
-    longest_move: float = measured("LU")
-    part: float = 1.0
-
-    def scaled(self, part: float) -> Increments:
-        """All of them by this factor."""
-        lengths = {name: part * value for name, value in vars(self).items()}
-        return replace(self, **lengths | {"part": part})
 
 
 @dataclass(frozen=True, eq=False)
@@ -488,10 +178,6 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
 
 CREEPING = 4
 """Looks for how deep a body goes that relaxes meanwhile, each with the time of the one before."""
-LEAST_BACK = 1e-5
-"""Restitution that is followed: with less a body creeps out for so long that it counts as stuck."""
-FLOWS = 1.96
-"""Creep over that of half the time, up to which a body comes back: 2 of a fluid. Measured of a sphere: 1.95 does."""
 INERTIA, LONGER = 4.0, 2.0
 """Masses that the program chose, in a slower motion over the usual one; its drags, which go with the root, and the
 timesteps of a coarser one. What is of first order in these changes by its own amount at least."""
@@ -523,29 +209,26 @@ def slower(scene: Scene, settings: Settings) -> list[tuple[Scene, Settings]]:
     return [*found, (heavier, replace(settings, motion=motion))] if motion != own else found
 
 
-def _stopped(scene: Scene, estimate: Law) -> float:
+def _stopped(scene: Scene, law: Law) -> float:
     """Displacement [LU] at which a body that hits the plane is at rest, one that relaxes meanwhile deeper.
 
     Raises:
-        SettingsError: it sticks. Dashpots, T dF/dd, stop a body by themselves, where F = M v/T, and it creeps out with
-            d/T; and one that flows, so that twice the time is twice the creep, loses what would bring it back.
+        SettingsError: it sticks.
     """
-    found, given, law = stopped_at(scene, estimate), scene.experiment, scene.viscoelasticity
-    if law is None or not isinstance(given, Impact):
+    found, given = stopped_at(scene, law), scene.experiment
+    if not isinstance(given, Impact):
         return found
     for _ in range(CREEPING):
-        found = stopped_at(scene, estimate, creep(law, time := 2.0 * found / given.velocity))
-    if retarded := law.retardation_time:
-        mass = scene.the(Plate).mass
-        assert mass != "auto"
-        out = estimate.displacement_at(mass * given.velocity / retarded) / retarded
-        sticks = "creeps out on its dashpots", out < LEAST_BACK * given.velocity, "a shorter retardation_time"
-    else:
-        sticks = "flows", creep(law, 2.0 * time) > FLOWS * creep(law, time), "longer times of terms"
-    if sticks[1]:
+        time = 2.0 * found / given.velocity
+        if (softer := law.creep(time)) == 1.0:
+            break
+        found = stopped_at(scene, law, softer)
+    mass = scene.the(Plate).mass
+    assert mass != "auto"
+    if sticks := law.sticking(mass, given.velocity, time):
         raise SettingsError(
             f"the body sticks: it {sticks[0]}, for longer than is followed, where an impact of the elastic body takes "
-            f"some {time:.4g} TU: give {sticks[2]} in [viscoelasticity]"
+            f"some {time:.4g} TU: give {sticks[1]} in [viscoelasticity]"
         )
     return found
 
@@ -580,14 +263,14 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     if load is None:
         largest = max(scene.experiment.places(), default=0.0) or _stopped(scene, estimate)
     else:
-        largest = estimate.displacement_at(load * creep(scene.viscoelasticity, scene.experiment.lasts or 0.0))
+        largest = estimate.displacement_at(load * estimate.creep(scene.experiment.lasts or 0.0))
     chains = _chains(scene, estimate, forces, largest, calibration.chain * tolerance)
     # A punch that adheres and carries nothing is not deep, and yet its springs hold it up to its limit.
     scale = forces.scale_of(scene, max(largest, -estimate.parted(0.0)) if estimate.holds else largest)
     require_digits(scene, chains.upper, forces.rest + largest, tolerance * scale)
     forces = replace(forces, scale=scale, residual=calibration.residual * tolerance * scale)
     forces = forces.with_table(scene, estimate, largest, calibration.table * tolerance * scale)
-    stiffest = _stiffest_of(scene) + max(0.0, scene.tangential_stiffness - scene.bulk_stiffness)
+    stiffest = stiffest_of(scene) + max(0.0, scene.tangential_stiffness - scene.bulk_stiffness)
     stiffest += forces.stiffest(bodies.spacing)
     motion = motion_of(scene, tolerance, estimate, largest, chains.upper, stiffest, calibration.still_step)
     increments = forces.increments(bodies.spacing, largest, calibration)

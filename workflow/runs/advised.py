@@ -11,9 +11,9 @@ from weakref import finalize
 
 from contact1d.files import AnyPath
 from contact1d.workflow.engine.progress import Progress, Silent
-from contact1d.workflow.errors import Contact1dError, RunError, SceneEdit, UntrustedError
+from contact1d.workflow.errors import Contact1dError, RunError, SceneEdit, SettingsError, UntrustedError
 from contact1d.workflow.experiments.spacing import with_spacing
-from contact1d.workflow.model.settings import Settings, SettingsError, settings_for
+from contact1d.workflow.model.settings import Settings, settings_for
 from contact1d.workflow.runs import campaign
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.runs.report import read_results, write_results

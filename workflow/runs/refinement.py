@@ -14,8 +14,9 @@ from contact1d.workflow.continuation.outcome import LATTICE, Outcome, Refinement
 from contact1d.workflow.continuation.trust import UntrustedError, doubts
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.engine.session import EngineError
+from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.experiments import kind_of, perform
-from contact1d.workflow.model.settings import SettingsError, settings_for
+from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import Scene
 
 TOLERANCE_RATIO = 5.0

@@ -20,8 +20,7 @@ from warnings import catch_warnings, simplefilter
 from contact1d.analysis.curve import HEADER, MARKED
 from contact1d.files import FULL_DISK, AnyPath, write_whole
 from contact1d.workflow.engine.progress import Progress, Silent
-from contact1d.workflow.errors import Contact1dError, FolderError
-from contact1d.workflow.model.settings import SettingsError
+from contact1d.workflow.errors import Contact1dError, FolderError, SettingsError
 from contact1d.workflow.runs.campaign import LOCK, alone, run
 from contact1d.workflow.runs.processors import cores, pool
 from contact1d.workflow.runs.report import RESULTS
