@@ -1,7 +1,7 @@
 """A connected branch of states under displacement control: visit, reach a force, find the force maximum.
 
-Here a state does not depend on the path, so that any position can be visited at any time. Subclasses are for states
-that depend on the path (`replayed`) and for load steps of negligible cost (`stepped`).
+Here a state does not depend on the path, so that any position can be visited at any time; `replayed` has states that
+depend on it.
 """
 
 from __future__ import annotations
@@ -119,12 +119,11 @@ class Branch(ContactBranch):
             UntrustedError: see `require_trust`; also where the force cannot be held.
         """
         # Where pairs snap the force at a displacement is known no better.
-        enough = (0.5 if self.settings.is_smooth else 1.0) * FORCE_ACCURACY * self.settings.tolerance * scale
-        near = self._nearest(enough, scale)
+        near = (0.5 if self.settings.is_smooth else 1.0) * FORCE_ACCURACY * self.settings.tolerance * scale
         rises = not self.states or force - self._last.carried > near
         direction = 1 if rises else -1
         self._turn(rises)
-        self._first_rows(force, direction)
+        self._at(self._last.displacement if self.states else 0.0)
 
         def goes_beyond(state: State) -> bool:
             return state.carried > force if rises else state.carried < force
@@ -145,20 +144,10 @@ class Branch(ContactBranch):
                     f"{'above' if rises else 'below'} it. Give a force beyond that, or use "
                     'kind = "path" for the full curve'
                 )
-            if beyond is not None and self._is_same(before, beyond) and abs(last.carried - force) <= enough:
-                break
             self._require_within_reach(force, rises, before, beyond)
             step = self.settings.increment(last.smallest_distance if rises else math.inf)
             self._at(self._towards(before, beyond, force, direction * step))
         self._came(force + self._last.pushed)
-
-    def _nearest(self, near: float, scale: float) -> float:
-        """How near to a force a search comes [FU], of `near`."""
-        return near
-
-    def _first_rows(self, force: float, direction: int) -> None:
-        """The first load steps of a leg towards a force [FU]: the position where it begins."""
-        self._at(self._last.displacement if self.states else 0.0)
 
     def _towards(self, before: State, beyond: State | None, force: float, step: float) -> float:
         """The next displacement [LU]: a secant over what the model has under these forces, which is nearly straight.

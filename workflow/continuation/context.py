@@ -215,7 +215,7 @@ class ContactBranch:
         raise UntrustedError('a load step at rest takes no time: use method = "dynamic"')
 
     def follow(self, history: History) -> None:
-        """Go through a history. Raises UntrustedError where load steps are not those of springs alone (`stepped`)."""
+        """Go through a history. Raises UntrustedError where load steps are not planned (`planned`)."""
         raise UntrustedError('a history needs springs on a rigid plane: use lower = "rigid_plane"')
 
     def fly(self, velocity: float) -> None:
