@@ -15,7 +15,7 @@ from contact1d.workflow.continuation.trust import is_converged, require_trust
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.lattice import bodies, period
 from contact1d.workflow.deck.parts import PLANE_DEPTH
-from contact1d.workflow.deck.steps import Displace, Draw, Phase, Row
+from contact1d.workflow.deck.steps import Displace, Draw, Phase, Row, swept
 from contact1d.workflow.deck.system import ANCHORS, PARTICLES
 from contact1d.workflow.engine.failure import NOT_FINITE
 from contact1d.workflow.engine.frames import last_frames
@@ -93,13 +93,20 @@ class Contact:
             EngineError: LAMMPS failed, or lost particles.
             UntrustedError: see `require_trust`.
         """
-        found: list[State] = []
+        found, size = list[State](), BATCH
+        if self.deck.stepped:
+            places = np.asarray([row.displacement for row in rows if isinstance(row, Displace)])
+            rows, size = swept(self.deck.as_read({"displacement": places})), self._at_once
         before = self.session.lammps_seconds
-        for start in range(0, len(rows), BATCH):
-            batch = rows[start : start + BATCH]
+        for start in range(0, len(rows), size):
+            batch, name = rows[start : start + size], self._phases[-1].name
             first = sum(len(phase.rows) for phase in self._phases)
             self._phases[-1] = replace(self._phases[-1], rows=(*self._phases[-1].rows, *batch))
-            self._latest = self._measured(batch, first)
+            if self.deck.stepped:
+                text, self._unfinished = self._unfinished + self.deck.in_one_run(batch), ""
+                self._latest = self._swept(text, [(name, row) for row in batch], first, self._look_back)
+            else:
+                self._latest = self._measured(batch, first)
             for state in self._latest if trusted else ():
                 require_trust(self.scene, self.settings, state, moving)
             found += self._latest
@@ -129,7 +136,12 @@ class Contact:
             meanwhile: of steps of one run, see `Session.measure`.
         """
         if self.deck.stepped:
-            return self._in_one_request(phases, meanwhile)
+            self._phases, rows = [*phases], [(phase.name, row) for phase in phases for row in phase.rows]
+            self.session.execute("", phase=phases[0].name)
+            found = self._swept(self.deck.schedule(phases), rows, 0, meanwhile)
+            self.rows_seconds = self.session.lammps_seconds
+            (self.session.folder / FRAMES).unlink(missing_ok=True)
+            return found
         states: list[State] = []
         trusted = not self.scene.noise
         for phase in phases:
@@ -171,27 +183,30 @@ class Contact:
             states.append(state)
         return states
 
-    def _in_one_request(self, phases: Sequence[Phase], meanwhile: Callable[[], object] | None) -> list[State]:
-        """A schedule whose load steps are steps of one run for each phase: nothing has to relax."""
-        began, rows = self.session.timestep, [(phase.name, row) for phase in phases for row in phase.rows]
-        self._phases = [*phases]
-        self.session.execute(self.deck.schedule(phases), phase=phases[0].name, meanwhile=meanwhile)
-        self.rows_seconds = self.session.lammps_seconds
-        spacing, settings = self.scene.bodies.spacing, self.settings
+    @property
+    def _at_once(self) -> int:
+        """Frames that are read at a time, to bound the memory."""
+        return max(1, MOST_NUMBERS // len(self._x))
+
+    def _swept(
+        self, text: str, rows: Sequence[tuple[str, Row]], first: int, meanwhile: Callable[[], object] | None
+    ) -> list[State]:
+        """Load steps that are steps of one run for each phase, with the names of these: nothing has to relax."""
+        began = self.session.timestep
+        self.session.measure(text, meanwhile=meanwhile)
+        spacing, settings, states = self.scene.bodies.spacing, self.settings, list[State]()
         # The wall's force is a difference of distances from far below.
         depth = PLANE_DEPTH * max(settings.largest_displacement, spacing)
         round_off = float(np.finfo(np.float64).eps) * depth * settings.forces.plane_stiffness
-        at_once, states = max(1, MOST_NUMBERS // len(self._x)), list[State]()
-        for first in range(0, len(rows), at_once):
-            batch = rows[first : first + at_once]
-            for i, ((phase, row), profile) in enumerate(zip(batch, self._profiles(len(batch)), strict=True), first):
+        for start in range(0, len(rows), self._at_once):
+            batch = rows[start : start + self._at_once]
+            for i, ((phase, row), profile) in enumerate(zip(batch, self._profiles(len(batch)), strict=True), start):
                 assert isinstance(row, Displace | Draw)
                 force, closest = spacing * float(profile.pressure.sum()), float(profile.z_upper.min())
                 states.append(
                     State(phase, row.displacement, force, profile, self._rule, closest, 0.0, round_off,
-                          plate_x=getattr(row, "place", 0.0), step=float(began + i + 1), number=i)
+                          plate_x=getattr(row, "place", 0.0), step=float(began + i + 1), number=first + i)
                 )  # fmt: skip
-        (self.session.folder / FRAMES).unlink(missing_ok=True)
         return states
 
     def _profiles(self, count: int) -> list[Profile]:

@@ -190,11 +190,11 @@ class Scripted(Experiment[K]):
 
 
 def branch_of(context: RunContext, meanwhile: Callable[[], object]) -> Branch | LoadBranch | PlannedBranch:
-    """A new contact, under load control in time, planned on a rigid plane, else under displacement control."""
+    """A new contact: under load control in time, planned on a rigid plane of a law that is known, else searched for."""
     scene = context.deck.scene
     if scene.method == "dynamic" and scene.experiment.compression is not None:
         return LoadBranch(context, meanwhile)
-    if scene.is_stepped:
+    if scene.is_stepped and (scene.is_modelled or scene.experiment.way_is_given):
         return PlannedBranch(context, meanwhile)
     return (ReplayedBranch if context.deck.settings.snaps else Branch)(context, meanwhile)
 
