@@ -26,6 +26,8 @@ and how many of these: none where the curve is smooth, since the model's forces 
 grid, whose corners would move a top."""
 BESIDE = 32.0
 """Part of the distance of two positions in which those beside a force maximum are, three on either side."""
+OPENED = 0.05
+"""End of the way beyond where nothing is felt any more, over all of it."""
 BETWEEN = 8
 """Intermediate positions towards a force."""
 LAST = 1e-9
@@ -159,10 +161,12 @@ class ModelBranch:
         top = int(np.argmin(self.model.held(every)))
         low, high = float(every[min(top + 1, every.size - 1)]), float(every[max(top - 1, 0)])
         step, place = 0.5 * (high - low) / BESIDE, float(every[top])
-        for _ in range(0 if self.settings.is_smooth else ZOOMS):
+        known = self.model.top
+        for _ in range(0 if self.settings.is_smooth or known is not None else ZOOMS):
             closer, width = np.linspace(high, low, FINE, retstep=True)
             place = float(closer[int(np.argmin(self.model.held(closer)))])
             low, high = max(place - abs(width), end), min(place + abs(width), zero)
+        place = min(max(known, end), zero) if known is not None else place
         beside = place + step * np.arange(-3.0, 4.0)
         found = np.unique(np.append(found, np.clip(beside, end, zero)))[::-1]
         found = found[found < zero]
@@ -176,7 +180,8 @@ class ModelBranch:
 
     def open(self) -> None:
         """Pull the bodies apart."""
-        self._add(np.append(self._beyond, self.model.apart - self.settings.law.spacing))
+        apart, deepest = self.model.apart, max(row.displacement for row in self._rows)
+        self._add(np.append(self._beyond, apart - OPENED * (deepest - apart)))
         self._beyond = np.empty(0)
 
     @property

@@ -396,6 +396,14 @@ class MaugisCells(ZonedCells):
         return self.law.radii(displacements)
 
     @property
+    def top(self) -> float:
+        """See `Particles`; of one that comes before contact the place on the curve."""
+        law, edge = self.law, np.asarray([self.law.critical_radius])
+        if edge[0] > 0.0:
+            return float(law.equations.states(edge, law.equations.widths(edge)).displacement[0])
+        return float(law.held.displacement[int(np.argmin(law.held.force))])
+
+    @property
     def critical_radius(self) -> float:
         """See `Particles.critical_radius`."""
         return self.law.critical_radius

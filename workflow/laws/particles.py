@@ -137,6 +137,11 @@ class Particles(ABC):
         return self.limits
 
     @property
+    def top(self) -> float | None:
+        """Displacement [LU] of the force maximum of a contact that is unloaded, where the law knows it."""
+        return None
+
+    @property
     def critical_radius(self) -> float | None:
         """Contact radius [LU] at the force maximum, likewise."""
         return None
