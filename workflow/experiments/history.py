@@ -202,12 +202,15 @@ def _whole(trace: Trace, corner: int, states: Sequence[int]) -> list[float]:
         return force
     found = []
     for i, own in zip(states, force, strict=True):
-        at = min(i, corner)
+        near = abs((trace.radius(i) or 0.0) - radius) < law.spacing
+        at = min(i, corner) if near else i
         edge = trace.radius(at) or 0.0
-        missed = edge - 0.5 * law.spacing * np.count_nonzero(trace.profile(at).pressure)
+        touching = np.flatnonzero(trace.profile(i).pressure)
+        x = np.abs(trace.profile(i).x[touching[[0, -1]]]) if touching.size else np.full(2, edge - 0.5 * law.spacing)
+        missed = edge - 0.5 * law.spacing - x
         low, high = law.profile.height(edge + 0.5 * law.spacing * np.asarray([-1.0, 1.0])).tolist()
         moved = float(trace.displacement[i] - trace.displacement[at])
-        found.append(own + modulus * ((high - low) / law.spacing * missed**2 + 2.0 * missed * moved))
+        found.append(own + modulus * float(np.sum(0.5 * (high - low) / law.spacing * missed**2 + missed * moved)))
     return found
 
 
