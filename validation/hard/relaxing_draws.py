@@ -197,7 +197,8 @@ def of_lines(body: Power | Flat, law: Law, d: Legs, given: Legs) -> tuple[dict[s
     if d is not given and given.values[-1] == 0.0:  # a body without a force that it is pressed by does not touch
         states["final"] = last = Line(np.zeros(0), np.zeros(0))
     if last.edge:
-        exact |= {"contact_radius": last.edge, "mean_pressure": last.force / (math.pi * last.edge**2),
+        force = last.force if d is given else given.values[-1]
+        exact |= {"contact_radius": last.edge, "mean_pressure": force / (math.pi * last.edge**2),
                   "central_pressure": last.pressure(0.0), "peak_pressure": last.peak}  # fmt: skip
     kinds = [int(np.sign(b - a)) for a, b in pairwise(given.values)]
     if kinds[-1] == 0 and d is given:

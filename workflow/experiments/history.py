@@ -161,7 +161,6 @@ def _slopes(trace: Trace) -> dict[str, Reading]:
         at = np.asarray([time[i] - time[corner] for i in side])
         rates.append([float(through(at, np.asarray([one[i] for i in side]))[1]) for one in (force, d)])
     (force_before, d_before), (force_after, d_after) = rates
-    # Slopes are what a few states at a corner show: no tolerance is asked of them.
     found = {"unloading_stiffness": _rate(force_after / d_after)} if d_after else {}
     if d_after != d_before:
         found["creep_corrected_stiffness"] = _rate((force_after - force_before) / (d_after - d_before))
@@ -170,7 +169,7 @@ def _slopes(trace: Trace) -> dict[str, Reading]:
 
 def _rate(value: float) -> Reading:
     """A slope at a corner [FU/LU], with the discretisation error of a few states."""
-    return Reading(value, LINE_PRESSURE, {"sampling": SAMPLED * abs(value)}, prescribed=True)
+    return Reading(value, LINE_PRESSURE, {"sampling": SAMPLED * abs(value)})
 
 
 def _between(trace: Trace) -> float:
