@@ -20,11 +20,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
-from scipy.optimize import elementwise
 
+from contact1d.workflow.laws.dugdale import Dugdale
 from contact1d.workflow.scene import Shape
 
 Array = NDArray[np.float64]
@@ -32,6 +31,8 @@ EDGES = 300
 """Edges a between which a branch is cubic, in geometric progression over SPAN."""
 THINNED, NODES, BEFORE = 3, 20, 40
 """Of Maugis's equations: every how many edges has a root, nodes of a quadrature, and places before contact."""
+ROOT = 1e-9
+"""Relative error of s."""
 NEWTON = 2
 """Steps to the place of a position between two of them: from a straight start the error is below 1e-9 of the cell."""
 SPAN = 2e-3
@@ -172,38 +173,41 @@ def jkr(body: Body, modulus: float, work: float, reach: float) -> Branch:
     return Branch(a, d, 2.0 * modulus * (a * d - body.areas))
 
 
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A profile by cubics, for `laws.dugdale`; it goes on beyond its last place."""
+
+    height: Callable[[Array], Array]
+    reach: float = math.inf
+    kinks: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Zone(Dugdale):
+    """Its equations with the integral G of a body that is known already: places [LU], G [LU²]."""
+
+    areas: tuple[Array, Array]
+
+    def area(self, x: Array) -> Array:
+        """See `Dugdale`."""
+        return np.interp(x, *self.areas)
+
+
 def maugis(body: Body, modulus: float, work: float, reach: float) -> Branch:
-    """Dugdale's stress σ₀ = W/h₀ over the range h₀ around the contact (equations: `model.cohesive`), by a rising path.
+    """Dugdale's stress σ₀ = W/h₀ over the range h₀ around the contact (`laws.dugdale`), by a rising path.
 
     Its states before contact, a = 0, are explicit in c; of a contact s = √(c² − a²) is a root for each a.
     """
-    ratio, a = 2.0 * work / reach / modulus, np.concatenate([[0.0], body.edges[1::THINNED]])
-    g = body.height(a)
-    node, weight = leggauss(NODES)
-
-    def gap(s: Array, a: Array, g: Array) -> Array:
-        """Gap at c less h₀."""
-        c, angle = np.hypot(a, s), np.arctan2(a, s)
-        pressed = 0.5 * angle * (body.height(c[:, None] * np.sin(0.5 * angle[:, None] * (node + 1.0))) @ weight)
-        d = g - ratio * s
-        # c − a without a difference of numbers that are nearly the same
-        ring = ratio * s * s / (c + a + 1e-300)
-        return np.asarray(body.drawn(c) - d + 2.0 / math.pi * (d * angle - pressed - ring) - reach)
-
-    high = np.full_like(a, reach / ratio + math.sqrt(reach * a[-1]))
-    for _ in range(60):
-        short = gap(high, a, g) < 0.0
-        if not short.any():
-            break
-        high[short] *= 2.0
-    s = elementwise.find_root(gap, (np.zeros_like(a), high), args=(a, g), tolerances={"xrtol": 1e-9}).x
-    d = g - ratio * s
-    ring = 0.5 * ((a * a + s * s) * np.arctan2(s, a) - a * s)
-    F = 2.0 * modulus * (a * d - np.interp(a, body.edges, body.areas)) - 2.0 * modulus * ratio * ring
+    a = np.concatenate([[0.0], body.edges[1::THINNED]])
+    law = Zone(
+        Curve(body.height), Curve(body.drawn), modulus, work / reach, reach, float(a[-1]), NODES, ROOT,
+        areas=(body.edges, body.areas),
+    )  # fmt: skip
+    s = law.widths(a)
+    held = law.states(a, s)
     c = s[0] * np.linspace(0.0, 1.0, BEFORE, endpoint=False)
-    before = body.drawn(c) - 2.0 / math.pi * ratio * c - reach
-    path = np.concatenate([c, s[0] + a])
-    return Branch(path, np.concatenate([before, d]), np.concatenate([-math.pi * work / reach * c * c, F]))
+    early, late = (c, law.before(c), -math.pi * law.stress * c * c), (s[0] + a, held.displacement, held.force)
+    return Branch(*(np.concatenate(both) for both in zip(early, late, strict=True)))
 
 
 LAWS: Mapping[str, Law] = {"Hertz": hertz, "DMT": dmt, "Maugis": maugis, "JKR": jkr}

@@ -61,6 +61,8 @@ class Dugdale:
         modulus, stress: E*, σ₀ [FU/LU²].
         range: h₀ [LU].
         known: the largest a that is asked for [LU].
+        nodes: of the quadrature of a gap.
+        tolerance: relative, of a root; None: to all digits.
     """
 
     profile: Profile
@@ -69,6 +71,8 @@ class Dugdale:
     stress: float
     range: float
     known: float
+    nodes: int = NODES
+    tolerance: float | None = None
 
     @property
     def end(self) -> float:
@@ -121,7 +125,7 @@ class Dugdale:
         kinks = [np.minimum(kink, edge) for kink in self.profile.kinks if kink < self.known]
         angles = [np.zeros_like(edge), *(np.arctan2(one, np.sqrt((c - one) * (c + one))) for one in kinks)]
         angles.append(np.arctan2(edge, width))
-        node, weight = gauss(NODES)
+        node, weight = gauss(self.nodes)
         share, total = 0.5 * (node + 1.0), np.zeros_like(edge)
         for low, high in pairwise(angles):
             angle = low[:, None] + (high - low)[:, None] * share**2
@@ -163,7 +167,9 @@ class Dugdale:
             if (high >= most)[short].any():
                 raise covered(self.end)
             high = np.where(short, np.minimum(2.0 * high, most), high)
-        found = elementwise.find_root(error, (np.zeros_like(edge), high), args=(edge,), maxiter=DOUBLINGS)
+        found = elementwise.find_root(
+            error, (np.zeros_like(edge), high), args=(edge,), maxiter=DOUBLINGS, tolerances={"xrtol": self.tolerance}
+        )
         return np.asarray(found.x)
 
     def before(self, reach: Array) -> Array:
