@@ -144,7 +144,7 @@ class Law(ABC):
         return 1.0
 
     def sticking(self, mass: float, velocity: float, time: float) -> tuple[str, str] | None:
-        """Why a body sticks that hits the plane, and what helps; None of one that comes back.
+        """Why a body sticks that hits the plane, and the remedy; None of one that comes back.
 
         `mass` [MU], `velocity` [LU/TU], `time` of the impact of the elastic body [TU].
         """
