@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from contact1d.analysis.chart import BLACK, FILL, TENSION, THEORY, Axis, Chart, Panel, Series
 from contact1d.analysis.curve import States
 from contact1d.analysis.figures import half_width
-from contact1d.workflow.runs.finished import Run, main_curve, path_chart
+from contact1d.workflow.runs.charts import main_curve, path_chart
+from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.units import LENGTH, LINE_PRESSURE, Quantity, scale_of
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#999933")

@@ -21,7 +21,8 @@ from contact1d.files import AnyPath, write_whole
 from contact1d.workflow.body.theory import in_words
 from contact1d.workflow.errors import FolderError
 from contact1d.workflow.report.charts import Data, charts_of, path_of, symbols
-from contact1d.workflow.runs.finished import Run, charts, read_run
+from contact1d.workflow.runs.charts import charts
+from contact1d.workflow.runs.finished import Run, read_run
 from contact1d.workflow.runs.report import results_in
 from contact1d.workflow.scene import Scene, Table, scene_to_toml
 from contact1d.workflow.scene.quantities import keys_of

@@ -1,0 +1,257 @@
+"""The figures of a run, described: which there are, and what is beside each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from math import nan, pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact1d.analysis import figures
+from contact1d.analysis.chart import Axis, Chart, Series
+from contact1d.analysis.curve import DETACHMENTS, SAMPLE_TABLE
+from contact1d.analysis.radius import ContactRadius
+from contact1d.analysis.theory.indenters import Ellipsoid, PowerLaw
+from contact1d.analysis.theory.mindlin import mindlin_path
+from contact1d.workflow.body.derived import REPORTED
+from contact1d.workflow.body.reading import IMAGE, stands_for_spheres
+from contact1d.workflow.body.theory import Case, applying, drawn_along, indented, sliding_contact
+from contact1d.workflow.body.traction import row_of
+from contact1d.workflow.continuation.state import radius_rule
+from contact1d.workflow.runs import inputs
+from contact1d.workflow.runs.report import COLUMN_UNITS
+from contact1d.workflow.scene import History
+from contact1d.workflow.scene.tables import SPHERES, WIDER_THAN_SPHERES
+from contact1d.workflow.units import NUMBER
+
+if TYPE_CHECKING:
+    from contact1d.workflow.runs.finished import Run
+
+Array = NDArray[np.float64]
+LEAST, LARGEST = 0.05, 1.3
+"""Radii over a₀ from and to which JKR is drawn; on a plane from where fixed grips part."""
+CURVE_COLUMNS = ("displacement", "force", "contact_radius", "branch")
+"""Without which a table is no curve."""
+
+
+CONTACT_RADIUS = "contact radius a"
+MAIN = {
+    "tangential_displacement": "tangential_force", "drive": "friction", "time": "displacement", "displacement": "force",
+}  # fmt: skip
+"""What the path of a run is drawn over, the first that it has, and what is drawn over it."""
+FROM_ZERO = ("contact_radius", "force", "friction", "tangential_force")
+"""Columns whose 0 a figure shows."""
+SAME_LOAD = 1e-9
+"""Relative change up to which a load is constant."""
+FINE = 300
+"""Radii at which a closed form is drawn."""
+BETWEEN = 50
+"""Points of a closed form for each step of a path."""
+
+
+def charts(run: Run) -> dict[str, Chart]:
+    """What each figure of a run shows, by the names of the files, the main one first; in base units."""
+    scales, bodies = run.scales, run.scene.bodies
+    title = run.scene.title + ("" if bodies.reduction == "mdr" else f"\n(reduction {bodies.reduction})")
+    return {
+        name: replace(chart, title=title).written(lambda _, unit: scales.base(unit), scales.in_words)
+        for name, chart in _charts(run.model)
+    }
+
+
+def axis_of(column: str) -> Axis:
+    """The axis of a column of the tables, in units of the model."""
+    remark = figures.COMPRESSIVE if column in CURVE_COLUMNS[:2] else ""
+    name = "displacement of the drive" if column == "drive" else column.replace("_", " ")
+    return Axis(name, COLUMN_UNITS[column], remark, zero=column in FROM_ZERO)
+
+
+def main_curve(run: Run) -> dict[str, Array]:
+    """What the path of a run is drawn over, and what is drawn over it: columns by their names, in units of the model.
+
+    A row for each state: a slide begins with one under the load, before it is driven.
+    """
+    columns = run.friction or run.curve
+    over = next(name for name in MAIN if name in columns)
+    names = [over, "force" if over == "time" and run.scene.experiment.places() else MAIN[over]]
+    if "normal_force" in columns and np.ptp(load := columns["normal_force"]) > SAME_LOAD * np.abs(load).max():
+        names.append("normal_force")
+    missing = np.full(run.curve.force.size - columns[over].size, nan)
+    return {name: np.append(missing, columns[name]) for name in names}
+
+
+def legs_of(run: Run, along: Array) -> list[tuple[str, NDArray[np.int64]]]:
+    """Name and rows of each leg of a prescribed path, which begins where the one before it ends.
+
+    Otherwise of each branch of a cycle, in the order of the positions `along`: a search goes to and fro.
+    """
+    branch, kind = run.curve.branch, run.scene.experiment
+    if kind.way_is_given or kind.goes_along:
+        starts = [0, *np.flatnonzero(branch[1:] != branch[:-1]) + 1, branch.size]
+        legs = [np.arange(max(start - 1, 0), end) for start, end in pairwise(starts)]
+    else:
+        order = np.argsort(along, kind="stable")
+        names = np.char.add(branch, run.curve.get("cycle", np.zeros(branch.size)).astype(str))
+        legs = [order[names[order] == name] for name in dict.fromkeys(names.tolist())]
+    return [(str(branch[rows[-1]]), rows) for rows in legs]
+
+
+def _charts(run: Run) -> Iterator[tuple[str, Chart]]:
+    """The charts of a run in units of the model, by their names."""
+    scene, profiles = run.scene, figures.seen(run.profiles)
+    over, up, *_ = main_curve(run)
+    rule = radius_rule(scene, scene.accuracy.tolerance)
+    radii = {state: radius for state in profiles if (radius := rule.of(run.profiles[state]))}
+    if run.detachments and run.detachments["force"].size > 1:
+        yield DETACHMENTS, figures.detachments(run.detachments["force"])
+    if SAMPLE_TABLE in run.tables:
+        yield SAMPLE_TABLE, _samples(run)
+    if scene.friction:
+        yield "tangential", path_chart(run, tangential_force=_mindlin(run))
+        yield "stick_slip", figures.stick_slip(profiles, scene.friction.coefficient, _zones(run, profiles))
+    elif over != "displacement":
+        name = "friction" if run.friction else f"{up}_{over}"
+        yield name, path_chart(run, force=_ting(run, over) if up == "force" else [])
+    if ("displacement" in (over, up) or isinstance(scene.experiment, History)) and (
+        not scene.noise or scene.experiment.way_is_given
+    ):
+        yield from _under_load(run)
+    if all(profile.x.size > 1 for profile in profiles.values()):  # one particle has no pressure over x
+        yield "pressure", figures.pressure(profiles, radii)
+    marks = _marks(run, radii)
+    if pressures := run.body_pressures:
+        yield "pressure_3d", figures.body("pressure", pressures, marks, _body_theory(run, marks))
+    if "inputs" in run.tables:
+        yield "inputs", inputs.chart(run.tables["inputs"])
+    if shears := run.body_shears:
+        yield "shear_3d", figures.body("shear_stress", shears, marks, {})
+    if taken := scene.bodies.profile.taken:
+        yield "scan", figures.scan(taken)
+
+
+def path_chart(run: Run, columns: Mapping[str, Array] | None = None, **beside: Sequence[Series]) -> Chart:
+    """Columns over the first one, by default the main curve, with what is beside each; in units of the model."""
+    (over, along), *upwards = (columns or main_curve(run)).items()
+    panels = [(axis_of(name), column, beside.get(name, ())) for name, column in upwards]
+    return figures.path(axis_of(over), along, legs_of(run, along), *panels)
+
+
+def _samples(run: Run) -> Chart:
+    """The motion of a contact with noise, and the load on it."""
+    table, mean = run.tables[SAMPLE_TABLE], run.results.get("displacement")
+    beside = {"force": figures.lines(("load", table["time"], table["load"]))}
+    if mean is not None:
+        beside["displacement"] = figures.level(mean.value, mean.uncertainty, "mean")
+    return path_chart(run, {name: table[name] for name in ("time", "displacement", "force")}, **beside)
+
+
+def _under_load(run: Run) -> Iterator[tuple[str, Chart]]:
+    """Force over displacement and, where that changes, over the contact radius."""
+    curve, theory, scale, tension = run.curve, _theory(run), _pull_off(run), run.results.get("adhesion_force")
+    beside = figures.lines(*((name, d, force) for name, _, d, force in theory))
+    beside += _ting(run, "displacement")
+    if tension and tension.value:
+        beside += figures.level(-tension.value, tension.uncertainty, f"$F_A$ = {tension.value:.4g} FU")
+    yield "force_displacement", path_chart(run, {name: curve[name] for name in CURVE_COLUMNS[:2]}, force=beside)
+    radius = np.where(curve.contact_radius > 0.0, curve.contact_radius, nan)
+    x, y = axis_of("contact_radius"), axis_of("force")
+    beside = [] if run.scene.adheres else figures.lines(*((name, a, force) for name, a, _, force in theory))
+    width, height = 1.0, 1.0
+    if scale and run.scene.bodies.profile.kind in SPHERES:
+        height, width = scale
+        x, y = Axis("contact radius $a/a_0$"), replace(y, name="force $F/F_A$", unit=NUMBER)
+        beside = figures.reduced(float(np.nanmax(radius)) / width)
+    elif np.unique(radius[np.isfinite(radius)]).size < 2:
+        return
+    panel, spread = (y, curve.force / height, beside), curve.contact_radius_uncertainty / width
+    yield "force_radius", figures.path(x, radius / width, legs_of(run, radius), panel, spread=spread)
+
+
+def _ting(run: Run, over: str) -> list[Series]:
+    """F of Lee, Radok and Ting over a column of the curve; nothing where they do not apply."""
+    history = indented(Case(run.scene, run.results))
+    return [] if history is None else figures.lines(("Ting", run.curve[over], history.forces(run.curve.time)))
+
+
+def _pull_off(run: Run) -> tuple[float, float] | None:
+    """F_A and a₀ of the image, to which the curve belongs; None where there is none, or no width at F = 0."""
+    found = [run.results.get(name) for name in ("adhesion_force", f"{IMAGE}zero_load_radius", "zero_load_radius")]
+    force, radius = found[0], found[1] or found[2]
+    return (force.value, radius.value) if force and radius and radius.value > 0.0 else None
+
+
+def _zones(run: Run, states: Iterable[str]) -> dict[str, tuple[float, float, int]]:
+    """Stick radius, place along x and direction of each state: as the row of the curve has them."""
+    zones, places = {}, run.curve.tangential_displacement
+    for state in states:
+        row = row_of(state, run.curve)
+        moves = np.trim_zeros(np.diff(places[: row + 1], prepend=0.0))
+        zones[state] = run.curve.stick_radius[row], places[row], int(np.sign(moves[-1:]).sum())
+    return zones
+
+
+def _marks(run: Run, radii: Mapping[str, ContactRadius]) -> dict[str, dict[str, float]]:
+    """What has a radius on the body, by state."""
+    wider = WIDER_THAN_SPHERES if stands_for_spheres(run.scene) else 1.0
+    sticks = _zones(run, radii) if run.scene.experiment.goes_along else {}
+    return {
+        state: {CONTACT_RADIUS: radius.value / wider} | ({"stick radius c": sticks[state][0]} if sticks else {})
+        for state, radius in radii.items()
+    }
+
+
+def _body_theory(run: Run, marks: Mapping[str, Mapping[str, float]]) -> dict[str, figures.Theory]:
+    """The closed form of p(r), by the state that it speaks of."""
+    case = Case(run.scene, run.results)
+    for state in (name for name in REPORTED if name in marks):
+        for form in applying(case):
+            if form.pressure is not None:
+                r = marks[state][CONTACT_RADIUS] * np.sin(np.linspace(0.005, 0.4999 * np.pi, FINE))
+                return {state: (form.name, r, form.pressure(case, r))}
+    return {}
+
+
+def _mindlin(run: Run) -> list[Series]:
+    """F_x of Cattaneo and Mindlin over u along the path of a parabola under one load; of others nothing."""
+    case, places = Case(run.scene, run.results), run.friction["tangential_displacement"]
+    if not drawn_along(case):
+        return []
+    steps = places.size - 1
+    dense = np.interp(np.linspace(0.0, steps, 1 + BETWEEN * steps), range(places.size), places)
+    force = mindlin_path(dense.tolist(), *sliding_contact(case)[:3])
+    return figures.lines(("Cattaneo–Mindlin", dense, np.asarray(force)))
+
+
+def _theory(run: Run) -> list[tuple[str, Array, Array, Array]]:
+    """Name, and a, d, F of the closed form of the body; of two chains that of JKR with the run's own F_A and a₀.
+
+    The image x²/2R₁ on springs E* per length is the contact of R = 2R₁; its a₀ is twice that of the two spheres.
+    """
+    scene, half, case, pull_off = run.scene, run.scene.bodies.plane_radius, Case(run.scene, run.results), _pull_off(run)
+    radius, forms = 2.0 * (half or 0.0), applying(case)
+    body: PowerLaw | Ellipsoid
+    if scene.viscoelasticity:
+        return []
+    if half is not None:
+        work = scene.work_of_adhesion
+        name, body = (
+            "JKR" if work else "Hertz",
+            PowerLaw.sphere(radius, scene.bulk_stiffness / scene.bodies.spacing, work),
+        )
+    elif forms and case.kind != "flat_punch":
+        name, body = forms[0].name, case.body
+    else:
+        return []
+    if scene.work_of_adhesion:
+        return [(name, *body.curve(body.fixed_grips_radius(), LARGEST * body.zero_load_radius()))]
+    if pull_off is not None:
+        force, a_0 = pull_off
+        fitted = PowerLaw.sphere(radius, 3.0 * force * radius / a_0**3, force / (1.5 * pi * radius))
+        return [("JKR, same $F_A$ and $a_0$", *fitted.curve(LEAST * a_0, LARGEST * a_0))]
+    if not scene.interaction:
+        return [(name, *body.curve(0.0, body.radius_at(max(float(run.curve.displacement.max()), 0.0))))]
+    return []
