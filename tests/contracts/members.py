@@ -16,7 +16,7 @@ from contact1d import read_scene
 from contact1d.workflow.experiments import KINDS
 from contact1d.workflow.scene import EFFECTS, Profile, Scene, SceneError
 from contact1d.workflow.scene.experiments import KINDS as TABLES
-from contact1d.workflow.scene.experiments import Method
+from contact1d.workflow.scene.kinds import Method
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,10 @@ from validation.references.mdr import ReducedContact
 RADIUS, ENERGY = 1000.0, 0.005
 
 
+DIGITS = 1e-11
+"""Relative, of a force: steps of a search end where the curve is straight."""
+
+
 def scene(**more: Any) -> dict[str, Any]:
     """A sphere on springs of E* = 1; `more` are its other tables."""
     bodies = {
@@ -47,6 +51,14 @@ def test_nothing_is_pulled_off_that_nothing_holds() -> None:
     with pytest.raises(SceneError, match=r"adhesion\.surface_energy = 0\.0: must be greater than 0"):
         scene_from_dict(tables)
     assert scene_from_dict(tables | {"experiment": {"kind": "load", "force": 1.0}}).adheres is False
+
+
+@pytest.mark.parametrize("load", [0.1, 3.0, 77.7])
+def test_a_load_has_its_digits_however_few_particles_carry_it(load: float, tmp_path: Path) -> None:
+    tables = scene(experiment={"kind": "load", "force": load})
+    tables["bodies"] |= {"particles": 41, "profile": {"kind": "parabola", "radius": 100.0}}
+    found = run(tables, tmp_path / "run", figures=False).outcome.results["force"].value
+    assert found == pytest.approx(load, rel=DIGITS)
 
 
 @pytest.mark.parametrize("work", [1e-300, 1e-30])

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d.workflow.body.theory import Case, applying, theory
+from contact1d.workflow.body.cases import Case
+from contact1d.workflow.body.theory import applying, theory
 from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.units import Quantity, Scales
 from tests.scenes import chains

@@ -14,7 +14,7 @@ import pytest
 from typer.testing import CliRunner
 
 from contact1d import Contact1dError, SceneError, fit, fit_many
-from contact1d.workflow.body.theory import ASSUMED_RANGE
+from contact1d.workflow.body.cases import ASSUMED_RANGE
 from contact1d.workflow.cli.app import app
 from validation.references.force_curves import Sphere, measured, noise
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from contact1d.workflow import scene as scenes
 from contact1d.workflow.scene import effects, tables
-from contact1d.workflow.scene.experiments import Cycles
+from contact1d.workflow.scene.kinds import Cycles
 from contact1d.workflow.scene.quantities import Table, keys_of
 from contact1d.workflow.scene.schema import described
 from contact1d.workflow.scene.si_text import example, in_words

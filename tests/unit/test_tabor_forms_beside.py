@@ -10,7 +10,8 @@ from typing import Any
 
 import pytest
 
-from contact1d.workflow.body.theory import Case, applying, tabor
+from contact1d.workflow.body.cases import Case
+from contact1d.workflow.body.theory import applying, tabor
 from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.units import Quantity
 from tests.scenes import chains

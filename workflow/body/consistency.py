@@ -6,7 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from contact1d.workflow.body.theory import Case, applying
+from contact1d.workflow.body.cases import Case
+from contact1d.workflow.body.theory import applying
 from contact1d.workflow.body.traction import BodyPressure
 from contact1d.workflow.continuation.outcome import Agreement, Outcome
 from contact1d.workflow.scene import Scene
@@ -48,7 +49,9 @@ def pressure(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressur
 def closed_form(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Agreement]:
     """The results beside each closed form that is exact for the run; `quantities`: as if its inputs were exact."""
     radius = max((one.value for name, one in quantities.items() if name.endswith("radius")), default=0.0)
-    reach = scene.bodies.profile.reach
+    bodies, reach = scene.bodies, scene.bodies.profile.reach
+    if bodies.particles != "auto" and bodies.own_count is None:  # the chain itself is the body
+        return {}
     if radius < FEWEST * scene.bodies.spacing or (radius > WIDEST * reach and not scene.bodies.profile.has_edge):
         return {}
     case, found = Case(scene, quantities), []

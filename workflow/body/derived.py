@@ -25,8 +25,9 @@ import numpy as np
 
 from contact1d.analysis.pressure import Array
 from contact1d.potentials import DoubleExponential
+from contact1d.workflow.body.cases import Case
 from contact1d.workflow.body.reading import product
-from contact1d.workflow.body.theory import Case, tabor
+from contact1d.workflow.body.theory import tabor
 from contact1d.workflow.body.traction import BodyPressure, body_pressures, is_of_a_body
 from contact1d.workflow.continuation.outcome import MODEL, Made, Outcome, Result
 from contact1d.workflow.laws.pairs import row_force

@@ -14,14 +14,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from contact1d.analysis.pressure import Array
-from contact1d.analysis.theory.adhesion import LENNARD_JONES_STRESS, Dmt, MaugisDugdale, Theory, of_tabor, valid_theory
-from contact1d.analysis.theory.indenters import Contact, Ellipsoid, FlatPunch, PowerLaw
+from contact1d.analysis.theory.adhesion import Dmt, MaugisDugdale, Theory, of_tabor, valid_theory
+from contact1d.analysis.theory.indenters import Contact, PowerLaw
 from contact1d.analysis.theory.mindlin import (
     mindlin_cycle_energy,
     mindlin_path,
@@ -29,136 +28,14 @@ from contact1d.analysis.theory.mindlin import (
     sliding_displacement,
 )
 from contact1d.analysis.theory.relaxing import Indented
-from contact1d.workflow.model.cutoff import interaction_law
+from contact1d.workflow.body.cases import Case, Values
 from contact1d.workflow.scene import History, Scene
-from contact1d.workflow.scene.tables import SPHERES
-from contact1d.workflow.units import UNKNOWN, Quantity, Scales, scale_of
-
-Values = dict[str, float]
+from contact1d.workflow.units import Quantity, Scales, scale_of
 
 SHOWN = 6
 """Decimals of a deviation in percent: below that it is round-off."""
 SAME_LOAD = 1e-12
 """Relative: up to that loads are one; round-off."""
-ASSUMED_RANGE = 0.3e-9
-"""h₀ [m] of an adhesion whose scene has none: a distance between atoms, and that of most solids."""
-
-
-@dataclass(frozen=True)
-class Case:
-    """A finished run, as a closed form sees it; all in model units.
-
-    Attributes:
-        scene: what ran.
-        quantities: what it found, of the body, by name.
-        scales: LU and FU, by which a range is assumed where the scene has none.
-    """
-
-    scene: Scene
-    quantities: Mapping[str, Quantity]
-    scales: Scales = UNKNOWN
-
-    @property
-    def contact_modulus(self) -> float:
-        """E* [FU/LU²] of the body: that of the layer, c = k/χh, with the MDR; 2c with the paper's reduction."""
-        layer = self.scene.bulk_stiffness / (self.scene.chains * self.scene.bodies.spacing)
-        return layer if self.scene.bodies.reduction == "mdr" else 2.0 * layer
-
-    @property
-    def radius(self) -> float | None:
-        """Effective R [LU] of a sphere on a plane, or of the paper's two equal spheres, R/2; None for no sphere."""
-        curvature = self.scene.bodies.profile.curvature_radius
-        if curvature is None or self.scene.bodies.reduction == "mdr":
-            return curvature
-        return 0.5 * curvature if self.kind in SPHERES else None
-
-    @property
-    def kind(self) -> str:
-        """Of the profile."""
-        return self.scene.bodies.profile.kind
-
-    @property
-    def force(self) -> float | None:
-        """F [FU] of the state that is reported, where the scene gives it; else None.
-
-        Where bodies adhere a force has two displacements, so that one under a given displacement tells nothing.
-        """
-        if self.scene.adheres and self.scene.experiment.places():
-            return None
-        return float(self.quantities["force"].value) if "force" in self.quantities else None
-
-    @property
-    def displacement(self) -> float | None:
-        """d [LU] of the state that is reported, where the scene gives it (the deepest of a path); else None."""
-        places = self.scene.experiment.places()
-        if not places or self.force is not None:
-            return None
-        return float(self.quantities["displacement"].value) if "displacement" in self.quantities else max(places)
-
-    @property
-    def work(self) -> float:
-        """W [FU/LU]: given, or implied by the interaction at the radius that the run found; 0 without."""
-        if self.scene.adhesion is not None:
-            return self.scene.adhesion.work
-        implied = self.quantities.get("work_of_adhesion")
-        return 0.0 if implied is None else float(implied.value)
-
-    @property
-    def range(self) -> float:
-        """h₀ [LU]: given or assumed, or of Lennard-Jones surfaces with an interaction's force-free distance; else 0."""
-        if self.scene.adhesion is not None:
-            return self.scene.adhesion.range or (ASSUMED_RANGE / self.scales.length if self.scales.known else 0.0)
-        law = interaction_law(self.scene)
-        return 0.0 if law is None or law.attraction is None else law.force_free_distance() / LENNARD_JONES_STRESS
-
-    @property
-    def is_elastic(self) -> bool:
-        """Whether springs under the profile are all there is: no attraction, no memory, no effect of other kinds."""
-        return self.scene.keeps_springs and not (self.scene.adheres or self.scene.viscoelasticity)
-
-    @property
-    def sphere(self) -> tuple[float, float, float]:
-        """R, E* and W of a sphere."""
-        assert self.radius is not None
-        return self.radius, self.contact_modulus, self.work
-
-    @property
-    def with_range(self) -> MaugisDugdale | None:
-        """The contact of an adhesive sphere whose attraction has a range; None for anything else."""
-        if self.radius is None or not (self.work > 0.0 and self.range > 0.0):
-            return None
-        return MaugisDugdale(*self.sphere, self.range)
-
-    @cached_property
-    def body(self) -> PowerLaw | Ellipsoid:
-        """The contact of a cone, a power, an ellipsoid or a sphere, with W where it adheres, without a range."""
-        profile: Any = self.scene.bodies.profile
-        e = self.contact_modulus
-        if self.kind == "cone":
-            return PowerLaw(profile.rise, 1.0, e, self.work)
-        if self.kind == "power":
-            return PowerLaw(profile.height_there / profile.radius**profile.exponent, profile.exponent, e, self.work)
-        if self.kind == "ellipsoid":
-            return Ellipsoid(profile.radius, profile.half_axis, e, self.work)
-        radius, *rest = self.sphere
-        return Ellipsoid(radius, radius, *rest) if self.kind == "circle" else PowerLaw.sphere(radius, *rest)
-
-    @cached_property
-    def contact_radius(self) -> float:
-        """a [LU] of the reported state by its force or displacement, of none at F = 0; 0 where the bodies are apart."""
-        try:
-            if self.displacement is not None:
-                return self.body.radius_at(self.displacement)
-            return self.body.contact_radius(self.force or 0.0)
-        except ValueError:
-            return 0.0
-
-    @cached_property
-    def punch(self) -> tuple[FlatPunch, float]:
-        """The contact of a flat punch, and its d [LU]."""
-        profile: Any = self.scene.bodies.profile
-        punch = FlatPunch(profile.radius, self.contact_modulus, self.work)
-        return punch, max(self.displacement or 0.0, 0.0) if self.force is None else self.force / punch.stiffness
 
 
 def _on_plane(case: Case) -> bool:

@@ -17,23 +17,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from operator import itemgetter
 from typing import Any
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from contact1d.analysis.abel import FEWEST, LineLoad, line_load
+from contact1d.analysis.abel import FEWEST, LineLoad
 from contact1d.analysis.polynomial import gauss
 from contact1d.analysis.pressure import Array, Profile, ZonedProfile
-from contact1d.analysis.radius import ContactRadius, whole_cells
 from contact1d.analysis.shear import kinks_of, shear_load
+from contact1d.workflow.body.loaded import Loaded, has_apex, through
 from contact1d.workflow.body.reading import stands_for_spheres
 from contact1d.workflow.continuation.state import radius_rule
 from contact1d.workflow.laws import law_of
 from contact1d.workflow.scene import Scene, Shape
-from contact1d.workflow.scene.tables import WIDER_THAN_SPHERES
 from contact1d.workflow.units import LINE_PRESSURE, MEAN_PRESSURE, Quantity
 
 MOST = 1000
@@ -43,13 +41,8 @@ RADII = 100
 ANGLES, PIECES = 20, 10
 """Positions of Gauss's at which p(r) is added up to a force, between kinks, and pieces of a body whose shape is a table
 or whose springs are not elastic: a corner of its history is a kink of the line load."""
-INNER = 6
-"""Part of the particles in a contact that show the slope of its load at the axis."""
 BETWEEN = 101
 """Radii between two particles at which the largest pressure is searched."""
-TIP, KNOWN_TIP, KINK = 1e-3, 1e-9, 0.5
-"""A profile has an apex where so little of a spacing off the axis its slope is that share of the one to a spacing; the
-second where the body's own shape is taken, and not what particles make of it."""
 ROUND_OFF = 2e-12
 """Error of a pressure over the stiffness of the layer: of positions beside the depth of the wall that carries them."""
 SOLVED = 5e-6
@@ -141,7 +134,7 @@ def body_pressures(
     rule, found = radius_rule(scene, scene.accuracy.tolerance), {}
     for name, profile in profiles.items():
         if (radius := rule.of(profile)) and radius.value > 0.0:
-            state = _Loaded(scene, profile, radius)
+            state = Loaded(scene, profile, radius)
             share = of_radius[name] if state.is_elastic and not scene.bodies.profile.has_edge else of_all
             if scene.adheres:
                 share = max(share, SOLVED)
@@ -150,114 +143,7 @@ def body_pressures(
     return found
 
 
-@dataclass(frozen=True, eq=False)
-class _Loaded:
-    """The line load of a state, of which p(r) is made; that of the paper's spheres as half as wide.
-
-    Attributes:
-        scene: what ran.
-        profile, radius: of the state.
-    """
-
-    scene: Scene
-    profile: Profile
-    radius: ContactRadius
-
-    @cached_property
-    def wider(self) -> float:
-        """Image over body."""
-        return WIDER_THAN_SPHERES if stands_for_spheres(self.scene) else 1.0
-
-    @property
-    def shape(self) -> Shape:
-        """Of the body."""
-        return self.scene.bodies.profile
-
-    @property
-    def zone(self) -> ZonedProfile | None:
-        """The profile, where its law tells where the contact ends."""
-        return self.profile if isinstance(self.profile, ZonedProfile) else None
-
-    @property
-    def is_alone(self) -> bool:
-        """Whether particles on a plane carry by themselves, so that their load is a function of the body's height."""
-        return self.scene.bodies.lower == "rigid_plane" and self.scene.neighbours is None
-
-    @property
-    def is_elastic(self) -> bool:
-        """Whether that function is a straight line of the springs' own slope."""
-        return self.is_alone and self.scene.keeps_springs
-
-    @cached_property
-    def x(self) -> Array:
-        """Positions [LU], (n,)."""
-        return self.profile.x / self.wider
-
-    @property
-    def layer(self) -> float:
-        """Stiffness of the springs [FU/LU²]."""
-        return self.scene.bulk_stiffness / self.scene.bodies.spacing
-
-    def heights(self, x: Array, shape: Shape | None = None) -> Array:
-        """c h(x) of the body [FU/LU], or of another one."""
-        bodies = self.scene.bodies
-        return self.layer * (bodies if shape is None else bodies.model_copy(update={"profile": shape})).height(x)
-
-    @cached_property
-    def held(self) -> bool:
-        """Whether the edge leaves a particle a share of its cell, and only the particles show where it is."""
-        return law_of(self.scene).holds and self.scene.adheres and self.zone is None
-
-    @cached_property
-    def edge(self) -> float | None:
-        """Where the load of the contact ends [LU]; None where it fades out."""
-        if self.zone:
-            return self.zone.edge
-        return (
-            self.radius.value / self.wider if self.shape.has_edge or self.held or not self.scene.interaction else None
-        )
-
-    @cached_property
-    def jump(self) -> float | None:
-        """The load just inside the edge [FU/LU]; None where the particles show it: at the end of a body, and of JKR."""
-        if self.zone:
-            return self.zone.jump
-        return None if self.shape.has_edge or self.held else 0.0
-
-    @cached_property
-    def load(self) -> Array:
-        """q [FU/LU] of the particles, (n,); of springs with a straight load what the edge and the jump there say."""
-        if self.zone and self.is_elastic:
-            edge = self.heights(np.asarray([self.zone.edge]))
-            return np.where(np.abs(self.x) < self.zone.edge, self.zone.jump + edge - self.heights(self.x), 0.0)
-        return self.wider * (whole_cells(self.profile, self.radius) if self.held else self.profile.pressure)
-
-    @cached_property
-    def body(self) -> Callable[[Array], Array] | None:
-        """κ h(x) [FU/LU], κ = −dq/dh at the axis; None where the shape of a body is open, or springs are not alone."""
-        if not self.is_alone or self.shape.has_edge or self.shape.alternatives or self.shape.deviations:
-            return None
-        if self.is_elastic:
-            return self.heights
-        inside = np.flatnonzero((self.x > 0.0) & (self.load != 0.0))
-        if inside.size < FEWEST:
-            return None
-        near = inside[[0, max(1, inside.size // INNER)]]
-        fall, rise = self.load[near[0]] - self.load[near[1]], np.diff(self.heights(self.x[near]))[0]
-        slope = float(fall / rise) if rise > 0.0 else 1.0
-        return lambda x: slope * self.heights(x)
-
-    def through(self, load: Array, stride: int, first: int = 0) -> LineLoad | None:
-        """The line load through every `stride`-th particle on either side, from the first one or a later one on."""
-        apex = _has_apex(self.scene, TIP if self.body is None else KNOWN_TIP)
-
-        def of(chosen: Array) -> LineLoad:
-            return line_load(self.x[chosen], load[chosen], self.edge, self.jump, apex, self.body, self.shape.kinks)
-
-        return _through(self.x.size, stride, of, first)
-
-
-def _pressure(state: _Loaded, share: float, given: float) -> BodyPressure | None:
+def _pressure(state: Loaded, share: float, given: float) -> BodyPressure | None:
     """p(r) of a state; None where too few particles carry it, or they are not alike on both sides.
 
     `share`: by how much results are off, relative to `_moves`; `given`: relative to p.
@@ -304,14 +190,14 @@ def _pressure(state: _Loaded, share: float, given: float) -> BodyPressure | None
     )  # fmt: skip
 
 
-def _added_up(state: _Loaded) -> float:
+def _added_up(state: Loaded) -> float:
     """Most by which the sum of the particles is off ∫ q dx [FU]: Δ²/12 of each change of slope (Euler, Maclaurin)."""
     if state.jump != 0.0:
         return 0.0
     return float(np.abs(np.diff(np.pad(state.load, 2), 2)).sum()) * state.scene.bodies.spacing / state.wider / 12.0
 
 
-def _stiffness(state: _Loaded, share: float) -> Quantity | None:
+def _stiffness(state: Loaded, share: float) -> Quantity | None:
     """dF/dd = −∫ (dq/dh) dx of springs whose forces are functions of d − h, which is 2E*a of linear ones.
 
     Between two particles the slope is that of the straight line; `share`: what the results are off, relatively.
@@ -333,7 +219,7 @@ def _stiffness(state: _Loaded, share: float) -> Quantity | None:
 
 
 def _by_shape(
-    state: _Loaded, stride: int, r: Array, p: Array, pulled: Callable[[Array], Array]
+    state: Loaded, stride: int, r: Array, p: Array, pulled: Callable[[Array], Array]
 ) -> Callable[[Callable[[Array], Any]], Any]:
     """What the bodies that this one may be change of what is read off p(r), the independent ones in squares."""
     shape, at = state.shape, state.x if state.edge is None else np.clip(state.x, -state.edge, state.edge)
@@ -357,7 +243,7 @@ def _by_shape(
 
 
 def _largest(
-    state: _Loaded, fine: LineLoad, r: Array, levels: Sequence[Array], pressure: Callable[[Array], Array]
+    state: Loaded, fine: LineLoad, r: Array, levels: Sequence[Array], pressure: Callable[[Array], Array]
 ) -> dict[str, tuple[Quantity, int, Callable[[Array], Any]]]:
     """p(0) and the largest pressure where they have a bound, each with the radius and the reader of its error.
 
@@ -425,24 +311,6 @@ def _converges(levels: Sequence[float], noise: float) -> bool:
     return change <= noise * abs(first) or change < SHRINKS * abs(first - fourth)
 
 
-def _has_apex(scene: Scene, off: float = TIP) -> bool:
-    """Whether the profile has a tip, below which a pressure has no bound, by its slope `off` spacings from the axis."""
-    tip, beside = scene.bodies.height(np.array([off, 1.0]) * scene.bodies.spacing)
-    return bool(tip > KINK * off * beside)
-
-
-def _through(size: int, stride: int, load: Callable[[Array], LineLoad], first: int = 0) -> LineLoad | None:
-    """The line load through every `stride`-th particle on either side; None where these are too few."""
-    right = np.arange(size // 2 + first, size)[::stride]
-    left = size - 1 - right[::-1]
-    if right.size < FEWEST:
-        return None
-    try:
-        return load(np.concatenate([left[left < right[0]], right]))
-    except ValueError:
-        return None
-
-
 def _spread(values: Array, *coarser: Array) -> Array:
     """|fine − coarse|, and a part of the next difference; the value itself where there is no coarser one."""
     levels = (values, *(coarser or (0.0,)))
@@ -485,9 +353,9 @@ def _shear(scene: Scene, profile: Profile, edge: float, kinks: Sequence[float], 
     """q(r) of a state; None where too few particles touch."""
 
     def load(chosen: Array) -> LineLoad:
-        return shear_load(profile.x[chosen], -profile.shear[chosen], edge, kinks, _has_apex(scene))
+        return shear_load(profile.x[chosen], -profile.shear[chosen], edge, kinks, has_apex(scene))
 
-    levels = [one for stride in (1, 2) if (one := _through(profile.x.size, stride, load))]
+    levels = [one for stride in (1, 2) if (one := through(profile.x.size, stride, load))]
     if not levels:
         return None
     r = np.unique(np.concatenate([np.linspace(0.0, edge, RADII), kinks]))[levels[0].has_apex :]

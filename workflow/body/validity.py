@@ -19,9 +19,9 @@ import numpy as np
 from contact1d.analysis.theory.adhesion import JKR_TABOR, MaugisDugdale, Theory, of_tabor
 from contact1d.analysis.theory.indenters import Ellipsoid, PowerLaw
 from contact1d.digits import apart, digits_apart
+from contact1d.workflow.body.cases import ASSUMED_RANGE, Case
 from contact1d.workflow.body.derived import pressures_of
 from contact1d.workflow.body.reading import stands_for_spheres
-from contact1d.workflow.body.theory import ASSUMED_RANGE, Case
 from contact1d.workflow.body.traction import is_of_a_body
 from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.scene import Scene

@@ -13,7 +13,7 @@ import numpy as np
 from contact1d.analysis import plots
 from contact1d.analysis.chart import BLACK, COMPRESSION, TENSION, THEORY, Axis, Chart, Panel, Series
 from contact1d.files import write_whole
-from contact1d.workflow.body.theory import ASSUMED_RANGE
+from contact1d.workflow.body.cases import ASSUMED_RANGE
 from contact1d.workflow.fit import curve as curves
 from contact1d.workflow.fit import search
 from contact1d.workflow.fit.fit import Found

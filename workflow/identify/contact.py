@@ -10,7 +10,7 @@ from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, Literal
 
-from contact1d.workflow.body.theory import ASSUMED_RANGE
+from contact1d.workflow.body.cases import ASSUMED_RANGE
 from contact1d.workflow.scene import Problem, Scene, SceneError, read_tables, scene_from_dict
 from contact1d.workflow.scene.problems import nearest, shown
 from contact1d.workflow.scene.profile_file import ProfileFileError, is_scan, read_profile

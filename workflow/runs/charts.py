@@ -17,9 +17,10 @@ from contact1d.analysis.curve import DETACHMENTS, SAMPLE_TABLE
 from contact1d.analysis.radius import ContactRadius
 from contact1d.analysis.theory.indenters import Ellipsoid, PowerLaw
 from contact1d.analysis.theory.mindlin import mindlin_path
+from contact1d.workflow.body.cases import Case
 from contact1d.workflow.body.derived import REPORTED
 from contact1d.workflow.body.reading import IMAGE, stands_for_spheres
-from contact1d.workflow.body.theory import Case, applying, drawn_along, indented, sliding_contact
+from contact1d.workflow.body.theory import applying, drawn_along, indented, sliding_contact
 from contact1d.workflow.body.traction import row_of
 from contact1d.workflow.continuation.state import radius_rule
 from contact1d.workflow.runs import inputs

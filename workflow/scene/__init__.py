@@ -12,18 +12,8 @@ from contact1d.workflow.scene.effects import (
     Rate,
     Viscoelasticity,
 )
-from contact1d.workflow.scene.experiments import (
-    History,
-    Hold,
-    Impact,
-    Kind,
-    Load,
-    Path,
-    PullOff,
-    Slide,
-    Span,
-    Tangential,
-)
+from contact1d.workflow.scene.experiments import History, Hold, Impact, Load, Path, PullOff, Slide, Tangential
+from contact1d.workflow.scene.kinds import Kind, Span
 from contact1d.workflow.scene.measured import Measured
 from contact1d.workflow.scene.problems import Problem, SceneError
 from contact1d.workflow.scene.profiles import Profile

@@ -12,7 +12,7 @@ from itertools import chain
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from contact1d.workflow.scene.experiments import Kind
+from contact1d.workflow.scene.kinds import Kind
 from contact1d.workflow.scene.problems import MOST_PROBLEMS, as_toml, nearest, plain, suggestion
 from contact1d.workflow.scene.quantities import Allowed, OutOfRange, Place, keys_of, tables_in
 from contact1d.workflow.scene.schema import statement, text_of

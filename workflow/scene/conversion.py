@@ -13,7 +13,8 @@ from collections.abc import Mapping
 from copy import copy
 from fractions import Fraction
 
-from contact1d.workflow.scene.experiments import KINDS, Kind
+from contact1d.workflow.scene.experiments import KINDS
+from contact1d.workflow.scene.kinds import Kind
 from contact1d.workflow.scene.quantities import Place, numbers_in
 from contact1d.workflow.scene.si_text import UnitTextError, example, si_value
 from contact1d.workflow.scene.tables import TIMED

@@ -12,121 +12,42 @@ Two periodic chains of n and m particles close together only if n·s_lower = m·
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from fractions import Fraction
+from collections.abc import Mapping
 from itertools import pairwise
-from typing import Any
 
 from contact1d.digits import apart
-from contact1d.workflow.scene.experiments import KINDS, Cycles, Kind, Span
+from contact1d.workflow.scene.body_rules import (
+    counter_body,
+    lower_body,
+    material,
+    open_spacing,
+    periodic,
+    punch,
+    reduction,
+)
+from contact1d.workflow.scene.draft import (
+    DIGITS,
+    PARTICLES,
+    PLANE,
+    SAID_OF,
+    WHOLE_NUMBER_ERROR,
+    Draft,
+    Row,
+    Rows,
+    limit,
+)
+from contact1d.workflow.scene.experiments import KINDS
+from contact1d.workflow.scene.kinds import Cycles, Span
 from contact1d.workflow.scene.problems import Problem
 from contact1d.workflow.scene.quantities import Place, Table, keys_of
-from contact1d.workflow.scene.si_text import split
 from contact1d.workflow.scene.tables import (
-    ALIKE,
     EFFECT_TABLES,
-    SPHERES,
     TIMED,
     Bodies,
     default_method,
-    default_reduction,
-    wider_than_body,
 )
 
-WHOLE_NUMBER_ERROR = 1e-9
-"""Relative error of a quotient of two decimals up to which it counts as whole, or two lengths as equal."""
-LONGEST_CELL = 1000
-"""Most particles of a pair of chains that is suggested in place of one that does not close."""
-DIGITS = 6
-"""Of a number in a message, at least."""
-PLANE = 'bodies.lower = "rigid_plane"'
-PARTICLES = 'bodies.lower = "particles"'
-GIVE_SPACING = "give bodies.spacing as a length (LU)"
-ELASTICITY = "material.upper and material.lower with E and ν, or material.contact_modulus"
-
-Row = tuple[str, object, str, str] | tuple[str, object, str, str, Mapping[str, float]]
-Rows = Iterator[Row]
-SAID_OF = {"miss": True, "not ": False, "only": False}
-"""Whether messages that begin so are about a key that is absent; others may be about any."""
-
-
-class Draft:
-    """A scene that may have wrong values.
-
-    A dotted path is `in` it where anything stands, right or wrong. By a path it gives what stands there or counts where
-    nothing does, and None where that is not known or there is no such table.
-
-    Attributes:
-        kind, lower, profile: what the experiment, the lower body and the profile are; None if that is not known.
-        experiment: the experiment's table, which declares what it needs; `Kind` if it is not known.
-        on_plane, on_chain: whether the lower body is known to be a rigid plane, or to be of particles.
-        effects: those whose tables are there.
-    """
-
-    def __init__(self, scene: Place) -> None:
-        """Keep the scene."""
-        self.scene = scene
-        self.kind, self.lower, self.profile = self["experiment.kind"], self["bodies.lower"], self["bodies.profile.kind"]
-        self.experiment = KINDS.get(self.kind, Kind)
-        self.on_plane = self.lower == "rigid_plane"
-        self.on_chain = not self.on_plane and self.lower is not None
-        self.effects = tuple(name for name in EFFECT_TABLES if name in self)
-
-    def __contains__(self, path: str) -> bool:
-        """Whether something stands at `path`."""
-        place = self.scene.at(path)
-        return place is not None and not place.absent
-
-    def __getitem__(self, path: str) -> Any:
-        """See above."""
-        place = self.scene.at(path)
-        return place.value if place and place.sound else None
-
-    def written(self, path: str, number: float) -> float | str:
-        """A number for `path` to six digits, in the unit of the text that stands there."""
-        place = self.scene.at(path)
-        if not place or not place.source or not place.value:
-            return float(f"{number:.{DIGITS}g}")
-        given, unit = split(place.source.value)
-        return f"{number / place.value * float(given):.{DIGITS}g}{unit}"
-
-
-def limit(value: float, of: float) -> str:
-    """The limit of a value that lies beyond it, as text that shows that."""
-    return apart(value, of, DIGITS)[1]
-
-
 # fmt: off
-def _lower_body(d: Draft) -> Rows:
-    pulls_off, slides, along = d.kind == "pull_off", d.experiment.motion_is_result, d.experiment.goes_along
-    # a rigid plane neither drags a slide nor holds a pull-off without adhesion
-    inert = d.on_plane and (slides or (pulls_off and "adhesion" not in d))
-    touched = d.on_plane and not inert
-    yield ("interaction", d.on_chain,
-           "missing, needed by a lower body of particles", f"add [interaction], or use {PLANE}")
-    yield ("interaction", touched,
-           f"not with {PLANE}, which is touched directly", f"remove it, or use {PARTICLES}")
-    yield ("horizontal", touched and "horizontal" in d,
-           "has no effect on a rigid plane, which exerts no tangential force on a particle",
-           f"remove it, or use {PARTICLES}")
-    yield ("bodies.lower", inert and slides,
-           "a rigid plane cannot drag the upper body", 'use lower = "particles" and an [interaction]')
-    yield ("bodies.lower", inert and pulls_off,
-           "a rigid plane cannot hold the upper body",
-           'add [adhesion] with work_of_adhesion, or use lower = "particles" and an [interaction]')
-    yield ("bodies.lower", d.on_chain and along,
-           'must be "rigid_plane" with kind = "tangential", whose friction is Coulomb\'s',
-           'between two chains friction comes from the interaction: use kind = "slide"')
-    yield ("friction", d.on_chain and not along,
-           "not between two chains, whose friction comes from the interaction",
-           f'remove it, or use {PLANE} and kind = "tangential"')
-    what = "[viscoelasticity]" if "viscoelasticity" in d else f'kind = "{d.kind}"'
-    yield ("bodies.lower", d.on_chain and (d.kind in ("history", "impact") or "viscoelasticity" in d),
-           f'must be "rigid_plane" with {what}, whose springs are those of both bodies',
-           f"use {PLANE}, with the contact modulus of both")
-    yield ("adhesion", d.on_chain,
-           "not between two chains, which attract each other by the interaction",
-           f"use interaction.attraction, or {PLANE}")
 
 
 def _interaction(d: Draft) -> Rows:
@@ -261,128 +182,6 @@ def _relaxing(d: Draft) -> Rows:
                *apart(longest, shortest, DIGITS)), "give more steps, or leave it to the program")
 
 
-def _open_spacing(d: Draft) -> Rows:
-    """A spacing that is left to the program."""
-    if d["bodies.spacing"] != "auto":
-        return
-    yield ("bodies.spacing", d.on_chain,
-           "must be a length (LU) with a lower body of particles, whose forces belong to its particles",
-           f'{GIVE_SPACING}; "auto" is for lower = "rigid_plane", where the results converge with the spacing')
-    if d.on_chain:
-        return
-    yield ("bodies.particles", d["bodies.particles"] not in (None, "auto"),
-           'must be "auto" with spacing = "auto"', f"write it, or {GIVE_SPACING}")
-    yield ("bodies.bulk_stiffness", d["bodies.bulk_stiffness"] not in (None, "auto"),
-           'must be "auto" with spacing = "auto": the stiffness of a particle is E* times the spacing',
-           f"write it, and {ELASTICITY}; or {GIVE_SPACING}")
-    yield ("bodies.bulk_stiffness_tangential", True,
-           'not with spacing = "auto": it is a property of one particle',
-           f"remove it: it follows from ν of material.upper and lower; or {GIVE_SPACING}")
-    yield ("bodies.spacing", d.profile == "flat",
-           "must be a length (LU) of a flat body without an edge", f'{GIVE_SPACING}, or use kind = "flat_punch"')
-    tied = [f"[{name}]" for name in ("neighbours", "damping", "noise", "plate") if name in d]
-    tied = [] if d.experiment.is_massless else tied
-    tied += ['method = "dynamic"'] * (d["experiment.method"] == "dynamic")
-    what = next(iter(tied), "")
-    yield ("bodies.spacing", what,
-           f"must be a length (LU) with {what}: masses, drags and springs between particles belong to one spacing",
-           f"{GIVE_SPACING}, or remove {what}")
-
-
-def _punch(d: Draft) -> Rows:
-    """A flat punch, whose edge is half a spacing beyond its last particle."""
-    radius, spacing = d["bodies.profile.radius"], d["bodies.spacing"]
-    if d.profile != "flat_punch" or radius is None or spacing in (None, "auto"):
-        return
-    width = 2.0 * (radius / spacing)
-    yield ("bodies.profile.radius", width == math.inf,
-           "is too large compared with the spacing", "make it smaller, or bodies.spacing larger")
-    if width == math.inf:
-        return
-    count = max(3, round(width))
-    between = abs(width - count) > WHOLE_NUMBER_ERROR * count
-    yield ("bodies.profile.radius", between,
-           "must be at least 1.5 spacings and a whole number of half spacings",
-           f"the nearest is {0.5 * count * spacing:g} (LU)")
-    yield ("bodies.particles", not between and d["bodies.particles"] not in (None, "auto", count),
-           f"must be {count}, the radius times 2 over the spacing", f'write {count} or "auto"')
-
-
-def _material(d: Draft) -> Rows:
-    """One elasticity, and one way to the units: given, or by F_A and a₀ of the run with γ and E*."""
-    upper, lower, modulus, length, force, energy = (
-        f"material.{key}" in d
-        for key in ("upper", "lower", "contact_modulus", "length_unit", "force_unit", "surface_energy")
-    )
-    elastic, auto = modulus or upper or lower, d["bodies.bulk_stiffness"] == "auto"
-    yield ("bodies.bulk_stiffness", auto and not elastic,
-           "must be given (FU/LU): the scene has no elastic moduli from which it follows",
-           f"give a number, or {ELASTICITY}")
-    units_alone = length and force and not energy
-    if "material" not in d or (not elastic and (auto or units_alone)):
-        return
-    yield ("material.contact_modulus", upper or lower,
-           "not together with upper or lower", "give E*, or E and ν of both bodies")
-    for body, needed in (("upper", not modulus), ("lower", upper and not modulus)):
-        yield (f"material.{body}", needed,
-               "missing", "write upper and lower, each with youngs_modulus and poisson_ratio, or contact_modulus")
-    yield ("material.upper", d["material.upper"] == d["material.lower"] == "rigid",
-           "one of the two bodies must be elastic", 'give its E and ν, or its name, "steel"')
-    for unit in ("length_unit", "force_unit"):
-        yield (f"material.{unit}", energy,
-               "not together with surface_energy, with which both units follow from F_A and a₀ of the run",
-               "remove one of the two")
-    yield ("material.length_unit", not energy,
-           "missing", "give one LU in metres, or surface_energy, from which a pull_off finds both units")
-    yield ("material.force_unit", not energy and not auto and "bodies.bulk_stiffness" in d,
-           "not together with a given bulk_stiffness, from which it follows",
-           'remove it, or write bodies.bulk_stiffness = "auto"')
-    yield ("material.force_unit", not energy and auto,
-           'missing, needed by bulk_stiffness = "auto"', "give one FU in newtons")
-    yield ("bodies.bulk_stiffness", energy and auto,
-           "must be a number: LU and FU are not known before the run",
-           "give the stiffness (FU/LU), or length_unit and force_unit in place of surface_energy")
-    key = "material.surface_energy"
-    yield (key, d.kind is not None and not d.experiment.finds_pull_off,
-           "not in this experiment, which finds no F_A and a₀",
-           'use kind = "pull_off", whose results give length_unit and force_unit')
-    nothing = "adhesion" not in d if d.on_plane else "interaction" in d and "interaction.attraction" not in d
-    yield (key, energy and d.kind == "path" and nothing,
-           "has no effect without attraction: there is no F_A and no a₀",
-           'use length_unit, or lower = "particles" with an interaction.attraction')
-    yield (key, d.profile not in (None, *SPHERES),
-           "not with this profile: JKR is for a sphere", "use a parabola or a circle, or length_unit")
-
-
-def _counter_body(d: Draft) -> Rows:
-    """The curved lower body of a parabola."""
-    key = "bodies.profile.counter_radius"
-    radius, counter = d["bodies.profile.radius"], d[key]
-    if None in (radius, counter):
-        return
-    yield (key, -radius <= counter <= 0.0,
-           f"must be greater than 0 (convex), or less than {limit(counter, -radius)} (LU) (concave), else the "
-           "bodies conform",
-           "a cup is wider than the ball in it; leave it out for a plane")
-    chosen = d["bodies.reduction"] or default_reduction("material" in d, d.lower or "", "parabola")
-    yield (key, chosen == "geike_popov",
-           'not with reduction = "geike_popov", whose bodies are two spheres of the one radius', 'write "mdr"')
-
-
-def _reduction(d: Draft) -> Rows:
-    """What the paper's reduction makes of a body that it was not derived for."""
-    profile = d["bodies.profile"]
-    if profile is None or profile["kind"] in SPHERES:
-        return
-    off = "half of this body's force at the same displacement" if d.profile in ALIKE else "the contact of another body"
-    if (factor := wider_than_body(profile)) is not None:
-        radius = f"{factor:.4g} times this body's contact radius under the same force"
-        off = f"{radius}, {factor**-2:.4g} of its mean pressure"
-    yield ("bodies.reduction", d["bodies.reduction"] == "geike_popov" and "material" in d,
-           f"was derived for two equal spheres; with this profile it has {off}",
-           'write "mdr", which has force, displacement and radius of any axisymmetric body, or leave it out')
-
-
 def _pull_off(d: Draft) -> Rows:
     if d.kind != "pull_off":
         return
@@ -399,45 +198,6 @@ def _pull_off(d: Draft) -> Rows:
     yield ("experiment.stiffness", not velocity,
            "only with a velocity: it is that of the spring",
            "remove it, or give the velocity of its far end")
-
-
-def _periodic(d: Draft) -> Rows:
-    periodic = d["bodies.periodic"]
-    yield ("bodies.profile.kind", d.profile == "flat" and periodic is False,
-           "needs bodies.periodic", 'write periodic = true, or use kind = "flat_punch", which has an edge')
-    if not periodic:
-        return
-    yield ("bodies.periodic", d.profile not in (None, "flat"),
-           "not with a body that is not flat: a periodic body has no end",
-           'use profile = { kind = "flat" }, or leave periodic out')
-    yield ("bodies.periodic", d.kind not in (None, "slide"), "only in a slide", 'remove it, or use kind = "slide"')
-    normal, tangential = d["bodies.bulk_stiffness"], d["bodies.bulk_stiffness_tangential"]
-    if normal not in (None, "auto") and tangential is not None:
-        yield ("bodies.bulk_stiffness_tangential", tangential > normal,
-               f"must be at most bulk_stiffness, {limit(tangential, normal)} (FU/LU), with bodies.periodic",
-               "lower it: a larger one needs distant anchors along x, which a periodic body cannot have")
-    count, spacing = d["bodies.particles"], d["bodies.spacing"]
-    upper, pitch = (
-        d[path] if path in d else below  # noqa: SIM401 (a draft is no dict)
-        for path, below in (("bodies.upper_particles", count), ("bodies.upper_spacing", spacing))
-    )
-    yield ("bodies.particles", count == "auto",
-           "must be a number with bodies.periodic",
-           "give a number: it does not follow from the contact of a periodic body")
-    if {None, "auto"} & {count, spacing, upper, pitch} or upper == 1:
-        return
-    ratio = Fraction(pitch / spacing).limit_denominator(LONGEST_CELL)
-    nearest = f"upper_spacing = {count * spacing / upper:.10g} with these numbers of particles"
-    if 0 < ratio.numerator <= LONGEST_CELL:
-        cells = max(1, round(upper / ratio.denominator))
-        nearest += (
-            f", or particles = {cells * ratio.numerator} and upper_particles = {cells * ratio.denominator} with "
-            f"upper_spacing = {ratio.numerator / ratio.denominator * spacing:.10g}"
-        )
-    one, other = apart(spacing, pitch, DIGITS)
-    yield ("bodies.upper_spacing", abs(count * spacing - upper * pitch) > WHOLE_NUMBER_ERROR * count * spacing,
-           f"the periodic chains differ in length: {count} · {one} LU below and {upper} · {other} LU above",
-           f"the nearest equal lengths: {nearest}")
 
 
 # What an experiment or an effect declares
@@ -518,19 +278,19 @@ def _beside_effects(d: Draft) -> Rows:
 
 
 RULES = (
-    _lower_body,
+    lower_body,
     _interaction,
     _attraction,
     _plate,
     _normal_loads,
     _relaxing,
-    _open_spacing,
-    _punch,
-    _material,
-    _counter_body,
-    _reduction,
+    open_spacing,
+    punch,
+    material,
+    counter_body,
+    reduction,
     _pull_off,
-    _periodic,
+    periodic,
     _methods,
     _declared_keys,
     _beside_effects,

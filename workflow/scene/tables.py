@@ -39,7 +39,8 @@ from contact1d.workflow.scene.effects import (
     Plate,
     Viscoelasticity,
 )
-from contact1d.workflow.scene.experiments import Experiment, Method
+from contact1d.workflow.scene.experiments import Experiment
+from contact1d.workflow.scene.kinds import Method
 from contact1d.workflow.scene.materials import BY_NAME
 from contact1d.workflow.scene.profiles import Profile
 from contact1d.workflow.scene.quantities import (

@@ -1,0 +1,151 @@
+"""What every kind of experiment says of itself, and the numbers that it may be given as a span."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import ClassVar, Literal, Self
+
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from contact1d.workflow.scene.quantities import (
+    CycleCount,
+    Displacement,
+    Length,
+    StepCount,
+    Table,
+)
+
+Method = Literal["quasistatic", "dynamic"]
+UNPULLED = "only a slide is pulled through a spring"
+UNTIMED = "its states have no time, which a body that relaxes needs"
+UNMOVED = "it has no tangential displacement, so that friction has no effect"
+TIMELESS = "it is quasi-static, each load step in equilibrium"
+"""Why an experiment excludes an effect."""
+
+
+ANY_METHOD = (
+    '"quasistatic" (equilibrium) or "dynamic" (in time); absent: "dynamic" with [plate], [damping] or [noise], '
+    'else "quasistatic"'
+)
+
+
+class Span(Table):
+    """Evenly spaced displacements from one value to another, by default there and back."""
+
+    from_: Displacement = Field(alias="from")
+    """displacement at the start"""
+    to: Displacement
+    """displacement at the turning point"""
+    steps: StepCount
+    """number of steps of one leg"""
+    return_: bool = Field(default=True, alias="return")
+    """whether to go back to the start as well"""
+
+    @model_validator(mode="after")
+    def _ends_differ(self) -> Self:
+        if self.from_ == self.to:
+            raise PydanticCustomError("scene", '"from" and "to" must differ')
+        return self
+
+    def values(self) -> list[float]:
+        """Displacements [LU] in order: steps + 1 on the path there, then `steps` back; the turning point once."""
+        n = self.steps
+        between = [(self.from_ * (n - i) + self.to * i) / n for i in range(1, n)]
+        there = [self.from_, *between, self.to]
+        return there + there[-2::-1] if self.return_ else there
+
+
+class Cycles(Table):
+    """Closed cycles between two displacements ±u_m in equal load steps, after the initial loading from 0 to u_m."""
+
+    amplitude: Length
+    """largest displacement u_m to either side"""
+    number: CycleCount
+    """whole cycles, each from u_m to −u_m and back"""
+    points: CycleCount
+    """load steps in one cycle, a multiple of 4: a quarter of them is the initial loading"""
+
+    def values(self) -> list[float]:
+        """Displacements [LU] in order: 0, points/4 steps to u_m, then `points` steps of each cycle; 0, ±u_m exactly."""
+        n = self.points // 4
+        steps = range(-n, self.number * self.points + 1)
+        return [self.amplitude * (abs(i % self.points / n - 2.0) - 1.0) for i in steps]
+
+
+def _values(listed: Sequence[float] | Span | Cycles) -> list[float]:
+    """The displacements [LU] of a list, a span or cycles, in order."""
+    return list(listed) if isinstance(listed, Sequence) else listed.values()
+
+
+def _for_each(given: tuple[float, ...] | float | None, count: int) -> list[float]:
+    """What is given for each of `count` points, by a list or by one number for all; none where nothing is."""
+    return [] if given is None else list(given) if isinstance(given, tuple) else [given] * count
+
+
+class Kind(Table):
+    """The experiment. Each kind declares the properties that other modules use.
+
+    Attributes:
+        only_method: the one method that it has; None: the key `method` says it, or the effects do.
+        excludes: effects that it cannot have by any method, and why.
+        needs: effects that it cannot do without by any method.
+        needs_in_time: effects that a dynamic one cannot do without.
+        only_with_noise: keys that say how a thermal one is repeated.
+        load_key: the key of its one normal force, which may be tensile (not a preload) if the bodies attract.
+        finds_pull_off: whether its results have F_A and a₀.
+        way_is_given: the scene prescribes the loading history, so that nothing is searched for and states are unique.
+        motion_is_result: the motion itself is examined, so that the scene exists in time only and its drag is its own.
+        draws_off: the plate is retracted through a spring along z.
+        is_massless: the mass of a particle matters nowhere; of a plate that moves it is all.
+        goes_along: the scene also prescribes places along x, on a plane, and has no other method.
+    """
+
+    only_method: ClassVar[Method | None] = None
+    excludes: ClassVar[Mapping[str, str]] = {
+        "cantilever": UNPULLED, "friction": UNMOVED, "viscoelasticity": UNTIMED,
+    }  # fmt: skip
+    needs: ClassVar[tuple[str, ...]] = ()
+    needs_in_time: ClassVar[tuple[str, ...]] = ("damping", "plate")
+    only_with_noise: ClassVar[tuple[str, ...]] = ()
+    load_key: ClassVar[str | None] = None
+    finds_pull_off: ClassVar[bool] = False
+    way_is_given: ClassVar[bool] = False
+    motion_is_result: ClassVar[bool] = False
+    is_massless: ClassVar[bool] = False
+    goes_along: ClassVar[bool] = False
+
+    @property
+    def given_method(self) -> Method | None:
+        """The method that the scene names, or the only one; None: it follows from the effects."""
+        return self.only_method or getattr(self, "method", None)
+
+    @property
+    def draws_off(self) -> bool:
+        """See above."""
+        return False
+
+    @property
+    def drawing_stiffness(self) -> float:
+        """Stiffness [FU/LU] of a spring that retracts the plate along z; 0 without one."""
+        return 0.0
+
+    @property
+    def lasts(self) -> float | None:
+        """How long a motion lasts that the scene gives [TU]; None of what comes to rest, or of a drive."""
+        return None
+
+    @property
+    def compression(self) -> float | None:
+        """Largest force [FU] that presses the bodies together; None where displacements are prescribed."""
+        force = getattr(self, self.load_key or "", None)
+        return None if force is None else max(force, 0.0)
+
+    def places(self) -> list[float]:
+        """Prescribed displacements [LU] in order, none where a force is prescribed."""
+        return []
+
+    @property
+    def way(self) -> float:
+        """How far [LU] the bodies are drawn along each other."""
+        return 0.0
