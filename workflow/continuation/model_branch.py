@@ -26,8 +26,8 @@ and how many of these: none where the curve is smooth, since the model's forces 
 grid, whose corners would move a top."""
 BESIDE = 32.0
 """Part of the distance of two positions in which those beside a force maximum are, three on either side."""
-OPENED = 0.05
-"""End of the way beyond where nothing is felt any more, over all of it."""
+OPENED = np.asarray([1e-4, 0.05])
+"""States beyond where nothing is felt any more, over all of the way."""
 BETWEEN = 8
 """Intermediate positions towards a force."""
 LAST = 1e-9
