@@ -11,6 +11,7 @@ import pytest
 
 from contact1d import RunError, run
 from contact1d.analysis.theory.indenters import PowerLaw
+from contact1d.workflow.continuation import contact
 from contact1d.workflow.scene import SceneError, scene_from_dict
 from validation.references.indenters import jkr
 from validation.references.mdr import ReducedContact
@@ -59,6 +60,14 @@ def test_a_load_has_its_digits_however_few_particles_carry_it(load: float, tmp_p
     tables["bodies"] |= {"particles": 41, "profile": {"kind": "parabola", "radius": 100.0}}
     found = run(tables, tmp_path / "run", figures=False).outcome.results["force"].value
     assert found == pytest.approx(load, rel=DIGITS)
+
+
+def test_load_steps_that_are_read_in_parts_are_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    tables = scene(experiment={"kind": "history", "displacement": [[0.0, 0.0], [1.0, 0.2], [2.0, -0.1]]})
+    whole = run(tables, tmp_path / "whole", figures=False)
+    monkeypatch.setattr(contact, "MOST_NUMBERS", 7 * whole.outcome.states[0].profile.x.size)
+    parts = run(tables, tmp_path / "parts", figures=False)
+    assert (parts.curve.force == whole.curve.force).all()
 
 
 @pytest.mark.parametrize("work", [1e-300, 1e-30])

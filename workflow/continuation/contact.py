@@ -200,24 +200,28 @@ class Contact:
         round_off = float(np.finfo(np.float64).eps) * depth * settings.forces.plane_stiffness
         for start in range(0, len(rows), self._at_once):
             batch = rows[start : start + self._at_once]
-            for i, ((phase, row), profile) in enumerate(zip(batch, self._profiles(len(batch)), strict=True), start):
+            profiles, end = self._profiles(len(rows), slice(start, start + len(batch)))
+            for i, ((phase, row), profile) in enumerate(zip(batch, profiles, strict=True), start):
                 assert isinstance(row, Displace | Draw)
                 force, closest = spacing * float(profile.pressure.sum()), float(profile.z_upper.min())
                 states.append(
                     State(phase, row.displacement, force, profile, self._rule, closest, 0.0, round_off,
                           plate_x=getattr(row, "place", 0.0), step=float(began + i + 1), number=first + i)
                 )  # fmt: skip
+        self._read = end
         return states
 
-    def _profiles(self, count: int) -> list[Profile]:
-        """Profiles of the last rows in order, over x from the body's middle. A particle that carries is on the plane.
+    def _profiles(self, count: int, part: slice) -> tuple[list[Profile], int]:
+        """Profiles of a part of the last rows in order, over x from the body's middle, and how much is read then.
+
+        A particle that carries is on the plane.
 
         Raises:
             EngineError: particles were lost, or a number is not finite.
         """
         path, columns = self.session.folder / FRAMES, 4 if self.scene.experiment.goes_along else 3
         try:
-            frames, self._read = last_frames(path, count, len(self._x), columns, self._read)
+            frames, end = last_frames(path, count, len(self._x), columns, self._read, part)
         except ValueError:
             raise self._lost("atoms are missing", self.session.timestep) from None
         if not np.isfinite(frames).all():
@@ -227,9 +231,9 @@ class Contact:
         pressures = units.from_deck(frames[:, :, 1], "FU") / spacing
         surfaces = np.where(pressures != 0.0, 0.0, heights)
         if columns == 3:
-            return [Profile(self._x, none, z, p, none) for z, p in zip(surfaces, pressures, strict=True)]
+            return [Profile(self._x, none, z, p, none) for z, p in zip(surfaces, pressures, strict=True)], end
         shears = units.from_deck(frames[:, :, 2], "FU") / spacing
-        return [Profile(self._x, none, z, p, q) for z, p, q in zip(surfaces, pressures, shears, strict=True)]
+        return [Profile(self._x, none, z, p, q) for z, p, q in zip(surfaces, pressures, shears, strict=True)], end
 
     def _look_back(self) -> None:
         """Work out the radii of the load steps before, which their states keep: LAMMPS is busy with the next ones."""

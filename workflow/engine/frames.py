@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 
-def last_frames(path: Path, frames: int, atoms: int, columns: int, start: int) -> tuple[NDArray[np.float64], int]:
-    """The frames from byte `start` on, atoms by ascending id, and the end of the file.
+def last_frames(
+    path: Path, frames: int, atoms: int, columns: int, start: int, part: slice = slice(None)
+) -> tuple[NDArray[np.float64], int]:
+    """The frames from byte `start` on, or a part of them, atoms by ascending id, and the end of the file.
 
     A frame ends with its numbers, atom by atom; what is before them is as long in every frame.
 
@@ -18,20 +20,22 @@ def last_frames(path: Path, frames: int, atoms: int, columns: int, start: int) -
         frames: how many stand there.
         atoms, columns: of each; the first column is the id.
         start: where to begin [bytes].
+        part: which of them are read.
 
     Returns:
-        Shape (frames, atoms, columns - 1), without the ids; the length of the file [bytes].
+        Shape (those of the part, atoms, columns - 1), without the ids; the length of the file [bytes].
 
     Raises:
         ValueError: that is not what stands there.
     """
-    raw = np.fromfile(path, dtype=np.uint8, offset=start)
-    numbers = 8 * atoms * columns
-    if raw.size % frames or raw.size < frames * numbers:
-        raise ValueError(f"{path}: {raw.size} bytes are not {frames} frames of {atoms} atoms")
-    ends = raw.reshape(frames, -1)[:, -numbers:]
-    table = np.ascontiguousarray(ends).view(np.float64).reshape(frames, atoms, columns)
+    size, numbers = path.stat().st_size - start, 8 * atoms * columns
+    if size % frames or size < frames * numbers:
+        raise ValueError(f"{path}: {size} bytes are not {frames} frames of {atoms} atoms")
+    wanted, each = range(frames)[part], size // frames
+    raw = np.fromfile(path, dtype=np.uint8, count=len(wanted) * each, offset=start + wanted.start * each)
+    ends = raw.reshape(len(wanted), -1)[:, -numbers:]
+    table = np.ascontiguousarray(ends).view(np.float64).reshape(len(wanted), atoms, columns)
     order = np.argsort(table[0, :, 0], kind="stable")
     if (table[:, order, 0] != table[0, order, 0]).any():
         raise ValueError(f"{path}: the atoms change their order between frames")
-    return table[:, order, 1:], start + raw.size
+    return table[:, order, 1:], start + size
