@@ -98,8 +98,8 @@ class Particles(ABC):
         return None
 
     def refined(self, history: History) -> History:
-        """With further moments where a contact needs them."""
-        return history
+        """With further moments where a contact needs them: beside its jumps."""
+        return history if history.by_force or not self.jumps else history.beside(self.jumps)
 
     def moments(self, deepest: float, velocity: float, count: int) -> Array:
         """Times [TU] of load steps of a pull from a displacement [LU] at a velocity [LU/TU], until nothing is felt."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from contact1d.workflow.laws.particles import Particles
 
 Array = NDArray[np.float64]
-NEAREST = 1e-9
-"""Part of a step that is round-off."""
+NEAREST, ASIDE = 1e-9, 1e-6
+"""Part of a step that is round-off, and that is beside a jump."""
 
 
 @dataclass(frozen=True)
@@ -53,10 +53,25 @@ class History:
 
     def denser(self, times: int) -> History:
         """The same with so many moments for each."""
-        at = np.linspace(0.0, len(self.phases) - 1.0, (len(self.phases) - 1) * times + 1)
-        time, values = (np.interp(at, np.arange(len(self.phases)), one) for one in (self.time, self.values))
-        phases = tuple(self.phases[int(i)] for i in np.ceil(at - NEAREST))
-        return replace(self, phases=phases, time=time, values=values)
+        return self.at(np.linspace(0.0, len(self.phases) - 1.0, (len(self.phases) - 1) * times + 1))
+
+    def at(self, moments: Array) -> History:
+        """The same at rising moments, whole numbers of which are those of this history."""
+        known = np.arange(len(self.phases))
+        time, values = (np.interp(moments, known, one) for one in (self.time, self.values))
+        return replace(
+            self, phases=tuple(self.phases[int(i)] for i in np.ceil(moments - NEAREST)), time=time, values=values
+        )
+
+    def beside(self, places: Sequence[float]) -> History:
+        """With moments on both sides of where displacements pass certain places [LU]: a force jumps there."""
+        found = [np.arange(float(len(self.phases)))]
+        for place in places:
+            before, after = self.values[:-1] - place, self.values[1:] - place
+            passed = np.flatnonzero((before * after <= 0.0) & (before != 0.0))
+            at = passed + before[passed] / (before[passed] - after[passed])
+            found += [at - ASIDE, np.minimum(at + ASIDE, passed + 1.0)]
+        return self.at(np.unique(np.concatenate(found)))
 
     def path(self, model: Particles) -> Path:
         """The displacements of the body [LU]."""

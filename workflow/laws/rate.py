@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields
 from functools import cached_property, partial
 from itertools import pairwise
 from typing import ClassVar
@@ -188,15 +188,13 @@ class RecedingCells(ZonedCells):
 
     def refined(self, history: History) -> History:
         """With moments at equal ways of an edge that recedes."""
+        history = history.beside([0.0])  # the bodies touch at once
         steps = np.linspace(0.0, len(history.phases) - 1.0, (len(history.phases) - 1) * LOOKS_BETWEEN + 1)
         time, values = (np.interp(steps, np.arange(len(history.phases)), one) for one in (history.time, history.values))
         edge = self.law.edges(time, values)
         passed = np.append(0.0, np.cumsum(np.maximum(-np.diff(edge), 0.0))) / (float(edge.max()) or 1.0)
         more = np.interp(np.arange(EDGE_STEP, float(passed[-1]), EDGE_STEP), passed, steps)
-        at = np.union1d(np.arange(float(len(history.phases))), more)
-        phases = tuple(history.phases[int(i)] for i in np.ceil(at - NEAREST))
-        time, values = (np.interp(at, np.arange(len(history.phases)), one) for one in (history.time, history.values))
-        return replace(history, phases=phases, time=time, values=values)
+        return history.at(np.union1d(np.arange(float(len(history.phases))), more))
 
     def prescribed(self, path: Path) -> dict[str, Array]:
         """With the edge of the contact."""
