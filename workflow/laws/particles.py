@@ -35,7 +35,7 @@ snap, and the force has many maxima."""
 SIDES, LOOKS = np.asarray([-0.5, -0.1, -0.01, -1e-4, 0.0, 1e-4, 0.01, 0.1, 0.5]), 40
 """Looks for where a force is carried, each beside the secant's place by so much of the bracket, and most of them."""
 EXACT = 1e-13
-"""Difference of the forces of a bracket over the larger one from which on it is straight."""
+"""Difference of the forces of a bracket over the larger one of the first, from which on it is straight."""
 NEAREST = 1e-9
 """Distance from the limit point, over that to the largest displacement, from which positions are examined."""
 
@@ -204,9 +204,10 @@ class Particles(ABC):
 
         Each look is at the secant's place and at SIDES beside it, a bracket of its own if the curve is straight there.
         """
+        straight = EXACT * float(np.abs(forces).max())
         for _ in range(LOOKS):
             low, high = (float(one) for one in places)
-            if not forces[0] < force < forces[1] or np.ptp(forces) <= EXACT * np.abs(forces).max():
+            if not forces[0] < force < forces[1] or np.ptp(forces) <= straight:
                 break
             secant = low + (high - low) * (force - forces[0]) / (forces[1] - forces[0])
             beside = np.clip(secant + (high - low) * SIDES, low, high)
