@@ -57,7 +57,7 @@ class HistoryExperiment(Scripted[History]):
         by_force, last = self.given(scene).force is not None, len(trace) - 1
         d, force = trace.displacement, trace.force
         found = {
-            "peak_force": Reading(float(force.max()), FORCE, {"sampling": _between(trace)}, prescribed=by_force),
+            "peak_force": Reading(float(force.max()), FORCE, prescribed=by_force),
             "peak_displacement": Reading(float(d.max()), LENGTH, prescribed=not by_force),
             "displacement": Reading(float(d[last]), LENGTH, prescribed=not by_force, scale=float(np.abs(d).max())),
             "force": Reading(float(force[last]), FORCE, prescribed=by_force, scale=float(np.abs(force).max())),
@@ -170,16 +170,6 @@ def _slopes(trace: Trace) -> dict[str, Reading]:
 def _rate(value: float) -> Reading:
     """A slope at a corner [FU/LU], with the discretisation error of a few states."""
     return Reading(value, LINE_PRESSURE, {"sampling": SAMPLED * abs(value)})
-
-
-def _between(trace: Trace) -> float:
-    """Discretisation error of a maximum within a leg [FU]: from the largest state to the vertex of a parabola."""
-    top = int(trace.force.argmax())
-    near = slice(top - 1, top + 2)
-    if top == 0 or len(set(trace.phase[near])) > 1 or trace.force[near].size < 3:
-        return 0.0
-    _, slope, bend = through(trace.time[near] - trace.time[top], trace.force[near]).tolist()
-    return -0.25 * slope**2 / bend if bend < 0.0 else 0.0
 
 
 def _whole(trace: Trace, corner: int, states: Sequence[int]) -> list[float]:
