@@ -64,11 +64,13 @@ class Case:
 
     @property
     def displacement(self) -> float | None:
-        """d [LU] of the state that is reported, where the scene gives it (the deepest of a path); else None."""
+        """d [LU] of the state that is reported, where the scene gives it: of a path the deepest, of a slip the last."""
         places = self.scene.experiment.places()
         if not places or self.force is not None:
             return None
-        return float(self.quantities["displacement"].value) if "displacement" in self.quantities else max(places)
+        if "displacement" in self.quantities:
+            return float(self.quantities["displacement"].value)
+        return places[-1] if self.scene.experiment.goes_along else max(places)
 
     @property
     def work(self) -> float:
