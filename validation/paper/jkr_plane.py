@@ -33,6 +33,7 @@ LATTICE = "lattice: the edge lies anywhere between two particles; the run's clai
 SPACING_NAMED = {
     "lattice": "the run names the spacing that would do: what this one leaves is what is asked for",
     "tolerance": "marks between two rows of a way: the rows themselves are compared",
+    "slope": "small slopes are the theory's: in units of the model it has no other scale",
 }
 
 

@@ -45,8 +45,7 @@ def plan(scene: Scene, states: Sequence[State], forces: Array | None) -> dict[st
     """
     if forces is None or not states:
         return {}
-    spacing = scene.bodies.own_spacing
-    sizes = np.asarray([spacing * float(np.abs(state.profile.pressure).sum()) for state in states])
+    sizes = np.asarray([_size(scene, state) for state in states])
     measured = np.asarray([state.force for state in states])
     missed = np.maximum(np.abs(measured - forces) - np.asarray([*map(_round_off, states)]), 0.0)
     off = missed / (sizes + ABSOLUTE * max(float(sizes.max()), np.finfo(float).tiny))
@@ -62,12 +61,17 @@ def asked(scene: Scene, pairs: Sequence[tuple[float, float]], states: Sequence[S
     """Forces [FU] that the scene asks for beside those of the states that have them; a search has a tolerance."""
     if not pairs:
         return {}
-    largest = max([abs(state.force) for state in states] + [abs(wanted) for wanted, _ in pairs])
+    largest = max([_size(scene, state) for state in states] + [abs(wanted) for wanted, _ in pairs])
     wanted, found = max(pairs, key=lambda pair: abs(pair[0] - pair[1]))
     words = f"the scene asks for {wanted:.10g} FU, and the state that has it carries {found:.10g} FU"
     allowed = AT_REST if scene.is_stepped and scene.is_modelled else scene.accuracy.tolerance
     missed = max(abs(wanted - found) - max(map(_round_off, states)), 0.0)
     return {"asked": Agreement(missed / largest if largest else 0.0, allowed, words)}
+
+
+def _size(scene: Scene, state: State) -> float:
+    """All loads of a state, pressed and pulled [FU]: a force of 0 is compared with what makes it up."""
+    return scene.bodies.own_spacing * float(np.abs(state.profile.pressure).sum())
 
 
 def _round_off(state: State) -> float:
@@ -84,7 +88,7 @@ def balance(scene: Scene, states: Sequence[State]) -> dict[str, Agreement]:
     ]
     if not told:
         return {}
-    size = max(scene.bodies.own_spacing * float(np.abs(state.profile.pressure).sum()) for state in states)
+    size = max(_size(scene, state) for state in states)
     missed, worst = max(told, key=lambda pair: pair[0])
     words = (
         f"the contact has {worst.force:.10g} FU at displacement {worst.displacement:.6g} LU (phase {worst.phase}), and "
