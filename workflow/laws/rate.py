@@ -117,11 +117,14 @@ class Receding(Zoned):
         for leg in pairwise([0, *turns.tolist(), times.size - 1]):
             own = slice(leg[0], leg[1] + 1)
             d = displacements[own]
-            if d.size > 1 and edge > 0.0 and d[-1] <= d[0]:
-                found[own] = self._narrowed(edge, partial(np.interp, xp=times[own], fp=d), times[own])
-            else:
-                touched = np.maximum.accumulate(d >= -SAME * self.spacing) | (edge > 0.0)
-                found[own] = np.where(touched, np.maximum(edge, self.radii(d)), 0.0)
+            kept = np.full_like(d, edge)
+            if d.size > 1 and edge > 0.0:  # an edge that still opens does so while the body comes back, too
+                kept = self._narrowed(edge, partial(np.interp, xp=times[own], fp=d), times[own])
+            if d[-1] > d[0] or edge == 0.0:
+                held = (kept > 0.0) & (d >= self.fixed_grips[1])
+                held |= np.maximum.accumulate(d >= -SAME * self.spacing)
+                kept = np.where(held, np.maximum(kept, self.radii(d)), kept)
+            found[own] = kept
             edge = float(found[own][-1])
         return found
 
