@@ -121,7 +121,7 @@ class ModelBranch:
     def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
         """A displacement [LU], or a plate that moves under a force [FU], for a time [TU]: the first and the last state.
 
-        A transient is that of plate and particles on the contact's own force; see `reduced.swing`.
+        A transient is that of plate and particles on the contact's own force; see `free.swing`.
         """
         if displacement is not None:
             self._add(np.asarray([displacement, displacement]), time=(0.0, duration))
@@ -143,7 +143,7 @@ class ModelBranch:
                 self.marks.setdefault(i, []).append(history.marks[one])
 
     def fly(self, velocity: float) -> None:
-        """See `reduced.impact`."""
+        """A flight at an approach velocity [LU/TU] onto the contact and off it again; see `free.impact`."""
         path = impact(self.scene, self.settings, self.model, velocity, self.dense)
         self._leg += 1
         self._add_path(["impact"] * path.time.size, path)

@@ -112,6 +112,7 @@ class Scripted(Experiment[K]):
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The schedule of particles that interact, or of a motion, as far as it is known."""
+        # An experiment that always runs on a plane, such as a history, has its schedule from the plan of its script.
         raise NotImplementedError
 
     @abstractmethod

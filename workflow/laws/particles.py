@@ -135,7 +135,7 @@ class Particles(ABC):
 
     @property
     def jumps(self) -> tuple[float, ...]:
-        """Displacements [LU] at which the force jumps, on the way in or out."""
+        """Displacements [LU] at which the force jumps, in loading or unloading."""
         return self.limits
 
     @property

@@ -1,4 +1,4 @@
-"""What the plate does, and what particles carry on the way."""
+"""What the plate does, and what particles carry along its path."""
 
 from __future__ import annotations
 
