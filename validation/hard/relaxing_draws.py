@@ -45,7 +45,7 @@ EXACT, SAMPLED, JUMPING = 1e-7, 5e-5, 2e-4
 LINES = 5e-5
 """Relative error of a pressure of a line load, against rings."""
 NAMES = {1: "loading", -1: "unloading", 0: "holding"}
-PER_CREEP = 30
+PER_CREEP = 120
 """Displacements of a leg of forces, closer where it begins."""
 MORE, OFTENER = 5, 2
 """Springs and samples that many times as many where a pressure jumps at the edge."""

@@ -358,8 +358,8 @@ class Creeping:
         turn, _ = largest(self._yielded, self.force.times)
 
         def rate(t: float) -> float:
-            slopes = [(low, high, slope) for low, high, slope in self.force.pieces(-math.inf, t)]
-            return sum(slope * (self.material.creep(t - a) - self.material.creep(t - b)) for a, b, slope in slopes)
+            creep = self.material.creep
+            return sum(s * (creep(t - a) - (creep(t - b) if b < t else 0.0)) for a, b, s in self.force.pieces(-math.inf, t))
 
         for low, high in pairwise(self.force.times):
             if low < turn < high and rate(low) > 0.0 > rate(high):

@@ -154,8 +154,8 @@ class Memory:
         low = float(ends[first - 1])
         high = float(ends[first]) if first < ends.size else low + load / response
         begin, middle, end = (excess(low + part * (high - low)) for part in (0.0, 0.5, 1.0))
-        if begin >= 0.0:
-            return low
+        if begin >= 0.0:  # the end of a part that bears nothing may bear round-off
+            return low if middle > 0.0 else high
         bend, slope = 2.0 * (begin - 2.0 * middle + end), 4.0 * middle - 3.0 * begin - end
         root = math.sqrt(max(slope * slope - 4.0 * bend * begin, 0.0))
         return low + (high - low) * min(max(-2.0 * begin / (slope + root), 0.0), 1.0)
