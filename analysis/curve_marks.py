@@ -61,12 +61,12 @@ def largest_tension(displacement: Sequence[float], force: Sequence[float]) -> Pe
         return Peak(i, top, float(even[0] * (d[i] - d[i + 1])), top, float(d[i]), 0.0)
     # A search that has come back to the maximum leaves rows beside it that no polynomial tells apart.
     d, tension, at = _apart_from(d, tension, i)
-    place, coarse = _vertex(d, tension, at, 1)
+    place, coarse = vertex(d, tension, at, 1)
     if not 2 <= at < len(d) - 2:
         return Peak(i, top, abs(coarse - top), coarse, place, abs(place - float(d[at])))
-    position, smooth = _vertex(d, tension, at, 2)
+    position, smooth = vertex(d, tension, at, 2)
     if WIDEST_REACH <= at < len(d) - WIDEST_REACH:
-        place, _ = _vertex(d, tension, at, WIDEST_REACH)
+        place, _ = vertex(d, tension, at, WIDEST_REACH)
     return Peak(i, top, abs(smooth - coarse), smooth, position, abs(position - place))
 
 
@@ -90,7 +90,7 @@ def _about(d: Array, tension: Array, middle: int, beside: int) -> tuple[float, A
     return width, through((d[near] - d[middle]) / width, tension[near] - tension[middle])
 
 
-def _vertex(d: Array, tension: Array, middle: int, beside: int) -> tuple[float, float]:
+def vertex(d: Array, tension: Array, middle: int, beside: int) -> tuple[float, float]:
     """Position and value of the maximum of the polynomial through the highest point and its neighbours on either side.
 
     It lies between the highest point's neighbours.

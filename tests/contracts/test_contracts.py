@@ -45,9 +45,6 @@ KNOWN: dict[str, str] = {
     one: reason
     for reason, those in {
         "± depends on the units: a threshold is not relative": ("units two_kinks-jkr-pull_off-quasistatic",),
-        "a number under dashpots and a given force changes by 1e-4 with the units": (
-            "units cone-kelvin_voigt-history_of_a_force-quasistatic",
-        ),
         "± is 4 to 20 times the errors": (
             "cap power-friction-tangential_cycles-quasistatic",
             "cap circle-prony-history_of_a_force-quasistatic",

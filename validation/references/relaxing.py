@@ -359,7 +359,9 @@ class Creeping:
 
         def rate(t: float) -> float:
             creep = self.material.creep
-            return sum(s * (creep(t - a) - (creep(t - b) if b < t else 0.0)) for a, b, s in self.force.pieces(-math.inf, t))
+            return sum(
+                s * (creep(t - a) - (creep(t - b) if b < t else 0.0)) for a, b, s in self.force.pieces(-math.inf, t)
+            )
 
         for low, high in pairwise(self.force.times):
             if low < turn < high and rate(low) > 0.0 > rate(high):

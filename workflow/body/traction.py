@@ -257,12 +257,14 @@ def _largest(
     pole = 0.0 if state.zone else noise * p[top] * fine.edge
     smooth &= (top == 0 and state.jump is None) or fine.at_edge <= pole
     smooth &= top == 0 or len(levels) == 3
-    near = np.linspace(r[max(0, top - 1)], r[min(top + 1, r.size - 1)], BETWEEN)
+    peak = p[top]
+    if smooth and top:  # on the axis it is one by symmetry
+        peak = pressure(np.linspace(r[top - 1], r[min(top + 1, r.size - 1)], BETWEEN)).max()
     hidden = any(kink < state.radius.value for one in shape.alternatives for kink in one.kinks)
     found: dict[str, tuple[Quantity, int, Callable[[Array], Any]]] = {}
     for name, place, read, value, is_open, may_have in (
         ("central_pressure", 0, itemgetter(0), p[0], False, True),
-        ("peak_pressure", top, np.max, pressure(near).max(), hidden, smooth),
+        ("peak_pressure", top, np.max, peak, hidden, smooth),
     ):
         known = _converges([read(one) for one in levels], noise)
         if may_have and not fine.has_apex and (known or unsure):

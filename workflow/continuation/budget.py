@@ -130,9 +130,19 @@ class Reduction:
         return reduced(self.scene, self.settings)
 
     @cached_property
+    def path(self) -> Trace:
+        """What the script makes of it."""
+        return self.trace(self.model)
+
+    @cached_property
+    def readings(self) -> Mapping[str, Reading]:
+        """What is read of that."""
+        return self.read(self.path)
+
+    @cached_property
     def own(self) -> Values:
         """Its results."""
-        return self.values(self.model)
+        return self.values(self.model) if self.passed else _values(self.readings)
 
     def followed(self, values: Values) -> Values:
         """`lattice` of results in time; where the model does not follow the motion, by how much they differ."""
@@ -293,7 +303,8 @@ def sampling_errors(case: Reduction, trace: Trace) -> Values:
     while is_copy and model.dense * len(trace) * model.x.size > MOST_NUMBERS and model.x.size > FEWEST:
         model = model.resized(2.0)  # steps miss the same on a coarser lattice
     for share in SHIFTS[:1] if is_copy else SHIFTS:
-        dense, same = (case.values(model, between, share * step) for between in (model.dense, 1))
+        dense = case.values(model, model.dense, share * step)
+        same = case.values(model, 1, share * step) if share or model is not case.model else case.own
         for name in same.keys() | dense.keys():
             missed = abs(same.get(name, 0.0) - dense.get(name, 0.0))
             found[name] = max(found.get(name, 0.0), (STEP_MARGIN if is_copy else PATH_MARGIN) * missed)
@@ -366,11 +377,7 @@ def budgeted(
     if force_error.law > 0.0 and strength > 0.0:
         traces += [trace.perturbed(radius_factor=1.0 + sign * force_error.law / strength) for sign in (1.0, -1.0)]
     solver = _changes(case.read, values, traces)
-    # Radii are read too large or too small by themselves: all of them alike, or every other one.
-    alike = np.ones(len(trace))
-    other = np.asarray((-1.0) ** np.arange(len(trace)), dtype=np.float64)
-    radii = [trace.perturbed(radius_shift=shift) for shift in (alike, -alike, other, -other)]
-    read = _changes(case.read, values, radii)
+    read = _changes(case.read, values, misread(trace))
     between = sampling_errors(case, trace) if sampled else {}
     repeated = repeated or {}
     again = {
@@ -394,6 +401,15 @@ def budgeted(
         given = in_squares(case.moves, name)
         found[name] = Result(one.value, one.unit, errors, one.scale, one.prescribed, read[name], given)
     return found
+
+
+def misread(trace: Trace) -> list[Trace]:
+    """The trace with radii that are read too large by their uncertainties: all of them, or every other one.
+
+    Results go with radii to first order: those that are too small change them by as much.
+    """
+    other = np.asarray((-1.0) ** np.arange(len(trace)), dtype=np.float64)
+    return [trace.perturbed(radius_shift=shift) for shift in (1.0, other)]
 
 
 def _late(case: Reduction, trace: Trace) -> Array:

@@ -33,6 +33,8 @@ AT_REST, MOVING = 1e-8, 1e-4
 ENERGY, LEAST_LOSS, OPEN = 1e-3, 0.05, 4.0
 """Energy that is missing over what is lost, or over all work where that is less than this share of it; over what half
 the spacing and half the steps change, where that is more: forces rise as roots at first."""
+DENSER = 4
+"""Load steps for each of a history that show what these miss: twice as many may miss the same by chance."""
 EACH_STEP, EACH_LEG, BESIDE, NEAREST = 32, 200, 60, 1e-9
 """Positions in a step of a tangential path that changes the load, and in all of the displacement of others, between
 which forces are straight lines; on both sides of a jump, the nearest of them over the spacing."""
@@ -156,10 +158,10 @@ def _missing(model: Particles, work: Work, finer: int) -> tuple[float, float, fl
 
 
 def _denser(case: Reduction, work: Work) -> Work:
-    """The same of a history with twice the load steps."""
+    """The same of a history in smaller load steps."""
     if work.kinetic or not case.model.law.in_time:
         return work
-    branch = ModelBranch(case.scene, case.settings, case.model, 2, 0.0)
+    branch = ModelBranch(case.scene, case.settings, case.model, DENSER, 0.0)
     case.script(branch)
     return Work(branch.path)
 

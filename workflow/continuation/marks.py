@@ -78,13 +78,14 @@ def _separation(branch: Trace, peak: Peak) -> dict[str, Reading]:
 
     def work(nodes: int, every: int) -> float:
         """By Gauss's quadrature over u, d = d_end + (d₀ − d_end) u²: a limit point has an infinite slope."""
+        if (known := model.work(start, every)) is not None:
+            return known
         u, weights = gauss(nodes)
         u = 0.5 * (u + 1.0)
         places = end + (start - end) * u**2
         others = [*range(0, len(at) - 1, every), len(at) - 1]
         curve = model.held(places) + np.interp(places, at[others], off[others], left=0.0)
-        known = model.work(start, every)
-        return known if known is not None else -(start - end) * float(weights @ (u * curve))
+        return -(start - end) * float(weights @ (u * curve))
 
     value = work(NODES, 1)
     missed = abs(value - work(NODES // 2, 2)) + MODEL_DIGITS * value

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
+from functools import lru_cache, partial
 from typing import ClassVar, Generic, TypeVar, cast
 
 from contact1d.workflow.continuation import consistency
@@ -184,6 +184,7 @@ class Scripted(Experiment[K]):
                 found.append(self._driven(other, case)[1])
         return {"time": found}
 
+    @lru_cache(maxsize=1)  # noqa: B019  # what chose the spacing has worked out the lattices of the run
     def reduction(self, scene: Scene, settings: Settings) -> Reduction:
         """Script and reader on the reduced model of a scene."""
         script, read = partial(self.script, scene=scene), partial(self.read, scene=scene, settings=settings)

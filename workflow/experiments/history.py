@@ -10,6 +10,7 @@ from itertools import groupby, pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from contact1d.analysis.curve_marks import vertex
 from contact1d.analysis.polynomial import through
 from contact1d.workflow.continuation.budget import MARGIN
 from contact1d.workflow.continuation.driver import Driver
@@ -58,7 +59,7 @@ class HistoryExperiment(Scripted[History]):
         d, force = trace.displacement, trace.force
         found = {
             "peak_force": Reading(float(force.max()), FORCE, prescribed=by_force),
-            "peak_displacement": Reading(float(d.max()), LENGTH, prescribed=not by_force),
+            "peak_displacement": Reading(float(d.max()), LENGTH, {"sampling": _above(trace)}, prescribed=not by_force),
             "displacement": Reading(float(d[last]), LENGTH, prescribed=not by_force, scale=float(np.abs(d).max())),
             "force": Reading(float(force[last]), FORCE, prescribed=by_force, scale=float(np.abs(force).max())),
         }
@@ -141,6 +142,14 @@ def _numbered(names: list[str]) -> tuple[str, ...]:
         counts[name] = counts.get(name, 0) + 1
         found += [name if counts[name] == 1 else f"{name}_{counts[name]}"] * len(list(same))
     return tuple(found)
+
+
+def _above(trace: Trace) -> float:
+    """How far [LU] the largest displacement may lie above that of all states, within a phase, by a parabola there."""
+    d, top = trace.displacement, int(trace.displacement.argmax())
+    if len(set(trace.phase[max(top - 1, 0) : top + 2])) > 1 or not 0 < top < len(trace) - 1:
+        return 0.0
+    return vertex(-trace.time, d, top, 1)[1] - float(d[top])
 
 
 def _slopes(trace: Trace) -> dict[str, Reading]:

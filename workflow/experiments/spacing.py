@@ -14,6 +14,7 @@ import numpy as np
 
 from contact1d.analysis.pressure import Array
 from contact1d.digits import digits_apart
+from contact1d.workflow.continuation.budget import misread
 from contact1d.workflow.continuation.outcome import LATTICE, LOSSES
 from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.experiments import kind_of
@@ -90,10 +91,9 @@ def left_by_lattice(scene: Scene) -> float:
     case = kind_of(scene).reduction(scene, settings)
     if case is None:
         return 0.0
-    trace, left, appear = case.trace(case.model), [0.0], False
-    every_other: Array = np.asarray((-1.0) ** np.arange(len(trace)), dtype=np.float64)
-    others = [case.read(trace.perturbed(radius_shift=shift)) for shift in (1.0, every_other)]
-    for name, one in case.read(trace).items():
+    left, appear = [0.0], False
+    others = [case.read(trace) for trace in misread(case.path)]
+    for name, one in case.readings.items():
         read = max((abs(other[name].value - one.value) for other in others if name in other), default=0.0)
         error = case.lattice.get(name, 0.0) + read + one.errors.get(LATTICE, 0.0)
         size = abs(one.value) if one.scale is None else one.scale
@@ -102,7 +102,7 @@ def left_by_lattice(scene: Scene) -> float:
         if size:
             left.append((SQUARED if name in RADII else 1.0) * error / size)
         appear |= bool(error) and not size and name in RADII
-    if kind_of(scene).curve_is_result and (largest := float(np.abs(trace.force).max())):
+    if kind_of(scene).curve_is_result and (largest := float(np.abs(case.path.force).max())):
         rows = case.along(case.trace(case.model, whole=True)).lattice
         left.append(float(np.max(rows.get("force", 0.0))) / largest)
     return math.inf if appear else max(left)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -146,6 +146,7 @@ class Settings:
         return replace(self, motion=timed, increments=self.increments.scaled(part))
 
 
+@lru_cache(maxsize=1)  # a scene whose spacing is chosen has its settings then
 def settings_for(scene: Scene, tolerance: float | None = None, calibration: Calibration | None = None) -> Settings:
     """Choose every open number of a scene.
 
