@@ -9,6 +9,8 @@ from typing import Any
 
 from contact1d.analysis.theory.adhesion import LENNARD_JONES_STRESS, MaugisDugdale
 from contact1d.analysis.theory.indenters import Ellipsoid, FlatPunch, PowerLaw
+from contact1d.workflow.laws import law_of
+from contact1d.workflow.laws.law import Law
 from contact1d.workflow.model.cutoff import interaction_law
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.scene.tables import SPHERES
@@ -75,8 +77,8 @@ class Case:
     @property
     def work(self) -> float:
         """W [FU/LU]: given, or implied by the interaction at the radius that the run found; 0 without."""
-        if self.scene.adhesion is not None:
-            return self.scene.adhesion.work
+        if self.law.holds:
+            return self.scene.work_of_adhesion
         implied = self.quantities.get("work_of_adhesion")
         return 0.0 if implied is None else float(implied.value)
 
@@ -89,9 +91,14 @@ class Case:
         return 0.0 if law is None or law.attraction is None else law.force_free_distance() / LENNARD_JONES_STRESS
 
     @property
+    def law(self) -> type[Law]:
+        """Of the scene."""
+        return law_of(self.scene)
+
+    @property
     def is_elastic(self) -> bool:
         """Whether springs under the profile are all there is: no attraction, no memory, no effect of other kinds."""
-        return self.scene.keeps_springs and not (self.scene.adheres or self.scene.viscoelasticity)
+        return self.scene.keeps_springs and "pressed" in self.law.beside and not self.scene.adheres
 
     @property
     def sphere(self) -> tuple[float, float, float]:

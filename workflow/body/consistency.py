@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from contact1d.workflow.body.cases import Case
-from contact1d.workflow.body.theory import applying
+from contact1d.workflow.body.theory import exact
 from contact1d.workflow.body.traction import BodyPressure
 from contact1d.workflow.continuation.outcome import Agreement, Outcome
 from contact1d.workflow.scene import Scene
@@ -55,8 +55,8 @@ def closed_form(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, A
     if radius < FEWEST * scene.bodies.spacing or (radius > WIDEST * reach and not scene.bodies.profile.has_edge):
         return {}
     case, found = Case(scene, quantities), []
-    for form in applying(case):
-        for name, value in form.values(case).items() if form.is_exact(case) else ():
+    for form in exact(case):
+        for name, value in form.values(case).items():
             if name in quantities and value:
                 ours = quantities[name]
                 allowed = CLOSED_FORM + DOUBT * ours.uncertainty / abs(value)

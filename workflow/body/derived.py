@@ -30,6 +30,7 @@ from contact1d.workflow.body.reading import product
 from contact1d.workflow.body.theory import tabor
 from contact1d.workflow.body.traction import BodyPressure, body_pressures, is_of_a_body
 from contact1d.workflow.continuation.outcome import MODEL, Made, Outcome, Result
+from contact1d.workflow.laws import law_of
 from contact1d.workflow.laws.pairs import row_force
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
@@ -195,7 +196,8 @@ def with_body(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressu
 
 def is_at_rest(scene: Scene) -> bool:
     """Whether springs on a plane are in equilibrium and have no attraction, so that dF/dd is theirs."""
-    return not (scene.interaction or scene.adheres or scene.viscoelasticity or scene.noise)
+    law = law_of(scene)
+    return not (scene.interaction or scene.noise or scene.adheres or law.in_time)
 
 
 def reported_state(outcome: Outcome) -> list[str]:
@@ -219,15 +221,16 @@ def _of_the_contact(scene: Scene, found: Mapping[str, Quantity]) -> dict[str, Qu
 
 def _tabor(scene: Scene, found: Mapping[str, Quantity]) -> dict[str, Quantity]:
     """µ of a body with a radius of curvature, where the range of the attraction is given."""
-    mu = tabor(Case(scene, found)) if scene.adhesion and scene.adhesion.range else None
+    mu = tabor(Case(scene, found)) if law_of(scene).has_range else None
     return {} if mu is None else {"tabor_parameter": Quantity(mu, 0.0, NUMBER)}
 
 
 def _adhesion_energy(scene: Scene, found: Mapping[str, Quantity]) -> dict[str, Quantity]:
     """πa²W on a plane with adhesion; 2a w/s where an interaction holds the bodies."""
     a, line = first_of(found, "zero_load_radius", "contact_radius"), found.get("separation_energy")
-    if scene.adhesion is not None and scene.adhesion.range:
+    law = law_of(scene)
+    if law.has_range:
         return {}  # the cohesive zone has most of it
-    if a is not None and scene.adhesion is not None:
-        return {"adhesion_energy": product(math.pi * scene.adhesion.work, ENERGY, (a, 2.0))}
+    if a is not None and law.holds:
+        return {"adhesion_energy": product(math.pi * scene.work_of_adhesion, ENERGY, (a, 2.0))}
     return {} if a is None or line is None else {"adhesion_energy": product(2.0, ENERGY, (a, 1.0), (line, 1.0))}

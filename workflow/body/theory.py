@@ -12,7 +12,7 @@ the run's value over it minus 1.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -29,24 +29,13 @@ from contact1d.analysis.theory.mindlin import (
 )
 from contact1d.analysis.theory.relaxing import Indented
 from contact1d.workflow.body.cases import Case, Values
-from contact1d.workflow.scene import History, Scene
+from contact1d.workflow.scene import Friction, History, Scene
 from contact1d.workflow.units import Quantity, Scales, scale_of
 
 SHOWN = 6
 """Decimals of a deviation in percent: below that it is round-off."""
 SAME_LOAD = 1e-12
 """Relative: up to that loads are one; round-off."""
-
-
-def _on_plane(case: Case) -> bool:
-    """Whether the springs of a chain on a plane are those of the method of dimensionality reduction alone."""
-    scene, adhesion = case.scene, case.scene.adhesion
-    known = scene.is_modelled and scene.bodies.lower == "rigid_plane" and scene.bodies.reduction == "mdr"
-    return known and scene.is_stepped and not (adhesion and (adhesion.rate or (adhesion.range and case.work)))
-
-
-def _never(case: Case) -> bool:
-    return False
 
 
 @dataclass(frozen=True)
@@ -56,11 +45,10 @@ class ClosedForm:
     Attributes:
         name: what it is called: "Hertz".
         source: where it is written down.
-        applies: why it holds for a case, in a few words; "" where it does not.
+        applies: why it holds for a case of its family, in a few words; "" where it does not.
         values: its predictions, by the names of results, in their model units, to compare the run with.
         pressure: p(r) [FU/LU²] at r [LU] in the reported state, if it predicts that.
         has_range: whether the predictions depend on the Tabor parameter.
-        is_exact: whether they are those of the chain of a case, but for its discretisation.
     """
 
     name: str
@@ -69,12 +57,23 @@ class ClosedForm:
     values: Callable[[Case], Values]
     pressure: Callable[[Case, Array], Array] | None = None
     has_range: bool = False
-    is_exact: Callable[[Case], bool] = _on_plane
 
 
 def applying(case: Case) -> list[ClosedForm]:
     """The closed forms that hold for a case."""
-    return [form for form in FORMS if form.applies(case)]
+    return _of(case, case.law.beside)
+
+
+def exact(case: Case) -> list[ClosedForm]:
+    """Those that are the law of its springs: of a chain on a plane by the method of dimensionality reduction."""
+    scene = case.scene
+    by_mdr = scene.bodies.lower == "rigid_plane" and scene.bodies.reduction == "mdr"
+    known = by_mdr and scene.is_modelled and scene.is_stepped
+    return _of(case, case.law.exact) if known else []
+
+
+def _of(case: Case, families: Sequence[str]) -> list[ClosedForm]:
+    return [form for family in families for form in FORMS[family] if form.applies(case)]
 
 
 def theory(scene: Scene, quantities: Mapping[str, Quantity], scales: Scales) -> list[dict[str, Any]]:
@@ -115,13 +114,14 @@ def in_words(results: Mapping[str, Any], name: str) -> Iterator[str]:
 # Pressed without adhesion. Under a given F: d, a, F/πa², p(0), dF/dd = 2E*a; at a given d: F, a and the pressures.
 
 
-def _pressed(kind: str, words: str) -> Callable[[Case], str]:
+def _pressed(kind: str, body: str) -> Callable[[Case], str]:
     """Applies to a profile of that kind, pressed and nothing else, whose reduction keeps it."""
 
     def applies(case: Case) -> str:
         stands = case.scene.bodies.reduction == "mdr" or (case.radius is not None and case.scene.interaction is None)
         pressed = case.force is not None or case.displacement is not None
-        return words if case.kind == kind and stands and pressed and case.is_elastic else ""
+        is_one = case.kind == kind and stands and pressed and case.is_elastic
+        return f"{body}, pressed without adhesion" if is_one else ""
 
     return applies
 
@@ -169,9 +169,14 @@ def _punch_pressure(case: Case, r: Array) -> Array:
 # Adhesive: F_A, the radii there and at F = 0, and of a load or the deepest place of a path d, F and a.
 
 
-def _adheres(kind: str, words: str) -> Callable[[Case], str]:
+def _adheres(kind: str, body: str) -> Callable[[Case], str]:
     """Applies to a profile of that kind on a plane with an energy of adhesion."""
-    return lambda case: words if case.scene.adhesion is not None and case.kind == kind and case.work > 0.0 else ""
+
+    def applies(case: Case) -> str:
+        is_one = case.kind == kind and case.work > 0.0
+        return f"{body} that adheres, without a range" if is_one else ""
+
+    return applies
 
 
 def _marks(case: Case, contact: Contact) -> Values:
@@ -219,10 +224,12 @@ def _with_a_range(of_any: bool) -> Callable[[Case], str]:
     """Applies to a paraboloid on a plane where JKR does not hold, and `of_any` µ where the scene gives the range."""
 
     def applies(case: Case) -> str:
-        mu, adhesion = tabor(case), case.scene.adhesion
-        if mu is None or adhesion is None or case.kind != "parabola":
-            return ""
-        if of_tabor(mu) is Theory.JKR and not (of_any and adhesion.range):
+        mu = tabor(case)
+        if (
+            mu is None
+            or case.kind != "parabola"
+            or (of_tabor(mu) is Theory.JKR and not (of_any and case.law.has_range))
+        ):
             return ""
         return f"a paraboloid with a range; the Tabor parameter is {mu:.3g}, where {valid_theory(mu, 0.0).theory} holds"
 
@@ -234,7 +241,7 @@ def _by_tabor(theory: Theory) -> Callable[[Case], str]:
 
     def applies(case: Case) -> str:
         scene, mu = case.scene, tabor(case)
-        sphere = case.kind == "parabola" and scene.bodies.reduction == "mdr" and scene.adhesion is None
+        sphere = case.kind == "parabola" and scene.bodies.reduction == "mdr"
         if mu is None or not sphere or scene.neighbours or scene.noise or of_tabor(mu) is not theory:
             return ""
         return f"the Tabor parameter μ = {mu:.3g}, of the implied W and the force-free distance"
@@ -244,7 +251,7 @@ def _by_tabor(theory: Theory) -> Callable[[Case], str]:
 
 def _maugis_values(case: Case) -> Values:
     said = _marks(case, MaugisDugdale(*case.sphere, case.range))
-    if case.scene.adhesion is None:  # an interaction's displacement is counted from another place
+    if case.scene.interaction:  # its displacement is counted from another place
         said.pop("displacement", None)
     return said
 
@@ -262,8 +269,7 @@ def _dmt_values(case: Case) -> Values:
 def drawn_along(case: Case) -> str:
     """Applies where there are a sphere, a contact and one load."""
     experiment: Any = case.scene.experiment
-    friction = case.scene.friction
-    if not experiment.goes_along or case.kind != "parabola" or friction is None or friction.coefficient == 0.0:
+    if not experiment.goes_along or case.kind != "parabola" or case.scene.the(Friction).coefficient == 0.0:
         return ""
     given = experiment.normal_forces() or experiment.places()
     one = case.radius is not None and min(given) > 0.0 and max(given) - min(given) <= SAME_LOAD * max(given)
@@ -274,9 +280,8 @@ def sliding_contact(case: Case) -> tuple[float, float, float, float]:
     """N [FU], μ, u* [LU] and a [LU] where `drawn_along` applies."""
     experiment: Any = case.scene.experiment
     scene, body, loads = case.scene, case.body, experiment.normal_forces()
-    assert scene.friction is not None
     edge = body.contact_radius(loads[0]) if loads else body.radius_at(experiment.places()[0])
-    coefficient, ratio = scene.friction.coefficient, scene.tangential_stiffness / scene.bulk_stiffness
+    coefficient, ratio = scene.the(Friction).coefficient, scene.tangential_stiffness / scene.bulk_stiffness
     return body.force(edge), coefficient, sliding_displacement(coefficient, ratio, body.displacement(edge)), edge
 
 
@@ -333,38 +338,79 @@ SNEDDON = "I. N. Sneddon, Int. J. Engng Sci. 3 (1965) 47"
 JKR = "K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. A 324 (1971) 301"
 MAUGIS = "D. Maugis, J. Colloid Interface Sci. 150 (1992) 243"
 DMT = "B. V. Derjaguin, V. M. Muller, Yu. P. Toporov, J. Colloid Interface Sci. 53 (1975) 314"
-FORMS = (
-    ClosedForm("Hertz", "H. Hertz 1882; K. L. Johnson, Contact Mechanics, 1985, section 4.2",
-               _pressed("parabola", "a paraboloid, pressed without adhesion"), _pressed_values, _pressure),
-    ClosedForm("Sneddon, cone", SNEDDON, _pressed("cone", "a cone, pressed without adhesion"),
-               _pressed_values, _pressure),
-    ClosedForm("Sneddon, flat punch", SNEDDON, _pressed("flat_punch", "a flat punch, pressed without adhesion"),
-               _punch_values, _punch_pressure),
-    ClosedForm("Sneddon, sphere", SNEDDON, _pressed("circle", "a whole sphere, pressed without adhesion"),
-               _pressed_values),
-    ClosedForm("Sneddon, ellipsoid", f"{SNEDDON}: his sphere, flattened",
-               _pressed("ellipsoid", "a whole ellipsoid, pressed without adhesion"), _pressed_values),
-    ClosedForm("Galin, power", f"L. A. Galin 1953; {SNEDDON}",
-               _pressed("power", "a power of the radius, pressed without adhesion"), _pressed_values),
-    ClosedForm("JKR", JKR, _adheres("parabola", "a paraboloid that adheres, without a range"), _adhesive_values,
-               _pressure),
-    ClosedForm("Maugis and Barquins, cone", "D. Maugis, M. Barquins, J. Phys. Lett. 42 (1981) L95",
-               _adheres("cone", "a cone that adheres, without a range"), _adhesive_values),
-    ClosedForm("Popov and Heß, power", "V. L. Popov, M. Heß, Method of Dimensionality Reduction, 2015, section 4.4",
-               _adheres("power", "a power of the radius that adheres, without a range"), _adhesive_values),
-    ClosedForm("JKR, whole sphere", "D. Maugis, Langmuir 11 (1995) 679",
-               _adheres("circle", "a whole sphere that adheres, without a range"), _adhesive_values),
-    ClosedForm("Kendall, flat punch", "K. Kendall, J. Phys. D 4 (1971) 1186",
-               _adheres("flat_punch", "a flat punch that adheres, without a range"), _adhesive_punch_values),
-    ClosedForm("Maugis and Dugdale", MAUGIS, _with_a_range(True), _maugis_values, has_range=True,
-               is_exact=lambda case: case.scene.adhesion is not None and bool(case.scene.adhesion.range)),
-    ClosedForm("DMT", DMT, _with_a_range(False), _dmt_values, is_exact=_never),
-    ClosedForm("JKR", JKR, _by_tabor(Theory.JKR), _jkr_values, is_exact=_never),
-    ClosedForm("Maugis-Dugdale", MAUGIS, _by_tabor(Theory.MAUGIS), _maugis_values, has_range=True, is_exact=_never),
-    ClosedForm("DMT", DMT, _by_tabor(Theory.DMT), _dmt_values, is_exact=_never),
-    ClosedForm("Cattaneo and Mindlin", "C. Cattaneo 1938; R. D. Mindlin, H. Deresiewicz, J. Appl. Mech. 20 (1953) 327",
-               drawn_along, _mindlin_values),
-    ClosedForm("Ting", "T. C. T. Ting, J. Appl. Mech. 33 (1966) 845; loaded as by E. H. Lee, J. R. M. Radok 1960",
-               _relaxes, _ting_values),
-)  # fmt: skip
-"""Every closed form that a run may be compared with; each has its own conditions."""
+FORMS: Mapping[str, tuple[ClosedForm, ...]] = {
+    "pressed": (
+        ClosedForm(
+            "Hertz",
+            "H. Hertz 1882; K. L. Johnson, Contact Mechanics, 1985, section 4.2",
+            _pressed("parabola", "a paraboloid"),
+            _pressed_values,
+            _pressure,
+        ),
+        ClosedForm("Sneddon, cone", SNEDDON, _pressed("cone", "a cone"), _pressed_values, _pressure),
+        ClosedForm(
+            "Sneddon, flat punch", SNEDDON, _pressed("flat_punch", "a flat punch"), _punch_values, _punch_pressure
+        ),
+        ClosedForm("Sneddon, sphere", SNEDDON, _pressed("circle", "a whole sphere"), _pressed_values),
+        ClosedForm(
+            "Sneddon, ellipsoid",
+            f"{SNEDDON}: his sphere, flattened",
+            _pressed("ellipsoid", "a whole ellipsoid"),
+            _pressed_values,
+        ),
+        ClosedForm(
+            "Galin, power", f"L. A. Galin 1953; {SNEDDON}", _pressed("power", "a power of the radius"), _pressed_values
+        ),
+    ),
+    "adhesive": (
+        ClosedForm("JKR", JKR, _adheres("parabola", "a paraboloid"), _adhesive_values, _pressure),
+        ClosedForm(
+            "Maugis and Barquins, cone",
+            "D. Maugis, M. Barquins, J. Phys. Lett. 42 (1981) L95",
+            _adheres("cone", "a cone"),
+            _adhesive_values,
+        ),
+        ClosedForm(
+            "Popov and Heß, power",
+            "V. L. Popov, M. Heß, Method of Dimensionality Reduction, 2015, section 4.4",
+            _adheres("power", "a power of the radius"),
+            _adhesive_values,
+        ),
+        ClosedForm(
+            "JKR, whole sphere",
+            "D. Maugis, Langmuir 11 (1995) 679",
+            _adheres("circle", "a whole sphere"),
+            _adhesive_values,
+        ),
+        ClosedForm(
+            "Kendall, flat punch",
+            "K. Kendall, J. Phys. D 4 (1971) 1186",
+            _adheres("flat_punch", "a flat punch"),
+            _adhesive_punch_values,
+        ),
+    ),
+    "zone": (ClosedForm("Maugis and Dugdale", MAUGIS, _with_a_range(True), _maugis_values, has_range=True),),
+    "dmt": (ClosedForm("DMT", DMT, _with_a_range(False), _dmt_values),),
+    "interaction": (
+        ClosedForm("JKR", JKR, _by_tabor(Theory.JKR), _jkr_values),
+        ClosedForm("Maugis-Dugdale", MAUGIS, _by_tabor(Theory.MAUGIS), _maugis_values, has_range=True),
+        ClosedForm("DMT", DMT, _by_tabor(Theory.DMT), _dmt_values),
+    ),
+    "along": (
+        ClosedForm(
+            "Cattaneo and Mindlin",
+            "C. Cattaneo 1938; R. D. Mindlin, H. Deresiewicz, J. Appl. Mech. 20 (1953) 327",
+            drawn_along,
+            _mindlin_values,
+        ),
+    ),
+    "relaxing": (
+        ClosedForm(
+            "Ting",
+            "T. C. T. Ting, J. Appl. Mech. 33 (1966) 845; loaded as by E. H. Lee, J. R. M. Radok 1960",
+            _relaxes,
+            _ting_values,
+        ),
+    ),
+}
+"""By family what a run may be compared with; each closed form has its own conditions."""

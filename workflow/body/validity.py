@@ -139,9 +139,9 @@ def beyond_jkr(sphere: MaugisDugdale, assumed: bool) -> str:
 
 
 def _tabor(case: Case) -> Iterator[Check]:
-    adhesion, sphere = case.scene.adhesion, case.with_range
-    if adhesion is not None and sphere is not None:
-        message = "" if adhesion.range else beyond_jkr(sphere, True)
+    sphere = case.with_range
+    if sphere is not None and case.law.holds:
+        message = "" if case.law.has_range else beyond_jkr(sphere, True)
         yield Check("tabor", "Tabor parameter", sphere.tabor, JKR_TABOR, not message, message)
 
 

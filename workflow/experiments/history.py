@@ -76,12 +76,7 @@ class HistoryExperiment(Scripted[History]):
                 whole = _work(d, force) if law_of(scene).is_lossless else None
                 found["dissipated_energy"] = Reading(float(np.trapezoid(force, d)), ENERGY, scale=whole)
             found["contact_time"] = lost(trace, _touched(trace, by_force))
-        return found if self._is_stiff(scene) else found | _slopes(trace)
-
-    @staticmethod
-    def _is_stiff(scene: Scene) -> bool:
-        """Whether a change of the velocity needs a jump of the force."""
-        return scene.viscoelasticity is not None and scene.viscoelasticity.resists_jumps
+        return found if law_of(scene).jumps(scene) else found | _slopes(trace)
 
     def asked(self, trace: Trace, scene: Scene) -> Sequence[tuple[float, float]]:
         """The force of each load step."""
@@ -99,7 +94,7 @@ class HistoryExperiment(Scripted[History]):
         elif found:
             words = "the history begins in contact, and what that took is not known, so there is no dissipated_energy"
         missing = {"no_energy": words} if words else {}
-        if self._is_stiff(scene) and any(name.startswith("unloading") for name in _moments(scene).phases):
+        if law_of(scene).jumps(scene) and any(name.startswith("unloading") for name in _moments(scene).phases):
             missing["no_slope"] = (
                 "the force of a dashpot jumps where the unloading begins, so there is neither an unloading_stiffness "
                 "nor a creep_corrected_stiffness"
@@ -118,13 +113,13 @@ def _moments(scene: Scene) -> Moments:
     assert isinstance(given, History)
     values = [point.force for point in given.force] if given.force else given.places()
     count = given.steps or math.ceil(STEPS * math.sqrt(FOR_TOLERANCE / scene.accuracy.tolerance))
-    names: list[str] = []
+    names, soonest = list[str](), law_of(scene).soonest(scene)
     times, wanted = [np.asarray(given.times[:1])], [np.asarray(values[:1])]
     for (before, after), (start, end) in zip(pairwise(given.times), pairwise(values), strict=True):
         parts = np.linspace(0.0, 1.0, count + 1)[1:]
-        if scene.viscoelasticity and not given.steps:
-            soonest = min(1.0, SOONEST * scene.viscoelasticity.shortest_time / (after - before))
-            parts = np.union1d(parts, np.geomspace(soonest, 1.0, count // 2)).round(ROUNDED)
+        if soonest and not given.steps:
+            first = min(1.0, SOONEST * soonest / (after - before))
+            parts = np.union1d(parts, np.geomspace(first, 1.0, count // 2)).round(ROUNDED)
             parts = np.unique(parts[parts > 0.0])
         names += [PHASES[float(np.sign(end - start))]] * parts.size
         times.append(before + (after - before) * parts)

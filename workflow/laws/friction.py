@@ -108,6 +108,8 @@ class Frictional(Independent):
     """
 
     has_zones: ClassVar[bool] = True
+    beside: ClassVar[tuple[str, ...]] = ("pressed", "along")
+    exact: ClassVar[tuple[str, ...]] = beside
 
     ratio: float = 1.0
     coefficient: float = 0.0

@@ -125,6 +125,8 @@ class Jkr(Law):
     holds: ClassVar[bool] = True
     is_lossless: ClassVar[bool] = False
     file: ClassVar[str] = "adhesion.cells"
+    beside: ClassVar[tuple[str, ...]] = ("pressed", "adhesive", "zone", "dmt")
+    exact: ClassVar[tuple[str, ...]] = ("pressed", "adhesive")
 
     work: float = field(kw_only=True)
     known: float = field(kw_only=True)

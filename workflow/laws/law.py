@@ -79,6 +79,8 @@ class Law(ABC):
         has_zones: whether the contact has edges inside of its own.
         touched: whether a state depends on what has been touched before.
         file: of the columns that the deck has of each particle; "" without.
+        beside: families of closed forms (`body.theory`) that may be printed beside a run; of another law none is.
+        exact: those of them that are the law's own, so that a run must agree with them.
         gap: undeformed gap G [LU] over a grid of distances, made monotone where pairs would snap.
         force: force [FU] of one particle on that grid.
         rest: distance r₀ [LU] of the apexes at displacement 0.
@@ -98,6 +100,8 @@ class Law(ABC):
     has_zones: ClassVar[bool] = False
     touched: ClassVar[bool] = False
     file: ClassVar[str] = ""
+    beside: ClassVar[tuple[str, ...]] = ()
+    exact: ClassVar[tuple[str, ...]] = ()
 
     gap: Array
     force: Array
@@ -142,6 +146,16 @@ class Law(ABC):
     def creep(self, time: float) -> float:
         """Displacement after a time [TU] under a load, over that at once."""
         return 1.0
+
+    @classmethod
+    def soonest(cls, scene: Scene) -> float | None:
+        """Time [TU] within which forces of a scene change after its rates have; None where they only follow a path."""
+        return None
+
+    @classmethod
+    def jumps(cls, scene: Scene) -> bool:
+        """Whether the force jumps where the velocity does."""
+        return False
 
     def sticking(self, mass: float, velocity: float, time: float) -> tuple[str, str] | None:
         """Why a body sticks that hits the plane, and the remedy; None of one that comes back.

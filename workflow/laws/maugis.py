@@ -57,6 +57,7 @@ class Maugis(Zoned):
     """
 
     has_range: ClassVar[bool] = True
+    exact: ClassVar[tuple[str, ...]] = ("zone",)
 
     range: float = field(kw_only=True)
 

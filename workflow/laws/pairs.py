@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any, Self, TypeVar
+from typing import Any, ClassVar, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +27,9 @@ TOUCHING, DECADES = 1e-16, 60
 @dataclass(frozen=True, eq=False)
 class Independent(Law):
     """Particles that know their own spring and what is opposite, and nothing of their neighbours."""
+
+    beside: ClassVar[tuple[str, ...]] = ("pressed", "interaction")
+    exact: ClassVar[tuple[str, ...]] = ("pressed",)
 
     @classmethod
     def applies(cls, scene: Scene) -> bool:

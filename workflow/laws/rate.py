@@ -45,6 +45,7 @@ class Receding(Zoned):
     """
 
     in_time: ClassVar[bool] = True
+    exact: ClassVar[tuple[str, ...]] = ()
 
     rate: Rate = field(kw_only=True)
 

@@ -48,6 +48,8 @@ class Relaxing(Independent):
     is_lossless: ClassVar[bool] = False
     touched: ClassVar[bool] = True
     file: ClassVar[str] = "retardation.cells"
+    beside: ClassVar[tuple[str, ...]] = ("relaxing",)
+    exact: ClassVar[tuple[str, ...]] = beside
 
     material: Viscoelasticity = field(default_factory=Viscoelasticity)
 
@@ -61,6 +63,16 @@ class Relaxing(Independent):
         """See `Law`."""
         found: Self = on_plane(cls, profile, scene.bodies.spacing, scene.bulk_stiffness, scene.the(Viscoelasticity))
         return found
+
+    @classmethod
+    def soonest(cls, scene: Scene) -> float:
+        """See `Law`."""
+        return scene.the(Viscoelasticity).shortest_time
+
+    @classmethod
+    def jumps(cls, scene: Scene) -> bool:
+        """See `Law`; of dashpots it does."""
+        return scene.the(Viscoelasticity).resists_jumps
 
     def creep(self, time: float) -> float:
         """See `Law`; 1 beside a dashpot, which lets nothing happen at once."""
