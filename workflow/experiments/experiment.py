@@ -104,15 +104,14 @@ class Scripted(Experiment[K]):
         return False
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """On a rigid plane what the script does there."""
-        if not scene.is_stepped:
+        """What the script does on the reduced model; on a rigid plane these are the load steps that run."""
+        if scene.method == "dynamic":
             return self.expected(scene, settings)
         case = self.reduction(scene, settings)
         return Plan.of(Deck(scene, settings), case.model, case.script).phases
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """The schedule of particles that interact, or of a motion, as far as it is known."""
-        # An experiment that always runs on a plane, such as a history, has its schedule from the plan of its script.
+        """The schedule of a motion, as far as it is known."""
         raise NotImplementedError
 
     @abstractmethod

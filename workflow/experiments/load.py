@@ -15,15 +15,12 @@ from contact1d.workflow.continuation.holding import held_phase
 from contact1d.workflow.continuation.load_control import FIRST_RISE, LoadBranch
 from contact1d.workflow.continuation.outcome import Outcome, Reading
 from contact1d.workflow.continuation.trace import Trace
-from contact1d.workflow.deck.steps import Phase, displacements
+from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.experiments.experiment import Scripted
 from contact1d.workflow.experiments.thermal import planned_samples, thermal_load
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Load, Scene
 from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE
-
-LOADING_STEPS = 24
-"""Load steps of particles that interact, where a run would search."""
 
 
 class LoadExperiment(Scripted[Load]):
@@ -84,13 +81,10 @@ class LoadExperiment(Scripted[Load]):
         return [(force, float(trace.force[np.argmin(np.abs(trace.force - force))]))]
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """The schedule by the model."""
+        """The load, held."""
         force = self.given(scene).force
-        if scene.method == "dynamic":
-            scale = max(abs(force), settings.forces.scale)
-            return (held_phase("loading", scene, settings, (force,), scale, state=True),)
-        rows = displacements(np.linspace(0.0, settings.largest_displacement, LOADING_STEPS + 1).tolist())
-        return (Phase("loading", rows, state=True),)
+        scale = max(abs(force), settings.forces.scale)
+        return (held_phase("loading", scene, settings, (force,), scale, state=True),)
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
         """A warning where nothing touches."""

@@ -18,25 +18,24 @@ from contact1d.workflow.continuation.marks import unloading
 from contact1d.workflow.continuation.outcome import Outcome, Reading
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.continuation.trust import require_no_contradiction
-from contact1d.workflow.deck.steps import Phase, displacements
+from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.experiments.detachment import planned_detachment, pull_off_thermal
 from contact1d.workflow.experiments.experiment import Scripted
 from contact1d.workflow.laws import law_of
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import History, Path
-from contact1d.workflow.model.reduced import reduced
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import PullOff, Scene
 from contact1d.workflow.units import FORCE, LENGTH
 
-UNLOADING_STEPS, TENSIONS = 80, 12
-"""Load steps of a planned unloading, and tensions of a planned pull, where a run would search."""
+TENSIONS = 12
+"""Of a planned pull under load control, where a run would search."""
 RATED_STEPS = 120
 """Load steps of a pull whose edge recedes at a finite speed."""
 NEAR_ZERO = 3
 """Load steps on both sides of F = 0 that tell when it is."""
-LOADING_STEPS, BEYOND_LIMIT = 24, 1.05
-"""Load steps up to a force that is known beforehand; end of the way over the limit point."""
+LOADING_STEPS = 24
+"""Load steps up to a preload at a velocity."""
 LARGEST_TENSION = 1.2
 """The last of these tensions over the expected pull-off force."""
 
@@ -93,19 +92,14 @@ class PullOffExperiment(Scripted[PullOff]):
         return {"cycles": {"cycle": tuple(map(float, range(1, len(falls) + 1))), "adhesion_force": forces}}
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """The schedule by the model."""
+        """Preload, no load, and tensions up to more than is expected."""
         preload, tension = self.given(scene).preload, settings.law.pull_off_force()
-        if scene.method == "dynamic":
-            tensions = [float(-t) for t in np.linspace(0.0, LARGEST_TENSION * tension, TENSIONS + 1)[1:]]
-            return (
-                held_phase("loading", scene, settings, (preload,), max(preload, tension)),
-                held_phase("unloading", scene, settings, (0.0,), max(preload, tension), state=True),
-                held_phase("pulling", scene, settings, tensions, tension, state=True),
-            )
-        deepest, apart = settings.largest_displacement, BEYOND_LIMIT * reduced(scene, settings).apart
-        down = displacements(np.linspace(0.0, deepest, LOADING_STEPS + 1).tolist())
-        back = displacements(np.linspace(deepest, apart, UNLOADING_STEPS).tolist())
-        return (Phase("loading", down), Phase("unloading", back, state=True))
+        tensions = [float(-t) for t in np.linspace(0.0, LARGEST_TENSION * tension, TENSIONS + 1)[1:]]
+        return (
+            held_phase("loading", scene, settings, (preload,), max(preload, tension)),
+            held_phase("unloading", scene, settings, (0.0,), max(preload, tension), state=True),
+            held_phase("pulling", scene, settings, tensions, tension, state=True),
+        )
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
         """Refuse results that contradict the curve of the run; of cycles the number of each state."""
