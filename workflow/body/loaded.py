@@ -51,6 +51,10 @@ class Loaded:
         """The profile, where its law tells where the contact ends."""
         return self.profile if isinstance(self.profile, ZonedProfile) else None
 
+    def has_kinks(self, shape: Shape) -> bool:
+        """Whether a body has kinks inside the contact."""
+        return any(kink < self.radius.value for kink in shape.kinks)
+
     @property
     def is_alone(self) -> bool:
         """Whether particles on a plane carry by themselves, so that their load is a function of the body's height."""

@@ -15,6 +15,7 @@ plane, of a shape g and with a jump J ∝ √a,
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from operator import itemgetter
@@ -38,7 +39,7 @@ MOST = 1000
 """Particles on a side that are used, and radii that p is given at; of more, every second, third …"""
 RADII = 100
 """Evenly from 0 to the contact radius, at which q is given, and at its kinks besides."""
-ANGLES, PIECES = 20, 10
+ANGLES, PIECES = 12, 10
 """Positions of Gauss's at which p(r) is added up to a force, between kinks, and pieces of a body whose shape is a table
 or whose springs are not elastic: a corner of its history is a kink of the line load."""
 BETWEEN = 101
@@ -163,15 +164,7 @@ def _pressure(state: Loaded, share: float, given: float) -> BodyPressure | None:
     if zone:  # the attraction's edge goes with that of the contact
         moves += np.abs(_drawn(scene, zone, STEP)[1](r) - pulled(r)) / STEP
     spread = state.radius.uncertainty / state.radius.value * moves + given * np.abs(p)
-    # Of a known shape nothing lies between the particles: where they are too few to show it, its edge alone is open.
-    if coarser or state.body is None:
-        spread += _spread(p, *coarser)
-    if state.is_alone and not state.is_elastic:  # one difference may be 0 by chance
-        if not coarser and state.body is not None:
-            spread += np.abs(p) / (2.0 * np.count_nonzero(side < fine.edge)) ** 2
-        if other := state.through(state.load, 2 * own, own):
-            spread = np.maximum(spread, np.abs(other.pressure(r) - pulled(r) - p))
-        spread = OPEN * sliding_window_view(np.pad(spread, BESIDE // 2, "edge"), BESIDE).max(axis=1)
+    spread = _between(state, own, spread, [p, *coarser], lambda line: line.pressure(r) - pulled(r))
     by_shape = _by_shape(state, own, r, p, pulled)
     within = np.count_nonzero(side < state.radius.value / state.wider)
     told = [one for i, one in enumerate((p, *coarser)) if within >= FEWEST * 2**i]
@@ -188,6 +181,27 @@ def _pressure(state: Loaded, share: float, given: float) -> BodyPressure | None:
     return BodyPressure(
         r, p, error + by_shape(np.asarray), doubt, edge, results, force + ring, size - ring, stiffness
     )  # fmt: skip
+
+
+def _between(
+    state: Loaded, stride: int, spread: Array, levels: Sequence[Array], pressure: Callable[[LineLoad], Array]
+) -> Array:
+    """The error of p, (n,), with what lies between particles, by levels of them.
+
+    Of a known shape nothing does: where they are too few to show it, its edge alone is open.
+    """
+    p, *coarser = levels
+    known = not coarser and state.body is not None
+    if not known:
+        spread = spread + _spread(p, *coarser)
+    if state.is_elastic or not state.is_alone:
+        return spread
+    if known:
+        inside = np.count_nonzero(state.x[state.x.size // 2 :: stride] < (state.edge or math.inf))
+        spread = spread + np.abs(p) / (2.0 * inside) ** 2
+    if other := state.through(state.load, 2 * stride, stride):  # one difference may be 0 by chance
+        spread = np.maximum(spread, np.abs(pressure(other) - p))
+    return np.asarray(OPEN * sliding_window_view(np.pad(spread, BESIDE // 2, "edge"), BESIDE).max(axis=1))
 
 
 def _added_up(state: Loaded) -> float:
@@ -251,16 +265,11 @@ def _largest(
     """
     scene, shape, p = state.scene, state.shape, levels[0] if levels else pressure(r)
     noise, top, unsure = NOISE * scene.accuracy.tolerance, int(p.argmax()), bool(shape.alternatives or shape.deviations)
-    # A jump at the edge is a pole, and where the slope jumps inside p is a logarithm.
-    smooth = p[top] > 0.0 and not (shape.has_edge or any(kink < state.radius.value for kink in shape.kinks))
-    # A jump that the law tells is one, however small; particles show no better than their errors.
-    pole = 0.0 if state.zone else noise * p[top] * fine.edge
-    smooth &= (top == 0 and state.jump is None) or fine.at_edge <= pole
-    smooth &= top == 0 or len(levels) == 3
+    smooth = p[top] > 0.0 and (top == 0 or len(levels) == 3) and _is_bounded(state, fine, top, noise * p[top])
     peak = p[top]
     if smooth and top:  # on the axis it is one by symmetry
         peak = pressure(np.linspace(r[top - 1], r[min(top + 1, r.size - 1)], BETWEEN)).max()
-    hidden = any(kink < state.radius.value for one in shape.alternatives for kink in one.kinks)
+    hidden = any(map(state.has_kinks, shape.alternatives))
     found: dict[str, tuple[Quantity, int, Callable[[Array], Any]]] = {}
     for name, place, read, value, is_open, may_have in (
         ("central_pressure", 0, itemgetter(0), p[0], False, True),
@@ -271,6 +280,17 @@ def _largest(
             off = 0.0 if known and not is_open else np.inf
             found[name] = Quantity(float(value), off, MEAN_PRESSURE), place, read
     return found
+
+
+def _is_bounded(state: Loaded, fine: LineLoad, top: int, noise: float) -> bool:
+    """Whether the largest pressure of the particles is one: a jump at the edge is a pole, a kink inside a logarithm.
+
+    A jump that the law tells is one, however small; particles show no better than their errors.
+    """
+    if state.shape.has_edge or state.has_kinks(state.shape):
+        return False
+    pole = 0.0 if state.zone else noise * fine.edge
+    return (top == 0 and state.jump is None) or fine.at_edge <= pole
 
 
 def _total(fine: LineLoad, kinks: Sequence[float], pulled: Callable[[Array], Array]) -> tuple[float, float]:

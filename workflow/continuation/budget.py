@@ -365,18 +365,7 @@ def budgeted(
     """
     readings = case.read(trace)
     values = _values(readings)
-    shapes = [force_error.common]
-    if length > 0.0:
-        shapes.append(force_error.common * np.clip((trace.displacement - force_error.anchor) / length, -1.0, 1.0))
-    if sampled:
-        shapes.append(force_error.turning * np.sign(np.diff(trace.displacement, prepend=trace.displacement[:1])))
-    missed = _missed(case, trace, force_error.common)
-    traces = [trace.perturbed(sign * shape, moved=missed) for shape in shapes for sign in WAYS]
-    # Where an interaction is so much stronger or weaker, a contact is as much wider or narrower at most.
-    strength = case.settings.law.pull_off_force() or float(np.max(np.abs(trace.force), initial=0.0))
-    if force_error.law > 0.0 and strength > 0.0:
-        traces += [trace.perturbed(radius_factor=1.0 + sign * force_error.law / strength) for sign in (1.0, -1.0)]
-    solver = _changes(case.read, values, traces)
+    solver = _changes(case.read, values, _off_balance(case, trace, force_error, sampled, length))
     read = _changes(case.read, values, misread(trace))
     between = sampling_errors(case, trace) if sampled else {}
     repeated = repeated or {}
@@ -401,6 +390,22 @@ def budgeted(
         given = in_squares(case.moves, name)
         found[name] = Result(one.value, one.unit, errors, one.scale, one.prescribed, read[name], given)
     return found
+
+
+def _off_balance(case: Reduction, trace: Trace, force_error: ForceErrors, sampled: bool, length: float) -> list[Trace]:
+    """The trace with forces that are off by ε both ways, or by a part of it that changes its sign; see `budgeted`."""
+    shapes = [force_error.common]
+    if length > 0.0:
+        shapes.append(force_error.common * np.clip((trace.displacement - force_error.anchor) / length, -1.0, 1.0))
+    if sampled:
+        shapes.append(force_error.turning * np.sign(np.diff(trace.displacement, prepend=trace.displacement[:1])))
+    missed = _missed(case, trace, force_error.common)
+    traces = [trace.perturbed(sign * shape, moved=missed) for shape in shapes for sign in WAYS]
+    # Where an interaction is so much stronger or weaker, a contact is as much wider or narrower at most.
+    strength = case.settings.law.pull_off_force() or float(np.max(np.abs(trace.force), initial=0.0))
+    if force_error.law > 0.0 and strength > 0.0:
+        traces += [trace.perturbed(radius_factor=1.0 + sign * force_error.law / strength) for sign in WAYS]
+    return traces
 
 
 def misread(trace: Trace) -> list[Trace]:

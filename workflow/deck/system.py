@@ -79,28 +79,23 @@ def assemble(
         period: length of the box along x [LU], after which everything repeats itself; 0 where nothing does.
     """
     far = len(bodies[-1].far_anchors) > 0
-    groups = [(PARTICLES[b.name], b.particles) for b in bodies] + [(ANCHORS[b.name], b.anchors) for b in bodies]
+    groups = {PARTICLES[b.name]: b.particles for b in bodies} | {ANCHORS[b.name]: b.anchors for b in bodies}
     if far:
-        groups += [(FAR_ANCHORS[b.name], b.far_anchors) for b in bodies]
+        groups |= {FAR_ANCHORS[b.name]: b.far_anchors for b in bodies}
     if driver:
-        groups.append((DRIVER, bodies[-1].anchors.mean(axis=0, keepdims=True)))
-    positions = np.concatenate([p for _, p in groups])
-    types = np.concatenate([np.full(len(p), t) for t, p in groups])
-    starts = np.cumsum([1, *(len(p) for _, p in groups)])
-    held = [i for i, b in enumerate(bodies) if len(b.anchors)]
-    chains = {i: starts[i] + np.arange(len(bodies[i].particles)) for i in held}
-    bonds = [np.empty((0, 3), dtype=np.int64)]
-    bonds += [_bonds(1, chains[i], starts[len(bodies) + i] + np.arange(len(chains[i]))) for i in held]
-    names = ["bulk"] if held else []
+        groups[DRIVER] = bodies[-1].anchors.mean(axis=0, keepdims=True)
+    positions = np.concatenate([*groups.values()])
+    types = np.repeat([*groups], [*map(len, groups.values())])
+    atoms = {kind: 1 + np.flatnonzero(types == kind) for kind in groups}
+    held = [b.name for b in bodies if len(b.anchors)]
+    chains = [atoms[PARTICLES[name]] for name in held]
+    pairs = {"bulk": [(chain, atoms[ANCHORS[name]]) for name, chain in zip(held, chains, strict=True)]}
     if neighbours:
-        names.append("neighbours")
-        for chain in chains.values():
-            nexts = np.roll(chain, -1) if period else chain[1:]
-            bonds.append(_bonds(len(names), chain[: len(nexts)], nexts))
+        pairs["neighbours"] = [_nexts(chain, bool(period)) for chain in chains]
     if far:
-        names.append("far")
-        ends = {i: starts[2 * len(bodies) + i] for i in held}
-        bonds += [_bonds(len(names), chains[i], ends[i] + np.arange(len(chains[i]))) for i in held]
+        pairs["far"] = [(chain, atoms[FAR_ANCHORS[name]]) for name, chain in zip(held, chains, strict=True)]
+    names = tuple(name for name, some in pairs.items() if some)
+    bonds = [_bonds(kind, *pair) for kind, name in enumerate(names, 1) for pair in pairs[name]]
     masses: tuple[float, ...] = (particle_mass, particle_mass, anchor_mass, anchor_mass)
     if far or driver:
         masses += 2 * (FAR_MASS * anchor_mass,) + (anchor_mass,) * driver
@@ -108,7 +103,13 @@ def assemble(
     box = np.stack([positions.min(axis=0) - space, positions.max(axis=0) + space])
     if period:
         box[:, 0] = -0.5 * period, 0.5 * period
-    return System(types, positions, np.concatenate(bonds), tuple(names), masses, box)
+    every = np.concatenate([np.empty((0, 3), dtype=np.int64), *bonds])
+    return System(types, positions, every, names, masses, box)
+
+
+def _nexts(chain: Integers, repeats: bool) -> tuple[Integers, Integers]:
+    """Each particle of a chain and the next one; one that `repeats` itself has no end."""
+    return (chain, np.roll(chain, -1)) if repeats else (chain[:-1], chain[1:])
 
 
 def write_data(system: System, title: str, path: Path) -> None:
