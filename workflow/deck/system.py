@@ -94,7 +94,7 @@ def assemble(
         pairs["neighbours"] = [_nexts(chain, bool(period)) for chain in chains]
     if far:
         pairs["far"] = [(chain, atoms[FAR_ANCHORS[name]]) for name, chain in zip(held, chains, strict=True)]
-    names = tuple(name for name, some in pairs.items() if some)
+    names = tuple(filter(pairs.get, pairs))  # those that have any
     bonds = [_bonds(kind, *pair) for kind, name in enumerate(names, 1) for pair in pairs[name]]
     masses: tuple[float, ...] = (particle_mass, particle_mass, anchor_mass, anchor_mass)
     if far or driver:
