@@ -92,24 +92,29 @@ class ModelBranch:
         if not self._rows:
             self._add(wanted[:1])
             wanted = wanted[1:]
-        ends = np.append(self._rows[-1].displacement, wanted)
-        dense = [self._between(*pair, between) for pair in pairwise(ends.tolist())]
+        dense, leading = self._between(np.append(self._rows[-1].displacement, wanted), between)
         own = self._phase
-        if dense and self._rows[-1].phase == UNSEEN:  # what leads from there to the first state of a path is none of it
+        if self._rows[-1].phase == UNSEEN:  # what leads from there to the first state of a path is none of it
             self._phase = UNSEEN
-            self._add(dense[0][:-1])
-            dense[0] = dense[0][-1:]
+            self._add(dense[:leading])
+            dense = dense[leading:]
         self._phase = own
-        if dense:
-            self._add(np.concatenate(dense))
+        self._add(dense)
 
-    def _between(self, start: float, end: float, count: int) -> Array:
-        """So many positions [LU] of a step, its end the last, and others on both sides of each jump."""
+    def _between(self, ends: Array, count: int) -> tuple[Array, int]:
+        """So many positions [LU] of each step, its end the last, and those on both sides of a jump.
+
+        And how many there are before the end of the first step.
+        """
         near = NEAR * self.model.law.spacing
-        beside = [at + side for at in self.model.jumps for side in (-near, near)]
-        inner = [at for at in beside if min(start, end) < at < max(start, end)]
-        found = np.unique([*np.linspace(start, end, count + 1)[1:], *inner])
-        return found if end > start else found[::-1]
+        jumps = np.asarray([at + side for at in self.model.jumps for side in (-near, near)])
+        steps, step = np.arange(ends.size), np.diff(ends)
+        passed = np.divide(
+            jumps - ends[:-1, None], step[:, None], out=np.zeros((step.size, jumps.size)), where=step[:, None] != 0.0
+        )
+        inside = (passed > 0.0) & (passed < 1.0)
+        at = np.union1d(np.arange(1, count * step.size + 1) / count, (steps[:-1, None] + passed)[inside])
+        return np.interp(at, steps, ends), int(np.count_nonzero(at < 1.0))
 
     def reach(self, force: float, scale: float) -> None:
         """Go to where a force [FU] is carried; under a tension from where the bodies touch on."""

@@ -6,6 +6,7 @@ import math
 from bisect import bisect_left
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from itertools import compress, pairwise
 
 import numpy as np
@@ -338,6 +339,7 @@ def stretches(positions: Sequence[float]) -> list[tuple[str, list[float]]]:
     return numbered
 
 
+@lru_cache(maxsize=1)
 def way(scene: Scene, settings: Settings) -> list[tuple[float, bool]]:
     """Displacements [LU] of all states, and whether the scene asks for them or they are intermediate.
 
