@@ -110,7 +110,7 @@ class Trace:
         own = self.searches.get(int(self.leg[-1]), Search())
         if own.bracket is None:
             return own
-        shift = float(np.broadcast_to(self.perturbation.force, self.force.shape)[-1])
+        shift = _of(self.perturbation.force, -1)
         return replace(own, bracket=(own.bracket[0] - shift, own.bracket[1] - shift))
 
     @property
@@ -143,12 +143,11 @@ class Trace:
 
     def _there(self, state: int, length: Callable[[int], float]) -> float:
         """A length [LU] where a state is moved to."""
-        moved = np.broadcast_to(self.perturbation.moved, self.force.shape)
-        value, d = length(state), self.displacement - moved
-        if not moved[state]:
+        value, moved = length(state), _of(self.perturbation.moved, state)
+        if not moved:
             return value
-        rate = slope(d, state, length) or self.model.law.radius_rate(float(d[state]))
-        return value + float(moved[state]) * rate
+        d = self.displacement - self.perturbation.moved
+        return value + moved * (slope(d, state, length) or self.model.law.radius_rate(float(d[state])))
 
     def phases(self, *names: str) -> Trace:
         """The states of these phases, "unloading_2" being one of "unloading"."""
@@ -156,7 +155,7 @@ class Trace:
 
     def shift_of(self, state: int) -> float:
         """By how many of its uncertainties the radius of a state is taken too large."""
-        return float(np.broadcast_to(self.perturbation.radius_shift, self.force.shape)[state])
+        return _of(self.perturbation.radius_shift, state)
 
     def falling(self) -> Trace:
         """The states that are held, by falling displacement, each once, the last that was measured there."""
@@ -169,10 +168,10 @@ class Trace:
         """The states of these numbers, in this order."""
         at, own = np.asarray(states, dtype=np.intp), self.perturbation
         parts = own.force, own.radius_shift, own.moved
-        force, shift, moved = (np.broadcast_to(one, self.force.shape)[at] for one in parts)
+        force, shift, moved = (one if isinstance(one, float) else one[at] for one in parts)
         return replace(
             self,
-            phase=tuple(self.phase[i] for i in at),
+            phase=tuple(map(self.phase.__getitem__, at.tolist())),
             leg=self.leg[at],
             displacement=self.displacement[at],
             force=self.force[at],
@@ -205,6 +204,11 @@ class Trace:
         changed = self.force + force
         own = Perturbation(changed - self.force, radius_shift, radius_factor, moved)
         return replace(self, displacement=self.displacement + moved, force=changed, perturbation=own)
+
+
+def _of(values: Array | float, state: int) -> float:
+    """What a state has of values, (m,), or of one that all have."""
+    return values if isinstance(values, float) else float(values[state])
 
 
 def slope(displacement: Array, state: int, value: Callable[[int], float], least: float = BRANCH_DISTANCE) -> float:
