@@ -56,6 +56,8 @@ def _rule(count: int) -> tuple[Floats, Floats]:
     return np.sin(angle) ** 2, 0.25 * math.pi * np.sin(2.0 * angle) * weights
 
 
+LAYERS = (1.0, 5.0, 25.0, 125.0)
+"""Times over a relaxation time, within which forces change by themselves after a corner, or a past is felt."""
 PLACES, PARTS = _rule(80)
 
 
@@ -303,7 +305,9 @@ class Indentation:
                 touched = start + (self.body.depth(x) - self.body.depth(low)) / rate
                 return self.material.relaxed(max(0.0, t - touched)) * n * self.body.depth(x)
 
-            total += integral(carried, low, high) if rate > 0.0 else 0.0
+            layers = [t - times * tau for _, tau in self.material.terms for times in LAYERS]
+            ends = sorted({low, high, *(self.body.radius(self.d(s)) for s in layers if start < s < stop)})
+            total += sum(integral(carried, *pair) for pair in pairwise(ends)) if rate > 0.0 else 0.0
         return 2.0 * total
 
     @cached_property
@@ -314,9 +318,12 @@ class Indentation:
     @cached_property
     def work(self) -> float:
         """int F dd to the end of the history or of contact [energy]."""
-        stop = min(self.end, self.d.times[-1])
-        pieces = self.d.pieces(self.start, stop)
-        return sum(rate * smooth(self.force, low, high) for low, high, rate in pieces if rate)
+        stop, total = min(self.end, self.d.times[-1]), 0.0
+        for low, high, rate in self.d.pieces(self.start, stop):
+            layers = [low + times * tau for _, tau in self.material.terms for times in LAYERS]
+            ends = sorted({low, high, *(end for end in layers if end < high)})
+            total += rate * sum(smooth(self.force, *ends) for ends in pairwise(ends)) if rate else 0.0
+        return total
 
 
 def smooth(function: Function, low: float, high: float, count: int = 60) -> float:
