@@ -100,9 +100,13 @@ class Reduction:
 
     def trace(self, model: Particles, dense: int = 1, shift: float = 0.0, whole: bool = False) -> Trace:
         """What the script makes of the reduced model."""
+        return self.driven(model, dense, shift).trace(whole)
+
+    def driven(self, model: Particles, dense: int = 1, shift: float = 0.0) -> ModelBranch:
+        """The reduced model when the script has ended."""
         branch = ModelBranch(self.scene, self.settings, model, dense, shift)
         self.script(branch)
-        return branch.trace(whole)
+        return branch
 
     @property
     def is_open(self) -> bool:

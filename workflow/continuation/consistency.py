@@ -18,7 +18,6 @@ from itertools import pairwise
 import numpy as np
 
 from contact1d.workflow.continuation.budget import Reduction
-from contact1d.workflow.continuation.model_branch import ModelBranch
 from contact1d.workflow.continuation.outcome import Agreement
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.laws.particles import Array, Particles
@@ -40,13 +39,11 @@ EACH_STEP, EACH_LEG, BESIDE, NEAREST = 32, 200, 60, 1e-9
 which forces are straight lines; on both sides of a jump, the nearest of them over the spacing."""
 
 
-def plan(scene: Scene, states: Sequence[State], forces: Array | None) -> dict[str, Agreement]:
-    """LAMMPS's forces beside those of the model, (m,) [FU], of all load steps in order; nothing without these.
+def plan(scene: Scene, states: Sequence[State], forces: Array) -> dict[str, Agreement]:
+    """LAMMPS's forces beside those of the model, (m,) [FU], of all load steps in order.
 
     Each may be off by the round-off of the particles that carry.
     """
-    if forces is None or not states:
-        return {}
     sizes = np.asarray([_size(scene, state) for state in states])
     measured = np.asarray([state.force for state in states])
     missed = np.maximum(np.abs(measured - forces) - np.asarray([*map(_round_off, states)]), 0.0)
@@ -161,9 +158,7 @@ def _denser(case: Reduction, work: Work) -> Work:
     """The same of a history in smaller load steps."""
     if work.kinetic or not case.model.law.in_time:
         return work
-    branch = ModelBranch(case.scene, case.settings, case.model, DENSER, 0.0)
-    case.script(branch)
-    return Work(branch.path)
+    return Work(case.driven(case.model, DENSER).path)
 
 
 def _dense(path: Path, model: Particles, finer: int) -> Path:

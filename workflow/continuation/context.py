@@ -12,8 +12,10 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
+from contact1d.workflow.continuation import consistency
+from contact1d.workflow.continuation.budget import Reduction
 from contact1d.workflow.continuation.contact import Contact
-from contact1d.workflow.continuation.outcome import Outcome
+from contact1d.workflow.continuation.outcome import Agreement, Outcome
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Array, Search, Trace, of_states
 from contact1d.workflow.continuation.trust import UntrustedError
@@ -24,7 +26,6 @@ from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.engine.session import Engine
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import History
-from contact1d.workflow.laws.path import Path as Motion
 from contact1d.workflow.model.free import FLIGHT, STRETCHES, is_over, stretch
 from contact1d.workflow.model.reduced import reduced
 
@@ -144,7 +145,6 @@ class ContactBranch:
         marked: states that are reported, by name.
         unbalance: force [FU] that the last state leaves unbalanced; None: what its residual forces add up to.
         moves: whether the states are those of a motion, and no equilibria.
-        history: what the plate does over time; None where states are equilibria.
         wanted: force [FU] that a state was to carry, by its number.
         given: see `Trace`.
     """
@@ -160,7 +160,6 @@ class ContactBranch:
         self.marked: dict[str, State] = {}
         self.unbalance: float | None = None
         self.moves = False
-        self.history: Motion | None = None
         self.wanted: dict[int, float] = {}
         self.given = "displacement"
         self._direction, self._turned, self._phase = 0, False, ""
@@ -192,9 +191,9 @@ class ContactBranch:
         """The force maximum that is expected [FU]."""
         return self.settings.law.pull_off_force()
 
-    def by_model(self) -> Array | None:
-        """Forces [FU] of the model in all states, (m,); None where it is no copy of the deck."""
-        return None
+    def checks(self, case: Reduction, doubt: float) -> dict[str, Agreement]:
+        """Whether the states contradict what is known; `doubt`: what is uncertain of their energies, relative."""
+        return consistency.balance(self.scene, self.states)
 
     def trace(self) -> Trace:
         """What a reader sees."""

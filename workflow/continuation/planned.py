@@ -15,9 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.pressure import Profile, zoned
+from contact1d.workflow.continuation import consistency
+from contact1d.workflow.continuation.budget import Reduction
 from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.context import ContactBranch, RunContext
-from contact1d.workflow.continuation.model_branch import ModelBranch, Script
+from contact1d.workflow.continuation.model_branch import ModelBranch
+from contact1d.workflow.continuation.outcome import Agreement
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trust import DigitsError, TensionError, require_trust
 from contact1d.workflow.deck.deck import Deck
@@ -48,11 +51,9 @@ class Plan:
     marks: Collection[int]
 
     @classmethod
-    def of(cls, deck: Deck, model: Particles, script: Script) -> Plan:
-        """What a script does on the model."""
-        branch = ModelBranch(deck.scene, deck.settings, model, 1, 0.0)
-        script(branch)
-        return cls(deck, model, branch.path, branch.phases, branch.marks)
+    def of(cls, deck: Deck, branch: ModelBranch) -> Plan:
+        """What a script has done on the model."""
+        return cls(deck, branch.model, branch.path, branch.phases, branch.marks)
 
     @cached_property
     def _columns(self) -> dict[str, Array]:
@@ -73,6 +74,14 @@ class Plan:
     def followed(self) -> Followed:
         """What the model carries in these load steps, with their numbers as LAMMPS reads them."""
         return self.model.carried(self._columns)
+
+    def checks(self, case: Reduction, states: Sequence[State], doubt: float = 0.0) -> dict[str, Agreement]:
+        """Whether its states contradict the model, and their energies each other; see `consistency`."""
+        if not self.deck.scene.is_modelled:
+            return {}
+        forces = self.followed.total
+        found = consistency.plan(self.deck.scene, states, forces)
+        return found | consistency.energy(case, consistency.Work(self.path, forces), doubt)
 
     def measured(self, contact: Contact) -> list[State]:
         """The states that LAMMPS has, with the edges that the law of the contact tells.
@@ -107,26 +116,27 @@ def _zoned(bodies: Bodies, spring: float, state: State, edge: float, reach: floa
 
 
 class PlannedBranch(ContactBranch):
-    """States on a rigid plane; LAMMPS runs when the script has ended."""
+    """States on a rigid plane; LAMMPS runs when the script has ended.
+
+    Attributes:
+        plan: what it has run then.
+    """
+
+    plan: Plan
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
         """Prepare a contact."""
         super().__init__(context, meanwhile)
-        self.plan = ModelBranch(self.scene, self.settings, self.model, 1, 0.0)
+        self._driven = ModelBranch(self.scene, self.settings, self.model, 1, 0.0)
         self._largest: float | None = None
-        self._forces: Array | None = None
-
-    def by_model(self) -> Array | None:
-        """See `ContactBranch.by_model`."""
-        return self._forces if self.scene.is_modelled else None
 
     def begin(self, name: str) -> None:
         """See `Driver`."""
-        self.plan.begin(name)
+        self._driven.begin(name)
 
     def visit(self, positions: Sequence[float] | Array, along: Sequence[float] | None = None) -> None:
         """See `Driver`."""
-        self.plan.visit(positions, along)
+        self._driven.visit(positions, along)
 
     def reach(self, force: float, scale: float) -> None:
         """See `Driver`.
@@ -134,29 +144,32 @@ class PlannedBranch(ContactBranch):
         Raises:
             TensionError: no contact holds the force.
         """
-        self.plan.reach(force, scale)
-        if force < 0.0 and self.plan.held > (1.0 - self.settings.tolerance) * force:
+        self._driven.reach(force, scale)
+        if force < 0.0 and self._driven.held > (1.0 - self.settings.tolerance) * force:
             raise TensionError(force, self.scale)
-        self.wanted[self.plan.last] = force
+        self.wanted[self._driven.last] = force
 
     def maximum(self) -> None:
         """See `Driver`."""
-        self.plan.maximum()
-        self._largest = max(self._largest or 0.0, -self.plan.held)
+        self._driven.maximum()
+        self._largest = max(self._largest or 0.0, -self._driven.held)
 
     def open(self) -> None:
         """See `Driver`."""
-        self.plan.open()
+        self._driven.open()
 
     def follow(self, history: History) -> None:
         """See `Driver`; load steps of forces are where the model carries them."""
-        self.plan.follow(history)
+        self._driven.follow(history)
         self.given = "force" if history.by_force else self.given
-        self.history = self.plan.path
 
     def mark(self, name: str) -> None:
         """See `Driver`."""
-        self.plan.mark(name)
+        self._driven.mark(name)
+
+    def checks(self, case: Reduction, doubt: float) -> dict[str, Agreement]:
+        """See `ContactBranch.checks`, and the plan's."""
+        return super().checks(case, doubt) | self.plan.checks(case, self.states, doubt)
 
     def finish(self) -> None:
         """Run all load steps.
@@ -164,10 +177,9 @@ class PlannedBranch(ContactBranch):
         Raises:
             DigitsError: a force maximum is below the round-off error of positions.
         """
-        plan = Plan(self.contact.deck, self.model, self.plan.path, self.plan.phases, self.plan.marks)
-        self.states, self._forces = plan.measured(self.contact), plan.followed.total
-        self.legs = self.plan.legs
-        self.marked = {name: self.states[at] for at, names in self.plan.marks.items() for name in names}
+        self.plan = Plan.of(self.contact.deck, self._driven)
+        self.states, self.legs = self.plan.measured(self.contact), self._driven.legs
+        self.marked = {name: self.states[at] for at, names in self._driven.marks.items() for name in names}
         self._require_digits()
 
     def _require_digits(self) -> None:

@@ -26,7 +26,6 @@ from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.continuation.trust import ThroughError, doubts
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import Phase
-from contact1d.workflow.laws.path import Path
 from contact1d.workflow.model.settings import Settings, slower
 from contact1d.workflow.scene import Kind, Scene
 from contact1d.workflow.units import ENERGY
@@ -108,7 +107,7 @@ class Scripted(Experiment[K]):
         if scene.method == "dynamic":
             return self.expected(scene, settings)
         case = self.reduction(scene, settings)
-        return Plan.of(Deck(scene, settings), case.model, case.script).phases
+        return Plan.of(Deck(scene, settings), case.driven(case.model)).phases
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The schedule of a motion, as far as it is known."""
@@ -143,13 +142,8 @@ class Scripted(Experiment[K]):
         warnings = doubts(scene, settings, tuple(branch.states))
         tables = self.tables(trace, scene, settings)
         states, moves = tuple(branch.states), case.moves
-        forces = branch.by_model()
-        checks = consistency.plan(scene, states, forces) | consistency.balance(scene, states)
-        checks |= consistency.asked(scene, self.asked(trace, scene), states)
-        if forces is not None:
-            own = branch.history or Path(trace.displacement, trace.along, trace.time)
-            doubt = max((one.share for one in results.values() if one.unit == ENERGY and one.size), default=0.0)
-            checks |= consistency.energy(case, consistency.Work(own, forces), min(doubt, VAGUE))
+        doubt = max((one.share for one in results.values() if one.unit == ENERGY and one.size), default=0.0)
+        checks = branch.checks(case, min(doubt, VAGUE)) | consistency.asked(scene, self.asked(trace, scene), states)
         checks |= self.energy(case, states, results)
         rows = curve_errors(case, trace, errors.common, slower)
         outcome = Outcome(

@@ -19,7 +19,7 @@ from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.marks import unloading
 from contact1d.workflow.continuation.model_branch import UNSEEN
-from contact1d.workflow.continuation.outcome import LOSSES, Agreement, Outcome, Reading, Result
+from contact1d.workflow.continuation.outcome import LOSSES, Outcome, Reading, Result
 from contact1d.workflow.continuation.planned import Plan
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace, of_states
@@ -75,10 +75,7 @@ class PathExperiment(Scripted[Path]):
         warnings = self._missing(results, case, phases) | doubts(scene, settings, reported)
         warnings |= _buckling(trace, others, settings)
         rows = of_rows(curve_errors(case, whole, errors.common, repeated), asked)
-        checks = dict[str, Agreement]()
-        if plan and scene.is_modelled:
-            checks = consistency.plan(scene, states, plan.followed.total)
-            checks |= consistency.energy(case, consistency.Work(path_of(whole.displacement)))
+        checks = plan.checks(case, states) if plan else {}
         checks |= {} if self.is_statistical else consistency.balance(scene, states)
         return Outcome(results, reported, ends, phases, warnings, rows=rows, moves=case.moves, consistency=checks)
 

@@ -78,9 +78,7 @@ class TangentialExperiment(Scripted[Tangential]):
         warnings = doubts(scene, settings, tuple(reported))
         farthest = int(np.argmax([abs(row.position) for row in kept]))
         marked = {"farthest": reported[farthest], "final": reported[-1]}
-        path = Path(trace.displacement, trace.along, trace.time)
-        checks = consistency.plan(scene, states, plan.followed.total) if scene.is_modelled else {}
-        checks |= consistency.energy(case, consistency.Work(path)) if scene.is_modelled else {}
+        checks = plan.checks(case, states)
         loads = zip(self.given(scene).normal_forces(), (state.force for state in reported), strict=False)
         checks |= consistency.asked(scene, list(loads), states)
         points = of_rows(curve_errors(case, trace, errors.common), np.asarray(asked))
