@@ -22,7 +22,7 @@ from contact1d.workflow.runs.report import FORMATS
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.scene.quantities import allowed_by, keys_of
 from contact1d.workflow.sweep.axes import Axis, SweepPlan
-from contact1d.workflow.sweep.table import cell, document_in, read_table
+from contact1d.workflow.sweep.table import document_in, read_table
 from contact1d.workflow.units import Quantity, scale_of
 
 Array = NDArray[np.float64]
@@ -60,7 +60,7 @@ def sweep_charts(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> dic
     Arguments as of `draw`.
     """
     along, _ = roles_of(plan)
-    words = {} if along.numbers[0] else {float(place): str(cell(value)) for place, value in enumerate(along.values)}
+    words = {} if along.numbers[0] else {float(place): str(cell) for place, cell in enumerate(along.cells)}
     x = chart.Axis(title_of(plan, along), along.numbers[1] or "1", log=_spans(along.numbers[0]), ticks=words)
     found = {}
     for name, lines in _read(folder, plan, units, {word: place for place, word in words.items()}).items():

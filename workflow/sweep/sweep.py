@@ -173,11 +173,12 @@ def _missing(plan: SweepPlan, folder: Path, rows: list[str | Answer], progress: 
             progress.note(f"{said}: refused: {point.reason}")
         else:
             rows.append(point.name)
-            if point.name not in seen and answer_in(folder, point.name) is None:
+            place = folder / RUNS / point.name
+            if point.name not in seen and answer_in(place) is None:
                 seen.add(point.name)
-                if (folder / RUNS / point.name / RESULTS).exists():
+                if (place / RESULTS).exists():
                     progress.note(f"{point.name}: its {RESULTS} is invalid, so it is run again")
-                yield point.scene, folder / RUNS / point.name
+                yield point.scene, place
                 continue
         progress.advance(1)
 
@@ -228,7 +229,7 @@ def _through(
             except CalledProcessError as error:
                 raise ExecutorError(f"the job was refused: {' '.join(map(str, error.cmd))} gives the reason") from None
             except Exception as error:  # of the executor: a job that was cancelled, a node that went away
-                answers = [answer_in(path.parent.parent, path.name) or _not_run(error) for _, path in some]
+                answers = [answer_in(path) or _not_run(error) for _, path in some]
             yield from ((path.name, answer) for (_, path), answer in zip(some, answers, strict=True))
 
 
@@ -265,9 +266,9 @@ def _finish(plan: SweepPlan, folder: Path, rows: Sequence[str | Answer], answers
     broken_off = Answer("missing", "the sweep was interrupted before it")
 
     def answered() -> Iterator[tuple[tuple[Any, ...], Answer]]:
-        for values, row in zip(plan.values(), chain(rows, repeat(broken_off)), strict=False):
-            known = row if isinstance(row, Answer) else answer_in(folder, row) or answers.get(row, broken_off)
-            yield values, known
+        for cells, row in zip(plan.cells(), chain(rows, repeat(broken_off)), strict=False):
+            known = row if isinstance(row, Answer) else answer_in(folder / RUNS / row) or answers.get(row, broken_off)
+            yield cells, known
 
     units = write_table(folder, plan.axes, answered)
     if len(plan) >= MANY_ROWS:
