@@ -119,8 +119,9 @@ def read_sweep(source: AnySweep) -> SweepPlan:
     tables = plain_data(source) if isinstance(source, Mapping) else read_tables(source)
     folder = Path.cwd() if isinstance(source, Mapping) else Path(source).parent
     problems = _broken(_of_file(tables))
-    given, combine = tables.get("axes"), tables.get("combine", "product")
-    for i, table in enumerate(given if _is_list(given) else ()):
+    given: Any = tables.get("axes") if _is_list(tables.get("axes")) else ()
+    combine = tables.get("combine", "product")
+    for i, table in enumerate(given):
         problems += _broken(_of_axis(table, f"axes[{i}]"))
     if not problems:
         axes = [Axis(table["key"], tuple(table.get("values") or _span(table))) for table in given]
