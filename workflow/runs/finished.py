@@ -28,7 +28,7 @@ from contact1d.workflow.runs.plausibility import IMPLAUSIBLE
 from contact1d.workflow.runs.report import FILES, as_json, in_units, quantities_in, read_results
 from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import Scene, SceneError, scene_from_dict
-from contact1d.workflow.units import FORCE, LENGTH, MASS, Quantity, Scales, scale_of
+from contact1d.workflow.units import Quantity, Scales, scale_of
 
 if TYPE_CHECKING:
     from ase import Atoms
@@ -128,24 +128,22 @@ class Run:
         return by_state(self.tables.get("shear_3d", Columns({})))
 
     @property
+    def _numbers(self) -> Results:
+        """The results in units of the model."""
+        entries = quantities_in(self.document).items()
+        return Results({name: Quantity(one["value"], one["uncertainty"], one["unit"]) for name, one in entries})
+
+    @cached_property
     def scales(self) -> Scales:
         """What LU, FU and, where it is known, MU stand for in SI."""
-        units = self.document.get("units")
-        if units is None:
-            return scales_of(self.scene, {})
-        entries = (units[unit] for unit in (LENGTH, FORCE))
-        (length, off_length), (force, off_force) = ((entry["value"], entry["uncertainty"]) for entry in entries)
-        mass = units.get(MASS)
-        return Scales(length, force, off_length, off_force, None if mass is None else mass["value"])
+        return scales_of(self.scene, self._numbers)
 
     @cached_property
     def model(self) -> Run:
         """The same run with its tables and results in units of the model."""
-        scales = self.scales
-        own = replace(self, tables={name: in_units(one, scales, name, True) for name, one in self.tables.items()})
-        entries = quantities_in(self.document).items()
-        numbers = {name: Quantity(entry["value"], entry["uncertainty"], entry["unit"]) for name, entry in entries}
-        vars(own).update(results=Results(numbers), model=own)
+        tables = {name: in_units(one, self.scales, name, True) for name, one in self.tables.items()}
+        own = replace(self, tables=tables)
+        vars(own).update(results=self._numbers, model=own)
         return own
 
     def plot(self, name: str | None = None) -> Figure:

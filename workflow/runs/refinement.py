@@ -7,7 +7,7 @@ Where two nested passes differ by more than both uncertainties, these are increa
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.outcome import LATTICE, Outcome, Refinement, in_words, unmet
@@ -26,16 +26,8 @@ HELP_RATIO = 0.8
 """Uncertainty of a result over that of the pass before from which on a refinement counts as no help."""
 
 
-@dataclass(frozen=True)
-class Refined:
-    """The finest pass that was done."""
-
-    deck: Deck
-    outcome: Outcome
-
-
-def refined(context: RunContext, outcome: Outcome) -> Refined:
-    """Refine a run that gave `outcome` as long as that helps, at most MOST_REFINEMENTS times.
+def refined(context: RunContext, outcome: Outcome) -> tuple[Deck, Outcome]:
+    """Refine a run that gave `outcome` as long as that helps, at most MOST_REFINEMENTS times: the finest pass.
 
     Time and steps of all passes are added to those of `context`. A finer pass that fails is no failure of the run: what
     was found before stands, and the refinement says how it ended. A way that the scene gives is not refined: its rows
@@ -43,7 +35,7 @@ def refined(context: RunContext, outcome: Outcome) -> Refined:
     """
     scene, deck = context.deck.scene, context.deck
     if kind_of(scene).is_statistical or scene.experiment.way_is_given:
-        return Refined(deck, outcome)
+        return deck, outcome
     wanted, count, ended = scene.accuracy.tolerance, 0, ""
     tolerance = wanted
     while open_ := _open(scene, outcome):
@@ -71,7 +63,8 @@ def refined(context: RunContext, outcome: Outcome) -> Refined:
     stricter = doubts(deck.scene, deck.settings, outcome.states)
     warnings = {name: text for name, text in outcome.warnings.items() if name not in stricter}
     warnings |= doubts(scene, replace(deck.settings, tolerance=scene.accuracy.tolerance), outcome.states)
-    return Refined(deck, replace(outcome, warnings=warnings, refinement=Refinement(tolerance, count, ended)))
+    refinement = Refinement(float(f"{tolerance:.6g}"), count, ended)
+    return deck, replace(outcome, warnings=warnings, refinement=refinement)
 
 
 def _open(scene: Scene, outcome: Outcome) -> dict[str, float]:
