@@ -87,6 +87,7 @@ def test_a_table_says_which_input_matters(run: contact1d.Run) -> None:
     assert rows["bodies.profile.radius"] == pytest.approx((0.01, 0.01), rel=0.02)
     assert rows["adhesion.work_of_adhesion"] == pytest.approx((0.02, 0.02), rel=0.02)
     assert rows["material.contact_modulus"] == pytest.approx((0.03, 0.0), rel=0.02, abs=1e-5)
+    assert table.units == {}
     again = contact1d.load_run(run.folder)
     assert again.scene.shares == run.scene.shares
     assert again.tables["inputs"]["adhesion_force"] == pytest.approx(table["adhesion_force"], rel=1e-9, abs=1e-12)

