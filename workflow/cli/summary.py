@@ -95,14 +95,13 @@ def pressure_plot(profile: Profile, radius: float, scales: Scales = UNKNOWN) -> 
     length, length_unit = scales.written(half, LENGTH)
     lines = []
     for level in range(top, bottom - 1, -1):
-        beyond = (level - math.copysign(0.5, level)) * step
-        reached = pressure > beyond if level > 0 else pressure < beyond
+        reached = np.sign(level) * pressure > (abs(level) - 0.5) * step
         bars = "".join(np.where(reached, BLOCK, EMPTY)) if level else AXIS * COLUMNS
         lines.append(f"{level * step * load:>12.3g} {bars}")
-    ends = [moved_centre(profile) + side * radius for side in (-1.0, 1.0)]
-    if radius > 0.0 and max(map(abs, ends)) < half:
-        places = [round((end + half) / (2 * half) * (COLUMNS - 1)) for end in ends]
-        marks = "".join("^" if place in places else EMPTY for place in range(COLUMNS))
+    ends = moved_centre(profile) + np.asarray([-radius, radius])
+    if radius > 0.0 and np.abs(ends).max() < half:
+        places = np.rint((ends + half) / (2.0 * half) * (COLUMNS - 1))
+        marks = "".join(np.where(np.isin(np.arange(COLUMNS), places), "^", EMPTY))
         lines.append(f"{'':13}{marks}  ± a")
     extent = f"x from {-half * length:.1f} to {half * length:.1f} {length_unit}"
     return [*lines, f"{load_unit:>12} {extent.center(COLUMNS)}"]

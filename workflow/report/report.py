@@ -24,7 +24,7 @@ from contact1d.workflow.report.charts import Data, charts_of, path_of, symbols
 from contact1d.workflow.runs.charts import charts
 from contact1d.workflow.runs.finished import Run, read_run
 from contact1d.workflow.runs.report import results_in
-from contact1d.workflow.scene import Scene, Table, scene_to_toml
+from contact1d.workflow.scene import Scene, Table
 from contact1d.workflow.scene.quantities import keys_of
 from contact1d.workflow.sweep.figures import label_in, sweep_charts, title_of
 from contact1d.workflow.sweep.table import RECORD, counts_in, read_record, read_table, units_in
@@ -85,12 +85,10 @@ def _of_runs(runs: Sequence[Run]) -> str:
     entries = {name: results_in(run.document) for name, run in done.items()}
     reports = [
         {
-            "name": run.folder.name, "anchor": f"run-{number}", "run": run, "facts": _facts(run),
-            "error": "" if run.status == "done" else run.document["error"]["message"],
+            "run": run, "facts": _facts(run), "deck": _text(run.folder / "in.lammps"),
             "sentence": sentence(run.scene, run.scales), "scene": scene_in_words(run.scene, run.scales),
-            "toml": scene_to_toml(run.scene), "deck": _text(run.folder / "in.lammps"),
         }
-        for number, run in enumerate(runs, 1)
+        for run in runs
     ]  # fmt: skip
     return _page(
         "runs.html", charts_of(drawn), moving, reports=reports, names=names, done=done, entries=entries,

@@ -166,9 +166,11 @@ def _is_of_points(one: Result) -> bool:
 
 def _by_lattice(results: Mapping[str, Result], tolerance: float) -> dict[str, float]:
     """Relative discretisation errors above the tolerance, without those of interpolation between particles, by name."""
-    left = {name: one.errors.get(LATTICE, 0.0) - one.read for name, one in results.items()}
-    found = {name: replace(results[name], errors={LATTICE: error}, read=0.0) for name, error in left.items()}
-    return unmet(found, tolerance)
+    of_lattice = {
+        name: replace(one, errors={LATTICE: one.errors.get(LATTICE, 0.0) - one.read}, read=0.0, given=0.0)
+        for name, one in results.items()
+    }
+    return unmet(of_lattice, tolerance)
 
 
 def _lattice_message(scene: Scene, shares: Mapping[str, float], others_unknown: bool) -> str:

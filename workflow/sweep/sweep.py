@@ -17,7 +17,7 @@ from subprocess import CalledProcessError
 from typing import TYPE_CHECKING, Any
 from warnings import catch_warnings, simplefilter
 
-from contact1d.analysis.curve import HEADER, MARKED
+from contact1d.analysis.curve import HEADER
 from contact1d.files import FULL_DISK, AnyPath, write_whole
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import Contact1dError, FolderError, SettingsError
@@ -31,12 +31,12 @@ from contact1d.workflow.sweep.table import (
     MANY_ROWS,
     RECORD,
     RUNS,
-    TABLE,
     Answer,
     answer_in,
     bare,
     columns_of,
     counts_in,
+    frame_of,
     read_record,
     write_parquet,
     write_table,
@@ -67,9 +67,7 @@ class Sweep:
 
         Its columns have no units in their names; `.attrs["units"]` has the unit of each column that has one.
         """
-        import pandas
-
-        found = pandas.read_csv(self.folder / TABLE).replace(MARKED, r"\1", regex=True)
+        found = frame_of(self.folder)
         units = {name[1]: name[2] for header in found.columns if (name := HEADER.fullmatch(header))}
         units |= {column: unit for name, unit in self.quantities.items() for column in columns_of(name)}
         found.columns = found.columns.map(bare)

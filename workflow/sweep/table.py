@@ -6,9 +6,10 @@ import csv
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from importlib.util import find_spec
 from itertools import chain
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from contact1d.analysis.curve import HEADER, MARKED, as_text, headed, plain
 from contact1d.files import whole
@@ -17,6 +18,9 @@ from contact1d.workflow.runs.report import quantities_in, read_results
 from contact1d.workflow.scene import SceneError
 from contact1d.workflow.sweep.axes import Axis, SweepPlan, read_sweep
 from contact1d.workflow.units import SI, Quantity
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 RECORD = "sweep.toml"
 """The sweep, as it ran last."""
@@ -88,19 +92,19 @@ def columns_of(name: str) -> tuple[str, str]:
     return name, f"{name}_uncertainty"
 
 
+def frame_of(folder: Path) -> DataFrame:
+    """The table as a pandas.DataFrame, its texts without the mark of a spreadsheet."""
+    import pandas
+
+    return pandas.read_csv(folder / TABLE).replace(MARKED, r"\1", regex=True)
+
+
 def write_parquet(folder: Path) -> None:
     """The table again as results.parquet. Raises Contact1dError where pyarrow isn't installed."""
-    try:
-        from pyarrow import compute, parquet, types
-        from pyarrow import csv as arrow
-    except ImportError:
-        raise Contact1dError("Parquet needs pyarrow: install it with pip install 'contact1d[tables]'") from None
-    table = arrow.read_csv(folder / TABLE)
-    for place, name in enumerate(table.column_names):
-        if types.is_string(table[name].type):
-            table = table.set_column(place, name, compute.replace_substring_regex(table[name], MARKED, r"\1"))
+    if find_spec("pyarrow") is None:
+        raise Contact1dError("Parquet needs pyarrow: install it with pip install 'contact1d[tables]'")
     with whole(folder / PARQUET) as part:
-        parquet.write_table(table, part)
+        frame_of(folder).to_parquet(part, index=False)
 
 
 def document_in(folder: Path) -> dict[str, Any]:
