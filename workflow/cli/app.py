@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from contact1d.workflow.cli.ending import CALL_IS_WRONG, FAILS, RUN_FAILED, Commands, command, read, say, stop
+from contact1d.workflow.cli.ending import CALL_IS_WRONG, FAILS, Commands, command, read, say, say_counts, stop
 from contact1d.workflow.cli.fit import fit
 from contact1d.workflow.cli.identify import identify
 
@@ -222,10 +222,7 @@ def sweep(
         done = do(file, folder, executor, workers, format_.value if figures else False, progress, partition)
         if parquet:
             write_parquet(done.folder)
-    counts = ", ".join(f"{count} {status}" for status, count in sorted(done.counts.items()))
-    typer.echo(f"{counts}; {folder / TABLE}")
-    if set(done.counts) != {"done"}:
-        raise typer.Exit(RUN_FAILED)
+    say_counts(done.counts, folder / TABLE)
 
 
 def cost(

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from contact1d.workflow.cli.ending import CALL_IS_WRONG, RUN_FAILED, command, problems_in, say, stop
+from contact1d.workflow.cli.ending import command, say, say_counts
 
 
 def fit(
@@ -25,24 +25,16 @@ def fit(
     not tell what was asked for, and the message says what would help.
     """
     folder = out if out is not None else Path("fits") / file.stem
-    with command("the fit", folder, "what is known was written", quiet) as progress:
+    with command("the fit", folder, "what is known was written", quiet, str(file)) as progress:
         from contact1d.workflow.fit.fit import fit as do
         from contact1d.workflow.fit.many import TABLE, fit_many, is_series
         from contact1d.workflow.fit.plan import read_fit
         from contact1d.workflow.fit.report import lines
-        from contact1d.workflow.scene import SceneError
 
-        try:
-            plan = read_fit(file)
-        except SceneError as error:
-            stop(problems_in(str(file), error), CALL_IS_WRONG)
-        if is_series(plan):
+        if is_series(read_fit(file)):
             done = fit_many(file, folder, workers, progress)
             progress.close()
-            counts = ", ".join(f"{count} {status}" for status, count in sorted(done.counts.items()))
-            typer.echo(f"{counts}; {folder / TABLE}")
-            if set(done.counts) != {"done"}:
-                raise typer.Exit(RUN_FAILED)
+            say_counts(done.counts, folder / TABLE)
             return
         found = do(file, folder=folder, progress=progress)
         progress.close()

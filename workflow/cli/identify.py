@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from contact1d.workflow.cli.ending import CALL_IS_WRONG, command, problems_in, say, stop
+from contact1d.workflow.cli.ending import CALL_IS_WRONG, command, say, stop
 
 
 def _number(unit: str, meaning: str) -> Any:
@@ -114,15 +114,10 @@ def _units_of_run(folder: Path, contact_modulus: float, surface_energy: float) -
 
 def _from_material(file: Path, out: Path) -> None:
     """Choose, run, and say what came out beside the theories."""
-    from contact1d.workflow.scene import SceneError
-
-    with command("the run", out) as progress:
+    with command("the run", out, source=str(file)) as progress:
         from contact1d.workflow.identify import from_material
 
-        try:
-            found = from_material(file, out, progress)
-        except SceneError as error:
-            stop(problems_in(str(file), error), CALL_IS_WRONG)
+        found = from_material(file, out, progress)
     from contact1d.workflow.cli.summary import beside_theories, quantities, regime
 
     lines = [found.scene.title, *regime(found), "", *quantities(found.run.document), *beside_theories(found)]

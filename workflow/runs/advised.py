@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from shutil import rmtree
 from tempfile import TemporaryDirectory, mkdtemp
@@ -59,21 +60,19 @@ def run(
         finalize(done, rmtree, kept, ignore_errors=True)
         return done
 
-    def edited(edit: SceneEdit) -> Scene:
-        return read_scene(scene, overrides(edit), edit.without)
-
+    reader = partial(edited, scene)
     try:
         return campaign.run(
             scene, folder, figures, progress, time_limit, settings, workers=workers, ranks=ranks, printed=printed
         )
     except SceneError as error:
-        raise mended(edited, error, progress) from None
+        raise mended(reader, error, progress) from None
     except SettingsError as error:
-        found = _tried(edited, error, progress)
+        found = _tried(reader, error, progress)
         raise SettingsError(f"{error}. {found}" if found else str(error), changes=error.changes) from error.__cause__
     except RunError as error:
         cause = error.__cause__
-        if isinstance(cause, UntrustedError) and (found := _tried(edited, cause, progress)):
+        if isinstance(cause, UntrustedError) and (found := _tried(reader, cause, progress)):
             raise _reported(error, cause, found) from cause
         raise
 
@@ -93,14 +92,19 @@ def mended(reader: Reader, error: SceneError, progress: Progress) -> SceneError:
     return SceneError([replace(first, hint=". ".join(filter(None, (first.hint, found)))), *others])
 
 
-def overrides(edit: SceneEdit) -> tuple[str, ...]:
+def edited(source: AnyScene, edit: SceneEdit, overrides: Iterable[str] = (), without: Iterable[str] = ()) -> Scene:
+    """A scene as `read_scene` reads it, with an edit. Raises SceneError."""
+    return read_scene(source, (*overrides, *_overrides(edit)), (*without, *edit.without))
+
+
+def _overrides(edit: SceneEdit) -> list[str]:
     """The values of an edit in the form of `read_scene` and `--set`."""
-    return tuple(f"{key}={value if isinstance(value, str) else as_toml(value)}" for key, value in edit.values.items())
+    return [f"{key}={value if isinstance(value, str) else as_toml(value)}" for key, value in edit.values.items()]
 
 
 def in_words(edit: SceneEdit) -> str:
     """An edit as options of `contact1d run`."""
-    return " ".join([*(f"--without {name}" for name in edit.without), *(f"--set {one}" for one in overrides(edit))])
+    return " ".join([*(f"--without {name}" for name in edit.without), *(f"--set {one}" for one in _overrides(edit))])
 
 
 def _tried(reader: Reader, error: Contact1dError, progress: Progress) -> str:

@@ -46,8 +46,8 @@ def chart(table: Mapping[str, Any]) -> Chart:
     series, width = [], WIDTH / max(len(names), 1)
     for number, name in enumerate(names):
         left = np.arange(len(ticks)) + width * number - 0.5 * WIDTH
-        x = (left[:, None] + width * np.asarray([0.0, 0.0, 1.0, 1.0, np.nan])).ravel()
-        y = (100.0 * np.asarray(table[name])[:, None] * np.asarray([0.0, 1.0, 1.0, 0.0, np.nan])).ravel()
+        x = np.add.outer(left, [0.0, 0.0, width, width, np.nan]).ravel()
+        y = np.outer(table[name], [0.0, 100.0, 100.0, 0.0, np.nan]).ravel()
         series.append(Series(x, y, name.replace("_", " "), COLOURS[number % len(COLOURS)], FILL))
     panel = Panel(Axis("change at the ends of the input (%)", zero=True), series)
     return Chart(Axis("input", ticks=ticks), [panel])

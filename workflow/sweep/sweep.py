@@ -187,19 +187,17 @@ def _answered(tasks: Iterator[Task], workplace: Workplace) -> Iterator[tuple[str
     A process that dies breaks its executor. Then what was under way runs again, one by one, so that one task alone
     has to answer for the second death.
     """
-    suspects: list[Task] = []
-    while True:
-        one_by_one = bool(suspects)
-        queue, chunk, window = (iter(suspects), 1, 1) if one_by_one else (tasks, workplace.chunk, workplace.window)
-        first = next(queue, None)
-        if first is None:
-            return
-        broken: list[Task] = []
+    while (first := next(tasks, None)) is not None:
+        suspects: list[Task] = []
         with workplace.opened() as executor:
-            yield from _through(executor, chain([first], queue), chunk, window, broken)
-        if one_by_one and broken:
-            yield broken[0][1].name, Answer("failed", "its process was killed twice, most often by a lack of memory")
-        suspects = [*broken[1:], *queue] if one_by_one else broken
+            yield from _through(executor, chain([first], tasks), workplace.chunk, workplace.window, suspects)
+        while suspects:
+            one_by_one, broken = iter(suspects), list[Task]()
+            with workplace.opened() as executor:
+                yield from _through(executor, one_by_one, 1, 1, broken)
+            for _, folder in broken[:1]:
+                yield folder.name, Answer("failed", "its process was killed twice, most often by a lack of memory")
+            suspects = [*broken[1:], *one_by_one]
 
 
 def _through(
