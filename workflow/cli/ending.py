@@ -115,40 +115,32 @@ def command(
             left.append(f"files are kept in {folder}")
         if isinstance(error, KeyboardInterrupt):
             stop("; ".join(["interrupted", *left]), INTERRUPTED)
-        if sentence := _of_the_call(error, str(folder or ""), source):
-            stop(sentence, CALL_IS_WRONG)
-        if isinstance(error, ImportError) and not (error.name or "").startswith("contact1d"):
-            stop(f"the installation is incomplete ({error}): check it with `contact1d doctor`", FAILS)
-        if sentence := _of_the_run(error):
-            stop(f"{what} failed: {sentence}", RUN_FAILED)
-        if reason := _of_the_machine(error):
-            stop("; ".join([f"{what} failed: {reason}", *left]), RUN_FAILED)
-        raise
+        ending = _ending(error, what, left, str(folder or ""), source)
+        if ending is None:
+            raise
+        stop(*ending)
 
 
-def _of_the_call(error: BaseException, folder: str, source: str) -> str:
-    """What is wrong with the scene, an option or a place that the caller chose; "" where it is something else."""
+def _ending(error: BaseException, what: str, left: Iterable[str], folder: str, source: str) -> tuple[str, int] | None:
+    """The message and the exit code for an error; None for a defect of the program."""
     from contact1d.workflow.errors import Contact1dError
 
-    if isinstance(error, Contact1dError) and error.exit_code == CALL_IS_WRONG:
-        return problems_in(source, error)
+    if isinstance(error, Contact1dError):
+        if error.exit_code == CALL_IS_WRONG:
+            return problems_in(source, error), CALL_IS_WRONG
+        place = getattr(error, "folder", None)  # one that was there for a while only is not named
+        is_there = place is not None and place.is_dir()
+        return f"{what} failed: {error if is_there else getattr(error, 'message', error)}", RUN_FAILED
+    if isinstance(error, ImportError) and not (error.name or "").startswith("contact1d"):
+        return f"the installation is incomplete ({error}): check it with `contact1d doctor`", FAILS
     if isinstance(error, OSError):
         place = os.fsdecode(error.filename) if isinstance(error.filename, str | bytes) else folder
         if error.errno in (errno.EEXIST, errno.ENOTDIR) and os.path.isfile(place):
-            return f"{place} is a file; a folder is needed"
+            return f"{place} is a file; a folder is needed", CALL_IS_WRONG
         if error.errno in BAD_PLACE and place:
-            return f"{place} cannot be written: {error.strerror}"
-    return ""
-
-
-def _of_the_run(error: BaseException) -> str:
-    """Why a run gave no numbers; a folder that was there for a while only is not named."""
-    from contact1d.workflow.errors import Contact1dError
-
-    if not isinstance(error, Contact1dError):
-        return ""
-    folder = getattr(error, "folder", None)
-    return str(error if folder is not None and folder.is_dir() else getattr(error, "message", error))
+            return f"{place} cannot be written: {error.strerror}", CALL_IS_WRONG
+    reason = _of_the_machine(error)
+    return ("; ".join([f"{what} failed: {reason}", *left]), RUN_FAILED) if reason else None
 
 
 def _of_the_machine(error: BaseException) -> str:

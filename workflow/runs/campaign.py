@@ -26,11 +26,12 @@ from contact1d.workflow.model.chain import MIX_UP, in_words, require_steps
 from contact1d.workflow.model.motion import require_way
 from contact1d.workflow.model.settings import Settings, settings_for
 from contact1d.workflow.runs.accuracy import reported, require_consistency, require_results, with_checks
+from contact1d.workflow.runs.charts import charts
 from contact1d.workflow.runs.finished import Run, draw
 from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.processors import cores, require_ranks
 from contact1d.workflow.runs.refinement import refined
-from contact1d.workflow.runs.report import FILES, FORMATS, failure, results, tables_of, write_results, write_tables
+from contact1d.workflow.runs.report import FILES, failure, results, tables_of, write_results, write_tables
 from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import AnyScene, Scene, read_scene, scene_to_toml
 
@@ -80,7 +81,8 @@ def run(
         finished = _run(context, started, figures, phases, refine=settings is None)
         if printed:
             printed(finished)
-        _draw(finished, figures)
+        if figures:
+            draw(charts(finished), place, figures)
     return finished
 
 
@@ -158,7 +160,8 @@ def _failed(context: RunContext, error: EngineError | UntrustedError, started: f
         bare = replace(left, results={})
         tables = tables_of(scene, bare, pressures_of(scene, bare))
         write_tables(folder, scene, bare, tables)
-        _draw(Run(folder, {}, scene, tables, bare), figures)
+        if figures:
+            draw(charts(Run(folder, {}, scene, tables, bare)), folder, figures)
     facts = {"message": message, "phase": context.phase, "step": context.timestep}
     write_results(folder, failure(scene, facts, _timing(context, started), left))
     return RunError(f"{message}{_hint(message)} [phase {context.phase}, step {context.timestep}]", folder)
@@ -169,12 +172,6 @@ def _timing(context: RunContext, started: float) -> dict[str, float]:
     total = time.perf_counter() - started
     lammps, cpu, rows, steps = context.clock.taken
     return {"total_s": total, "lammps_s": lammps, "lammps_cpu_s": cpu, "rows_s": rows, "steps": steps}
-
-
-def _draw(run: Run, figures: bool | str) -> None:
-    """The figures of a run, in the format that `figures` names, if they are wanted."""
-    if figures:
-        draw(run, figures if isinstance(figures, str) else FORMATS[0])
 
 
 def _hint(message: str) -> str:

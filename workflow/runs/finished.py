@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from contact1d.analysis import plots
 from contact1d.analysis.atoms import atoms
+from contact1d.analysis.chart import Chart
 from contact1d.analysis.curve import DETACHMENTS, PROFILE_COLUMNS, Columns, by_state, read_columns
 from contact1d.analysis.named import Named
 from contact1d.analysis.pressure import Profile
@@ -25,7 +26,7 @@ from contact1d.workflow.errors import FolderError, RunError
 from contact1d.workflow.runs.charts import CURVE_COLUMNS, charts
 from contact1d.workflow.runs.export import csv_text, dataset, kept, latex, listed
 from contact1d.workflow.runs.plausibility import IMPLAUSIBLE
-from contact1d.workflow.runs.report import FILES, as_json, in_model_units, quantities_in, read_results
+from contact1d.workflow.runs.report import FILES, FORMATS, as_json, in_model_units, quantities_in, read_results
 from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import Scene, SceneError, scene_from_dict
 from contact1d.workflow.units import Quantity, Scales, scale_of
@@ -246,7 +247,8 @@ def read_run(folder: Path) -> Run:
         raise FolderError(f"{folder} has no run readable by this version: {reason}. Run its scene again") from None
 
 
-def draw(run: Run, form: str) -> None:
-    """Save every figure of a run in its folder; `form`: png, svg or pdf."""
-    for name, chart in charts(run).items():
-        plots.save_figure(plots.draw(chart.written(scale_of)), run.folder / f"{name}.{form}")
+def draw(drawn: Mapping[str, Chart], folder: Path, figures: bool | str) -> None:
+    """Save charts in a folder, by their names; `figures`: png, svg or pdf, and True is png."""
+    form = figures if isinstance(figures, str) else FORMATS[0]
+    for name, chart in drawn.items():
+        plots.save_figure(plots.draw(chart.written(scale_of)), folder / f"{name}.{form}")

@@ -15,14 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
-from contact1d.analysis import chart, plots
+from contact1d.analysis import chart
 from contact1d.analysis.chart import Chart, Panel, Series
-from contact1d.workflow.runs.report import FORMATS
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.scene.quantities import allowed_by, keys_of
 from contact1d.workflow.sweep.axes import Axis, SweepPlan
 from contact1d.workflow.sweep.table import document_in, read_table
-from contact1d.workflow.units import Quantity, scale_of
+from contact1d.workflow.units import Quantity
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -41,23 +40,13 @@ DARK_TO_LIGHT = ("#440154", "#46327e", "#365c8d", "#277f8e", "#1fa187", "#4ac16d
 """Viridis without its light end: colours of lines that have an order."""
 
 
-def draw(folder: Path, plan: SweepPlan, units: Mapping[str, str], form: str = FORMATS[0]) -> None:
-    """A figure <quantity>.png for each result, in the sweep's folder.
+def sweep_charts(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> dict[str, Chart]:
+    """The chart of each result that changes, over the first axis; in base units of SI where these are known.
 
     Args:
         folder: of the sweep, with its table.
         plan: what it is of.
         units: the results by name, with their units.
-        form: png, svg or pdf.
-    """
-    for name, one in sweep_charts(folder, plan, units).items():
-        plots.save_figure(plots.draw(one.written(scale_of)), folder / f"{name}.{form}")
-
-
-def sweep_charts(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> dict[str, Chart]:
-    """The chart of each result that changes, over the first axis; in base units of SI where these are known.
-
-    Arguments as of `draw`.
     """
     along, _ = roles_of(plan)
     words = {} if along.numbers[0] else {float(place): str(cell) for place, cell in enumerate(along.cells)}

@@ -22,6 +22,7 @@ from contact1d.files import FULL_DISK, AnyPath, write_whole
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import Contact1dError, FolderError, SettingsError
 from contact1d.workflow.runs.campaign import LOCK, alone, run
+from contact1d.workflow.runs.finished import draw
 from contact1d.workflow.runs.processors import cores, pool
 from contact1d.workflow.runs.report import RESULTS
 from contact1d.workflow.scene import Scene, SceneError
@@ -121,9 +122,9 @@ def sweep(
         finally:
             done = _finish(plan, folder, rows, answers)
         if figures:
-            from contact1d.workflow.sweep.figures import draw
+            from contact1d.workflow.sweep.figures import sweep_charts
 
-            draw(folder, plan, done.quantities, figures if isinstance(figures, str) else "png")
+            draw(sweep_charts(folder, plan, done.quantities), folder, figures)
     return done
 
 

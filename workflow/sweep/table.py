@@ -96,7 +96,7 @@ def frame_of(folder: Path) -> DataFrame:
     """The table as a pandas.DataFrame, its texts without the mark of a spreadsheet."""
     import pandas
 
-    return pandas.read_csv(folder / TABLE).replace(MARKED, r"\1", regex=True)
+    return pandas.read_csv(folder / TABLE, float_precision="round_trip").replace(MARKED, r"\1", regex=True)
 
 
 def write_parquet(folder: Path) -> None:
