@@ -130,7 +130,7 @@ def _ending(error: BaseException, what: str, left: Iterable[str], folder: str, s
             return problems_in(source, error), CALL_IS_WRONG
         place = getattr(error, "folder", None)  # one that was there for a while only is not named
         is_there = place is not None and place.is_dir()
-        return f"{what} failed: {error if is_there else getattr(error, 'message', error)}", RUN_FAILED
+        return f"{what} failed: {error if is_there else error.message}", RUN_FAILED
     if isinstance(error, ImportError) and not (error.name or "").startswith("contact1d"):
         return f"the installation is incomplete ({error}): check it with `contact1d doctor`", FAILS
     if isinstance(error, OSError):

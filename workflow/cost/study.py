@@ -40,7 +40,7 @@ def measured(scene: Scene, folder: Path) -> Measured:
     try:
         done = run(scene, folder / str(os.getpid()), figures=False, workers=1)
     except Contact1dError as error:
-        return Measured(failure=getattr(error, "message", str(error)))
+        return Measured(failure=error.message)
     assert done.outcome is not None
     results, spent = done.outcome.results, time.process_time() - began + done.timing["lammps_cpu_s"]
     warnings = *done.warnings, *unmet(results, scene.accuracy.tolerance, (MODEL,))

@@ -51,7 +51,7 @@ def refined(context: RunContext, outcome: Outcome) -> tuple[Deck, Outcome]:
         try:
             finer_deck, finer = _pass(context, tolerance / TOLERANCE_RATIO)
         except (EngineError, UntrustedError, SettingsError) as error:
-            ended = f"{_after(count)}, since the next failed: {getattr(error, 'message', error)}"
+            ended = f"{_after(count)}, since the next failed: {error.message}"
             break
         tolerance, count = tolerance / TOLERANCE_RATIO, count + 1
         before, deck, outcome = outcome, finer_deck, nested(outcome, finer)

@@ -42,12 +42,12 @@ def _scales(scene: Scene, quantities: Mapping[str, Quantity]) -> Scales:
         curvature = scene.bodies.profile.curvature_radius
         assert curvature is not None
         return jkr_scales(force, radius, curvature, material.effective_modulus(), material.surface_energy)
-    length, force = material.length_unit, material.force_unit
+    length, force_unit = material.length_unit, material.force_unit
     assert length is not None
-    if force is None:
+    if force_unit is None:
         layer = material.layer_stiffness(scene.bodies.reduction)
-        force = scene.chains * layer * scene.bodies.spacing * length**2 / scene.bulk_stiffness
-    return Scales(length, force, mass=material.mass_unit)
+        force_unit = scene.chains * layer * scene.bodies.spacing * length**2 / scene.bulk_stiffness
+    return Scales(length, force_unit, mass=material.mass_unit)
 
 
 def unfound(scene: Scene, quantities: Mapping[str, Quantity]) -> tuple[str, ...]:

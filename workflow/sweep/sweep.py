@@ -252,7 +252,7 @@ def _attempt(scene: Scene, folder: Path) -> Answer:
             raise
         return Answer("failed", str(error))
     except Contact1dError as error:
-        return Answer("failed", getattr(error, "message", str(error)))
+        return Answer("failed", error.message)
     except Exception as error:
         return Answer("failed", f"{type(error).__name__}: {error}")
     return Answer("done")
