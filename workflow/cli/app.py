@@ -6,6 +6,7 @@ import atexit
 import gc
 import os
 from enum import StrEnum
+from glob import escape, glob
 from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING, Annotated
@@ -67,14 +68,9 @@ def contact1d(
 
 def scene_files(incomplete: str) -> list[str]:
     """The *.toml files and the folders that begin with `incomplete`; a folder that is the only one is opened."""
-    folder, start = os.path.split(incomplete)
-    try:
-        entries = sorted(os.scandir(folder or "."), key=lambda entry: entry.name)
-    except OSError:
-        return []
-    shown = [entry for entry in entries if entry.name.startswith(start) and entry.name[0] != "."]
-    files = [os.path.join(folder, entry.name) for entry in shown if entry.name.endswith(".toml")]
-    folders = [os.path.join(folder, entry.name, "") for entry in shown if entry.is_dir()]
+    found = sorted(glob(f"{escape(incomplete)}*"))
+    files = [path for path in found if path.endswith(".toml")]
+    folders = [os.path.join(path, "") for path in found if os.path.isdir(path)]
     return scene_files(folders[0]) if len(folders) == 1 and not files else files + folders
 
 
@@ -135,7 +131,7 @@ def run(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print the numbers only.")] = False,
 ) -> None:
     """Run a scene and print its numbers, each with its uncertainty."""
-    folder = out if out is not None else Path("runs") / scene.stem
+    folder = out or Path("runs") / scene.stem
     with command("the run", folder, "no numbers were written", quiet) as progress:
         from contact1d.workflow.engine.process import start_ahead
 
@@ -213,7 +209,7 @@ def sweep(
     The file names a base scene and [[axes]], each with a key of the scene and its values. Broken off at any moment, the
     same command continues with the missing points. Exit code 3: a point failed or can't be run; the table says why.
     """
-    folder = out if out is not None else Path("sweeps") / file.stem
+    folder = out or Path("sweeps") / file.stem
     kept = f"finished runs are kept in {folder}, and the same command continues"
     with command("the sweep", kept=kept, quiet=quiet) as progress:
         from contact1d.workflow.sweep.sweep import sweep as do
@@ -241,7 +237,7 @@ def cost(
     Prints a row for each: error against a run that is finer in all, time, the dominant error; then what to do. Leaves
     cost.json and cost.png, a work-precision figure. The scene itself is not changed.
     """
-    folder = out if out is not None else Path("costs") / scene.stem
+    folder = out or Path("costs") / scene.stem
     with command("the study", kept="run it again from the start") as progress:
         checked = read(scene, set_, without)
         from contact1d.workflow.cost.report import summary, write_report

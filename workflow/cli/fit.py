@@ -24,7 +24,7 @@ def fit(
     Leaves fit.json, curve.csv and fit.png; of several curves fits.csv, histograms and maps. Exit code 3: the data do
     not tell what was asked for, and the message says what would help.
     """
-    folder = out if out is not None else Path("fits") / file.stem
+    folder = out or Path("fits") / file.stem
     with command("the fit", folder, "what is known was written", quiet, str(file)) as progress:
         from contact1d.workflow.fit.fit import fit as do
         from contact1d.workflow.fit.many import TABLE, fit_many, is_series

@@ -140,8 +140,7 @@ def beside_theories(found: MaterialRun) -> Iterator[str]:
     columns = [f"{name}*" if name == theories.holding else name for name in theories.values]
     yield f"\n  {f'theory, at μ = {theories.tabor:.3g}':<28} {''.join(f'{name:<{WIDTH}}' for name in columns)}".rstrip()
     for name, unit in THEORY.items():
-        values = [marks.get(name) for marks in theories.values.values()]
-        if None not in values:
-            shown = "".join(f"{prefixed(value or 0.0, unit):<{WIDTH}}" for value in values)
+        if all(name in marks for marks in theories.values.values()):
+            shown = "".join(f"{prefixed(marks[name], unit):<{WIDTH}}" for marks in theories.values.values())
             yield f"  {LABELS[name]:<28} {shown}".rstrip()
     yield "  * holds at this μ, that of the material"

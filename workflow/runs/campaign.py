@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import fcntl
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -196,16 +196,17 @@ def write_deck(scene: AnyScene, folder: AnyPath) -> Path:
         return place
 
 
-def prepare(folder: Path) -> Path:
-    """Make the folder, or see that it holds nothing but an earlier run.
+def prepare(folder: Path, what: str = "run", marks: Collection[str] = ("in.lammps", LOCK)) -> Path:
+    """Make the folder of a run or a sweep, or see that it holds nothing but an earlier one, which has one of `marks`.
 
     Raises:
         FolderError: it is a file, or holds files and none of a run.
     """
     if folder.exists() and not folder.is_dir():
-        raise FolderError(f"{folder} is a file; a run needs a folder")
-    if folder.is_dir() and any(folder.iterdir()) and not any((folder / name).exists() for name in ("in.lammps", LOCK)):
-        raise FolderError(f"{folder} has files that do not belong to a run; choose another folder")
+        raise FolderError(f"{folder} is a file; a {what} needs a folder")
+    there = {path.name for path in folder.iterdir()} if folder.is_dir() else set()
+    if there - {LOCK} and there.isdisjoint(marks):
+        raise FolderError(f"{folder} has files that do not belong to a {what}; choose another folder")
     try:
         folder.mkdir(parents=True, exist_ok=True)
         (folder / LOCK).touch()

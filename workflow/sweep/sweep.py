@@ -21,7 +21,7 @@ from contact1d.analysis.curve import HEADER
 from contact1d.files import FULL_DISK, AnyPath, write_whole
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import Contact1dError, FolderError, SettingsError
-from contact1d.workflow.runs.campaign import LOCK, alone, run
+from contact1d.workflow.runs.campaign import alone, prepare, run
 from contact1d.workflow.runs.finished import draw
 from contact1d.workflow.runs.processors import cores, pool
 from contact1d.workflow.runs.report import RESULTS
@@ -107,7 +107,11 @@ def sweep(
     workplace = workplace_of(executor, workers, folder, partition)
     record = _record(plan)
     progress = progress or Silent()
-    _require_own(folder, record, progress)
+    if (folder / RECORD).is_file() and not _same(folder, record, progress):
+        raise FolderError(
+            f"{folder} holds another sweep: its base scene or the keys of its axes differ; choose another folder"
+        )
+    prepare(folder, "sweep", {RECORD})
     rows: list[str | Answer] = []
     answers: dict[str, Answer] = {}
     with alone(folder, "a sweep is active in"):
@@ -146,20 +150,6 @@ def _same(folder: Path, record: str, progress: Progress) -> bool:
         return own
     one, two = ((plan.base, [axis.key for axis in plan.axes]) for plan in plans)
     return one == two
-
-
-def _require_own(folder: Path, record: str, progress: Progress) -> None:
-    """Make the folder, or see that it is this sweep's."""
-    if folder.is_file():
-        raise FolderError(f"{folder} is a file; a sweep needs a folder")
-    if (folder / RECORD).is_file():
-        if not _same(folder, record, progress):
-            raise FolderError(
-                f"{folder} holds another sweep: its base scene or the keys of its axes differ; choose another folder"
-            )
-    elif folder.is_dir() and any(entry.name != LOCK for entry in folder.iterdir()):
-        raise FolderError(f"{folder} has files that do not belong to a sweep; choose another folder")
-    folder.mkdir(parents=True, exist_ok=True)
 
 
 def _missing(plan: SweepPlan, folder: Path, rows: list[str | Answer], progress: Progress) -> Iterator[Task]:
