@@ -83,20 +83,15 @@ def _of_runs(runs: Sequence[Run]) -> str:
     if len(runs) == 1 and done and (states := runs[0].folder / "states.npz").is_file():
         moving = path_of(runs[0], read_states(states))
     entries = {name: results_in(run.document) for name, run in done.items()}
-    reports = [
-        {
-            "run": run, "facts": _facts(run), "deck": _text(run.folder / "in.lammps"),
-            "sentence": sentence(run.scene, run.scales), "scene": scene_in_words(run.scene, run.scales),
-        }
-        for run in runs
-    ]  # fmt: skip
     return _page(
-        "runs.html", charts_of(drawn), moving, reports=reports, names=names, done=done, entries=entries,
+        "runs.html", charts_of(drawn), moving, runs=runs, names=names, done=done, entries=entries,
+        sentence=sentence, scene_in_words=scene_in_words, facts=_facts, deck=_deck,
         quantities=list(dict.fromkeys(name for one in entries.values() for name in one)), beside=in_words,
     )  # fmt: skip
 
 
-def _text(path: Path) -> str:
+def _deck(run: Run) -> str:
+    path = run.folder / "in.lammps"
     return path.read_text(encoding="utf-8") if path.is_file() else ""
 
 
