@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from contact1d.workflow.cli.ending import CALL_IS_WRONG, FAILS, Commands, command, read, say, say_counts, stop
-from contact1d.workflow.cli.fit import fit
 from contact1d.workflow.cli.identify import identify
 
 if TYPE_CHECKING:
@@ -110,6 +109,7 @@ Without = Annotated[
     ),
 ]
 Figures = Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the figures.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print the numbers only.")]
 FigureFormat = Annotated[Format, typer.Option("--format", help="File format of the figures.")]
 
 
@@ -128,7 +128,7 @@ def run(
         int | None, typer.Option(min=1, help="Repeats of a thermal pull-off in parallel.", show_default="processors")
     ] = None,
     ranks: Annotated[int, typer.Option(min=1, help="MPI ranks (processors) that share one large contact.")] = 1,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print the numbers only.")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Run a scene and print its numbers, each with its uncertainty."""
     folder = out or Path("runs") / scene.stem
@@ -219,6 +219,37 @@ def sweep(
         if parquet:
             write_parquet(done.folder)
     say_counts(done.counts, folder / TABLE)
+
+
+def fit(
+    file: Annotated[Path, typer.Argument(metavar="FIT", help="A fit file (TOML).", show_default=False)],
+    out: Annotated[Path | None, typer.Option(help="Folder.", show_default="fits/<name of the file>")] = None,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Processes, of several curves.", show_default="processors")
+    ] = None,
+    quiet: Quiet = False,
+) -> None:
+    """Fit parameters of a scene, such as E and W, to a measured force curve, or to each of many.
+
+    The file names the data (CSV with columns z or d, and F, with units), parameters, the instrument and a base scene.
+    Leaves fit.json, curve.csv and fit.png; of several curves fits.csv, histograms and maps. Exit code 3: the data do
+    not tell what was asked for, and the message says what would help.
+    """
+    folder = out or Path("fits") / file.stem
+    with command("the fit", folder, "what is known was written", quiet, str(file)) as progress:
+        from contact1d.workflow.fit.fit import fit as do
+        from contact1d.workflow.fit.many import TABLE, fit_many, is_series
+        from contact1d.workflow.fit.plan import read_fit
+        from contact1d.workflow.fit.report import lines
+
+        if is_series(read_fit(file)):
+            done = fit_many(file, folder, workers, progress)
+            progress.close()
+            say_counts(done.counts, folder / TABLE)
+            return
+        found = do(file, folder=folder, progress=progress)
+        progress.close()
+        say(lines(found), found.warnings, folder)
 
 
 def cost(

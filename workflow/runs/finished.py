@@ -65,7 +65,6 @@ class Run:
         tables: what the CSV files hold, by their names without ending.
         outcome: what the experiment handed over, in units of the model; None for a run that was read from its folder,
             or made by `run_many`.
-        results: quantities by name, each with uncertainty and unit.
     """
 
     folder: Path
@@ -73,12 +72,11 @@ class Run:
     scene: Scene = field(compare=False)
     tables: Mapping[str, Columns] = field(compare=False)
     outcome: Outcome | None = field(default=None, compare=False)
-    results: Results = field(init=False, compare=False)
 
-    def __post_init__(self) -> None:
-        """Take the quantities from the document."""
-        entries = quantities_in(self.document).items()
-        object.__setattr__(self, "results", Results({name: Quantity.of(entry) for name, entry in entries}))
+    @cached_property
+    def results(self) -> Results:
+        """Quantities by name, each with uncertainty and unit."""
+        return Results({name: Quantity.of(entry) for name, entry in quantities_in(self.document).items()})
 
     @property
     def status(self) -> str:
