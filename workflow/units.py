@@ -132,9 +132,9 @@ class Quantity:
         return self.value
 
     @classmethod
-    def of(cls, entry: Mapping[str, Any]) -> Quantity:
-        """The quantity of an entry in results.json, in SI where that is known."""
-        entry = entry.get("si", entry)
+    def of(cls, entry: Mapping[str, Any], in_si: bool = True) -> Quantity:
+        """The quantity of an entry in results.json, in SI where that is known and wanted."""
+        entry = entry.get("si", entry) if in_si else entry
         return cls(entry["value"], entry["uncertainty"], entry["unit"])
 
     @property

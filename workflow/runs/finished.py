@@ -129,8 +129,7 @@ class Run:
     @property
     def _numbers(self) -> Results:
         """The results in units of the model."""
-        entries = quantities_in(self.document).items()
-        return Results({name: Quantity(one["value"], one["uncertainty"], one["unit"]) for name, one in entries})
+        return Results({name: Quantity.of(entry, False) for name, entry in quantities_in(self.document).items()})
 
     @cached_property
     def scales(self) -> Scales:
