@@ -135,14 +135,18 @@ def _less_than(one: Result) -> str:
 
 
 def _of_the_curve(scene: Scene, outcome: Outcome) -> dict[str, Result]:
-    """The least certain force of a curve that is asked for, which is compared with the largest one."""
+    """The force of a curve that is asked for with the largest error of its own, which is compared with the largest one.
+
+    What numbers with ± change is none.
+    """
     if not kind_of(scene).curve_is_result:
         return {}
-    forces, errors = [state.force for state in outcome.states], outcome.rows["force"]
+    forces, errors = [state.force for state in outcome.states], dict(outcome.rows["force"])
+    if not scene.bodies.profile.alternatives:
+        errors.pop("input", None)
     worst = int(np.argmax(sum(errors.values())))
     own = {source: float(one[worst]) for source, one in errors.items()}
-    given = 0.0 if scene.bodies.profile.alternatives else own.get("input", 0.0)
-    return {ROWS: Result(forces[worst], FORCE, own, scale=float(np.abs(forces).max()), given=given)}
+    return {ROWS: Result(forces[worst], FORCE, own, scale=float(np.abs(forces).max()))}
 
 
 def _advice(scene: Scene, results: Mapping[str, Result]) -> str:
