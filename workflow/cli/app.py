@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+import contact1d as api
 from contact1d.workflow.cli.ending import CALL_IS_WRONG, FAILS, Commands, command, read, say, say_counts, stop
 from contact1d.workflow.cli.identify import identify
 
@@ -138,7 +139,6 @@ def run(
         if ranks == 1:
             start_ahead()  # LAMMPS loads while numpy and the rest of the program do
         checked = read(scene, set_, without, progress)
-        from contact1d.workflow.runs.advised import run as run_scene
 
         def printed(finished: Run) -> None:
             progress.close()
@@ -149,7 +149,7 @@ def run(
                 say(line_load(finished), {}, finished.folder)
 
         wanted = format_.value if figures else False
-        run_scene(checked, folder, wanted, progress, time_limit, workers=workers, ranks=ranks, printed=printed)
+        api.run(checked, folder, wanted, progress, time_limit, workers=workers, ranks=ranks, printed=printed)
 
 
 def deck(
@@ -164,10 +164,7 @@ def deck(
     the one that its search ended with.
     """
     with command("writing the deck", out, quiet=True):
-        checked = read(scene, set_, without)
-        from contact1d.workflow.runs.campaign import write_deck
-
-        folder = write_deck(checked, out)
+        folder = api.write_deck(read(scene, set_, without), out)
     typer.echo(f"{folder}: run it there with lmp -in in.lammps")
 
 
@@ -212,10 +209,9 @@ def sweep(
     folder = out or Path("sweeps") / file.stem
     kept = f"finished runs are kept in {folder}, and the same command continues"
     with command("the sweep", kept=kept, quiet=quiet) as progress:
-        from contact1d.workflow.sweep.sweep import sweep as do
         from contact1d.workflow.sweep.table import TABLE, write_parquet
 
-        done = do(file, folder, executor, workers, format_.value if figures else False, progress, partition)
+        done = api.sweep(file, folder, executor, workers, format_.value if figures else False, progress, partition)
         if parquet:
             write_parquet(done.folder)
     say_counts(done.counts, folder / TABLE)
@@ -237,17 +233,16 @@ def fit(
     """
     folder = out or Path("fits") / file.stem
     with command("the fit", folder, "what is known was written", quiet, str(file)) as progress:
-        from contact1d.workflow.fit.fit import fit as do
-        from contact1d.workflow.fit.many import TABLE, fit_many, is_series
+        from contact1d.workflow.fit.many import TABLE, is_series
         from contact1d.workflow.fit.plan import read_fit
         from contact1d.workflow.fit.report import lines
 
         if is_series(read_fit(file)):
-            done = fit_many(file, folder, workers, progress)
+            done = api.fit_many(file, folder, workers, progress)
             progress.close()
             say_counts(done.counts, folder / TABLE)
             return
-        found = do(file, folder=folder, progress=progress)
+        found = api.fit(file, folder=folder, progress=progress)
         progress.close()
         say(lines(found), found.warnings, folder)
 

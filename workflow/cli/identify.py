@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+import contact1d as api
 from contact1d.workflow.cli.ending import CALL_IS_WRONG, command, say, stop
 
 
@@ -115,9 +116,7 @@ def _units_of_run(folder: Path, contact_modulus: float, surface_energy: float) -
 def _from_material(file: Path, out: Path) -> None:
     """Choose, run, and say what came out beside the theories."""
     with command("the run", out, source=str(file)) as progress:
-        from contact1d.workflow.identify import from_material
-
-        found = from_material(file, out, progress)
+        found = api.from_material(file, out, progress)
     from contact1d.workflow.cli.summary import beside_theories, quantities, regime
 
     lines = [found.scene.title, *regime(found), "", *quantities(found.run.document), *beside_theories(found)]
