@@ -20,9 +20,10 @@ from warnings import catch_warnings, simplefilter
 from contact1d.analysis.curve import HEADER
 from contact1d.files import FULL_DISK, AnyPath, write_whole
 from contact1d.workflow.engine.progress import Progress, Silent
-from contact1d.workflow.errors import Contact1dError, FolderError, SettingsError
-from contact1d.workflow.runs.campaign import alone, prepare, run
+from contact1d.workflow.errors import Contact1dError, FolderError, RunError, SettingsError
+from contact1d.workflow.runs.campaign import alone, prepare
 from contact1d.workflow.runs.finished import draw
+from contact1d.workflow.runs.many import attempt
 from contact1d.workflow.runs.processors import cores, pool
 from contact1d.workflow.runs.report import RESULTS
 from contact1d.workflow.scene import Scene, SceneError
@@ -233,19 +234,13 @@ def attempt_all(tasks: Sequence[Task]) -> list[Answer]:
 
 def _attempt(scene: Scene, folder: Path) -> Answer:
     """Run a scene. A full disk is raised: no other point would fare better."""
-    try:
-        run(scene, folder, figures=False, workers=1)
-    except (SceneError, SettingsError) as error:
-        return Answer("refused", str(error))
-    except OSError as error:
-        if error.errno in FULL_DISK:
-            raise
-        return Answer("failed", str(error))
-    except Contact1dError as error:
-        return Answer("failed", error.message)
-    except Exception as error:
-        return Answer("failed", f"{type(error).__name__}: {error}")
-    return Answer("done")
+    entry = attempt(scene, folder)
+    if not isinstance(entry, RunError):
+        return Answer("done")
+    cause = entry.__cause__
+    if isinstance(cause, OSError) and cause.errno in FULL_DISK:
+        raise cause
+    return Answer("refused" if isinstance(cause, SceneError | SettingsError) else "failed", entry.message)
 
 
 def _finish(plan: SweepPlan, folder: Path, rows: Sequence[str | Answer], answers: Mapping[str, Answer]) -> Sweep:
