@@ -10,6 +10,7 @@ import os
 import sys
 import tempfile
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -98,21 +99,16 @@ def listening_sockets(pid: int) -> list[str]:
     Raises:
         OSError: this system has no /proc, or the process is not ours to look at.
     """
-    links = [_target(link) for link in Path(f"/proc/{pid}/fd").iterdir()]
-    inodes = {link[len("socket:[") : -1] for link in links if link.startswith("socket:[")}
+    links = set()
+    for link in Path(f"/proc/{pid}/fd").iterdir():
+        with suppress(FileNotFoundError):  # closed since the folder was listed
+            links.add(os.readlink(link))
     addresses = []
     for table in ("tcp", "tcp6"):
         path = Path(f"/proc/{pid}/net/{table}")
         rows = [line.split() for line in path.read_text().splitlines()[1:]] if path.exists() else []
-        addresses += [row[1] for row in rows if row[3] == "0A" and row[9] in inodes]
+        addresses += [row[1] for row in rows if row[3] == "0A" and f"socket:[{row[9]}]" in links]
     return addresses
-
-
-def _target(link: Path) -> str:
-    try:
-        return os.readlink(link)
-    except FileNotFoundError:  # closed since the folder was listed
-        return ""
 
 
 def _python() -> Iterator[Check]:

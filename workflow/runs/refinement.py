@@ -10,7 +10,7 @@ import os
 from dataclasses import replace
 
 from contact1d.workflow.continuation.context import RunContext
-from contact1d.workflow.continuation.outcome import LATTICE, Outcome, Refinement, in_words, unmet
+from contact1d.workflow.continuation.outcome import LATTICE, Outcome, Refinement, Result, in_words, unmet
 from contact1d.workflow.continuation.trust import UntrustedError, doubts
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.engine.session import EngineError
@@ -74,14 +74,25 @@ def _open(scene: Scene, outcome: Outcome) -> dict[str, float]:
 
 
 def nested(coarse: Outcome, fine: Outcome) -> Outcome:
-    """The finer outcome; where |fine − coarse| exceeds both uncertainties, its own is increased by the same factor."""
+    """The finer outcome; where |fine − coarse| exceeds both uncertainties, its own is increased by the same factor.
+
+    What numbers with ± change is the same in both, and no part of this.
+    """
     results = {}
     for name, one in fine.results.items():
         before = coarse.results.get(name, one)
-        stated = before.uncertainty + one.uncertainty
+        stated = _own(before) + _own(one)
         factor = max(1.0, abs(one.value - before.value) / stated) if stated > 0.0 else 1.0
-        results[name] = replace(one, errors={source: factor * error for source, error in one.errors.items()})
+        errors = {source: factor * error for source, error in one.errors.items()}
+        if one.given:
+            errors["input"] -= (factor - 1.0) * one.given
+        results[name] = replace(one, errors=errors)
     return replace(fine, results=results)
+
+
+def _own(one: Result) -> float:
+    """The uncertainty without what the scene leaves open."""
+    return one.uncertainty - one.given
 
 
 def _after(count: int) -> str:
@@ -91,8 +102,7 @@ def _after(count: int) -> str:
 def _helped(names: dict[str, float], before: Outcome, after: Outcome) -> bool:
     """Whether one of the named results is known clearly better."""
     return any(
-        name in after.results and after.results[name].uncertainty < HELP_RATIO * before.results[name].uncertainty
-        for name in names
+        name in after.results and _own(after.results[name]) < HELP_RATIO * _own(before.results[name]) for name in names
     )
 
 
