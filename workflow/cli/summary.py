@@ -12,6 +12,7 @@ from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import moved_centre
 from contact1d.workflow.body.theory import in_words
 from contact1d.workflow.runs import inputs
+from contact1d.workflow.runs.report import results_in
 from contact1d.workflow.units import LENGTH, LINE_PRESSURE, UNKNOWN, Quantity, Scales, prefixed
 
 if TYPE_CHECKING:
@@ -47,13 +48,12 @@ def quantities(results: Mapping[str, Any]) -> list[str]:
     lines = [f"  {'reduction':<31} {_whose(results)}"] if "reduction" in results else []
     if scan := results.get("scan"):
         lines += [f"  {'scan' * (not i):<31} {part}" for i, part in enumerate(scan["text"].split("; "))]
-    for name, entry in results.items():
-        if isinstance(entry, dict) and {"value", "uncertainty", "unit"} <= entry.keys():
-            label = NAMES.get(name, name.replace("_", " "))
-            if state := entry.get("state"):
-                label += f", {state.replace('_', ' ')}"
-            number = "not reported" if entry["value"] is None else str(Quantity.of(entry))
-            lines.append(f"  {label:<31} {number:<32} {', '.join(in_words(results, name))}".rstrip())
+    for name, entry in results_in(results).items():
+        label = NAMES.get(name, name.replace("_", " "))
+        if state := entry.get("state"):
+            label += f", {state.replace('_', ' ')}"
+        number = "not reported" if entry["value"] is None else str(Quantity.of(entry))
+        lines.append(f"  {label:<31} {number:<32} {', '.join(in_words(results, name))}".rstrip())
     units = {unit: Quantity(**entry) for unit, entry in results.get("units", {}).items()}
     lines += [f"  {'1 ' + unit:<31} {one}" for unit, one in units.items() if one.value != 1.0]
     return lines + inputs.in_words(results)

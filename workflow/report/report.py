@@ -152,10 +152,12 @@ MOST_ITEMS = 6
 def sentence(scene: Scene, scales: Scales) -> str:
     """The scene in a sentence: the body and what it is pressed on, the effects, the experiment."""
     bodies, experiment = scene.bodies, scene.experiment
-    size = ", ".join(f"{name} {value}" for name, value in _values(bodies.profile, scales) if name != "kind")
+    size, given = (
+        ", ".join(f"{name} {value}" for name, value in _values(table, scales) if name != "kind")
+        for table in (bodies.profile, experiment)
+    )
     lower = "a rigid plane" if bodies.lower == "rigid_plane" else "a lower body"
     effects = f" with {', '.join(scene.effects)}" if scene.effects else ""
-    given = ", ".join(f"{name} {value}" for name, value in _values(experiment, scales) if name != "kind")
     kind, what = bodies.profile.kind.replace("_", " "), experiment.kind.replace("_", " ")
     return f"A {kind} ({size}) on {lower}{effects}. Experiment: {what}, {given}.".replace(" ()", "")
 

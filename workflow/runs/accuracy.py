@@ -79,8 +79,8 @@ def unknown(scene: Scene, outcome: Outcome) -> dict[str, Result]:
 def main_results(scene: Scene, results: Mapping[str, Result]) -> dict[str, Result]:
     """The main results as far as they are found, and neither prescribed nor the load."""
     load = scene.experiment.load_key if scene.experiment.compression is not None else None
-    found = {name: results[name] for name in kind_of(scene).main_results if name in results}
-    return {name: one for name, one in found.items() if not one.prescribed and name != load}
+    found = [name for name in kind_of(scene).main_results if name in results and name != load]
+    return {name: results[name] for name in found if not results[name].prescribed}
 
 
 def require_results(scene: Scene, outcome: Outcome) -> None:

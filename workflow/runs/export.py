@@ -26,8 +26,8 @@ def kept(text: str, path: AnyPath | None) -> str:
 
 def listed(results: Mapping[str, Quantity]) -> Columns:
     """The results as a table, a row for each."""
-    rows = [(name, one.value, one.uncertainty, one.unit) for name, one in results.items()]
-    return Columns(dict(zip(("name", "value", "uncertainty", "unit"), zip(*rows, strict=True), strict=False)))
+    parts = ("value", "uncertainty", "unit")
+    return Columns({"name": [*results]} | {part: [getattr(one, part) for one in results.values()] for part in parts})
 
 
 def csv_text(columns: Columns) -> str:

@@ -13,6 +13,8 @@ from contact1d.workflow.runs.accuracy import main_results
 from contact1d.workflow.scene import Scene
 
 COLOURS = (COMPRESSION, TENSION, LOADING, UNLOADING, BLACK)
+OF_INPUT = ("input", "half_width")
+"""Columns of the table that are no changes of results."""
 WIDTH = 0.8
 """Of the bars of one input, over the distance of inputs."""
 
@@ -40,7 +42,7 @@ def entries(table: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 def chart(table: Mapping[str, Any]) -> Chart:
     """Bars of the changes in percent, by input."""
-    names = [name for name in table if name not in ("input", "half_width")]
+    names = [name for name in table if name not in OF_INPUT]
     words = [key.partition(".")[2].replace("profile.", "") for key in table["input"]]
     ticks = {float(i): one.replace(".", " ").replace("_", " ") for i, one in enumerate(words)}
     series, width = [], WIDTH / max(len(names), 1)
@@ -55,13 +57,10 @@ def chart(table: Mapping[str, Any]) -> Chart:
 
 def in_words(found: Mapping[str, Any]) -> list[str]:
     """Lines for a terminal, the input that matters most first; `found`: what results.json holds."""
-
-    def changes(entry: Mapping[str, Any]) -> dict[str, float]:
-        return {name: value for name, value in entry.items() if name not in ("input", "half_width")}
-
+    rows = [({name: one[name] for name in one if name not in OF_INPUT}, one) for one in found.get("inputs", ())]
     lines = []
-    for one in sorted(found.get("inputs", ()), key=lambda entry: -max(changes(entry).values(), default=0.0)):
+    for changes, one in sorted(rows, key=lambda row: -max(row[0].values(), default=0.0)):
         width = f" ± {100.0 * one['half_width']:.2g} %" if "half_width" in one else ""
-        said = ", ".join(f"{name.replace('_', ' ')} ± {100.0 * value:.2g} %" for name, value in changes(one).items())
+        said = ", ".join(f"{name.replace('_', ' ')} ± {100.0 * value:.2g} %" for name, value in changes.items())
         lines.append(f"  {one['input']}{width}: {said}")
     return ["\nchanges with the inputs, the largest first:", *lines] if lines else []
