@@ -123,6 +123,8 @@ def command(
 
 def _ending(error: BaseException, what: str, left: Iterable[str], folder: str, source: str) -> tuple[str, int] | None:
     """The message and the exit code for an error; None for a defect of the program."""
+    from concurrent.futures.process import BrokenProcessPool
+
     from contact1d.workflow.errors import Contact1dError
 
     if isinstance(error, Contact1dError):
@@ -133,23 +135,17 @@ def _ending(error: BaseException, what: str, left: Iterable[str], folder: str, s
         return f"{what} failed: {error if is_there else error.message}", RUN_FAILED
     if isinstance(error, ImportError) and not (error.name or "").startswith("contact1d"):
         return f"the installation is incomplete ({error}): check it with `contact1d doctor`", FAILS
-    if isinstance(error, OSError):
+    reason = ""
+    if isinstance(error, OSError) and error.errno != errno.EPIPE:  # a reader that went away is no error: typer ends
         place = os.fsdecode(error.filename) if isinstance(error.filename, str | bytes) else folder
         if error.errno in (errno.EEXIST, errno.ENOTDIR) and os.path.isfile(place):
             return f"{place} is a file; a folder is needed", CALL_IS_WRONG
         if error.errno in BAD_PLACE and place:
             return f"{place} cannot be written: {error.strerror}", CALL_IS_WRONG
-    reason = _of_the_machine(error)
-    return ("; ".join([f"{what} failed: {reason}", *left]), RUN_FAILED) if reason else None
-
-
-def _of_the_machine(error: BaseException) -> str:
-    """What the disk or the memory did; "" where it is neither, and a defect of the program."""
-    from concurrent.futures.process import BrokenProcessPool
-
-    if isinstance(error, OSError) and error.errno != errno.EPIPE:  # a reader that went away is no error: typer ends
         reason = FULL_DISK.get(error.errno or 0, error.strerror or str(error))
-        return f"{reason} ({os.fsdecode(error.filename)})" if error.filename else reason
-    if isinstance(error, BrokenProcessPool):
-        return "one of its processes was killed, most often because the machine was out of memory"
-    return "the machine is out of memory" if isinstance(error, MemoryError) else ""
+        reason += f" ({os.fsdecode(error.filename)})" if error.filename else ""
+    elif isinstance(error, BrokenProcessPool):
+        reason = "one of its processes was killed, most often because the machine was out of memory"
+    elif isinstance(error, MemoryError):
+        reason = "the machine is out of memory"
+    return ("; ".join([f"{what} failed: {reason}", *left]), RUN_FAILED) if reason else None
