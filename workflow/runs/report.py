@@ -113,9 +113,13 @@ def failure(
 
 
 def _frame(
-    scene: Scene, status: str, outcome: Outcome | None, doubts: Mapping[str, str], scales: Scales,
+    scene: Scene,
+    status: str,
+    outcome: Outcome | None,
+    doubts: Mapping[str, str],
+    scales: Scales,
     timing: Mapping[str, float],
-) -> dict[str, Any]:  # fmt: skip
+) -> dict[str, Any]:
     """What results.json holds of every run; of a check that does not apply null."""
     agreements = outcome.consistency.items() if outcome else ()
     checked = {name: {"difference": one.difference, "allowed": one.allowed} for name, one in agreements}
