@@ -63,8 +63,8 @@ def run(
             raise mended(reader, error, progress) from None
         except SettingsError as error:
             found = _tried(reader, error, progress)
-            told = f"{error}. {found}" if found else str(error)
-            raise SettingsError(told, changes=error.changes) from error.__cause__
+            message = f"{error}. {found}" if found else str(error)
+            raise SettingsError(message, changes=error.changes) from error.__cause__
         except RunError as error:
             temporary.pop_all()  # it says where its files are
             cause = error.__cause__
