@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from html import escape
+from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,20 +18,19 @@ from numpy.typing import NDArray
 from contact1d.analysis import plots
 from contact1d.analysis.atoms import atoms
 from contact1d.analysis.chart import Chart
-from contact1d.analysis.curve import DETACHMENTS, PROFILE_COLUMNS, Columns, by_state, read_columns
+from contact1d.analysis.curve import DETACHMENTS, PROFILE_COLUMNS, Columns, by_state, put_columns, read_columns
 from contact1d.analysis.named import Named
 from contact1d.analysis.pressure import Profile
-from contact1d.files import AnyPath
+from contact1d.files import AnyPath, write_whole
 from contact1d.workflow.body.theory import in_words
 from contact1d.workflow.continuation.outcome import Outcome
-from contact1d.workflow.errors import FolderError, RunError
+from contact1d.workflow.errors import Contact1dError, FolderError, RunError
 from contact1d.workflow.runs.charts import CURVE_COLUMNS, charts
-from contact1d.workflow.runs.export import csv_text, dataset, kept, latex, listed
 from contact1d.workflow.runs.plausibility import IMPLAUSIBLE
 from contact1d.workflow.runs.report import FILES, FORMATS, as_json, in_model_units, quantities_in, read_results
 from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import Scene, SceneError, scene_from_dict
-from contact1d.workflow.units import Quantity, Scales, scale_of
+from contact1d.workflow.units import NUMBER, Quantity, Scales, scale_of
 
 if TYPE_CHECKING:
     from ase import Atoms
@@ -167,26 +168,40 @@ class Run:
 
     def to_json(self, path: AnyPath | None = None) -> str:
         """What results.json holds; also written to a path."""
-        return kept(as_json(self.document), path)
+        return _kept(as_json(self.document), path)
 
     def to_csv(self, path: AnyPath | None = None, table: str = "results") -> str:
         """Name, value, uncertainty and unit of the results, or one of `tables`: "curve"; also written to a path."""
-        return kept(csv_text(self._table(table)), path)
+        file, columns = StringIO(), self._table(table)
+        put_columns(file, columns, columns.units)
+        return _kept(file.getvalue(), path)
 
     def to_latex(self, path: AnyPath | None = None) -> str:
-        """The results as a tabular; also written to a path."""
-        return kept(latex(self.results), path)
+        """The results as a tabular, the name, and value, uncertainty and unit; also written to a path."""
+        lines = [f"{name.replace('_', ' ')} & ${_tex(one)}$ \\\\" for name, one in self.results.items()]
+        return _kept("\n".join([r"\begin{tabular}{ll}", *lines, r"\end{tabular}", ""]), path)
 
     def to_xarray(self, table: str = "curve") -> Dataset:
         """One of `tables` as an xarray.Dataset with units, the results in its attributes as text.
 
         Raises Contact1dError where xarray isn't installed.
         """
+        try:
+            import xarray
+        except ImportError:
+            raise Contact1dError("a dataset needs xarray: install it with pip install 'contact1d[tables]'") from None
+        columns = self._table(table)
+        variables = {
+            name: ("row", column, {"units": columns.units[name]} if name in columns.units else {})
+            for name, column in columns.items()
+        }
         said = {name: str(quantity) for name, quantity in self.results.items()}
-        return dataset(self._table(table), {"title": self.scene.title, **said})
+        return xarray.Dataset(variables, attrs={"title": self.scene.title, **said})
 
     def _table(self, name: str) -> Columns:
-        known = {"results": listed(self.results), **self.tables}
+        parts, quantities = ("value", "uncertainty", "unit"), self.results.values()
+        results = {"name": [*self.results]} | {part: [getattr(one, part) for one in quantities] for part in parts}
+        known = {"results": Columns(results), **self.tables}
         if name not in known:
             raise ValueError(f"the run has no table {name!r}, it has {', '.join(known)}")
         return known[name]
@@ -213,6 +228,26 @@ class Run:
         rows = "".join(f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in cells)
         caption = f"{escape(self.scene.title)}: {self.status}<br><code>{escape(str(self.folder))}</code>"
         return f"<table><caption>{caption}</caption>{rows}</table>"
+
+
+TEX = {"±": r"\pm", "µ": r"\mu ", "·": r"\cdot ", "²": "^2"}
+"""Signs in a quantity."""
+
+
+def _tex(one: Quantity) -> str:
+    number, unit = str(one).rsplit(" ", 1) if one.unit != NUMBER else (str(one), "")
+    number = re.sub(r"e([+-]\d+)", lambda power: rf"\cdot 10^{{{int(power[1])}}}", number)
+    text = number + re.sub(r"[A-Za-z]+", r"\\mathrm{\g<0>}", rf"\,{unit}" if unit else "")
+    for sign, tex in TEX.items():
+        text = text.replace(sign, tex)
+    return text
+
+
+def _kept(text: str, path: AnyPath | None) -> str:
+    """The text, which is written to the path if there is one."""
+    if path:
+        write_whole(Path(path), text)
+    return text
 
 
 def load_run(folder: AnyPath) -> Run:
