@@ -137,11 +137,8 @@ def _ending(error: BaseException, what: str, left: Iterable[str], folder: str, s
         return f"the installation is incomplete ({error}): check it with `contact1d doctor`", FAILS
     reason = ""
     if isinstance(error, OSError) and error.errno != errno.EPIPE:  # a reader that went away is no error: typer ends
-        place = os.fsdecode(error.filename) if isinstance(error.filename, str | bytes) else folder
-        if error.errno in (errno.EEXIST, errno.ENOTDIR) and os.path.isfile(place):
-            return f"{place} is a file; a folder is needed", CALL_IS_WRONG
-        if error.errno in BAD_PLACE and place:
-            return f"{place} cannot be written: {error.strerror}", CALL_IS_WRONG
+        if sentence := _of_a_place(error, folder):
+            return sentence, CALL_IS_WRONG
         reason = FULL_DISK.get(error.errno or 0, error.strerror or str(error))
         reason += f" ({os.fsdecode(error.filename)})" if error.filename else ""
     elif isinstance(error, BrokenProcessPool):
@@ -149,3 +146,11 @@ def _ending(error: BaseException, what: str, left: Iterable[str], folder: str, s
     elif isinstance(error, MemoryError):
         reason = "the machine is out of memory"
     return ("; ".join([f"{what} failed: {reason}", *left]), RUN_FAILED) if reason else None
+
+
+def _of_a_place(error: OSError, folder: str) -> str:
+    """What is wrong with a place that the caller chose; "" where it is something else."""
+    place = os.fsdecode(error.filename) if isinstance(error.filename, str | bytes) else folder
+    if error.errno in (errno.EEXIST, errno.ENOTDIR) and os.path.isfile(place):
+        return f"{place} is a file; a folder is needed"
+    return f"{place} cannot be written: {error.strerror}" if error.errno in BAD_PLACE and place else ""
