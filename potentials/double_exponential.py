@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,28 +12,40 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 
 
+class PairPotential(ABC):
+    """V(r) of two particles, with its derivatives."""
+
+    @abstractmethod
+    def derivative(self, order: int, r: ArrayLike) -> Array:
+        """(−1)ⁿ dⁿV/drⁿ [FU·LU/LUⁿ] of this order n for distances r ≥ 0 [LU] of any shape."""
+
+    def energy(self, r: ArrayLike) -> Array:
+        """V(r) [FU·LU] for distances r ≥ 0 [LU] of any shape."""
+        return self.derivative(0, r)
+
+    def force(self, r: ArrayLike) -> Array:
+        """f(r) = −V′(r) [FU], positive where the particles repel each other."""
+        return self.derivative(1, r)
+
+    def stiffness(self, r: ArrayLike) -> Array:
+        """V″(r) = −f′(r) [FU/LU], negative where a pair can become unstable."""
+        return self.derivative(2, r)
+
+
 @dataclass(frozen=True)
-class Exponential:
+class Exponential(PairPotential):
     """One term amplitude·exp(−r/range); amplitude [FU·LU] > 0, range [LU] > 0."""
 
     amplitude: float
     range: float
 
-    def energy(self, r: ArrayLike) -> Array:
-        """E(r) = A exp(−r/a) [FU·LU] for distances r [LU] of any shape."""
-        return np.asarray(self.amplitude * np.exp(-np.asarray(r, dtype=float) / self.range))
-
-    def force(self, r: ArrayLike) -> Array:
-        """−E′(r) = (A/a) exp(−r/a) [FU]."""
-        return self.energy(r) / self.range
-
-    def stiffness(self, r: ArrayLike) -> Array:
-        """E″(r) = (A/a²) exp(−r/a) [FU/LU]."""
-        return self.energy(r) / self.range**2
+    def derivative(self, order: int, r: ArrayLike) -> Array:
+        """(A/aⁿ) exp(−r/a)."""
+        return np.asarray(self.amplitude * np.exp(-np.asarray(r, dtype=float) / self.range)) / self.range**order
 
 
 @dataclass(frozen=True)
-class DoubleExponential:
+class DoubleExponential(PairPotential):
     """V(r) = repulsion − attraction; without an attraction it is purely repulsive.
 
     Args:
@@ -56,20 +69,10 @@ class DoubleExponential:
         if self.attraction.force(0.0) >= self.repulsion.force(0.0):
             raise ValueError("the repulsion must prevail at r = 0 (A/a > B/b)")
 
-    def energy(self, r: ArrayLike) -> Array:
-        """V(r) [FU·LU] for distances r ≥ 0 [LU] of any shape."""
-        value = self.repulsion.energy(r)
-        return value if self.attraction is None else value - self.attraction.energy(r)
-
-    def force(self, r: ArrayLike) -> Array:
-        """f(r) = −V′(r) [FU], positive where the particles repel each other."""
-        value = self.repulsion.force(r)
-        return value if self.attraction is None else value - self.attraction.force(r)
-
-    def stiffness(self, r: ArrayLike) -> Array:
-        """V″(r) = −f′(r) [FU/LU], negative where a pair can become unstable."""
-        value = self.repulsion.stiffness(r)
-        return value if self.attraction is None else value - self.attraction.stiffness(r)
+    def derivative(self, order: int, r: ArrayLike) -> Array:
+        """That of the repulsion without that of the attraction."""
+        value = self.repulsion.derivative(order, r)
+        return value if self.attraction is None else value - self.attraction.derivative(order, r)
 
     @property
     def formula(self) -> str:

@@ -28,6 +28,8 @@ FEWEST_POINTS = 2_000
 MOST_POINTS = 400_000
 INNER_CELLS = 4
 """Grid cells between the first entry and r = 0: a spline's end condition does not reach across them."""
+SAMPLES = 20_000
+"""Distances at which the error of a table is measured."""
 SPLINE_REACH = 28
 """Entries over which a change of one is felt by the spline: (2 − √3)^28 = 1e-16."""
 
@@ -90,9 +92,12 @@ class Table:
         between = (1.0 - t) * slope[left] + t * slope[left + 1] - t * (1.0 - t) * curved
         return np.asarray(between * r)
 
-    def error_beyond(self, r_min: float, samples: int = 20_000) -> float:
-        """Largest interpolation error of the force [FU] for r_min ≤ r ≤ r_c, from samples dense near r_min."""
-        return _error_beyond(self, r_min, samples)
+    # A scene asks for the same ones again and again; what is kept is small, tables being equal by value.
+    @lru_cache(maxsize=64)  # noqa: B019
+    def error_beyond(self, r_min: float) -> float:
+        """Largest interpolation error of the force [FU] for r_min ≤ r ≤ r_c, from SAMPLES dense near r_min."""
+        r = r_min * (self.cutoff / r_min) ** np.linspace(0.0, 1.0, SAMPLES)
+        return float(np.max(np.abs(self.force(r) - self.law.force(r))))
 
 
 @lru_cache(maxsize=4)  # the same one is asked for offset by offset
@@ -109,12 +114,6 @@ def _knots(table: Table) -> tuple[Array, Array]:
     second[1:-1] = slope[:-2] - 2.0 * slope[1:-1] + slope[2:]
     green = (math.sqrt(3.0) - 2.0) ** np.abs(np.arange(-SPLINE_REACH, SPLINE_REACH + 1)) / (2.0 * math.sqrt(3.0))
     return slope, np.convolve(second, green, mode="same")
-
-
-@lru_cache(maxsize=64)  # a scene asks for the same ones again and again
-def _error_beyond(table: Table, r_min: float, samples: int) -> float:
-    r = r_min * (table.cutoff / r_min) ** np.linspace(0.0, 1.0, samples)
-    return float(np.max(np.abs(table.force(r) - table.law.force(r))))
 
 
 def table_for(law: DoubleExponential, cutoff: float, closest: float, error: float) -> Table:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import ClassVar
 
@@ -34,6 +35,11 @@ class Contact1dError(Exception):
         """Keep the changes beside the arguments; both survive pickling."""
         super().__init__(*arguments)
         self._changes = tuple(changes)
+
+    @cached_property
+    def message(self) -> str:
+        """What is wrong, without where the files are."""
+        return str(self)
 
     @property
     def changes(self) -> tuple[SceneEdit, ...]:

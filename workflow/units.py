@@ -97,6 +97,24 @@ def registry() -> Any:
     return units
 
 
+def _calculated(operation: Callable[[Any, Any], Any]) -> Callable[[Quantity, Any], Quantity]:
+    """The operator of quantities that does this with pint's, between a quantity and another one or a number."""
+
+    def calculate(self: Quantity, other: Any) -> Quantity:
+        other = other if isinstance(other, Quantity) else Quantity(float(other), 0.0, NUMBER)
+
+        def result(one: float, two: float) -> Any:
+            return operation(registry().Quantity(one, self.unit), registry().Quantity(two, other.unit))
+
+        found = result(self.value, other.value)
+        found = found.to(next((name for name in WITH_PREFIX if found.check(name)), found.to_base_units().units))
+        moved = result(self.value + self.uncertainty, other.value), result(self.value, other.value + other.uncertainty)
+        spread = sum(abs((one - found).to(found.units).magnitude) for one in moved)
+        return Quantity(float(found.magnitude), float(spread), f"{found.units:~P}".replace("Δ", "") or NUMBER)
+
+    return calculate
+
+
 @dataclass(frozen=True)
 class Quantity:
     """A number with its uncertainty, both in `unit`: of SI, or of the model where a scene has no units.
@@ -114,9 +132,9 @@ class Quantity:
         return self.value
 
     @classmethod
-    def of(cls, entry: Mapping[str, Any]) -> Quantity:
-        """The quantity of an entry in results.json, in SI where that is known."""
-        entry = entry.get("si", entry)
+    def of(cls, entry: Mapping[str, Any], in_si: bool = True) -> Quantity:
+        """The quantity of an entry in results.json, in SI where that is known and wanted."""
+        entry = entry.get("si", entry) if in_si else entry
         return cls(entry["value"], entry["uncertainty"], entry["unit"])
 
     @property
@@ -133,50 +151,12 @@ class Quantity:
         factor = registry().Quantity(1.0, self.unit).to(unit).magnitude
         return Quantity(self.value * factor, self.uncertainty * factor, unit)
 
-    def _with(self, operation: Callable[[Any, Any], Any], other: Any, swapped: bool = False) -> Quantity:
-        other = other if isinstance(other, Quantity) else Quantity(float(other), 0.0, NUMBER)
-        first, second = (other, self) if swapped else (self, other)
-
-        def result(one: float, two: float) -> Any:
-            raised = operation is pow
-            return operation(
-                registry().Quantity(one, first.unit), two if raised else registry().Quantity(two, second.unit)
-            )
-
-        found = result(first.value, second.value)
-        found = found.to(next((name for name in WITH_PREFIX if found.check(name)), found.to_base_units().units))
-        moved = (
-            result(first.value + first.uncertainty, second.value),
-            result(first.value, second.value + second.uncertainty),
-        )
-        spread = sum(abs((one - found).to(found.units).magnitude) for one in moved)
-        return Quantity(float(found.magnitude), float(spread), f"{found.units:~P}".replace("Δ", "") or NUMBER)
-
-    def __add__(self, other: Any) -> Quantity:
-        """Sum."""
-        return self._with(add, other)
-
-    def __sub__(self, other: Any) -> Quantity:
-        """Difference."""
-        return self._with(sub, other)
-
-    def __mul__(self, other: Any) -> Quantity:
-        """Product."""
-        return self._with(mul, other)
-
-    __rmul__ = __mul__
-
-    def __truediv__(self, other: Any) -> Quantity:
-        """Ratio."""
-        return self._with(truediv, other)
-
-    def __rtruediv__(self, other: Any) -> Quantity:
-        """A number over this quantity."""
-        return self._with(truediv, other, True)
-
-    def __pow__(self, other: float) -> Quantity:
-        """Power with a number."""
-        return self._with(pow, other)
+    __add__ = _calculated(add)
+    __sub__ = _calculated(sub)
+    __mul__ = __rmul__ = _calculated(mul)
+    __truediv__ = _calculated(truediv)
+    __rtruediv__ = _calculated(lambda divisor, number: number / divisor)
+    __pow__ = _calculated(pow)
 
     def __str__(self) -> str:
         """`402.7 ± 1.3 MPa`: the uncertainty with two digits, units of SI with a prefix."""

@@ -73,7 +73,7 @@ __all__ = [
 _HOMES = {
     "analysis.atoms": ("atoms",),
     "workflow.engine.failure": ("EngineError",),
-    "workflow.errors": ("Contact1dError", "FolderError", "RunError"),
+    "workflow.errors": ("Contact1dError", "FolderError", "RunError", "SettingsError"),
     "workflow.fit.fit": ("fit",),
     "workflow.fit.many": ("fit_many",),
     "workflow.identify.choice": ("from_material",),
@@ -83,7 +83,6 @@ _HOMES = {
     "workflow.runs.finished": ("Run", "load_run"),
     "workflow.runs.many": ("run_many",),
     "workflow.scene": ("Scene", "SceneError", "read_scene"),
-    "workflow.model.chain": ("SettingsError",),
     "workflow.sweep.sweep": ("Sweep", "sweep"),
     "workflow.units": ("Quantity",),
 }

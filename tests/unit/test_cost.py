@@ -132,6 +132,13 @@ def test_an_error_is_a_number_where_the_reference_is_known_ten_times_better(
     assert str(found).startswith("less than") == error.is_bound
 
 
+def test_a_number_with_an_uncertainty_is_the_same_in_the_reference() -> None:
+    ran, best = (replace(result(value, solver=1e-4, input=0.05), given=0.05) for value in (1.02, 1.0))
+    found = judged(Measured({"adhesion_force": ran}), {"adhesion_force": best})
+    assert (found.error.is_bound, found.dominant) == (False, "solver of adhesion_force")
+    assert found.error.relative == pytest.approx(0.02)
+
+
 def test_the_dominant_error_is_that_of_the_result_with_the_largest_error() -> None:
     results = {"adhesion_force": result(1.1, solver=3.0, sampling=2.0), "critical_radius": result(1.0, sampling=9.0)}
     found = judged(Measured(results), dict.fromkeys(results, result(1.0, solver=0.0)))

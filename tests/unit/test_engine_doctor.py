@@ -15,7 +15,6 @@ from contact1d.workflow.engine.session import Engine, EngineError
 def failed(checks: list[doctor.Check]) -> list[str]:
     """Return the names of the checks that failed, each of which must have advice."""
     assert all(check.advice for check in checks if not check.ok)
-    assert not any(check.advice for check in checks if check.ok)
     return [check.name for check in checks if not check.ok]
 
 

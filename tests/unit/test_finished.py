@@ -6,6 +6,7 @@ import csv
 import json
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -14,7 +15,6 @@ import pytest
 
 import contact1d
 from contact1d import Contact1dError, FolderError, Quantity, Run, RunError, Scene, load_run, run
-from contact1d.workflow.runs.export import latex
 from tests.sweeps import BROKEN
 
 MakeScene = Callable[..., Scene]
@@ -113,10 +113,12 @@ def test_results_and_tables_go_to_other_programs(finished: Run, tmp_path: Path) 
         finished.to_csv(table="kurve")
 
 
-def test_results_are_a_table_of_latex() -> None:
+def test_results_are_a_table_of_latex(finished: Run) -> None:
     given = {"adhesion_force": Quantity(1.234e-7, 1.2e-9, "N"), "pressure": Quantity(2e-14, 0.0, "FU/LU²"),
              "ratio": Quantity(0.5, 0.1, "1")}  # fmt: skip
-    assert latex(given).splitlines() == [
+    own = replace(finished)
+    vars(own)["results"] = given
+    assert own.to_latex().splitlines() == [
         r"\begin{tabular}{ll}",
         r"adhesion force & $123.4 \pm 1.2\,\mathrm{nN}$ \\",
         r"pressure & $2\cdot 10^{-14}\,\mathrm{FU}/\mathrm{LU}^2$ \\",

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-import contact1d.workflow.sweep.sweep as sweeping
+import contact1d.workflow.runs.many as running
 from contact1d import FolderError, load_run, sweep
 from contact1d.workflow.cli.app import app
 from contact1d.workflow.engine.progress import Silent
@@ -155,14 +155,14 @@ def test_a_folder_of_another_sweep_or_of_other_things_is_left_alone(tmp_path: Pa
 def test_a_full_disk_ends_the_sweep_and_the_same_command_goes_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    real, count = sweeping.run, iter(range(10))
+    real, count = running.run, iter(range(10))
 
     def run(*args: Any, **kwargs: Any) -> Any:
         if next(count) == 1:
             raise OSError(28, "No space left on device", str(tmp_path))
         return real(*args, **kwargs)
 
-    monkeypatch.setattr(sweeping, "run", run)
+    monkeypatch.setattr(running, "run", run)
     with pytest.raises(OSError, match="No space left"):
         sweep(plane(axis(FORCE, 0.5, 0.75, 1.0)), tmp_path, Here(), figures=False)
     assert [row["status"] for row in rows(tmp_path)] == ["done", "missing", "done"]
@@ -175,7 +175,7 @@ def test_a_point_that_kills_its_process_is_a_row_and_takes_no_other_along(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The process of a pool that sees a force of 0.75 dies, as by a lack of memory."""
-    source = "import os, contact1d.workflow.sweep.sweep as s\nreal = s.run\n"
+    source = "import os, contact1d.workflow.runs.many as s\nreal = s.run\n"
     source += "s.run = lambda scene, *a, **k: os._exit(1) if scene.experiment.force == 0.75 else real(scene, *a, **k)\n"
     (tmp_path / "sitecustomize.py").write_text(source)
     monkeypatch.setenv("PYTHONPATH", str(tmp_path) + os.pathsep + os.environ.get("PYTHONPATH", ""))

@@ -23,7 +23,7 @@ def test_a_fault_is_of_a_text_that_is_there_once(fault: dict[str, str]) -> None:
 def test_a_mutant_is_one_change_of_a_function() -> None:
     found = mutants("potentials/double_exponential.py")
     assert len({one.source for one in found}) > 10
-    assert any(one.function == "DoubleExponential.force" for one in found)
+    assert any(one.function == "DoubleExponential.derivative" for one in found)
 
 
 def test_of_drawings_and_messages_only_what_they_show_is_drawn() -> None:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 import contact1d
 from contact1d import SceneError
 
+SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 RADIUS, MODULUS, WORK = 2e-3, 2e6 / 0.75, 80e-3
 SHARES = {"radius": 0.01, "modulus": 0.03, "work": 0.02}
 EXPONENTS = {
@@ -87,11 +89,22 @@ def test_a_table_says_which_input_matters(run: contact1d.Run) -> None:
     assert rows["bodies.profile.radius"] == pytest.approx((0.01, 0.01), rel=0.02)
     assert rows["adhesion.work_of_adhesion"] == pytest.approx((0.02, 0.02), rel=0.02)
     assert rows["material.contact_modulus"] == pytest.approx((0.03, 0.0), rel=0.02, abs=1e-5)
+    assert table.units == {}
     again = contact1d.load_run(run.folder)
     assert again.scene.shares == run.scene.shares
     assert again.tables["inputs"]["adhesion_force"] == pytest.approx(table["adhesion_force"], rel=1e-9, abs=1e-12)
     assert contact1d.read_scene(run.folder / "scene.toml").shares == run.scene.shares
     run.plot("inputs")
+
+
+def test_a_number_with_an_uncertainty_hides_no_error_of_the_run() -> None:
+    """Of a force in the curve, and of the largest one: the tolerance is asked of what the program adds."""
+    scene = contact1d.read_scene(SCENES / "hertz_plane.toml")
+    for tolerance, named in ((1e-4, "force in curve.csv"), (2e-5, "largest_force")):
+        exact = scene.with_({"accuracy.tolerance": tolerance})
+        known, run = (contact1d.run(one) for one in (exact, exact.with_({"bodies.profile.radius": "1000.0 ± 100.0"})))
+        assert named in known.warnings["lattice"]
+        assert run.warnings == known.warnings
 
 
 def test_a_load_may_be_uncertain() -> None:

@@ -70,6 +70,11 @@ def test_a_run_in_finer_settings_that_contradicts_the_first_is_as_uncertain_as_t
         moved = replace(one, value=one.value + apart * one.uncertainty)
         found = nested(replace(fine, results={"displacement": moved}), fine).results
         assert found["displacement"].uncertainty == pytest.approx(factor * one.uncertainty, rel=1e-9, abs=0.0)
+        given = 10.0 * one.uncertainty  # by a number with ±, which is the same in both
+        open_, coarse = (replace(two, errors={**two.errors, "input": given}, given=given) for two in (one, moved))
+        again = nested(replace(fine, results={"displacement": coarse}), replace(fine, results={"displacement": open_}))
+        own = again.results["displacement"].uncertainty - given
+        assert own == pytest.approx(factor * one.uncertainty, rel=1e-9, abs=0.0)
         assert {name: found[name].uncertainty for name in found if name != "displacement"} == {
             name: other.uncertainty for name, other in fine.results.items() if name != "displacement"
         }

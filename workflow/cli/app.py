@@ -6,14 +6,15 @@ import atexit
 import gc
 import os
 from enum import StrEnum
+from glob import escape, glob
 from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from contact1d.workflow.cli.ending import CALL_IS_WRONG, FAILS, RUN_FAILED, Commands, command, read, say, stop
-from contact1d.workflow.cli.fit import fit
+import contact1d as api
+from contact1d.workflow.cli.ending import CALL_IS_WRONG, FAILS, Commands, command, read, say, say_counts, stop
 from contact1d.workflow.cli.identify import identify
 
 if TYPE_CHECKING:
@@ -67,14 +68,9 @@ def contact1d(
 
 def scene_files(incomplete: str) -> list[str]:
     """The *.toml files and the folders that begin with `incomplete`; a folder that is the only one is opened."""
-    folder, start = os.path.split(incomplete)
-    try:
-        entries = sorted(os.scandir(folder or "."), key=lambda entry: entry.name)
-    except OSError:
-        return []
-    shown = [entry for entry in entries if entry.name.startswith(start) and entry.name[0] != "."]
-    files = [os.path.join(folder, entry.name) for entry in shown if entry.name.endswith(".toml")]
-    folders = [os.path.join(folder, entry.name, "") for entry in shown if entry.is_dir()]
+    found = sorted(glob(f"{escape(incomplete)}*"))
+    files = [path for path in found if path.endswith(".toml")]
+    folders = [os.path.join(path, "") for path in found if os.path.isdir(path)]
     return scene_files(folders[0]) if len(folders) == 1 and not files else files + folders
 
 
@@ -114,6 +110,7 @@ Without = Annotated[
     ),
 ]
 Figures = Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the figures.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print the numbers only.")]
 FigureFormat = Annotated[Format, typer.Option("--format", help="File format of the figures.")]
 
 
@@ -132,17 +129,16 @@ def run(
         int | None, typer.Option(min=1, help="Repeats of a thermal pull-off in parallel.", show_default="processors")
     ] = None,
     ranks: Annotated[int, typer.Option(min=1, help="MPI ranks (processors) that share one large contact.")] = 1,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print the numbers only.")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Run a scene and print its numbers, each with its uncertainty."""
-    folder = out if out is not None else Path("runs") / scene.stem
+    folder = out or Path("runs") / scene.stem
     with command("the run", folder, "no numbers were written", quiet) as progress:
         from contact1d.workflow.engine.process import start_ahead
 
         if ranks == 1:
             start_ahead()  # LAMMPS loads while numpy and the rest of the program do
         checked = read(scene, set_, without, progress)
-        from contact1d.workflow.runs.advised import run as run_scene
 
         def printed(finished: Run) -> None:
             progress.close()
@@ -153,7 +149,7 @@ def run(
                 say(line_load(finished), {}, finished.folder)
 
         wanted = format_.value if figures else False
-        run_scene(checked, folder, wanted, progress, time_limit, workers=workers, ranks=ranks, printed=printed)
+        api.run(checked, folder, wanted, progress, time_limit, workers=workers, ranks=ranks, printed=printed)
 
 
 def deck(
@@ -168,10 +164,7 @@ def deck(
     the one that its search ended with.
     """
     with command("writing the deck", out, quiet=True):
-        checked = read(scene, set_, without)
-        from contact1d.workflow.runs.campaign import write_deck
-
-        folder = write_deck(checked, out)
+        folder = api.write_deck(read(scene, set_, without), out)
     typer.echo(f"{folder}: run it there with lmp -in in.lammps")
 
 
@@ -213,19 +206,45 @@ def sweep(
     The file names a base scene and [[axes]], each with a key of the scene and its values. Broken off at any moment, the
     same command continues with the missing points. Exit code 3: a point failed or can't be run; the table says why.
     """
-    folder = out if out is not None else Path("sweeps") / file.stem
+    folder = out or Path("sweeps") / file.stem
     kept = f"finished runs are kept in {folder}, and the same command continues"
     with command("the sweep", kept=kept, quiet=quiet) as progress:
-        from contact1d.workflow.sweep.sweep import sweep as do
         from contact1d.workflow.sweep.table import TABLE, write_parquet
 
-        done = do(file, folder, executor, workers, format_.value if figures else False, progress, partition)
+        done = api.sweep(file, folder, executor, workers, format_.value if figures else False, progress, partition)
         if parquet:
             write_parquet(done.folder)
-    counts = ", ".join(f"{count} {status}" for status, count in sorted(done.counts.items()))
-    typer.echo(f"{counts}; {folder / TABLE}")
-    if set(done.counts) != {"done"}:
-        raise typer.Exit(RUN_FAILED)
+    say_counts(done.counts, folder / TABLE)
+
+
+def fit(
+    file: Annotated[Path, typer.Argument(metavar="FIT", help="A fit file (TOML).", show_default=False)],
+    out: Annotated[Path | None, typer.Option(help="Folder.", show_default="fits/<name of the file>")] = None,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Processes, of several curves.", show_default="processors")
+    ] = None,
+    quiet: Quiet = False,
+) -> None:
+    """Fit parameters of a scene, such as E and W, to a measured force curve, or to each of many.
+
+    The file names the data (CSV with columns z or d, and F, with units), parameters, the instrument and a base scene.
+    Leaves fit.json, curve.csv and fit.png; of several curves fits.csv, histograms and maps. Exit code 3: the data do
+    not tell what was asked for, and the message says what would help.
+    """
+    folder = out or Path("fits") / file.stem
+    with command("the fit", folder, "what is known was written", quiet, str(file)) as progress:
+        from contact1d.workflow.fit.many import TABLE, is_series
+        from contact1d.workflow.fit.plan import read_fit
+        from contact1d.workflow.fit.report import lines
+
+        if is_series(read_fit(file)):
+            done = api.fit_many(file, folder, workers, progress)
+            progress.close()
+            say_counts(done.counts, folder / TABLE)
+            return
+        found = api.fit(file, folder=folder, progress=progress)
+        progress.close()
+        say(lines(found), found.warnings, folder)
 
 
 def cost(
@@ -244,7 +263,7 @@ def cost(
     Prints a row for each: error against a run that is finer in all, time, the dominant error; then what to do. Leaves
     cost.json and cost.png, a work-precision figure. The scene itself is not changed.
     """
-    folder = out if out is not None else Path("costs") / scene.stem
+    folder = out or Path("costs") / scene.stem
     with command("the study", kept="run it again from the start") as progress:
         checked = read(scene, set_, without)
         from contact1d.workflow.cost.report import summary, write_report

@@ -10,6 +10,7 @@ import os
 import sys
 import tempfile
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -68,7 +69,7 @@ class Check:
         name: what was looked at.
         ok: whether it is as it must be.
         detail: what was found.
-        advice: what to do; "" if ok.
+        advice: what to do if it is not.
     """
 
     name: str
@@ -98,32 +99,22 @@ def listening_sockets(pid: int) -> list[str]:
     Raises:
         OSError: this system has no /proc, or the process is not ours to look at.
     """
-    links = [_target(link) for link in Path(f"/proc/{pid}/fd").iterdir()]
-    inodes = {link[len("socket:[") : -1] for link in links if link.startswith("socket:[")}
+    links = set()
+    for link in Path(f"/proc/{pid}/fd").iterdir():
+        with suppress(FileNotFoundError):  # closed since the folder was listed
+            links.add(os.readlink(link))
     addresses = []
     for table in ("tcp", "tcp6"):
         path = Path(f"/proc/{pid}/net/{table}")
         rows = [line.split() for line in path.read_text().splitlines()[1:]] if path.exists() else []
-        addresses += [row[1] for row in rows if row[3] == "0A" and row[9] in inodes]
+        addresses += [row[1] for row in rows if row[3] == "0A" and f"socket:[{row[9]}]" in links]
     return addresses
-
-
-def _target(link: Path) -> str:
-    try:
-        return os.readlink(link)
-    except FileNotFoundError:  # closed since the folder was listed
-        return ""
-
-
-def _check(name: str, ok: bool, detail: str, advice: str) -> Check:
-    """With advice only where something is wrong."""
-    return Check(name, ok, detail, "" if ok else advice)
 
 
 def _python() -> Iterator[Check]:
     """Python, and the packages that this distribution asks for."""
     oldest = ".".join(map(str, OLDEST_PYTHON))
-    yield _check("Python", sys.version_info >= OLDEST_PYTHON, sys.version.split()[0], f"use Python {oldest} or newer")
+    yield Check("Python", sys.version_info >= OLDEST_PYTHON, sys.version.split()[0], f"use Python {oldest} or newer")
     try:
         lines = importlib.metadata.requires(DISTRIBUTION) or []
     except importlib.metadata.PackageNotFoundError:
@@ -137,7 +128,7 @@ def _python() -> Iterator[Check]:
         except importlib.metadata.PackageNotFoundError:
             version = ""
         ok = bool(version) and requirement.specifier.contains(version, prereleases=True)
-        yield _check(requirement.name, ok, version or "not installed", f"pip install '{requirement}'")
+        yield Check(requirement.name, ok, version or "not installed", f"pip install '{requirement}'")
 
 
 def _machine() -> Iterator[Check]:
@@ -161,16 +152,16 @@ def _lammps(session: Session) -> Iterator[Check]:
     missing = [package for package in PACKAGES if package not in installation.packages]
     missing += [" ".join(style) for style in installation.missing]
     detail = f"missing: {', '.join(missing)}" if missing else ", ".join(PACKAGES)
-    yield _check("LAMMPS packages", not missing, detail, REINSTALL)
+    yield Check("LAMMPS packages", not missing, detail, REINSTALL)
     session.execute(TWO_ATOMS, phase="two atoms")
     energy, force = session.values("ebond", "fx[1]")
     ok = abs(energy - SPRING_ENERGY) < ROUND_OFF and abs(force - SPRING_FORCE) < ROUND_OFF
     detail = f"energy {energy:.15g} (must be {SPRING_ENERGY}), force {force:.15g} (must be {SPRING_FORCE})"
-    yield _check("two-atom run", ok, detail, REINSTALL)
+    yield Check("two-atom run", ok, detail, REINSTALL)
     try:
         addresses = listening_sockets(session.pid)
         detail = f"LAMMPS listens at {', '.join(addresses)}" if addresses else "LAMMPS accepts no connections"
     except OSError:
         addresses, detail = [], "cannot be checked on this system"
     advice = "unset UCX_TLS, or set it to self,sm: then MPI uses memory only"
-    yield _check("no network listener", not addresses, detail, advice)
+    yield Check("no network listener", not addresses, detail, advice)

@@ -6,6 +6,7 @@ import errno
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import closing, contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -16,7 +17,6 @@ from contact1d.files import FULL_DISK
 
 if TYPE_CHECKING:
     from contact1d.workflow.engine.progress import Progress
-    from contact1d.workflow.errors import SceneEdit
     from contact1d.workflow.scene import Scene
 
 FAILS = 1
@@ -57,6 +57,13 @@ def say(lines: Iterable[str], warnings: Mapping[str, str], place: object = None)
         typer.echo(f"\n{place}")
 
 
+def say_counts(counts: Mapping[str, int], table: Path) -> None:
+    """Print how many of a series ended how, and where their table is; the end of the command where one is not done."""
+    typer.echo(f"{', '.join(f'{count} {status}' for status, count in sorted(counts.items()))}; {table}")
+    if set(counts) != {"done"}:
+        raise typer.Exit(RUN_FAILED)
+
+
 def read(path: Path, overrides: list[str] | None, without: list[str] | None, progress: Progress | None = None) -> Scene:
     """The scene in a file as the options change it; with every problem reported, the end of the command.
 
@@ -68,13 +75,10 @@ def read(path: Path, overrides: list[str] | None, without: list[str] | None, pro
         return read_scene(path, tuple(overrides or ()), tuple(without or ()))
     except SceneError as error:
         if progress is not None and error.changes:
-            from contact1d.workflow.runs.advised import mended
-            from contact1d.workflow.runs.advised import overrides as options
+            from contact1d.workflow.runs.advised import edited, mended
 
-            def edited(edit: SceneEdit) -> Scene:
-                return read_scene(path, (*(overrides or ()), *options(edit)), (*(without or ()), *edit.without))
-
-            error = mended(edited, error, progress)
+            reader = partial(edited, path, overrides=overrides or (), without=without or ())
+            error = mended(reader, error, progress)
         stop(problems_in(str(path), error), CALL_IS_WRONG)
 
 
@@ -86,7 +90,9 @@ def problems_in(where: str, error: Exception) -> str:
 
 
 @contextmanager
-def command(what: str, folder: Path | None = None, kept: str = "", quiet: bool = False) -> Iterator[Progress]:
+def command(
+    what: str, folder: Path | None = None, kept: str = "", quiet: bool = False, source: str = "the scene"
+) -> Iterator[Progress]:
     """Do the work of a command; an error in it ends it with a message and the exit code of that error.
 
     Args:
@@ -94,6 +100,7 @@ def command(what: str, folder: Path | None = None, kept: str = "", quiet: bool =
         folder: where files are; named if it is there when the work breaks off.
         kept: what is left then, and what to do, as words; not where its numbers were written before.
         quiet: whether no progress is shown.
+        source: what is read: its name stands above its problems.
     """
     from contact1d.workflow.engine.progress import Silent, choose_progress
 
@@ -108,49 +115,42 @@ def command(what: str, folder: Path | None = None, kept: str = "", quiet: bool =
             left.append(f"files are kept in {folder}")
         if isinstance(error, KeyboardInterrupt):
             stop("; ".join(["interrupted", *left]), INTERRUPTED)
-        if sentence := _of_the_call(error, str(folder or "")):
-            stop(sentence, CALL_IS_WRONG)
-        if isinstance(error, ImportError) and not (error.name or "").startswith("contact1d"):
-            stop(f"the installation is incomplete ({error}): check it with `contact1d doctor`", FAILS)
-        if sentence := _of_the_run(error):
-            stop(f"{what} failed: {sentence}", RUN_FAILED)
-        if reason := _of_the_machine(error):
-            stop("; ".join([f"{what} failed: {reason}", *left]), RUN_FAILED)
-        raise
+        ending = _ending(error, what, left, str(folder or ""), source)
+        if ending is None:
+            raise
+        stop(*ending)
 
 
-def _of_the_call(error: BaseException, folder: str) -> str:
-    """What is wrong with the scene, an option or a place that the caller chose; "" where it is something else."""
-    from contact1d.workflow.errors import Contact1dError
-
-    if isinstance(error, Contact1dError) and error.exit_code == CALL_IS_WRONG:
-        return problems_in("the scene", error)
-    if isinstance(error, OSError):
-        place = os.fsdecode(error.filename) if isinstance(error.filename, str | bytes) else folder
-        if error.errno in (errno.EEXIST, errno.ENOTDIR) and os.path.isfile(place):
-            return f"{place} is a file; a folder is needed"
-        if error.errno in BAD_PLACE and place:
-            return f"{place} cannot be written: {error.strerror}"
-    return ""
-
-
-def _of_the_run(error: BaseException) -> str:
-    """Why a run gave no numbers; a folder that was there for a while only is not named."""
-    from contact1d.workflow.errors import Contact1dError
-
-    if not isinstance(error, Contact1dError):
-        return ""
-    folder = getattr(error, "folder", None)
-    return str(error if folder is not None and folder.is_dir() else getattr(error, "message", error))
-
-
-def _of_the_machine(error: BaseException) -> str:
-    """What the disk or the memory did; "" where it is neither, and a defect of the program."""
+def _ending(error: BaseException, what: str, left: Iterable[str], folder: str, source: str) -> tuple[str, int] | None:
+    """The message and the exit code for an error; None for a defect of the program."""
     from concurrent.futures.process import BrokenProcessPool
 
+    from contact1d.workflow.errors import Contact1dError
+
+    if isinstance(error, Contact1dError):
+        if error.exit_code == CALL_IS_WRONG:
+            return problems_in(source, error), CALL_IS_WRONG
+        place = getattr(error, "folder", None)  # one that was there for a while only is not named
+        is_there = place is not None and place.is_dir()
+        return f"{what} failed: {error if is_there else error.message}", RUN_FAILED
+    if isinstance(error, ImportError) and not (error.name or "").startswith("contact1d"):
+        return f"the installation is incomplete ({error}): check it with `contact1d doctor`", FAILS
+    reason = ""
     if isinstance(error, OSError) and error.errno != errno.EPIPE:  # a reader that went away is no error: typer ends
+        if sentence := _of_a_place(error, folder):
+            return sentence, CALL_IS_WRONG
         reason = FULL_DISK.get(error.errno or 0, error.strerror or str(error))
-        return f"{reason} ({os.fsdecode(error.filename)})" if error.filename else reason
-    if isinstance(error, BrokenProcessPool):
-        return "one of its processes was killed, most often because the machine was out of memory"
-    return "the machine is out of memory" if isinstance(error, MemoryError) else ""
+        reason += f" ({os.fsdecode(error.filename)})" if error.filename else ""
+    elif isinstance(error, BrokenProcessPool):
+        reason = "one of its processes was killed, most often because the machine was out of memory"
+    elif isinstance(error, MemoryError):
+        reason = "the machine is out of memory"
+    return ("; ".join([f"{what} failed: {reason}", *left]), RUN_FAILED) if reason else None
+
+
+def _of_a_place(error: OSError, folder: str) -> str:
+    """What is wrong with a place that the caller chose; "" where it is something else."""
+    place = os.fsdecode(error.filename) if isinstance(error.filename, str | bytes) else folder
+    if error.errno in (errno.EEXIST, errno.ENOTDIR) and os.path.isfile(place):
+        return f"{place} is a file; a folder is needed"
+    return f"{place} cannot be written: {error.strerror}" if error.errno in BAD_PLACE and place else ""

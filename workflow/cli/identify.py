@@ -8,7 +8,13 @@ from typing import Annotated, Any
 
 import typer
 
-from contact1d.workflow.cli.ending import CALL_IS_WRONG, command, problems_in, say, stop
+import contact1d as api
+from contact1d.workflow.cli.ending import CALL_IS_WRONG, command, say, stop
+
+
+def _number(unit: str, meaning: str) -> Any:
+    """An option that is a number in this unit."""
+    return typer.Option(metavar=unit, help=meaning, show_default=False)
 
 
 def identify(
@@ -18,30 +24,16 @@ def identify(
             metavar="MATERIAL", help="A contact in SI (TOML): bodies, attraction, load.", show_default=False
         ),
     ] = None,
-    contact_modulus: Annotated[
-        float | None, typer.Option(metavar="PA", help="E* of the pair of bodies.", show_default=False)
-    ] = None,
-    surface_energy: Annotated[
-        float | None,
-        typer.Option(metavar="J/M2", help="γ of one side, half the work of adhesion.", show_default=False),
-    ] = None,
+    contact_modulus: Annotated[float | None, _number("PA", "E* of the pair of bodies.")] = None,
+    surface_energy: Annotated[float | None, _number("J/M2", "γ of one side, half the work of adhesion.")] = None,
     run: Annotated[
         Path | None,
         typer.Option(metavar="FOLDER", help="A finished pull_off, to find its LU and FU.", show_default=False),
     ] = None,
-    radius: Annotated[
-        float | None,
-        typer.Option(metavar="M", help="Effective R of a sphere, to find its interaction.", show_default=False),
-    ] = None,
-    adhesion_force: Annotated[
-        float | None, typer.Option(metavar="N", help="Measured F_A, in place of γ.", show_default=False)
-    ] = None,
-    zero_load_radius: Annotated[
-        float | None, typer.Option(metavar="M", help="Measured a_0, together with F_A.", show_default=False)
-    ] = None,
-    length_unit: Annotated[
-        float | None, typer.Option(metavar="M", help="One LU; default: about 28 particles in a_0.", show_default=False)
-    ] = None,
+    radius: Annotated[float | None, _number("M", "Effective R of a sphere, to find its interaction.")] = None,
+    adhesion_force: Annotated[float | None, _number("N", "Measured F_A, in place of γ.")] = None,
+    zero_load_radius: Annotated[float | None, _number("M", "Measured a_0, together with F_A.")] = None,
+    length_unit: Annotated[float | None, _number("M", "One LU; default: about 28 particles in a_0.")] = None,
     tolerance: Annotated[float, typer.Option(min=1e-5, max=0.1, help="Relative tolerance of the scene.")] = 1e-3,
     out: Annotated[
         Path | None,
@@ -123,15 +115,8 @@ def _units_of_run(folder: Path, contact_modulus: float, surface_energy: float) -
 
 def _from_material(file: Path, out: Path) -> None:
     """Choose, run, and say what came out beside the theories."""
-    from contact1d.workflow.scene import SceneError
-
-    with command("the run", out) as progress:
-        from contact1d.workflow.identify import from_material
-
-        try:
-            found = from_material(file, out, progress)
-        except SceneError as error:
-            stop(problems_in(str(file), error), CALL_IS_WRONG)
+    with command("the run", out, source=str(file)) as progress:
+        found = api.from_material(file, out, progress)
     from contact1d.workflow.cli.summary import beside_theories, quantities, regime
 
     lines = [found.scene.title, *regime(found), "", *quantities(found.run.document), *beside_theories(found)]

@@ -12,6 +12,7 @@ from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import moved_centre
 from contact1d.workflow.body.theory import in_words
 from contact1d.workflow.runs import inputs
+from contact1d.workflow.runs.report import results_in
 from contact1d.workflow.units import LENGTH, LINE_PRESSURE, UNKNOWN, Quantity, Scales, prefixed
 
 if TYPE_CHECKING:
@@ -47,13 +48,12 @@ def quantities(results: Mapping[str, Any]) -> list[str]:
     lines = [f"  {'reduction':<31} {_whose(results)}"] if "reduction" in results else []
     if scan := results.get("scan"):
         lines += [f"  {'scan' * (not i):<31} {part}" for i, part in enumerate(scan["text"].split("; "))]
-    for name, entry in results.items():
-        if isinstance(entry, dict) and {"value", "uncertainty", "unit"} <= entry.keys():
-            label = NAMES.get(name, name.replace("_", " "))
-            if state := entry.get("state"):
-                label += f", {state.replace('_', ' ')}"
-            number = "not reported" if entry["value"] is None else str(Quantity.of(entry))
-            lines.append(f"  {label:<31} {number:<32} {', '.join(in_words(results, name))}".rstrip())
+    for name, entry in results_in(results).items():
+        label = NAMES.get(name, name.replace("_", " "))
+        if state := entry.get("state"):
+            label += f", {state.replace('_', ' ')}"
+        number = "not reported" if entry["value"] is None else str(Quantity.of(entry))
+        lines.append(f"  {label:<31} {number:<32} {', '.join(in_words(results, name))}".rstrip())
     units = {unit: Quantity(**entry) for unit, entry in results.get("units", {}).items()}
     lines += [f"  {'1 ' + unit:<31} {one}" for unit, one in units.items() if one.value != 1.0]
     return lines + inputs.in_words(results)
@@ -95,14 +95,13 @@ def pressure_plot(profile: Profile, radius: float, scales: Scales = UNKNOWN) -> 
     length, length_unit = scales.written(half, LENGTH)
     lines = []
     for level in range(top, bottom - 1, -1):
-        beyond = (level - math.copysign(0.5, level)) * step
-        reached = pressure > beyond if level > 0 else pressure < beyond
+        reached = np.sign(level) * pressure > (abs(level) - 0.5) * step
         bars = "".join(np.where(reached, BLOCK, EMPTY)) if level else AXIS * COLUMNS
         lines.append(f"{level * step * load:>12.3g} {bars}")
-    ends = [moved_centre(profile) + side * radius for side in (-1.0, 1.0)]
-    if radius > 0.0 and max(map(abs, ends)) < half:
-        places = [round((end + half) / (2 * half) * (COLUMNS - 1)) for end in ends]
-        marks = "".join("^" if place in places else EMPTY for place in range(COLUMNS))
+    ends = moved_centre(profile) + np.asarray([-radius, radius])
+    if radius > 0.0 and np.abs(ends).max() < half:
+        places = np.rint((ends + half) / (2.0 * half) * (COLUMNS - 1))
+        marks = "".join(np.where(np.isin(np.arange(COLUMNS), places), "^", EMPTY))
         lines.append(f"{'':13}{marks}  ± a")
     extent = f"x from {-half * length:.1f} to {half * length:.1f} {length_unit}"
     return [*lines, f"{load_unit:>12} {extent.center(COLUMNS)}"]
@@ -141,8 +140,7 @@ def beside_theories(found: MaterialRun) -> Iterator[str]:
     columns = [f"{name}*" if name == theories.holding else name for name in theories.values]
     yield f"\n  {f'theory, at μ = {theories.tabor:.3g}':<28} {''.join(f'{name:<{WIDTH}}' for name in columns)}".rstrip()
     for name, unit in THEORY.items():
-        values = [marks.get(name) for marks in theories.values.values()]
-        if None not in values:
-            shown = "".join(f"{prefixed(value or 0.0, unit):<{WIDTH}}" for value in values)
+        if all(name in marks for marks in theories.values.values()):
+            shown = "".join(f"{prefixed(marks[name], unit):<{WIDTH}}" for marks in theories.values.values())
             yield f"  {LABELS[name]:<28} {shown}".rstrip()
     yield "  * holds at this μ, that of the material"

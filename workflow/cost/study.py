@@ -40,7 +40,7 @@ def measured(scene: Scene, folder: Path) -> Measured:
     try:
         done = run(scene, folder / str(os.getpid()), figures=False, workers=1)
     except Contact1dError as error:
-        return Measured(failure=getattr(error, "message", str(error)))
+        return Measured(failure=error.message)
     assert done.outcome is not None
     results, spent = done.outcome.results, time.process_time() - began + done.timing["lammps_cpu_s"]
     warnings = *done.warnings, *unmet(results, scene.accuracy.tolerance, (MODEL,))
@@ -122,12 +122,14 @@ def judged(one: Measured, reference: Mapping[str, Result]) -> Measured:
         return replace(one, failure=one.failure or f"no {missing[0]}")
     errors = {name: _error(one.results[name], best) for name, best in reference.items()}
     worst = max(errors, key=errors.__getitem__)
-    budget = one.results[worst].errors
+    budget = dict(one.results[worst].errors)
+    if "input" in budget:  # a number with ± is the same in the reference
+        budget["input"] -= one.results[worst].given
     return replace(one, errors=errors, dominant=f"{max(budget, key=budget.__getitem__)} of {worst}")
 
 
 def _error(one: Result, best: Result) -> Error:
     """The error of a result; an upper bound where the reference, or chance, leaves open more than a tenth of it."""
-    error, unsure = abs(one.value - best.value), best.uncertainty + one.errors.get("statistics", 0.0)
+    error, unsure = abs(one.value - best.value), best.uncertainty - best.given + one.errors.get("statistics", 0.0)
     is_bound = unsure > CERTAIN * error
     return Error((error + is_bound * unsure) / best.size, is_bound)

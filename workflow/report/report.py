@@ -24,7 +24,7 @@ from contact1d.workflow.report.charts import Data, charts_of, path_of, symbols
 from contact1d.workflow.runs.charts import charts
 from contact1d.workflow.runs.finished import Run, read_run
 from contact1d.workflow.runs.report import results_in
-from contact1d.workflow.scene import Scene, Table, scene_to_toml
+from contact1d.workflow.scene import Scene, Table
 from contact1d.workflow.scene.quantities import keys_of
 from contact1d.workflow.sweep.figures import label_in, sweep_charts, title_of
 from contact1d.workflow.sweep.table import RECORD, counts_in, read_record, read_table, units_in
@@ -83,22 +83,15 @@ def _of_runs(runs: Sequence[Run]) -> str:
     if len(runs) == 1 and done and (states := runs[0].folder / "states.npz").is_file():
         moving = path_of(runs[0], read_states(states))
     entries = {name: results_in(run.document) for name, run in done.items()}
-    reports = [
-        {
-            "name": run.folder.name, "anchor": f"run-{number}", "run": run, "facts": _facts(run),
-            "error": "" if run.status == "done" else run.document["error"]["message"],
-            "sentence": sentence(run.scene, run.scales), "scene": scene_in_words(run.scene, run.scales),
-            "toml": scene_to_toml(run.scene), "deck": _text(run.folder / "in.lammps"),
-        }
-        for number, run in enumerate(runs, 1)
-    ]  # fmt: skip
     return _page(
-        "runs.html", charts_of(drawn), moving, reports=reports, names=names, done=done, entries=entries,
+        "runs.html", charts_of(drawn), moving, runs=runs, names=names, done=done, entries=entries,
+        sentence=sentence, scene_in_words=scene_in_words, facts=_facts, deck=_deck,
         quantities=list(dict.fromkeys(name for one in entries.values() for name in one)), beside=in_words,
     )  # fmt: skip
 
 
-def _text(path: Path) -> str:
+def _deck(run: Run) -> str:
+    path = run.folder / "in.lammps"
     return path.read_text(encoding="utf-8") if path.is_file() else ""
 
 
@@ -159,10 +152,12 @@ MOST_ITEMS = 6
 def sentence(scene: Scene, scales: Scales) -> str:
     """The scene in a sentence: the body and what it is pressed on, the effects, the experiment."""
     bodies, experiment = scene.bodies, scene.experiment
-    size = ", ".join(f"{name} {value}" for name, value in _values(bodies.profile, scales) if name != "kind")
+    size, given = (
+        ", ".join(f"{name} {value}" for name, value in _values(table, scales) if name != "kind")
+        for table in (bodies.profile, experiment)
+    )
     lower = "a rigid plane" if bodies.lower == "rigid_plane" else "a lower body"
     effects = f" with {', '.join(scene.effects)}" if scene.effects else ""
-    given = ", ".join(f"{name} {value}" for name, value in _values(experiment, scales) if name != "kind")
     kind, what = bodies.profile.kind.replace("_", " "), experiment.kind.replace("_", " ")
     return f"A {kind} ({size}) on {lower}{effects}. Experiment: {what}, {given}.".replace(" ()", "")
 

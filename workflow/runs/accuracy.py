@@ -79,8 +79,8 @@ def unknown(scene: Scene, outcome: Outcome) -> dict[str, Result]:
 def main_results(scene: Scene, results: Mapping[str, Result]) -> dict[str, Result]:
     """The main results as far as they are found, and neither prescribed nor the load."""
     load = scene.experiment.load_key if scene.experiment.compression is not None else None
-    found = {name: results[name] for name in kind_of(scene).main_results if name in results}
-    return {name: one for name, one in found.items() if not one.prescribed and name != load}
+    found = [name for name in kind_of(scene).main_results if name in results and name != load]
+    return {name: results[name] for name in found if not results[name].prescribed}
 
 
 def require_results(scene: Scene, outcome: Outcome) -> None:
@@ -135,14 +135,18 @@ def _less_than(one: Result) -> str:
 
 
 def _of_the_curve(scene: Scene, outcome: Outcome) -> dict[str, Result]:
-    """The least certain force of a curve that is asked for, which is compared with the largest one."""
+    """The force of a curve that is asked for with the largest error of its own, which is compared with the largest one.
+
+    What numbers with ± change is none.
+    """
     if not kind_of(scene).curve_is_result:
         return {}
-    forces, errors = [state.force for state in outcome.states], outcome.rows["force"]
+    forces, errors = [state.force for state in outcome.states], dict(outcome.rows["force"])
+    if not scene.bodies.profile.alternatives:
+        errors.pop("input", None)
     worst = int(np.argmax(sum(errors.values())))
     own = {source: float(one[worst]) for source, one in errors.items()}
-    given = 0.0 if scene.bodies.profile.alternatives else own.get("input", 0.0)
-    return {ROWS: Result(forces[worst], FORCE, own, scale=float(np.abs(forces).max()), given=given)}
+    return {ROWS: Result(forces[worst], FORCE, own, scale=float(np.abs(forces).max()))}
 
 
 def _advice(scene: Scene, results: Mapping[str, Result]) -> str:
@@ -166,9 +170,11 @@ def _is_of_points(one: Result) -> bool:
 
 def _by_lattice(results: Mapping[str, Result], tolerance: float) -> dict[str, float]:
     """Relative discretisation errors above the tolerance, without those of interpolation between particles, by name."""
-    left = {name: one.errors.get(LATTICE, 0.0) - one.read for name, one in results.items()}
-    found = {name: replace(results[name], errors={LATTICE: error}, read=0.0) for name, error in left.items()}
-    return unmet(found, tolerance)
+    of_lattice = {
+        name: replace(one, errors={LATTICE: one.errors.get(LATTICE, 0.0) - one.read}, read=0.0, given=0.0)
+        for name, one in results.items()
+    }
+    return unmet(of_lattice, tolerance)
 
 
 def _lattice_message(scene: Scene, shares: Mapping[str, float], others_unknown: bool) -> str:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from contextlib import ExitStack
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from shutil import rmtree
 from tempfile import TemporaryDirectory, mkdtemp
@@ -48,34 +50,29 @@ def run(
     or of the `Run` by `plot`.
     """
     progress, figures = progress or Silent(), folder is not None if figures is None else figures
-    if folder is None:
-        kept = mkdtemp(prefix="contact1d-")
+    reader = partial(edited, scene)
+    with ExitStack() as temporary:
+        if folder is None:
+            folder = Path(mkdtemp(prefix="contact1d-")) / "run"
+            temporary.callback(rmtree, folder.parent, ignore_errors=True)
         try:
-            done = run(scene, Path(kept) / "run", figures, progress, time_limit, settings, workers, ranks, printed)
-        except BaseException as error:
-            if not isinstance(error, RunError):  # which says where its files are
-                rmtree(kept, ignore_errors=True)
+            done = campaign.run(
+                scene, folder, figures, progress, time_limit, settings, workers=workers, ranks=ranks, printed=printed
+            )
+        except SceneError as error:
+            raise mended(reader, error, progress) from None
+        except SettingsError as error:
+            found = _tried(reader, error, progress)
+            message = f"{error}. {found}" if found else str(error)
+            raise SettingsError(message, changes=error.changes) from error.__cause__
+        except RunError as error:
+            temporary.pop_all()  # it says where its files are
+            cause = error.__cause__
+            if isinstance(cause, UntrustedError) and (found := _tried(reader, cause, progress)):
+                raise _reported(error, cause, found) from cause
             raise
-        finalize(done, rmtree, kept, ignore_errors=True)
-        return done
-
-    def edited(edit: SceneEdit) -> Scene:
-        return read_scene(scene, overrides(edit), edit.without)
-
-    try:
-        return campaign.run(
-            scene, folder, figures, progress, time_limit, settings, workers=workers, ranks=ranks, printed=printed
-        )
-    except SceneError as error:
-        raise mended(edited, error, progress) from None
-    except SettingsError as error:
-        found = _tried(edited, error, progress)
-        raise SettingsError(f"{error}. {found}" if found else str(error), changes=error.changes) from error.__cause__
-    except RunError as error:
-        cause = error.__cause__
-        if isinstance(cause, UntrustedError) and (found := _tried(edited, cause, progress)):
-            raise _reported(error, cause, found) from cause
-        raise
+        finalize(done, temporary.pop_all().close)
+    return done
 
 
 def mended(reader: Reader, error: SceneError, progress: Progress) -> SceneError:
@@ -93,14 +90,19 @@ def mended(reader: Reader, error: SceneError, progress: Progress) -> SceneError:
     return SceneError([replace(first, hint=". ".join(filter(None, (first.hint, found)))), *others])
 
 
-def overrides(edit: SceneEdit) -> tuple[str, ...]:
+def edited(source: AnyScene, edit: SceneEdit, overrides: Iterable[str] = (), without: Iterable[str] = ()) -> Scene:
+    """A scene as `read_scene` reads it, with an edit. Raises SceneError."""
+    return read_scene(source, (*overrides, *_overrides(edit)), (*without, *edit.without))
+
+
+def _overrides(edit: SceneEdit) -> list[str]:
     """The values of an edit in the form of `read_scene` and `--set`."""
-    return tuple(f"{key}={value if isinstance(value, str) else as_toml(value)}" for key, value in edit.values.items())
+    return [f"{key}={value if isinstance(value, str) else as_toml(value)}" for key, value in edit.values.items()]
 
 
 def in_words(edit: SceneEdit) -> str:
     """An edit as options of `contact1d run`."""
-    return " ".join([*(f"--without {name}" for name in edit.without), *(f"--set {one}" for one in overrides(edit))])
+    return " ".join([*(f"--without {name}" for name in edit.without), *(f"--set {one}" for one in _overrides(edit))])
 
 
 def _tried(reader: Reader, error: Contact1dError, progress: Progress) -> str:
@@ -135,7 +137,7 @@ def _attempt(scene: Scene) -> None:
 def in_si(scene: Scene, edit: SceneEdit, digits: int = 3) -> SceneEdit:
     """The edit with units, "33.3pN", where LU and FU are known: a scene file that has them takes no plain number."""
     material, scales = scene.material, scales_of(scene, {})
-    if not scales.known or material is None or material.length_unit is None or material.force_unit is None:
+    if material is None or None in (material.length_unit, material.force_unit):
         return edit
     tables = scene.model_dump(by_alias=True, exclude_none=True)
     units = {place.path: place.unit.name for place in places(Scene, tables)}

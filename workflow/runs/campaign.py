@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import fcntl
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -12,7 +12,6 @@ from pathlib import Path
 from contact1d.files import PART, AnyPath, write_whole
 from contact1d.workflow.body.derived import formulas, pressures_of, with_body, with_implied
 from contact1d.workflow.continuation.context import RunContext
-from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.continuation.trust import UntrustedError
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import Phase
@@ -27,14 +26,14 @@ from contact1d.workflow.model.chain import MIX_UP, in_words, require_steps
 from contact1d.workflow.model.motion import require_way
 from contact1d.workflow.model.settings import Settings, settings_for
 from contact1d.workflow.runs.accuracy import reported, require_consistency, require_results, with_checks
+from contact1d.workflow.runs.charts import charts
 from contact1d.workflow.runs.finished import Run, draw
 from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.processors import cores, require_ranks
-from contact1d.workflow.runs.refinement import Refined, refined
-from contact1d.workflow.runs.report import FILES, FORMATS, failure, results, tables_of, write_results, write_tables
+from contact1d.workflow.runs.refinement import refined
+from contact1d.workflow.runs.report import FILES, failure, results, tables_of, write_results, write_tables
 from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import AnyScene, Scene, read_scene, scene_to_toml
-from contact1d.workflow.units import Scales
 
 LOCK = ".running"
 ENDING = 1.0
@@ -76,101 +75,103 @@ def run(
         FolderError: the folder holds something else, or another run is active in it.
         RunError: LAMMPS failed, or the result can't be trusted.
     """
-    started = time.perf_counter()
-    asked, progress = _scene(scene), progress or Silent()
-    with _in_its_units(asked) as scales:
-        scene = with_spacing(asked)
-        if scene is not asked:
-            found = f"bodies.spacing = {scene.bodies.spacing:.4g} LU for a tolerance of {scene.accuracy.tolerance:g}"
-            progress.note(scales.in_words(found))
-        deck = Deck(scene, settings or settings_for(scene))
-        phases = _planned(deck)
-        text = deck.text(phases)
-    require_ranks(deck, ranks)
-    folder = prepare(Path(folder))
-    with alone(folder):
-        _write(deck, text, folder)
-        context = RunContext(deck, folder, progress, time_limit, retries, workers or cores(), ranks)
+    started, progress = time.perf_counter(), progress or Silent()
+    with _begun(scene, folder, progress, settings, ranks) as (deck, phases, place):
+        context = RunContext(deck, place, progress, time_limit, retries, workers or cores(), ranks)
         finished = _run(context, started, figures, phases, refine=settings is None)
         if printed:
             printed(finished)
-        _draw(finished, figures)
+        if figures:
+            draw(charts(finished), place, figures)
     return finished
+
+
+@contextmanager
+def _begun(
+    scene: AnyScene, folder: AnyPath, progress: Progress, settings: Settings | None = None, ranks: int = 1
+) -> Iterator[tuple[Deck, tuple[Phase, ...], Path]]:
+    """The deck of a scene, its planned schedule, and its folder, which has both in place of an earlier run.
+
+    Errors of the scene's numbers have these in SI where they are known.
+    """
+    asked = scene if isinstance(scene, Scene) else read_scene(scene)
+    scales = scales_of(asked, {})
+    try:
+        chosen = with_spacing(asked)
+        if chosen is not asked:
+            found = f"bodies.spacing = {chosen.bodies.spacing:.4g} LU for a tolerance of {chosen.accuracy.tolerance:g}"
+            progress.note(scales.in_words(found))
+        deck = Deck(chosen, settings or settings_for(chosen))
+        require_way(chosen, deck.settings)
+        phases = planned(chosen, deck.settings)
+        require_steps(getattr(row, "steps", 0) for phase in phases for row in phase.rows)
+        text = deck.text(phases)
+    except SettingsError as error:
+        raise SettingsError(scales.in_words(str(error)), changes=error.changes) from error
+    require_ranks(deck, ranks)
+    place = prepare(Path(folder))
+    with alone(place):
+        for path in place.iterdir():
+            if path.name.removesuffix(PART) in FILES:
+                path.unlink()
+        write_whole(place / "in.lammps", text)
+        write_whole(place / "scene.toml", scene_to_toml(chosen))
+        write_system(deck, place)
+        yield deck, phases, place
 
 
 def _run(context: RunContext, started: float, figures: bool | str, written: Sequence[Phase], refine: bool) -> Run:
     """Run the deck of a context, whose in.lammps has a schedule that is `written` already."""
     scene, settings, folder = context.deck.scene, context.deck.settings, context.folder
-    scales = scales_of(scene, {})
     if large := in_words(scene, settings.chains.upper, settings.forces.cutoff):
         context.progress.note(large)
-    for doubt in implausible(scene, scales, {}).values():
+    for doubt in implausible(scene, scales_of(scene, {}), {}).values():
         context.progress.note(doubt)
-
-    def timing() -> dict[str, float]:
-        total = time.perf_counter() - started
-        lammps, cpu, rows, steps = context.clock.taken
-        return {"total_s": total, "lammps_s": lammps, "lammps_cpu_s": cpu, "rows_s": rows, "steps": steps}
-
     try:
         outcome = perform(context)
-        last = refined(context, outcome) if refine else Refined(context.deck, outcome)
-        context.left = last.outcome
-        require_results(scene, last.outcome)
-        outcome = with_implied(scene, last.deck.settings, last.outcome)
+        deck, outcome = refined(context, outcome) if refine else (context.deck, outcome)
+        context.left = outcome
+        require_results(scene, outcome)
+        outcome = with_implied(scene, deck.settings, outcome)
         pressures = pressures_of(scene, outcome)
         outcome = with_checks(scene, with_body(scene, outcome, pressures), pressures)
         context.left = outcome
         require_consistency(outcome)
     except (EngineError, UntrustedError) as error:
-        error.message = scales.in_words(error.message)
-        if isinstance(error, UntrustedError):
-            error.advice = scales.in_words(error.advice)
-        facts = {
-            "message": error.message if isinstance(error, EngineError) else str(error),
-            "phase": context.phase,
-            "step": context.timestep,
-        }
-        if context.left is not None:
-            _write_what_is_left(context.left, scene, folder, figures)
-        write_results(folder, failure(scene, facts, timing(), context.left))
-        where = f" [phase {context.phase}, step {context.timestep}]"
-        raise RunError(f"{facts['message']}{_hint(str(facts['message']))}{where}", folder) from error
-    if outcome.phases != written or last.deck.settings is not settings:
-        write_whole(folder / "in.lammps", last.deck.text(outcome.phases))
+        raise _failed(context, error, started, figures) from error
+    if outcome.phases != written or deck.settings is not settings:
+        write_whole(folder / "in.lammps", deck.text(outcome.phases))
     tables = tables_of(scene, reported(scene, outcome), pressures)
     write_tables(folder, scene, outcome, tables)
-    document = results(scene, outcome, timing()) | formulas(scene, outcome.quantities)
+    document = results(scene, outcome, _timing(context, started)) | formulas(scene, outcome.quantities)
     write_results(folder, document)
     return Run(folder, document, scene, tables, outcome)
 
 
-@contextmanager
-def _in_its_units(scene: Scene) -> Iterator[Scales]:
-    """The scales of a scene; an error of its numbers has these in SI where they are known."""
+def _failed(context: RunContext, error: EngineError | UntrustedError, started: float, figures: bool | str) -> RunError:
+    """The error of a run that failed, in the units of its scene; what there is of it is written, to see why."""
+    scene, folder, left = context.deck.scene, context.folder, context.left
     scales = scales_of(scene, {})
-    try:
-        yield scales
-    except SettingsError as error:
-        raise SettingsError(scales.in_words(str(error)), changes=error.changes) from error
+    error.message = message = scales.in_words(error.message)
+    if isinstance(error, UntrustedError):
+        error.advice = scales.in_words(error.advice)
+        message = str(error)
+    if left is not None:
+        bare = replace(left, results={})
+        tables = tables_of(scene, bare, pressures_of(scene, bare))
+        write_tables(folder, scene, bare, tables)
+        if figures:
+            draw(charts(Run(folder, {}, scene, tables, bare)), folder, figures)
+    facts = {"message": message, "phase": context.phase, "step": context.timestep}
+    write_results(folder, failure(scene, facts, _timing(context, started), left))
+    return RunError(f"{message}{_hint(message)} [phase {context.phase}, step {context.timestep}]", folder)
 
 
-def _write_what_is_left(outcome: Outcome, scene: Scene, folder: Path, figures: bool | str) -> None:
-    """Tables and figures of a run that gives no numbers, to see why."""
-    left = replace(outcome, results={})
-    tables = tables_of(scene, left, pressures_of(scene, left))
-    write_tables(folder, scene, left, tables)
-    _draw(Run(folder, {}, scene, tables, left), figures)
-
-
-def _draw(run: Run, figures: bool | str) -> None:
-    """The figures of a run, in the format that `figures` names, if they are wanted."""
-    if figures:
-        draw(run, figures if isinstance(figures, str) else FORMATS[0])
-
-
-def _scene(scene: AnyScene) -> Scene:
-    return scene if isinstance(scene, Scene) else read_scene(scene)
+def _timing(context: RunContext, started: float) -> dict[str, float]:
+    """What a run took since then."""
+    total = time.perf_counter() - started
+    lammps, cpu, rows, steps = context.clock.taken
+    return {"total_s": total, "lammps_s": lammps, "lammps_cpu_s": cpu, "rows_s": rows, "steps": steps}
 
 
 def _hint(message: str) -> str:
@@ -191,27 +192,21 @@ def write_deck(scene: AnyScene, folder: AnyPath) -> Path:
 
     Arguments and errors are those of `run`.
     """
-    asked = _scene(scene)
-    with _in_its_units(asked):
-        scene = with_spacing(asked)
-        deck = Deck(scene, settings_for(scene))
-        text = deck.text(_planned(deck))
-    folder = prepare(Path(folder))
-    with alone(folder):
-        _write(deck, text, folder)
-    return folder
+    with _begun(scene, folder, Silent()) as (_, _, place):
+        return place
 
 
-def prepare(folder: Path) -> Path:
-    """Make the folder, or see that it holds nothing but an earlier run.
+def prepare(folder: Path, what: str = "run", marks: Collection[str] = ("in.lammps", LOCK)) -> Path:
+    """Make the folder of a run or a sweep, or see that it holds nothing but an earlier one, which has one of `marks`.
 
     Raises:
         FolderError: it is a file, or holds files and none of a run.
     """
     if folder.exists() and not folder.is_dir():
-        raise FolderError(f"{folder} is a file; a run needs a folder")
-    if folder.is_dir() and any(folder.iterdir()) and not any((folder / name).exists() for name in ("in.lammps", LOCK)):
-        raise FolderError(f"{folder} has files that do not belong to a run; choose another folder")
+        raise FolderError(f"{folder} is a file; a {what} needs a folder")
+    there = {path.name for path in folder.iterdir()} if folder.is_dir() else set()
+    if there - {LOCK} and there.isdisjoint(marks):
+        raise FolderError(f"{folder} has files that do not belong to a {what}; choose another folder")
     try:
         folder.mkdir(parents=True, exist_ok=True)
         (folder / LOCK).touch()
@@ -237,21 +232,3 @@ def alone(folder: Path, busy: str = "another run is active in") -> Iterator[None
             yield
         finally:
             (folder / LOCK).unlink(missing_ok=True)
-
-
-def _planned(deck: Deck) -> tuple[Phase, ...]:
-    """The planned schedule. Raises SettingsError where its path or one of its rows is too long."""
-    require_way(deck.scene, deck.settings)
-    phases = planned(deck.scene, deck.settings)
-    require_steps(getattr(row, "steps", 0) for phase in phases for row in phase.rows)
-    return phases
-
-
-def _write(deck: Deck, text: str, folder: Path) -> None:
-    """Replace whatever an earlier run left by what the deck needs."""
-    for path in folder.iterdir():
-        if path.name.removesuffix(PART) in FILES:
-            path.unlink()
-    write_whole(folder / "in.lammps", text)
-    write_whole(folder / "scene.toml", scene_to_toml(deck.scene))
-    write_system(deck, folder)

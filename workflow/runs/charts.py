@@ -180,8 +180,8 @@ def _ting(run: Run, over: str) -> list[Series]:
 
 def _pull_off(run: Run) -> tuple[float, float] | None:
     """F_A and a₀ of the image, to which the curve belongs; None where there is none, or no width at F = 0."""
-    found = [run.results.get(name) for name in ("adhesion_force", f"{IMAGE}zero_load_radius", "zero_load_radius")]
-    force, radius = found[0], found[1] or found[2]
+    force, own = run.results.get("adhesion_force"), run.results.get("zero_load_radius")
+    radius = run.results.get(f"{IMAGE}zero_load_radius", own)
     return (force.value, radius.value) if force and radius and radius.value > 0.0 else None
 
 
@@ -233,26 +233,25 @@ def _theory(run: Run) -> list[tuple[str, Array, Array, Array]]:
     The image x²/2R₁ on springs E* per length is the contact of R = 2R₁; its a₀ is twice that of the two spheres.
     """
     scene, half, case, pull_off = run.scene, run.scene.bodies.plane_radius, Case(run.scene, run.results), _pull_off(run)
-    radius, forms = 2.0 * (half or 0.0), applying(case)
+    radius, work, forms = 2.0 * (half or 0.0), scene.work_of_adhesion, applying(case)
     body: PowerLaw | Ellipsoid
     if scene.viscoelasticity:
         return []
     if half is not None:
-        work = scene.work_of_adhesion
-        name, body = (
-            "JKR" if work else "Hertz",
-            PowerLaw.sphere(radius, scene.bulk_stiffness / scene.bodies.spacing, work),
-        )
+        name = "JKR" if work else "Hertz"
+        body = PowerLaw.sphere(radius, scene.bulk_stiffness / scene.bodies.spacing, work)
     elif forms and case.kind != "flat_punch":
         name, body = forms[0].name, case.body
     else:
         return []
-    if scene.work_of_adhesion:
-        return [(name, *body.curve(body.fixed_grips_radius(), LARGEST * body.zero_load_radius()))]
-    if pull_off is not None:
+    if work:
+        ends = body.fixed_grips_radius(), LARGEST * body.zero_load_radius()
+    elif pull_off is not None:
         force, a_0 = pull_off
-        fitted = PowerLaw.sphere(radius, 3.0 * force * radius / a_0**3, force / (1.5 * pi * radius))
-        return [("JKR, same $F_A$ and $a_0$", *fitted.curve(LEAST * a_0, LARGEST * a_0))]
-    if not scene.interaction:
-        return [(name, *body.curve(0.0, body.radius_at(max(float(run.curve.displacement.max()), 0.0))))]
-    return []
+        name, ends = "JKR, same $F_A$ and $a_0$", (LEAST * a_0, LARGEST * a_0)
+        body = PowerLaw.sphere(radius, 3.0 * force * radius / a_0**3, force / (1.5 * pi * radius))
+    elif not scene.interaction:
+        ends = 0.0, body.radius_at(max(float(run.curve.displacement.max()), 0.0))
+    else:
+        return []
+    return [(name, *body.curve(*ends))]

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from html import escape
+from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,20 +17,20 @@ from numpy.typing import NDArray
 
 from contact1d.analysis import plots
 from contact1d.analysis.atoms import atoms
-from contact1d.analysis.curve import DETACHMENTS, PROFILE_COLUMNS, Columns, by_state, read_columns
+from contact1d.analysis.chart import Chart
+from contact1d.analysis.curve import DETACHMENTS, PROFILE_COLUMNS, Columns, by_state, put_columns, read_columns
 from contact1d.analysis.named import Named
 from contact1d.analysis.pressure import Profile
-from contact1d.files import AnyPath
+from contact1d.files import AnyPath, write_whole
 from contact1d.workflow.body.theory import in_words
 from contact1d.workflow.continuation.outcome import Outcome
-from contact1d.workflow.errors import FolderError, RunError
+from contact1d.workflow.errors import Contact1dError, FolderError, RunError
 from contact1d.workflow.runs.charts import CURVE_COLUMNS, charts
-from contact1d.workflow.runs.export import csv_text, dataset, kept, latex, listed
 from contact1d.workflow.runs.plausibility import IMPLAUSIBLE
-from contact1d.workflow.runs.report import FILES, as_json, in_units, quantities_in, read_results
+from contact1d.workflow.runs.report import FILES, FORMATS, as_json, in_model_units, quantities_in, read_results
 from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import Scene, SceneError, scene_from_dict
-from contact1d.workflow.units import FORCE, LENGTH, MASS, Quantity, Scales, scale_of
+from contact1d.workflow.units import NUMBER, Quantity, Scales, scale_of
 
 if TYPE_CHECKING:
     from ase import Atoms
@@ -64,7 +66,6 @@ class Run:
         tables: what the CSV files hold, by their names without ending.
         outcome: what the experiment handed over, in units of the model; None for a run that was read from its folder,
             or made by `run_many`.
-        results: quantities by name, each with uncertainty and unit.
     """
 
     folder: Path
@@ -72,12 +73,11 @@ class Run:
     scene: Scene = field(compare=False)
     tables: Mapping[str, Columns] = field(compare=False)
     outcome: Outcome | None = field(default=None, compare=False)
-    results: Results = field(init=False, compare=False)
 
-    def __post_init__(self) -> None:
-        """Take the quantities from the document."""
-        entries = quantities_in(self.document).items()
-        object.__setattr__(self, "results", Results({name: Quantity.of(entry) for name, entry in entries}))
+    @cached_property
+    def results(self) -> Results:
+        """Quantities by name, each with uncertainty and unit."""
+        return Results({name: Quantity.of(entry) for name, entry in quantities_in(self.document).items()})
 
     @property
     def status(self) -> str:
@@ -128,24 +128,21 @@ class Run:
         return by_state(self.tables.get("shear_3d", Columns({})))
 
     @property
+    def _numbers(self) -> Results:
+        """The results in units of the model."""
+        return Results({name: Quantity.of(entry, False) for name, entry in quantities_in(self.document).items()})
+
+    @cached_property
     def scales(self) -> Scales:
         """What LU, FU and, where it is known, MU stand for in SI."""
-        units = self.document.get("units")
-        if units is None:
-            return scales_of(self.scene, {})
-        entries = (units[unit] for unit in (LENGTH, FORCE))
-        (length, off_length), (force, off_force) = ((entry["value"], entry["uncertainty"]) for entry in entries)
-        mass = units.get(MASS)
-        return Scales(length, force, off_length, off_force, None if mass is None else mass["value"])
+        return scales_of(self.scene, self._numbers)
 
     @cached_property
     def model(self) -> Run:
         """The same run with its tables and results in units of the model."""
-        scales = self.scales
-        own = replace(self, tables={name: in_units(one, scales, name, True) for name, one in self.tables.items()})
-        entries = quantities_in(self.document).items()
-        numbers = {name: Quantity(entry["value"], entry["uncertainty"], entry["unit"]) for name, entry in entries}
-        vars(own).update(results=Results(numbers), model=own)
+        tables = {name: in_model_units(one, self.scales) for name, one in self.tables.items()}
+        own = replace(self, tables=tables)
+        vars(own).update(results=self._numbers, model=own)
         return own
 
     def plot(self, name: str | None = None) -> Figure:
@@ -171,26 +168,40 @@ class Run:
 
     def to_json(self, path: AnyPath | None = None) -> str:
         """What results.json holds; also written to a path."""
-        return kept(as_json(self.document), path)
+        return _kept(as_json(self.document), path)
 
     def to_csv(self, path: AnyPath | None = None, table: str = "results") -> str:
         """Name, value, uncertainty and unit of the results, or one of `tables`: "curve"; also written to a path."""
-        return kept(csv_text(self._table(table)), path)
+        file, columns = StringIO(), self._table(table)
+        put_columns(file, columns, columns.units)
+        return _kept(file.getvalue(), path)
 
     def to_latex(self, path: AnyPath | None = None) -> str:
-        """The results as a tabular; also written to a path."""
-        return kept(latex(self.results), path)
+        """The results as a tabular, the name, and value, uncertainty and unit; also written to a path."""
+        lines = [f"{name.replace('_', ' ')} & ${_tex(one)}$ \\\\" for name, one in self.results.items()]
+        return _kept("\n".join([r"\begin{tabular}{ll}", *lines, r"\end{tabular}", ""]), path)
 
     def to_xarray(self, table: str = "curve") -> Dataset:
         """One of `tables` as an xarray.Dataset with units, the results in its attributes as text.
 
         Raises Contact1dError where xarray isn't installed.
         """
+        try:
+            import xarray
+        except ImportError:
+            raise Contact1dError("a dataset needs xarray: install it with pip install 'contact1d[tables]'") from None
+        columns = self._table(table)
+        variables = {
+            name: ("row", column, {"units": columns.units[name]} if name in columns.units else {})
+            for name, column in columns.items()
+        }
         said = {name: str(quantity) for name, quantity in self.results.items()}
-        return dataset(self._table(table), {"title": self.scene.title, **said})
+        return xarray.Dataset(variables, attrs={"title": self.scene.title, **said})
 
     def _table(self, name: str) -> Columns:
-        known = {"results": listed(self.results), **self.tables}
+        parts, quantities = ("value", "uncertainty", "unit"), self.results.values()
+        results = {"name": [*self.results]} | {part: [getattr(one, part) for one in quantities] for part in parts}
+        known = {"results": Columns(results), **self.tables}
         if name not in known:
             raise ValueError(f"the run has no table {name!r}, it has {', '.join(known)}")
         return known[name]
@@ -217,6 +228,26 @@ class Run:
         rows = "".join(f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in cells)
         caption = f"{escape(self.scene.title)}: {self.status}<br><code>{escape(str(self.folder))}</code>"
         return f"<table><caption>{caption}</caption>{rows}</table>"
+
+
+TEX = {"±": r"\pm", "µ": r"\mu ", "·": r"\cdot ", "²": "^2"}
+"""Signs in a quantity."""
+
+
+def _tex(one: Quantity) -> str:
+    number, unit = str(one).rsplit(" ", 1) if one.unit != NUMBER else (str(one), "")
+    number = re.sub(r"e([+-]\d+)", lambda power: rf"\cdot 10^{{{int(power[1])}}}", number)
+    text = number + re.sub(r"[A-Za-z]+", r"\\mathrm{\g<0>}", rf"\,{unit}" if unit else "")
+    for sign, tex in TEX.items():
+        text = text.replace(sign, tex)
+    return text
+
+
+def _kept(text: str, path: AnyPath | None) -> str:
+    """The text, which is written to the path if there is one."""
+    if path:
+        write_whole(Path(path), text)
+    return text
 
 
 def load_run(folder: AnyPath) -> Run:
@@ -248,7 +279,8 @@ def read_run(folder: Path) -> Run:
         raise FolderError(f"{folder} has no run readable by this version: {reason}. Run its scene again") from None
 
 
-def draw(run: Run, form: str) -> None:
-    """Save every figure of a run in its folder; `form`: png, svg or pdf."""
-    for name, chart in charts(run).items():
-        plots.save_figure(plots.draw(chart.written(scale_of)), run.folder / f"{name}.{form}")
+def draw(drawn: Mapping[str, Chart], folder: Path, figures: bool | str) -> None:
+    """Save charts in a folder, by their names; `figures`: png, svg or pdf, and True is png."""
+    form = figures if isinstance(figures, str) else FORMATS[0]
+    for name, chart in drawn.items():
+        plots.save_figure(plots.draw(chart.written(scale_of)), folder / f"{name}.{form}")

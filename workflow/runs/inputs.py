@@ -13,6 +13,8 @@ from contact1d.workflow.runs.accuracy import main_results
 from contact1d.workflow.scene import Scene
 
 COLOURS = (COMPRESSION, TENSION, LOADING, UNLOADING, BLACK)
+OF_INPUT = ("input", "half_width")
+"""Columns of the table that are no changes of results."""
 WIDTH = 0.8
 """Of the bars of one input, over the distance of inputs."""
 
@@ -40,14 +42,14 @@ def entries(table: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 def chart(table: Mapping[str, Any]) -> Chart:
     """Bars of the changes in percent, by input."""
-    names = [name for name in table if name not in ("input", "half_width")]
+    names = [name for name in table if name not in OF_INPUT]
     words = [key.partition(".")[2].replace("profile.", "") for key in table["input"]]
     ticks = {float(i): one.replace(".", " ").replace("_", " ") for i, one in enumerate(words)}
     series, width = [], WIDTH / max(len(names), 1)
     for number, name in enumerate(names):
         left = np.arange(len(ticks)) + width * number - 0.5 * WIDTH
-        x = (left[:, None] + width * np.asarray([0.0, 0.0, 1.0, 1.0, np.nan])).ravel()
-        y = (100.0 * np.asarray(table[name])[:, None] * np.asarray([0.0, 1.0, 1.0, 0.0, np.nan])).ravel()
+        x = np.add.outer(left, [0.0, 0.0, width, width, np.nan]).ravel()
+        y = np.outer(table[name], [0.0, 100.0, 100.0, 0.0, np.nan]).ravel()
         series.append(Series(x, y, name.replace("_", " "), COLOURS[number % len(COLOURS)], FILL))
     panel = Panel(Axis("change at the ends of the input (%)", zero=True), series)
     return Chart(Axis("input", ticks=ticks), [panel])
@@ -55,13 +57,10 @@ def chart(table: Mapping[str, Any]) -> Chart:
 
 def in_words(found: Mapping[str, Any]) -> list[str]:
     """Lines for a terminal, the input that matters most first; `found`: what results.json holds."""
-
-    def changes(entry: Mapping[str, Any]) -> dict[str, float]:
-        return {name: value for name, value in entry.items() if name not in ("input", "half_width")}
-
+    rows = [({name: one[name] for name in one if name not in OF_INPUT}, one) for one in found.get("inputs", ())]
     lines = []
-    for one in sorted(found.get("inputs", ()), key=lambda entry: -max(changes(entry).values(), default=0.0)):
+    for changes, one in sorted(rows, key=lambda row: -max(row[0].values(), default=0.0)):
         width = f" ± {100.0 * one['half_width']:.2g} %" if "half_width" in one else ""
-        said = ", ".join(f"{name.replace('_', ' ')} ± {100.0 * value:.2g} %" for name, value in changes(one).items())
+        said = ", ".join(f"{name.replace('_', ' ')} ± {100.0 * value:.2g} %" for name, value in changes.items())
         lines.append(f"  {one['input']}{width}: {said}")
     return ["\nchanges with the inputs, the largest first:", *lines] if lines else []

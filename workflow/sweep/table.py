@@ -4,19 +4,23 @@ from __future__ import annotations
 
 import csv
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib.util import find_spec
+from itertools import chain
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from contact1d.analysis.curve import HEADER, MARKED, as_text, headed, plain
 from contact1d.files import whole
 from contact1d.workflow.errors import Contact1dError, FolderError
 from contact1d.workflow.runs.report import quantities_in, read_results
 from contact1d.workflow.scene import SceneError
-from contact1d.workflow.scene.problems import as_toml
 from contact1d.workflow.sweep.axes import Axis, SweepPlan, read_sweep
 from contact1d.workflow.units import SI, Quantity
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 RECORD = "sweep.toml"
 """The sweep, as it ran last."""
@@ -33,22 +37,26 @@ FIXED = ("status", "reason", "run")
 class Answer:
     """What became of a point: `done`, `failed`, `refused` (no run can be made of it), or `missing` so far.
 
-    `run` is its folder, relative to the sweep's; empty where there is none.
+    Attributes:
+        run: its folder, relative to the sweep's; empty where there is none.
+        results: those that are reported.
     """
 
     status: str
     reason: str = ""
     run: str = ""
+    results: Mapping[str, Quantity] = field(default_factory=dict)
 
 
-def answer_in(folder: Path, name: str) -> Answer | None:
-    """What the run of that name in a sweep's folder says; None where none came to its end there."""
-    document = document_in(folder / RUNS / name)
+def answer_in(folder: Path) -> Answer | None:
+    """What the run in a folder of a sweep says; None where none came to its end there."""
+    document = document_in(folder)
     if not document:
         return None
     named = ", ".join(warning["name"] for warning in document["warnings"])
     reason = document["error"]["message"] if document["status"] == "failed" else f"warnings: {named}" if named else ""
-    return Answer(document["status"], reason, f"{RUNS}/{name}")
+    results = {name: Quantity.of(entry) for name, entry in quantities_in(document).items()}
+    return Answer(document["status"], reason, f"{RUNS}/{folder.name}", results)
 
 
 def write_table(
@@ -59,25 +67,23 @@ def write_table(
     Args:
         folder: of the sweep.
         axes: with their values.
-        rows: makes the rows, in order: values of the axes, and the answer.
+        rows: makes the rows, in order: cells of the axes, and the answer.
 
     Returns:
         The quantities: names, and the unit of each.
     """
-    units = _units(folder, (answer for _, answer in rows()))
-    headers = {axis.key: unit for axis in axes if (unit := axis.numbers[1])}
-    headers |= {column: unit for name in units for column in columns_of(name) if (unit := units[name]) not in SI}
-    known = [dict(zip(map(str, axis.values), axis.numbers[0], strict=False)) for axis in axes]
+    units = _units(answer for _, answer in rows())
+    columns = [column for name in units for column in columns_of(name)]
+    of_axes = {axis.key: axis.numbers[1] for axis in axes if axis.numbers[1]}
+    of_results = {column: unit for name, unit in units.items() if unit not in SI for column in columns_of(name)}
     with whole(folder / TABLE) as part, part.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
-        names = [*(axis.key for axis in axes), *FIXED, *(column for name in units for column in columns_of(name))]
-        writer.writerow(headed(names, headers))
-        for values, answer in rows():
-            found = quantities_of(folder, answer.run)
-            own = (found[name] if name in found and found[name].unit == units[name] else None for name in units)
-            cells = [number for one in own for number in (("", "") if one is None else (one.value, one.uncertainty))]
-            places = (cell(numbers.get(str(value), value)) for value, numbers in zip(values, known, strict=True))
-            writer.writerow(map(as_text, [*places, answer.status, answer.reason, answer.run, *cells]))
+        writer.writerow(headed([*(axis.key for axis in axes), *FIXED, *columns], of_axes | of_results))
+        for cells, answer in rows():
+            own = {name: one for name, one in answer.results.items() if one.unit == units[name]}
+            numbers = {name: (one.value, one.uncertainty) for name, one in own.items()}
+            results = chain.from_iterable(numbers.get(name, ("", "")) for name in units)
+            writer.writerow(map(as_text, [*cells, answer.status, answer.reason, answer.run, *results]))
     return units
 
 
@@ -86,29 +92,19 @@ def columns_of(name: str) -> tuple[str, str]:
     return name, f"{name}_uncertainty"
 
 
-def quantities_of(folder: Path, run: str) -> dict[str, Quantity]:
-    """The results of a run in a sweep's folder; none where it can't be read."""
-    return {name: Quantity.of(entry) for name, entry in quantities_in(document_in(folder / run)).items()}
+def frame_of(folder: Path) -> DataFrame:
+    """The table as a pandas.DataFrame, its texts without the mark of a spreadsheet."""
+    import pandas
 
-
-def cell(value: Any) -> Any:
-    """A value of an axis as a cell: numbers and words as they are, tables and lists as in a scene file."""
-    return value if isinstance(value, str | int | float) and not isinstance(value, bool) else as_toml(value)
+    return pandas.read_csv(folder / TABLE, float_precision="round_trip").replace(MARKED, r"\1", regex=True)
 
 
 def write_parquet(folder: Path) -> None:
     """The table again as results.parquet. Raises Contact1dError where pyarrow isn't installed."""
-    try:
-        from pyarrow import compute, parquet, types
-        from pyarrow import csv as arrow
-    except ImportError:
-        raise Contact1dError("Parquet needs pyarrow: install it with pip install 'contact1d[tables]'") from None
-    table = arrow.read_csv(folder / TABLE)
-    for place, name in enumerate(table.column_names):
-        if types.is_string(table[name].type):
-            table = table.set_column(place, name, compute.replace_substring_regex(table[name], MARKED, r"\1"))
+    if find_spec("pyarrow") is None:
+        raise Contact1dError("Parquet needs pyarrow: install it with pip install 'contact1d[tables]'")
     with whole(folder / PARQUET) as part:
-        parquet.write_table(table, part)
+        frame_of(folder).to_parquet(part, index=False)
 
 
 def document_in(folder: Path) -> dict[str, Any]:
@@ -129,13 +125,14 @@ def read_record(folder: Path) -> SweepPlan:
 
 def units_in(folder: Path) -> dict[str, str]:
     """The results of a sweep by name, with their units."""
-    return _units(folder, (Answer(row["status"], run=row["run"]) for row in read_table(folder)))
+    return _units(filter(None, (answer_in(folder / row["run"]) for row in read_table(folder))))
 
 
-def _units(folder: Path, answers: Iterable[Answer]) -> dict[str, str]:
+def _units(answers: Iterable[Answer]) -> dict[str, str]:
+    """The unit of each result, as the first run that has it gives it."""
     units: dict[str, str] = {}
     for answer in answers:
-        for name, one in quantities_of(folder, answer.run).items():
+        for name, one in answer.results.items():
             units.setdefault(name, one.unit)
     return units
 
