@@ -149,10 +149,10 @@ def _steps(plan: FitPlan, file: Path, curve: ForceCurve, progress: Progress) -> 
     _judge(found)
     progress.advance(1)
     yield found
-    for name in LAWS:
-        if name != own and _has(plan, name):
+    for law in LAWS.values():
+        if law != own and law.applies(plan.base) and any(map(law.depends_on, plan.fit.parameters)):
             with suppress(Contact1dError, ArithmeticError, np.linalg.LinAlgError):  # it does not describe the curve
-                found.others[name] = compared(found.fit, name)
+                found.others[law.name] = compared(found.fit, law)
         progress.advance(1)
     _judge_models(found)
     yield found
@@ -163,19 +163,6 @@ def _steps(plan: FitPlan, file: Path, curve: ForceCurve, progress: Progress) -> 
         found.warnings["run"] = f"the found scene does not run on LAMMPS: {error}"
     found.finished = True
     yield found
-
-
-def _has(plan: FitPlan, model: str) -> bool:
-    """Whether a base scene has what a contact model needs."""
-    if model == "Hertz":
-        return not all(key.startswith("adhesion.") for key in plan.fit.parameters)
-    adhesion = plan.base.adhesion
-    round_ = plan.base.bodies.profile.curvature_radius is not None
-    return (
-        plan.base.work_of_adhesion > 0.0
-        and (model != "DMT" or round_)
-        and (model != "Maugis" or bool(adhesion and adhesion.range))
-    )
 
 
 def _judge(found: Found) -> None:
@@ -211,8 +198,8 @@ DECISIVE = 10.0
 
 def _judge_models(found: Found) -> None:
     best, *_ = found.models
-    free = found.others.get("Hertz")
-    if free is not None and free.criterion < found.fit.criterion + DECISIVE:
+    free = [one for one in found.others.values() if not one.subject.model.needs]
+    if any(one.criterion < found.fit.criterion + DECISIVE for one in free):
         found.warnings["adhesion"] = (
             "contact without adhesion describes the curve about as well (criteria under models): W may be 0, which its "
             "interval leaves out; fit without [base.adhesion], too, and average more curves"

@@ -99,7 +99,7 @@ def document(found: Found) -> dict[str, Any]:
 
 def entry(one: Fitted, key: str) -> dict[str, Any]:
     """Value, interval and unit of an unknown."""
-    found: dict[str, Any] = {"value": one.values[key], "unit": UNITS.get(key) or one.plan.units[key]}
+    found: dict[str, Any] = {"value": one.values[key], "unit": UNITS.get(key) or one.plan.unit(key)}
     return found | ({"interval": list(one.intervals[key])} if key in one.intervals else {})
 
 

@@ -193,6 +193,9 @@ def first_look(problem: Problem, sought: Sequence[int], complete: Callable[[Arra
         u[list(sought)] = place
         return complete(u)
 
+    if not sought:
+        return [whole(np.zeros(0))]
+
     def misfit(place: Array) -> float:
         total = float(np.abs(problem.residuals(whole(place))).sum())
         return total if total < 1e100 else 1e100  # of NaN, too; and the square of it is a number

@@ -4,39 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.workflow.fit.curve import ForceCurve
-from contact1d.workflow.fit.forward import Body, Branch, Law
+from contact1d.workflow.fit.forward import Body, Branch, Model
 from contact1d.workflow.fit.plan import STIFFNESS
 from contact1d.workflow.fit.search import Problem, Unknown
 from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
 POINT, OFFSET = "contact_point", "force_offset"
+MEASURED = (POINT, OFFSET, STIFFNESS)
 """Unknowns that are of the measurement."""
-KEPT = 50
-"""Bodies and branches that are remembered."""
-
-
-def fields(value: Any, key: str) -> list[str]:
-    """The names in Python of a dotted key's parts, in a table."""
-    names = []
-    for part in key.split("."):
-        name = next((name for name, field in type(value).model_fields.items() if field.alias == part), part)
-        value = getattr(value, name)
-        names.append(name)
-    return names
-
-
-def changed(table: Any, names: Sequence[str], value: float) -> Any:
-    """A table of a scene with another number at a path of fields; nothing is checked again."""
-    first, *rest = names
-    return table.model_copy(update={first: changed(getattr(table, first), rest, value) if rest else value})
 
 
 @dataclass
@@ -45,23 +27,19 @@ class Subject:
 
     Attributes:
         scene: with a number at each unknown's key.
-        law: the contact model.
+        model: the contact model.
         curve: what was measured.
         unknowns: of the scene, the instrument and the measurement.
     """
 
     scene: Scene
-    law: Law
+    model: Model
     curve: ForceCurve
     unknowns: tuple[Unknown, ...]
-    _bodies: dict[tuple[float, ...], Body] = field(default_factory=dict, repr=False)
-    _branches: dict[tuple[float, ...], Branch] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
         """Which points may be lost, which hold, and which may be before contact."""
         self.names = [one.name for one in self.unknowns]
-        self.paths = [[] if name in (POINT, OFFSET, STIFFNESS) else fields(self.scene, name) for name in self.names]
-        self.shaping = [i for i, name in enumerate(self.names) if name.startswith("bodies.profile")]
         n = self.curve.positions.size
         self.held, self.open, self.early = (np.zeros(n, dtype=bool) for _ in range(3))
         for one in self.curve.segments:
@@ -72,6 +50,11 @@ class Subject:
         self.pitch = float(np.median(np.abs(np.diff(self.curve.positions)))) or 1e-300
 
     @property
+    def sought(self) -> list[int]:
+        """The unknowns that are asked for and that the contact model knows."""
+        return [i for i, one in enumerate(self.unknowns) if one.fitted and self.model.depends_on(one.name)]
+
+    @property
     def problem(self) -> Problem:
         """The least-squares problem."""
         runs = tuple(one.compared for one in self.curve.segments)
@@ -80,28 +63,17 @@ class Subject:
     def scene_with(self, values: Sequence[float]) -> Scene:
         """The scene with these values of its unknowns, unchecked."""
         scene = self.scene
-        for path, value in zip(self.paths, values, strict=True):
-            if path:
-                scene = changed(scene, path, value)
+        for one, value in zip(self.unknowns, values, strict=True):
+            if one.name not in MEASURED:
+                scene = scene.moved(one.name, value / one.scale)
         return scene
 
     def branch(self, values: Sequence[float]) -> Branch:
-        """The contact's own curve; kept for the values that only the measurement changes."""
-        key = tuple(value for path, value in zip(self.paths, values, strict=True) if path)
-        if key not in self._branches:
-            if len(self._branches) > KEPT:
-                self._branches.clear()
-            self._branches[key] = self._branch(values)
-        return self._branches[key]
-
-    def _branch(self, values: Sequence[float]) -> Branch:
-        scene, shape = self.scene_with(values), tuple(values[i] for i in self.shaping)
-        if shape not in self._bodies:
-            if len(self._bodies) > KEPT:
-                self._bodies.clear()
-            self._bodies[shape] = Body.of(scene.bodies.profile, self.curve.depth)
+        """The contact's own curve."""
+        scene = self.scene_with(values)
         reach = scene.adhesion.range if scene.adhesion else None
-        return self.law(self._bodies[shape], modulus_of(scene), scene.work_of_adhesion, reach or 0.0)
+        body = Body.of(scene.bodies.profile, self.curve.depth)
+        return self.model.branch(body, modulus_of(scene), scene.work_of_adhesion, reach or 0.0)
 
     def value_of(self, name: str, values: Sequence[float]) -> float:
         """The value of an unknown; of a rigid instrument its stiffness is none."""
@@ -126,8 +98,8 @@ class Subject:
         place = self.unknowns[self.names.index(POINT)]
         if place.known is None:
             values = self.problem.values(u)
-            branch, k = self.branch(values), self.value_of(STIFFNESS, values)
-            z, F = branch.displacements + branch.forces / k, branch.forces
+            branch = self.branch(values)
+            z, F = branch.positions(self.value_of(STIFFNESS, values)), branch.forces
             least = int(np.argmin(F))
             top = int(np.argmax(self.curve.forces))
             at = float(np.interp(self.curve.forces[top] - self.curve.baseline, F[least:], z[least:]))
