@@ -162,13 +162,15 @@ def test_the_noise_of_a_series_is_found(memory: float) -> None:
     for i in range(1, 800):
         drawn[i] = kept * drawn[i - 1] + math.sqrt(1.0 - kept**2) * drawn[i]
     found = uncertain([np.arange(400), np.arange(400, 800)], 2.0 * drawn, np.ones((800, 1)), np.zeros((0, 2)), looks=2)
-    deviations = found.mean([one.deviation for one in found.judged])
-    assert deviations == pytest.approx(2.0, rel=0.25 if memory else 0.1)
+    weights = np.array([one.weight for one in found.judged])
+    deviation = weights @ [one.deviation for one in found.judged]
+    share, length = (weights @ [getattr(one.noise, name) for one in found.judged] for name in ("share", "memory"))
+    assert deviation == pytest.approx(2.0, rel=0.25 if memory else 0.1)
     if memory:
-        assert found.mean([one.noise.share for one in found.judged]) > 0.9
-        assert found.mean([one.noise.memory for one in found.judged]) == pytest.approx(memory, rel=0.4)
+        assert share > 0.9
+        assert length == pytest.approx(memory, rel=0.4)
     else:
-        assert found.mean([one.noise.share for one in found.judged]) < 0.2
+        assert share < 0.2
 
 
 def forces(*jump: float) -> ForceCurve:
