@@ -21,7 +21,7 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicHermiteSpline, CubicSpline
+from scipy.interpolate import CubicSpline
 
 from contact1d.workflow.laws.dugdale import Dugdale
 from contact1d.workflow.laws.jkr import elongation
@@ -128,13 +128,24 @@ class Branch:
 
 def _between(a: Array, z: Array, F: Array, positions: Array) -> Array:
     """F at z, both cubic in a between its places: under correlated noise the differences of neighbours count."""
-    place, force = (CubicHermiteSpline(a, column, np.gradient(column, a)) for column in (z, F))
-    slope, at = place.derivative(), np.interp(positions, z, a)
-    for _ in range(NEWTON):
-        rise = slope(at)
-        at = at - np.divide(place(at) - positions, rise, out=np.zeros_like(at), where=rise > 0.0)
-        at = np.clip(at, a[0], a[-1])
-    return np.asarray(force(at))
+    i = np.clip(np.searchsorted(z, positions) - 1, 0, a.size - 2)
+    width = np.diff(a)[i]
+    cubic = [_cubic(values[i], values[i + 1], slope[i] * width, slope[i + 1] * width)
+             for values, slope in ((z, np.gradient(z, a)), (F, np.gradient(F, a)))]  # fmt: skip
+    (z0, z1, z2, z3), (f0, f1, f2, f3) = cubic
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = np.clip((positions - z[i]) / (z[i + 1] - z[i]), 0.0, 1.0)
+        for _ in range(NEWTON):
+            slope = z1 + t * (2.0 * z2 + 3.0 * t * z3)
+            t = t - np.where(slope > 0.0, (z0 + t * (z1 + t * (z2 + t * z3)) - positions) / slope, 0.0)
+    t = np.nan_to_num(np.clip(t, 0.0, 1.0))
+    return np.asarray(f0 + t * (f1 + t * (f2 + t * f3)))
+
+
+def _cubic(start: Array, end: Array, leaving: Array, arriving: Array) -> tuple[Array, Array, Array, Array]:
+    """The coefficients of Hermite's cubic from 0 to 1."""
+    rise = end - start
+    return start, leaving, 3.0 * rise - 2.0 * leaving - arriving, leaving + arriving - 2.0 * rise
 
 
 @kept
