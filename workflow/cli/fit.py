@@ -26,8 +26,9 @@ def fit(
     """
     folder = out if out is not None else Path("fits") / file.stem
     with command("the fit", folder, "what is known was written", quiet) as progress:
+        from contact1d.workflow.fit.data import is_series
         from contact1d.workflow.fit.fit import fit as do
-        from contact1d.workflow.fit.many import TABLE, fit_many, is_series
+        from contact1d.workflow.fit.many import TABLE, fit_many
         from contact1d.workflow.fit.plan import read_fit
         from contact1d.workflow.fit.report import lines
         from contact1d.workflow.scene import SceneError

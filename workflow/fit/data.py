@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from glob import glob
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -35,6 +36,8 @@ KNOWN = {word: name for name, words in COLUMNS.items() for word in words}
 WORDS, PLACE = ("segment", "curve"), ("x", "y")
 """Columns that are no numbers, and those of a map's curve."""
 UNITS = {"z": "m", "d": "m", "F": "N"}
+PATTERN = "*.csv"
+"""Curves in a folder."""
 FORM = "name the columns with their units, z [nm] (or d [nm]) and F [nN]"
 APPROACH = ("approach", "trace", "extend", "loading", "annähern", "anfahren", "0")
 RETRACT = ("retract", "retrace", "withdraw", "unloading", "rückzug", "1")
@@ -61,7 +64,39 @@ class DataError(Contact1dError, ValueError):
     """A file that is no force curve; the message says where, why and what to do."""
 
 
-def curves(path: Path, plan: FitPlan) -> Iterator[tuple[str, tuple[float, float] | None, ForceCurve | DataError]]:
+Named = tuple[str, tuple[float, float] | None, ForceCurve | DataError]
+"""Name of a curve, its place (x, y) in a map, and the curve, or why it is none."""
+
+
+def files_of(plan: FitPlan) -> list[Path]:
+    """The files of data: one, all of a folder, or those of a pattern. Raises DataError where there is none."""
+    place = plan.folder / plan.fit.data
+    if place.is_dir():
+        found = sorted(place.glob(PATTERN))
+    elif any(sign in plan.fit.data for sign in "*?["):
+        found = sorted(plan.folder / name for name in glob(plan.fit.data, root_dir=plan.folder, recursive=True))
+    else:
+        found = [place]
+    if not found or not all(map(Path.is_file, found)):
+        raise DataError(f"{place}: no such file, and no folder with {PATTERN}; data is looked up beside the fit file")
+    return found
+
+
+def curves_of(plan: FitPlan) -> Iterator[Named]:
+    """All curves of a plan; what is wrong with a file stands for its curve. Raises DataError as `files_of`."""
+    for file in files_of(plan):
+        try:
+            yield from curves(file, plan)
+        except DataError as error:
+            yield file.stem, None, error
+
+
+def is_series(plan: FitPlan) -> bool:
+    """Whether the data of a plan are more than one curve."""
+    return len([*islice(curves_of(plan), 2)]) > 1
+
+
+def curves(path: Path, plan: FitPlan) -> Iterator[Named]:
     """The curves of a file: name, place (x, y) of a map, and the curve, or why it is none.
 
     Raises:

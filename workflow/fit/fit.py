@@ -7,7 +7,7 @@ import time
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from glob import glob
+from itertools import islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -18,7 +18,7 @@ from contact1d.files import AnyPath
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import Contact1dError, FolderError
 from contact1d.workflow.fit.curve import ForceCurve
-from contact1d.workflow.fit.data import DataError, curves
+from contact1d.workflow.fit.data import DataError, curves_of, files_of
 from contact1d.workflow.fit.forward import LAWS
 from contact1d.workflow.fit.plan import STIFFNESS, AnyFit, FitPlan, read_fit
 from contact1d.workflow.fit.solution import Fitted, compared, fitted, model_of
@@ -29,8 +29,6 @@ from contact1d.workflow.scene.read import plain_data
 
 LOAD_STEPS = 15
 """Of the run that the found scene is compared with."""
-PATTERN = "*.csv"
-"""Curves in a folder."""
 
 
 @dataclass
@@ -73,22 +71,8 @@ class Found:
 
     @property
     def scene(self) -> Scene:
-        """The base scene with the found values."""
-        return self.fit.subject.scene_with(self.fit.solution.values)
-
-
-def files_of(plan: FitPlan) -> list[Path]:
-    """The files of data: one, all of a folder, or those of a pattern. Raises DataError where there is none."""
-    place = plan.folder / plan.fit.data
-    if place.is_dir():
-        found = sorted(place.glob(PATTERN))
-    elif any(sign in plan.fit.data for sign in "*?["):
-        found = sorted(plan.folder / name for name in glob(plan.fit.data, root_dir=plan.folder, recursive=True))
-    else:
-        found = [place]
-    if not found or not all(map(Path.is_file, found)):
-        raise DataError(f"{place}: no such file, and no folder with {PATTERN}; data is looked up beside the fit file")
-    return found
+        """See `Fitted.scene`."""
+        return self.fit.scene
 
 
 def fit(
@@ -120,8 +104,7 @@ def fit(
     else:
         given = base.given if isinstance(base, Scene) else plain_data(base)
         plan = read_fit({**keys, "data": str(Path(str(data)).absolute()), "base": given})
-    (file, *more), progress = files_of(plan), progress or Silent()
-    read = list(curves(file, plan)) if not more else []
+    read, progress = [*islice(curves_of(plan), 2)], progress or Silent()
     if len(read) != 1:
         raise DataError(f"{plan.fit.data} has several curves: contact1d fit makes a table of them, fit_many in Python")
     curve = read[0][2]
@@ -132,7 +115,7 @@ def fit(
     out = None if folder is None else own_folder(Path(folder))
     begin, found = time.perf_counter(), None
     try:
-        for found in _steps(plan, file, curve, progress):
+        for found in _steps(plan, files_of(plan)[0], curve, progress):
             found.seconds = time.perf_counter() - begin
     finally:
         if out is not None and found is not None:
@@ -214,10 +197,9 @@ def _judge_models(found: Found) -> None:
 
 def _run(found: Found) -> None:
     """The found scene on LAMMPS along the displacements of the fit, beside the model."""
-    one, values = found.fit, found.fit.solution.values
-    branch, k = one.subject.branch(values), one.subject.value_of(STIFFNESS, values)
+    one, branch = found.fit, found.fit.branch
     F, d = branch.forces, branch.displacements
-    least = max(int(np.argmin(d + F / k)), int(np.argmin(d)))
+    least = max(int(np.argmin(branch.positions(one.values.get(STIFFNESS, math.inf)))), int(np.argmin(d)))
     top = float(np.interp(one.forces.max() - one.values[OFFSET], F[least:], d[least:]))
     places = np.linspace(top, d[least] + (top - d[least]) / LOAD_STEPS, LOAD_STEPS)
     scene = found.scene.with_({"experiment": {"kind": "path", "displacements": places.tolist()}})

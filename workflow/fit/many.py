@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import csv
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -17,9 +16,8 @@ from contact1d.analysis import plots
 from contact1d.files import AnyPath, whole
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import Contact1dError
-from contact1d.workflow.fit.curve import ForceCurve
-from contact1d.workflow.fit.data import DataError, curves
-from contact1d.workflow.fit.fit import files_of, own_folder
+from contact1d.workflow.fit.data import DataError, Named, curves_of
+from contact1d.workflow.fit.fit import own_folder
 from contact1d.workflow.fit.plan import AnyFit, FitPlan, read_fit
 from contact1d.workflow.fit.report import entry
 from contact1d.workflow.fit.solution import fitted, model_of
@@ -27,7 +25,6 @@ from contact1d.workflow.runs.processors import cores, pool
 from contact1d.workflow.units import scale_of
 
 TABLE = "fits.csv"
-Job = tuple[str, tuple[float, float] | None, ForceCurve | DataError]
 
 
 @dataclass(frozen=True)
@@ -49,7 +46,7 @@ def fit_many(source: AnyFit, folder: AnyPath, workers: int | None = None, progre
     """
     plan, progress, rows = read_fit(source), progress or Silent(), list[dict[str, Any]]()
     out = own_folder(Path(folder))
-    jobs = list(_jobs(plan))
+    jobs = list(curves_of(plan))
     progress.phase("fits", len(jobs), "curve")
     try:
         with pool(workers or cores()) as executor:
@@ -61,22 +58,7 @@ def fit_many(source: AnyFit, folder: AnyPath, workers: int | None = None, progre
     return Fits(out, dict(Counter(row["status"] for row in rows)))
 
 
-def is_series(plan: FitPlan) -> bool:
-    """Whether the data are more than one curve."""
-    files = files_of(plan)
-    return len(files) > 1 or len(list(islice(curves(files[0], plan), 2))) > 1
-
-
-def _jobs(plan: FitPlan) -> Iterator[Job]:
-    """All curves; what is wrong with a file stands for its curve."""
-    for file in files_of(plan):
-        try:
-            yield from curves(file, plan)
-        except DataError as error:
-            yield file.stem, None, error
-
-
-def attempt(plan: FitPlan, job: Job) -> dict[str, Any]:
+def attempt(plan: FitPlan, job: Named) -> dict[str, Any]:
     """The line of the table of one curve: what it says, or why it says nothing."""
     name, place, curve = job
     row: dict[str, Any] = {"curve": name, "status": "done", "reason": ""}

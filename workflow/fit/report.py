@@ -12,6 +12,7 @@ import numpy as np
 
 from contact1d.analysis import plots
 from contact1d.analysis.chart import BLACK, COMPRESSION, TENSION, THEORY, Axis, Chart, Panel, Series
+from contact1d.analysis.theory.adhesion import MaugisDugdale
 from contact1d.files import write_whole
 from contact1d.workflow.body.cases import ASSUMED_RANGE
 from contact1d.workflow.fit import curve as curves
@@ -31,7 +32,7 @@ def write(found: Found, folder: Path) -> None:
     """Write fit.json, curve.csv, scene.toml and fit.png, each whole or not at all."""
     one = found.fit
     write_whole(folder / RECORD, json.dumps(document(found), indent=2, ensure_ascii=False) + "\n")
-    write_whole(folder / "scene.toml", tables_as_toml(found.scene.tables))
+    write_whole(folder / "scene.toml", tables_as_toml(one.scene.tables))
     kept, rows = (
         set(one.solution.problem.kept.tolist()),
         ["line,segment,position [m],force [N],predicted force [N],compared"],
@@ -116,25 +117,19 @@ def modulus_words(one: Fitted) -> str:
 
 def _modulus(one: Fitted) -> dict[str, Any]:
     """E*, and its interval where one modulus is fitted."""
-    keys, values = [key for key in one.intervals if key.startswith("material.")], one.solution.values
-    found = []
-    for end in (None, *(one.intervals[keys[0]] if len(keys) == 1 else ())):
-        tried = [
-            end if end is not None and name == keys[0] else value
-            for name, value in zip(one.subject.names, values, strict=True)
-        ]
-        found.append(modulus_of(one.subject.scene_with(tried)))
-    return {"value": found[0], "unit": "Pa"} | ({"interval": sorted(found[1:])} if found[1:] else {})
+    keys, scene = [key for key in one.intervals if key.startswith("material.")], one.scene
+    ends = one.intervals[keys[0]] if len(keys) == 1 else ()
+    moved = sorted(modulus_of(scene.moved(keys[0], end / one.values[keys[0]])) for end in ends)
+    return {"value": modulus_of(scene), "unit": "Pa"} | ({"interval": moved} if moved else {})
 
 
 def _tabor(one: Fitted) -> dict[str, Any] | None:
     """µ = (R W²/(E*² h₀³))^(1/3); None without adhesion or a radius."""
-    scene = one.subject.scene_with(one.solution.values)
-    radius, adhesion = scene.bodies.profile.curvature_radius, scene.adhesion
+    radius, adhesion = one.scene.bodies.profile.curvature_radius, one.scene.adhesion
     if adhesion is None or radius is None:
         return None
     reach = adhesion.range or ASSUMED_RANGE
-    value = (radius * adhesion.work**2 / (modulus_of(scene) ** 2 * reach**3)) ** (1.0 / 3.0)
+    value = MaugisDugdale(radius, modulus_of(one.scene), adhesion.work, reach).tabor
     return {"value": value, "range": reach, "assumed": not adhesion.range}
 
 

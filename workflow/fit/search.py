@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import differential_evolution, least_squares
 
-from contact1d.workflow.fit.noise import Indices, Judged, Noise, Uncertain, uncertain
+from contact1d.workflow.fit.noise import Indices, Judged, Noise, Uncertain, noises, uncertain
 
 Array = NDArray[np.float64]
 STEP = 1e-4
@@ -121,7 +121,7 @@ class Problem:
         return np.array(rows).reshape(-1, u.size + 1)
 
     def least(
-        self, u: Array, noise: Noise | None, deviation: float, fixed: int | None = None, robust: bool = False
+        self, u: Array, noise: Noise, deviation: float, fixed: int | None = None, robust: bool = False
     ) -> tuple[Array, float]:
         """The least sum of squares from u on, and where; `fixed` is the index of an unknown that stays."""
         free = [i for i in range(u.size) if i != fixed]
@@ -134,12 +134,12 @@ class Problem:
         def rows(part: Array) -> Array:
             full = whole(part)
             data = self.residuals(full)[:, None]
-            return np.concatenate([self._white(noise, data)[:, 0] / deviation, self.prior(full)[:, -1]])
+            return np.concatenate([noise.whitened(data)[:, 0] / deviation, self.prior(full)[:, -1]])
 
         def jacobian(part: Array) -> Array:
             full = whole(part)
             return -np.concatenate(
-                [self._white(noise, self.slopes(full, free)) / deviation, self.prior(full)[:, :-1][:, free]]
+                [noise.whitened(self.slopes(full, free)) / deviation, self.prior(full)[:, :-1][:, free]]
             )
 
         ends = np.array([LIMIT if one.positive else math.inf for one in self.unknowns])[free]
@@ -149,10 +149,6 @@ class Problem:
             rows, np.clip(u[free], -ends, ends), jacobian, (-ends - EDGE, ends + EDGE), x_scale="jac", **options
         )
         return whole(found.x), 2.0 * float(found.cost)
-
-    @staticmethod
-    def _white(noise: Noise | None, columns: Array) -> Array:
-        return columns if noise is None else noise.whitened(columns)
 
 
 @dataclass(frozen=True)
@@ -217,10 +213,10 @@ def solved(problem: Problem, starts: Sequence[Array], judges: bool = True) -> So
         starts: places.
         judges: whether points far outside the noise are taken out.
     """
-    tries = []
+    tries, (white,) = [], noises([(0.0, 1.0)], problem.runs)
     for start in starts:
         spread = float(np.median(np.abs(problem.residuals(start)))) or 1.0
-        u, _ = problem.least(start, None, spread, robust=True)
+        u, _ = problem.least(start, white, spread, robust=True)
         tries.append((float(np.abs(problem.residuals(u)).sum()), u))
     _, u = min(tries, key=lambda one: one[0])
     outliers: list[int] = []

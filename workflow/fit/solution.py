@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 
 from contact1d.workflow.errors import Contact1dError
 from contact1d.workflow.fit.curve import ForceCurve, Indices
-from contact1d.workflow.fit.forward import LAWS, RANGE, Model
+from contact1d.workflow.fit.forward import LAWS, RANGE, Branch, Model
 from contact1d.workflow.fit.plan import STIFFNESS, FitPlan
 from contact1d.workflow.fit.search import STEP, TWO_SIDED, Solution, Unknown, first_look, interval, solved
 from contact1d.workflow.fit.subject import OFFSET, POINT, Subject, modulus_of
+from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
 SOFTEST = 0.4
@@ -65,6 +66,16 @@ class Fitted:
     def values(self) -> dict[str, float]:
         """Of all unknowns, in units of the scene."""
         return dict(zip(self.subject.names, self.solution.values, strict=True))
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The base scene with the found values."""
+        return self.subject.scene_with(self.solution.values)
+
+    @cached_property
+    def branch(self) -> Branch:
+        """The states of the contact."""
+        return self.subject.branch(self.solution.values)
 
     @cached_property
     def forces(self) -> Array:
@@ -135,13 +146,9 @@ class Fitted:
     @property
     def contact_stiffness(self) -> float:
         """2E*a [N/m] without load, or where nothing adheres under the largest one."""
-        values = self.solution.values
-        branch = self.subject.branch(values)
-        F, least = branch.forces, int(np.argmin(branch.forces))
+        F, least = self.branch.forces, int(np.argmin(self.branch.forces))
         load = 0.0 if F[least] < 0.0 else float(self.curve.forces.max() - self.curve.baseline)
-        return (
-            2.0 * modulus_of(self.subject.scene_with(values)) * float(np.interp(load, F[least:], branch.radii[least:]))
-        )
+        return 2.0 * modulus_of(self.scene) * float(np.interp(load, F[least:], self.branch.radii[least:]))
 
 
 def model_of(plan: FitPlan) -> Model:
