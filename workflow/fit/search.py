@@ -102,11 +102,16 @@ class Problem:
         return (self.forces - self.model(self.values(u)))[self.kept]
 
     def slopes(self, u: Array, free: Sequence[int] | None = None) -> Array:
-        """∂(predicted force)/∂u of the compared points, (n, p), by central differences."""
-        columns = []
-        for i in range(u.size) if free is None else free:
-            ends = [self.model(self.values(u + side * STEP * (np.arange(u.size) == i))) for side in (-1.0, 1.0)]
-            columns.append(((ends[1] - ends[0]) / (2.0 * STEP))[self.kept])
+        """∂(predicted force)/∂u of the compared points, (n, p)."""
+        return self.derivative(self.model, u, free)[self.kept]
+
+    def derivative(self, of: Model, u: Array, free: Sequence[int] | None = None) -> Array:
+        """∂/∂u of what follows from the values of the unknowns, (n, p), by central differences."""
+        steps = STEP * np.eye(u.size)
+        columns = [
+            (of(self.values(u + steps[i])) - of(self.values(u - steps[i]))) / (2.0 * STEP)
+            for i in (range(u.size) if free is None else free)
+        ]
         return np.column_stack(columns)
 
     def prior(self, u: Array) -> Array:

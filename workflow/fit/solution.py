@@ -14,7 +14,7 @@ from contact1d.workflow.errors import Contact1dError
 from contact1d.workflow.fit.curve import ForceCurve, Indices
 from contact1d.workflow.fit.forward import LAWS, RANGE, Branch, Model
 from contact1d.workflow.fit.plan import STIFFNESS, FitPlan
-from contact1d.workflow.fit.search import STEP, TWO_SIDED, Solution, Unknown, first_look, interval, solved
+from contact1d.workflow.fit.search import TWO_SIDED, Solution, Unknown, first_look, interval, solved
 from contact1d.workflow.fit.subject import OFFSET, POINT, Subject, modulus_of
 from contact1d.workflow.scene import Scene
 
@@ -75,7 +75,7 @@ class Fitted:
     @cached_property
     def branch(self) -> Branch:
         """The states of the contact."""
-        return self.subject.branch(self.solution.values)
+        return self.subject.parts(self.solution.values)[0]
 
     @cached_property
     def forces(self) -> Array:
@@ -106,18 +106,13 @@ class Fitted:
 
     def jumps_at(self, values: Sequence[float]) -> Array:
         """Positions z [m] at which contact begins and is lost, (2,)."""
-        branch, k = self.subject.branch(values), self.subject.value_of(STIFFNESS, values)
-        ends = np.array([branch.displacements[0], branch.snap_out(k)[0]])
-        return np.asarray(ends + self.subject.value_of(POINT, values))
+        branch, stiffness, point, _ = self.subject.parts(values)
+        return np.asarray(point + np.array([branch.displacements[0], branch.snap_out(stiffness)[0]]))
 
     def _jumps(self) -> float:
         """log L of the brackets of both jumps, where the parameters leave their positions a spread."""
-        problem, u = self.solution.problem, self.solution.u
-        ends = [
-            [self.jumps_at(problem.values(u + side * STEP * one)) for side in (-1.0, 1.0)] for one in np.eye(u.size)
-        ]
-        slopes = np.array([high - low for low, high in ends]) / (2.0 * STEP)
-        variance = np.einsum("ik,ij,jk->k", slopes, self.solution.best.covariance, slopes)
+        slopes = self.solution.problem.derivative(self.jumps_at, self.solution.u)
+        variance = np.einsum("ki,ij,kj->k", slopes, self.solution.best.covariance, slopes)
         total = 0.0
         for segment, at, known in zip(self.curve.segments, self.jumps_at(self.solution.values), variance, strict=True):
             if segment.jump is not None:

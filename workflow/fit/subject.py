@@ -68,44 +68,38 @@ class Subject:
                 scene = scene.moved(one.name, value / one.scale)
         return scene
 
-    def branch(self, values: Sequence[float]) -> Branch:
-        """The contact's own curve."""
+    def parts(self, values: Sequence[float]) -> tuple[Branch, float, float, float]:
+        """The contact's own curve; and k_c [FU/LU], contact point [LU] and offset of the force [FU]."""
         scene = self.scene_with(values)
         reach = scene.adhesion.range if scene.adhesion else None
         body = Body.of(scene.bodies.profile, self.curve.depth)
-        return self.model.branch(body, modulus_of(scene), scene.work_of_adhesion, reach or 0.0)
-
-    def value_of(self, name: str, values: Sequence[float]) -> float:
-        """The value of an unknown; of a rigid instrument its stiffness is none."""
-        return values[self.names.index(name)] if name in self.names else math.inf
+        branch = self.model.branch(body, modulus_of(scene), scene.work_of_adhesion, reach or 0.0)
+        named = dict(zip(self.names, values, strict=True))
+        return branch, named.get(STIFFNESS, math.inf), named[POINT], named[OFFSET]
 
     def forces(self, values: Sequence[float]) -> Array:
         """F [FU] at every measured position."""
-        branch, k = self.branch(values), self.value_of(STIFFNESS, values)
-        z = self.curve.positions - self.value_of(POINT, values)
+        branch, stiffness, point, offset = self.parts(values)
+        z = self.curve.positions - point
         found = np.zeros_like(z)
         for points, held in ((self.held, True), (self.open, False)):
             if points.any():
-                found[points] = branch.at(z[points], k, held, self.pitch)
+                found[points] = branch.at(z[points], stiffness, held, self.pitch)
         found[self.early & (z < branch.displacements[0])] = 0.0  # no force before the bodies touch
-        return np.asarray(found + self.value_of(OFFSET, values))
+        return np.asarray(found + offset)
 
     def completed(self, u: Array) -> Array:
         """Unknowns with the contact point such that the largest force is where it was measured."""
-        u = u.copy()
-        units = {one.name: one.scale for one in self.unknowns}
-        u[self.names.index(OFFSET)] = self.curve.baseline / units[OFFSET]
-        place = self.unknowns[self.names.index(POINT)]
-        if place.known is None:
-            values = self.problem.values(u)
-            branch = self.branch(values)
-            z, F = branch.positions(self.value_of(STIFFNESS, values)), branch.forces
-            least = int(np.argmin(F))
-            top = int(np.argmax(self.curve.forces))
-            at = float(np.interp(self.curve.forces[top] - self.curve.baseline, F[least:], z[least:]))
-            u[self.names.index(POINT)] = (float(self.curve.positions[top]) - at) / place.scale
-        else:
-            u[self.names.index(POINT)] = place.known[0] / place.scale
+        u, place, measured = u.copy(), self.names.index(POINT), self.curve
+        point, offset = self.unknowns[place], self.names.index(OFFSET)
+        u[offset] = measured.baseline / self.unknowns[offset].scale
+        if point.known is not None:
+            u[place] = point.known[0] / point.scale
+            return u
+        branch, stiffness, *_ = self.parts(self.problem.values(u))
+        least, top = int(np.argmin(branch.forces)), int(np.argmax(measured.forces))
+        z, F = branch.positions(stiffness)[least:], branch.forces[least:]
+        u[place] = (measured.positions[top] - np.interp(measured.forces[top] - measured.baseline, F, z)) / point.scale
         return u
 
 
