@@ -126,19 +126,14 @@ def material_scene(
         IdentifyError: a target out of reach, or a length unit that is too coarse.
     """
     require_held(target, contact_modulus, PARABOLA_SHARE["mdr"] * radius, ("N", "m"))  # the MDR's springs are E*
-    coarsest = target.zero_load_radius / FEWEST_IN_RADIUS
     unit = target.zero_load_radius / RESOLUTION if length_unit is None else length_unit
-    if unit > coarsest:
-        given, most = apart(unit, coarsest, 4)
+    particles = target.zero_load_radius / unit
+    if not FEWEST_IN_RADIUS <= particles <= MOST_IN_RADIUS:
+        side, count = ("most", FEWEST_IN_RADIUS) if particles < FEWEST_IN_RADIUS else ("least", MOST_IN_RADIUS)
+        given, limit = apart(unit, target.zero_load_radius / count, 4)
         raise IdentifyError(
-            f"a length unit of {given} m gives {target.zero_load_radius / unit:.2g} particles in the zero-load "
-            f"radius of {target.zero_load_radius:.4g} m: use at most {most} m for {FEWEST_IN_RADIUS:g}"
-        )
-    if unit < target.zero_load_radius / MOST_IN_RADIUS:
-        given, least = apart(unit, target.zero_load_radius / MOST_IN_RADIUS, 4)
-        raise IdentifyError(
-            f"a length unit of {given} m gives {target.zero_load_radius / unit:.2g} particles in the zero-load "
-            f"radius of {target.zero_load_radius:.4g} m: use at least {least} m for {MOST_IN_RADIUS:g}"
+            f"a length unit of {given} m gives {particles:.2g} particles in the zero-load radius of "
+            f"{target.zero_load_radius:.4g} m: use at {side} {limit} m for {count:g}"
         )
     if target.zero_load_radius > LARGEST_RADIUS_SHARE * radius:
         share, most = apart(target.zero_load_radius / radius, LARGEST_RADIUS_SHARE, 2)
@@ -148,7 +143,7 @@ def material_scene(
             "larger radius, a larger contact modulus or a smaller surface energy"
         )
     force_unit = 2.0 * contact_modulus * unit**2
-    wanted = Target(target.adhesion_force / force_unit, target.zero_load_radius / unit)
+    wanted = Target(target.adhesion_force / force_unit, particles)
     depth = wanted.zero_load_radius**2 / (radius / unit)
     reach, energy = 0.3 * depth, 0.1 * depth**2
     scene = scene_from_dict(
@@ -261,11 +256,10 @@ def slopes(scene: Scene, at: Array) -> Array:
 
 def scaled(scene: Scene, logarithms: Array) -> Scene:
     """The scene with both amplitudes and both ranges multiplied by the exponentials of `logarithms`."""
-    amplitude, reach = np.exp(logarithms)
     data = scene.model_dump(by_alias=True, exclude_none=True)
     for term in ("repulsion", "attraction"):
-        data["interaction"][term]["amplitude"] *= float(amplitude)
-        data["interaction"][term]["range"] *= float(reach)
+        for key, factor in zip(("amplitude", "range"), np.exp(logarithms).tolist(), strict=True):
+            data["interaction"][term][key] *= factor
     return scene_from_dict(data)
 
 
