@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Iterable
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -55,11 +56,11 @@ def document(found: Found) -> dict[str, Any]:
         "status": "done" if found.finished else "interrupted",
         "data": str(found.file),
         "model": one.model,
-        "parameters": {key: entry(one, key) for key in plan.fit.parameters if key in one.values},
+        "parameters": entries(one, plan.fit.parameters),
         "fitted": modulus_words(one),
         "contact_modulus": _modulus(one),
-        "calibrations": {key: entry(one, key) for key in one.values if key not in (*plan.fit.parameters, *UNITS)},
-        **{key: entry(one, key) for key in UNITS if key in one.values},
+        "calibrations": entries(one, [key for key in one.values if key not in (*plan.fit.parameters, *UNITS)]),
+        **entries(one, UNITS),
         "noise": {
             "value": best.deviation, "unit": "N", "share_with_memory": best.noise.share, "memory": best.noise.memory,
         },
@@ -79,7 +80,7 @@ def document(found: Found) -> dict[str, Any]:
             name: {
                 "criterion_above_least": other.criterion - least,
                 "reduced_chi_squared": other.misfit,
-                "parameters": {key: entry(other, key) for key in plan.fit.parameters if key in other.values},
+                "parameters": entries(other, plan.fit.parameters),
             }
             for name, other in found.models.items()
         },
@@ -102,6 +103,11 @@ def entry(one: Fitted, key: str) -> dict[str, Any]:
     """Value, interval and unit of an unknown."""
     found: dict[str, Any] = {"value": one.values[key], "unit": UNITS.get(key) or one.plan.unit(key)}
     return found | ({"interval": list(one.intervals[key])} if key in one.intervals else {})
+
+
+def entries(one: Fitted, keys: Iterable[str]) -> dict[str, Any]:
+    """The same of those of some keys that a fit has."""
+    return {key: entry(one, key) for key in keys if key in one.values}
 
 
 def modulus_words(one: Fitted) -> str:

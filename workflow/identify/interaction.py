@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from contact1d.analysis.curve_marks import vertex
 from contact1d.analysis.theory.indenters import PowerLaw
 from contact1d.digits import apart
 from contact1d.workflow.engine.progress import Progress
@@ -275,11 +276,10 @@ def _estimated(scene: Scene) -> Array:
 
 def _largest_tension(estimate: Law) -> float:
     """The undeformed gap [LU] of the force maximum, between the points of the grid by a parabola."""
-    force = estimate.force
+    force, points = estimate.force, np.arange(estimate.force.size, dtype=np.float64)
     i = min(max(int(np.argmin(force)), 1), len(force) - 2)
-    before, lowest, after = (float(f) for f in force[i - 1 : i + 2])
-    shift = 0.5 * (before - after) / (before - 2.0 * lowest + after)
-    return float(np.interp(i + shift, np.arange(len(force)), estimate.gap))
+    place, _ = vertex(points, -force, i, 1)
+    return float(np.interp(place, points, estimate.gap))
 
 
 MOST_RUNS = 8
