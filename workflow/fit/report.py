@@ -31,17 +31,23 @@ UNITS = {POINT: "m", OFFSET: "N", STIFFNESS: "N/m"}
 
 def write(found: Found, folder: Path) -> None:
     """Write fit.json, curve.csv, scene.toml and fit.png, each whole or not at all."""
+    from pandas import DataFrame
+
     one = found.fit
     write_whole(folder / RECORD, json.dumps(document(found), indent=2, ensure_ascii=False) + "\n")
     write_whole(folder / "scene.toml", tables_as_toml(one.scene.tables))
-    kept, rows = (
-        set(one.solution.problem.kept.tolist()),
-        ["line,segment,position [m],force [N],predicted force [N],compared"],
+    points = np.arange(one.forces.size)
+    table = DataFrame(
+        {
+            "line": one.curve.lines,
+            "segment": np.where(points < one.curve.turn, "approach", "retract"),
+            "position [m]": one.curve.positions,
+            "force [N]": one.curve.forces,
+            "predicted force [N]": one.forces,
+            "compared": np.where(np.isin(points, one.solution.problem.kept), "yes", "no"),
+        }
     )
-    for i, numbers in enumerate(zip(one.curve.positions, one.curve.forces, one.forces, strict=True)):
-        way, used = "approach" if i < one.curve.turn else "retract", "yes" if i in kept else "no"
-        rows.append(",".join([str(one.curve.lines[i]), way, *(f"{number:.9g}" for number in numbers), used]))
-    write_whole(folder / TABLE, "\n".join(rows) + "\n")
+    write_whole(folder / TABLE, table.to_csv(index=False, float_format="%.9g", lineterminator="\n"))
     plots.save_figure(plots.draw(chart(found).written(scale_of)), folder / FIGURE)
 
 
