@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Named = Literal["parabola", "circle", "power"]
+ShapeName = Literal["parabola", "circle", "power"]
 FLATTEST = 1e-6
 """1 − r²/R² of a circle at least, while its radius is sought."""
 TINY = 1e-300
@@ -49,7 +49,7 @@ class Form:
         return np.cumsum(theta, axis=-1) if self.convex else theta
 
 
-def named(shape: Named, curvature: float) -> Form:
+def named(shape: ShapeName, curvature: float) -> Form:
     """A named shape: θ = (1/R), or (h, n) of h rⁿ."""
     if shape == "power":
         return Form(

@@ -22,7 +22,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.form import Array, Form, Named, named, smooth
+from contact1d.analysis.form import Array, Form, ShapeName, named, smooth
 from contact1d.analysis.residual import Noise, autocovariance, bounded, drawn, independent, noise_by, noise_in
 
 COVERAGE = 0.95
@@ -154,7 +154,7 @@ def take(
     centre: float | None = 0.0,
     level: bool = False,
     length: float | None = None,
-    shape: Named | None = None,
+    shape: ShapeName | None = None,
 ) -> Taken:
     """What is taken of the points of a scan.
 
@@ -191,7 +191,7 @@ class _Fit:
     origin: float
     base: float
 
-    def of(self, shape: Named | None, length: float | None) -> Taken:
+    def of(self, shape: ShapeName | None, length: float | None) -> Taken:
         """The points by a named shape, or a smooth curve."""
         square, linear, _ = np.polyfit(self.x, self.z, 2)
         start = -0.5 * linear / square if self.moves else 0.0

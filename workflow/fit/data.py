@@ -64,7 +64,7 @@ class DataError(Contact1dError, ValueError):
     """A file that is no force curve; the message says where, why and what to do."""
 
 
-Named = tuple[str, tuple[float, float] | None, ForceCurve | DataError]
+NamedCurve = tuple[str, tuple[float, float] | None, ForceCurve | DataError]
 """Name of a curve, its place (x, y) in a map, and the curve, or why it is none."""
 
 
@@ -82,7 +82,7 @@ def files_of(plan: FitPlan) -> list[Path]:
     return found
 
 
-def curves_of(plan: FitPlan) -> Iterator[Named]:
+def curves_of(plan: FitPlan) -> Iterator[NamedCurve]:
     """All curves of a plan; what is wrong with a file stands for its curve. Raises DataError as `files_of`."""
     for file in files_of(plan):
         try:
@@ -96,7 +96,7 @@ def is_series(plan: FitPlan) -> bool:
     return len([*islice(curves_of(plan), 2)]) > 1
 
 
-def curves(path: Path, plan: FitPlan) -> Iterator[Named]:
+def curves(path: Path, plan: FitPlan) -> Iterator[NamedCurve]:
     """The curves of a file: name, place (x, y) of a map, and the curve, or why it is none.
 
     Raises:

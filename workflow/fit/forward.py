@@ -206,7 +206,7 @@ def maugis(body: Body, modulus: float, work: float, reach: float) -> Branch:
 
 
 @dataclass(frozen=True)
-class Model:
+class ContactModel:
     """A contact model.
 
     Attributes:
@@ -239,10 +239,10 @@ class Model:
 LAWS = {
     law.name: law
     for law in (
-        Model("Maugis", maugis, frozenset({"W", "h₀"}), limits=("JKR", "DMT")),
-        Model("JKR", jkr, frozenset({"W"})),
-        Model("DMT", dmt, frozenset({"W", "R"})),
-        Model("Hertz", hertz),
+        ContactModel("Maugis", maugis, frozenset({"W", "h₀"}), limits=("JKR", "DMT")),
+        ContactModel("JKR", jkr, frozenset({"W"})),
+        ContactModel("DMT", dmt, frozenset({"W", "R"})),
+        ContactModel("Hertz", hertz),
     )
 }
 """By name; the first that applies is the one that a scene means."""

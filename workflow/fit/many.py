@@ -15,7 +15,7 @@ from contact1d.analysis import plots
 from contact1d.files import AnyPath, whole
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import Contact1dError
-from contact1d.workflow.fit.data import DataError, Named, curves_of
+from contact1d.workflow.fit.data import DataError, NamedCurve, curves_of
 from contact1d.workflow.fit.fit import own_folder
 from contact1d.workflow.fit.plan import AnyFit, FitPlan, read_fit
 from contact1d.workflow.fit.report import entry
@@ -60,7 +60,7 @@ def fit_many(source: AnyFit, folder: AnyPath, workers: int | None = None, progre
     return Fits(out, dict(Counter(row["status"] for row in rows)))
 
 
-def attempt(plan: FitPlan, job: Named) -> dict[str, Any]:
+def attempt(plan: FitPlan, job: NamedCurve) -> dict[str, Any]:
     """The line of the table of one curve: what it says, or why it says nothing."""
     name, place, curve = job
     row: dict[str, Any] = {"curve": name, "status": "done", "reason": ""}

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from contact1d.workflow.errors import Contact1dError
 from contact1d.workflow.fit.curve import ForceCurve, Indices
-from contact1d.workflow.fit.forward import LAWS, RANGE, Branch, Model
+from contact1d.workflow.fit.forward import LAWS, RANGE, Branch, ContactModel
 from contact1d.workflow.fit.plan import STIFFNESS, FitPlan
 from contact1d.workflow.fit.search import TWO_SIDED, Solution, Unknown, first_look, interval, solved
 from contact1d.workflow.fit.subject import OFFSET, POINT, Subject, modulus_of
@@ -146,12 +146,12 @@ class Fitted:
         return 2.0 * modulus_of(self.scene) * float(np.interp(load, F[least:], self.branch.radii[least:]))
 
 
-def model_of(plan: FitPlan) -> Model:
+def model_of(plan: FitPlan) -> ContactModel:
     """The contact model that a base scene means."""
     return next(one for one in LAWS.values() if one.applies(plan.base))
 
 
-def compared(found: Fitted, model: Model) -> Fitted:
+def compared(found: Fitted, model: ContactModel) -> Fitted:
     """Another contact model on the same points, without intervals."""
     subject = _subject(found.plan, found.curve, model)
     problem = subject.problem.without(found.solution.outliers)
@@ -174,7 +174,7 @@ def _starts(subject: Subject, outliers: Indices) -> list[Array]:
     return starts[:BEST]
 
 
-def fitted(plan: FitPlan, curve: ForceCurve, model: Model) -> Fitted:
+def fitted(plan: FitPlan, curve: ForceCurve, model: ContactModel) -> Fitted:
     """What a curve says of a plan's parameters under a contact model.
 
     Raises:
@@ -203,7 +203,7 @@ def fitted(plan: FitPlan, curve: ForceCurve, model: Model) -> Fitted:
     return replace(result, intervals=ends)
 
 
-def _subject(plan: FitPlan, curve: ForceCurve, model: Model) -> Subject:
+def _subject(plan: FitPlan, curve: ForceCurve, model: ContactModel) -> Subject:
     """Scene, instrument and unknowns of a contact model, without the adhesion that one may not have."""
     scene = plan.base if model.needs else plan.base.model_copy(update={"adhesion": None})
     unknowns = []

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.workflow.fit.curve import ForceCurve
-from contact1d.workflow.fit.forward import Body, Branch, Model
+from contact1d.workflow.fit.forward import Body, Branch, ContactModel
 from contact1d.workflow.fit.plan import STIFFNESS
 from contact1d.workflow.fit.search import Problem, Unknown
 from contact1d.workflow.scene import Scene
@@ -33,7 +33,7 @@ class Subject:
     """
 
     scene: Scene
-    model: Model
+    model: ContactModel
     curve: ForceCurve
     unknowns: tuple[Unknown, ...]
 
