@@ -212,7 +212,7 @@ class _Fit:
 
     def excess(self, one: _Solved, other: _Solved) -> float:
         """RMS of the residual that a fit has more than another one has, 0 where that may be chance."""
-        more = float(np.sum(one.residual**2) - np.sum(other.residual**2))
+        more = one.squares - other.squares
         price = self.noise_of(other).price(len(self.x), len(other.form.start))
         return math.sqrt(more / len(self.x)) if more > price * len(other.form.start) else 0.0
 
@@ -234,9 +234,8 @@ class _Fit:
             return self.solve(smooth(np.linspace(0.0, reach, 1 + max(1, round(reach / length))), convex), start)
 
         one, other = curve(True), curve(False)
-        excess = float(np.sum(one.residual**2) - np.sum(other.residual**2))
-        noise = self.noise_of(other)
-        return other if excess > noise.price(len(self.x), len(other.form.start)) else one
+        price = self.noise_of(other).price(len(self.x), len(other.form.start))
+        return other if one.squares - other.squares > price else one
 
     def looked_for(self, form: Form) -> NDArray[np.bool_]:
         """Which of all parameters are: θ and z₀ always, c and t if they are asked for."""
@@ -394,3 +393,7 @@ class _Solved:
     @property
     def centre(self) -> float:
         return float(self.found[-2])
+
+    @property
+    def squares(self) -> float:
+        return float(np.sum(self.residual**2))

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_banded, solve_triangular
 from scipy.optimize import brentq
-from scipy.special import stdtr
+from scipy.special import softmax, stdtr
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -172,13 +172,13 @@ def uncertain(runs: Sequence[Indices], residuals: Array, slopes: Array, prior: A
     for _ in range(looks):
         pairs = [(float(s), float(m)) for s in shares for m in (memories if s > 0.0 else memories[:1])]
         found = [_judge(noise, residuals, slopes, prior) for noise in noises(pairs, runs)]
-        logs = np.array([log for _, log in found])
         # White noise stands once for all memories.
-        weights = np.exp(logs - logs.max()) * [1.0 if s > 0.0 else memories.size for s, _ in pairs]
+        weights = softmax(
+            [log + math.log(1 if s > 0.0 else memories.size) for (_, log), (s, _) in zip(found, pairs, strict=True)]
+        )
         likely = [pair for pair, weight in zip(pairs, weights, strict=True) if weight > UNLIKELY * weights.max()]
         of_shares, of_memories = map(np.array, zip(*likely, strict=True))
         shares, memories = _finer(of_shares, shares, np.linspace), _finer(of_memories, memories, np.geomspace)
-    weights /= weights.sum()
     freedom = max(1.0, residuals.size - float(slopes.shape[1] - prior.shape[0]))
     judged = (replace(one, weight=float(weight)) for (one, _), weight in zip(found, weights, strict=True))
     return Uncertain(tuple(judged), freedom)

@@ -127,10 +127,8 @@ class Fitted:
         """Mean square of the residuals in contact over that of bodies apart: reduced χ². 1 where either is missing."""
         problem = self.solution.problem
         r = problem.residuals(self.solution.u)
-        apart = np.concatenate([one.apart for one in self.curve.segments])
-        open_ = np.concatenate([one.points for one in self.curve.segments if one.jump is None] or [apart[:0]])
-        apart = np.concatenate([apart, open_[self.curve.positions[open_] < self.values[POINT]]])
-        away = np.isin(problem.kept, apart)
+        before = self.subject.open & (self.curve.positions < self.values[POINT])
+        away = (self.subject.apart | before)[problem.kept]
         return 1.0 if away.all() or not away.any() else float(np.mean(r[~away] ** 2) / np.mean(r[away] ** 2))
 
     def spread(self) -> Array:
@@ -267,9 +265,7 @@ def _require_stiff(found: Fitted) -> None:
 
 def _require_points(found: Fitted) -> None:
     curve = found.curve
-    held = sum(one.held.size for one in curve.segments)
-    if not held:
-        held = int((curve.positions > found.values[POINT]).sum())
+    held = int(found.subject.held.sum()) or int((curve.positions > found.values[POINT]).sum())
     if held < FEWEST_HELD:
         raise UndeterminedError(
             f"only {held} points are in contact, and at least {FEWEST_HELD} are needed: sample faster, or push deeper"

@@ -38,12 +38,12 @@ class Subject:
     unknowns: tuple[Unknown, ...]
 
     def __post_init__(self) -> None:
-        """Which points may be lost, which hold, and which may be before contact."""
+        """Which points hold and which are apart, and without a jump which may be either, or before contact."""
         self.names = [one.name for one in self.unknowns]
         n = self.curve.positions.size
-        self.held, self.open, self.early = (np.zeros(n, dtype=bool) for _ in range(3))
+        self.held, self.apart, self.open, self.early = (np.zeros(n, dtype=bool) for _ in range(4))
         for one in self.curve.segments:
-            self.held[one.held] = True
+            self.held[one.held] = self.apart[one.apart] = True
             if one.jump is None:
                 self.open[one.points] = True
                 self.early[one.points] = one.approaches

@@ -128,23 +128,9 @@ def material_scene(
     """
     require_held(target, contact_modulus, PARABOLA_SHARE["mdr"] * radius, ("N", "m"))  # the MDR's springs are E*
     unit = target.zero_load_radius / RESOLUTION if length_unit is None else length_unit
-    particles = target.zero_load_radius / unit
-    if not FEWEST_IN_RADIUS <= particles <= MOST_IN_RADIUS:
-        side, count = ("most", FEWEST_IN_RADIUS) if particles < FEWEST_IN_RADIUS else ("least", MOST_IN_RADIUS)
-        given, limit = apart(unit, target.zero_load_radius / count, 4)
-        raise IdentifyError(
-            f"a length unit of {given} m gives {particles:.2g} particles in the zero-load radius of "
-            f"{target.zero_load_radius:.4g} m: use at {side} {limit} m for {count:g}"
-        )
-    if target.zero_load_radius > LARGEST_RADIUS_SHARE * radius:
-        share, most = apart(target.zero_load_radius / radius, LARGEST_RADIUS_SHARE, 2)
-        raise IdentifyError(
-            f"the zero-load radius of {target.zero_load_radius:.4g} m is {share} of the "
-            f"sphere's: JKR is for a << R, here up to {most}. Use a "
-            "larger radius, a larger contact modulus or a smaller surface energy"
-        )
+    _require_resolved(target.zero_load_radius, unit, radius)
     force_unit = 2.0 * contact_modulus * unit**2
-    wanted = Target(target.adhesion_force / force_unit, particles)
+    wanted = Target(target.adhesion_force / force_unit, target.zero_load_radius / unit)
     depth = wanted.zero_load_radius**2 / (radius / unit)
     reach, energy = 0.3 * depth, 0.1 * depth**2
     scene = scene_from_dict(
@@ -167,6 +153,24 @@ def material_scene(
         }
     )
     return scene, wanted
+
+
+def _require_resolved(a_0: float, unit: float, radius: float) -> None:
+    """Refuse an a₀ [m] of too few or too many length units [m], or too large a part of the sphere's radius [m]."""
+    particles = a_0 / unit
+    if not FEWEST_IN_RADIUS <= particles <= MOST_IN_RADIUS:
+        side, count = ("most", FEWEST_IN_RADIUS) if particles < FEWEST_IN_RADIUS else ("least", MOST_IN_RADIUS)
+        given, limit = apart(unit, a_0 / count, 4)
+        raise IdentifyError(
+            f"a length unit of {given} m gives {particles:.2g} particles in the zero-load radius of {a_0:.4g} m: "
+            f"use at {side} {limit} m for {count:g}"
+        )
+    if a_0 > LARGEST_RADIUS_SHARE * radius:
+        share, most = apart(a_0 / radius, LARGEST_RADIUS_SHARE, 2)
+        raise IdentifyError(
+            f"the zero-load radius of {a_0:.4g} m is {share} of the sphere's: JKR is for a << R, here up to {most}. "
+            "Use a larger radius, a larger contact modulus or a smaller surface energy"
+        )
 
 
 def jkr_target(contact_modulus: float, surface_energy: float, radius: float) -> Target:
