@@ -31,6 +31,11 @@ LOAD = {"kind": "load", "force": "1 nN"}
 """Stands in for the experiment that a base scene has not."""
 
 
+SOUGHT = ("bodies.", "material.", "adhesion.")
+UNITS = ("bodies.spacing", "material.length_unit", "material.force_unit")
+"""Tables whose numbers a message offers as parameters, and those of their numbers that are none of a contact."""
+
+
 class Instrument(Table):
     """What pushes the contact."""
 
@@ -154,10 +159,7 @@ def _of_parameters(plan: FitPlan) -> list[Problem]:
         must = "is no number of the base scene" if name not in plan.numbers else ""
         must = "is named twice" if name in names[:i] else must
         if must:
-            known = [key for key in plan.numbers if key.split(".")[0] in ("bodies", "material", "adhesion")]
-            left = [
-                key for key in known if key not in ("bodies.spacing", "material.length_unit", "material.force_unit")
-            ]
+            left = [key for key in plan.numbers if key.startswith(SOUGHT) and key not in UNITS]
             hint = f"give it there, as a first guess; numbers of the scene are {', '.join(left)}"
             problems.append(Problem(f"parameters[{i}]", must, shown(name), hint))
     return problems
