@@ -53,12 +53,12 @@ class Noise:
     deviation: Array
 
     def whitened(self, columns: Array) -> Array:
-        """Columns (n, m) [any unit] of all kept points, run after run, as independent numbers of that unit."""
+        """A column (n,) or columns (n, m) [any unit] of all kept points, as independent numbers of that unit."""
         # x_i = (1 − K_i) φ_i x_{i−1} + K_i y_i is what is known of m after point i, φ_{i+1} x_i its prediction.
         band = np.stack([np.ones_like(self.gain), -np.roll((1.0 - self.gain) * self.decay, -1)])
-        known = solve_banded((1, 0), band, self.gain[:, None] * columns, check_finite=False)
-        predicted = self.decay[:, None] * np.roll(known, 1, axis=0)
-        return np.asarray((columns - predicted) / self.deviation[:, None])
+        known = solve_banded((1, 0), band, (self.gain * columns.T).T, check_finite=False).T
+        predicted = self.decay * np.roll(known, 1, axis=-1)
+        return np.asarray(((columns.T - predicted) / self.deviation).T)
 
     @property
     def log_determinant(self) -> float:

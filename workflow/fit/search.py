@@ -138,8 +138,7 @@ class Problem:
 
         def rows(part: Array) -> Array:
             full = whole(part)
-            data = self.residuals(full)[:, None]
-            return np.concatenate([noise.whitened(data)[:, 0] / deviation, self.prior(full)[:, -1]])
+            return np.concatenate([noise.whitened(self.residuals(full)) / deviation, self.prior(full)[:, -1]])
 
         def jacobian(part: Array) -> Array:
             full = whole(part)
@@ -245,7 +244,7 @@ def _noise_at(problem: Problem, u: Array, looks: int = 2) -> Uncertain:
 
 def _outliers(problem: Problem, u: Array, judged: Judged) -> Indices:
     """Points far outside the noise, the largest of neighbours only."""
-    white = np.abs(judged.noise.whitened(problem.residuals(u)[:, None])[:, 0]) / judged.deviation
+    white = np.abs(judged.noise.whitened(problem.residuals(u))) / judged.deviation
     kept = problem.kept
     far = np.flatnonzero(white > OUTLIER)
     return np.array([kept[i] for i in far if white[i] >= white[max(0, i - 2) : i + 3].max()], dtype=np.intp)

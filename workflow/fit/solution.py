@@ -97,7 +97,7 @@ class Fitted:
         """
         best, problem = self.solution.best, self.solution.problem
         n = problem.kept.size
-        r = best.noise.whitened(problem.residuals(self.solution.u)[:, None])[:, 0]
+        r = best.noise.whitened(problem.residuals(self.solution.u))
         misfit = problem.prior(self.solution.u)[:, -1]
         log = -0.5 * n * math.log(float(r @ r) / n) - 0.5 * best.noise.log_determinant - 0.5 * float(misfit @ misfit)
         log += self._jumps()
