@@ -68,19 +68,15 @@ class Body:
             last *= 0.5
         while last < shape.reach and float(shape.transformed(np.array([last]))[0]) < DEEPEST * depth:
             last *= 1.3
-        a = np.geomspace(SPAN, 1.0, EDGES) * min(last, shape.reach)
-        g = shape.transformed(a)
-        # ∫ g dx of a power between two edges is (g₂x₂ − g₁x₁)/(1 + n), n = log(g₂/g₁)/log(x₂/x₁).
+        a = np.append(0.0, np.geomspace(SPAN, 1.0, EDGES) * min(last, shape.reach))
+        g, f = (np.append(0.0, height(a[1:])) for height in (shape.transformed, shape.height))
+        # ∫ g dx of a power between two edges is (g₂x₂ − g₁x₁)/(1 + n), n = log(g₂/g₁)/log(x₂/x₁), up to the first as
+        # beyond it.
         with np.errstate(divide="ignore", invalid="ignore"):
-            n = np.where(g[:-1] > 0.0, np.log(g[1:] / g[:-1]) / np.log(a[1] / a[0]), math.inf)
-        steps = (g[1:] * a[1:] - g[:-1] * a[:-1]) / (1.0 + n)
-        first = a[0] * g[0] / (1.0 + n[0])
-        areas = first + np.concatenate(
-            [[0.0], np.cumsum(np.where(np.isfinite(n), steps, 0.5 * (g[1:] + g[:-1]) * np.diff(a)))]
-        )
-        zero = np.zeros(1)
-        columns = a, g, areas, shape.height(a)
-        a, g, areas, f = (np.concatenate([zero, one]) for one in columns)
+            n = np.where(g[1:-1] > 0.0, np.log(g[2:] / g[1:-1]) / np.log(a[2] / a[1]), math.inf)
+        n = np.append(n[0], n)
+        steps = np.where(np.isfinite(n), np.diff(g * a) / (1.0 + n), 0.5 * (g[1:] + g[:-1]) * np.diff(a))
+        areas = np.append(0.0, np.cumsum(steps))
         return cls(a, g, areas, f, shape.curvature_radius)
 
 
