@@ -89,7 +89,7 @@ class Fitted:
         spread = np.sqrt(np.diag(covariance))
         return np.asarray(covariance / np.outer(spread, spread))
 
-    @property
+    @cached_property
     def criterion(self) -> float:
         """Bayes's information criterion, −2 log L + p log n: the lower the better.
 
