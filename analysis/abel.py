@@ -29,7 +29,7 @@ from functools import cache, lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from contact1d.analysis.polynomial import gauss
+from contact1d.analysis.polynomial import divided, gauss
 from contact1d.analysis.pressure import Array, spacing_of
 
 NEAR = 0.3
@@ -119,7 +119,8 @@ class LineLoad:
             beyond = np.searchsorted(kinks, r[:, 0], side="right")
             for count in np.unique(beyond):
                 own, before = beyond == count, kinks[count - 1] if count else 0.0
-                found[own] += _of_body(self.body, r[own, 0], [*kinks[count:], self.edge], before)
+                # Line loads through every and every second position have the same body.
+                found[own] += _of_body(self.body, r[own, 0].tobytes(), (*kinks[count:], self.edge), before)
         if self.has_apex:
             found[on] = np.inf if self.apex else np.copysign(np.inf, -c_0[0])
         return np.asarray(found)
@@ -143,13 +144,8 @@ def _graded(start: Array, end: Array, near: Array) -> Array:
     return np.concatenate([up, down, end[..., None]], axis=-1)
 
 
-def _of_body(body: Body, r: Array, places: Sequence[float], before: float) -> Array:
-    """See `_once`: line loads through every and every second position have the same body."""
-    return _once(body, r.tobytes(), tuple(places), before)
-
-
 @lru_cache(maxsize=64)
-def _once(body: Body, distances: bytes, places: Sequence[float], before: float) -> Array:
+def _of_body(body: Body, distances: bytes, places: Sequence[float], before: float) -> Array:
     """(1/π) ∫ dh/t at distances r, (n,), below all the places: kinks, and the edge.
 
     h is smooth in t up to √(r² − before²), of the kink before; on the axis the remainder at 0 is that of a power of t.
@@ -248,12 +244,9 @@ def _cubics(x: Array, q: Array, end: float) -> LineLoad:
     breaks = np.concatenate([[0.0], inner, [end]])
     middle = 0.5 * (breaks[1:] + breaks[:-1])
     first = np.clip(np.searchsorted(x, middle) - count // 2, 0, x.size - count)
-    at = x[first[:, None] + np.arange(count)]
-    # Newton's divided differences, then his polynomial in powers of x
-    table = q[first[:, None] + np.arange(count)].copy()
-    for order in range(1, count):
-        table[:, order:] = (table[:, order:] - table[:, order - 1 : -1]) / (at[:, order:] - at[:, : count - order])
-    return LineLoad(breaks, in_powers(table.T, at.T))
+    nearest = first + np.arange(count)[:, None]
+    newton = [q[first], *(one[0] for one in divided(x[nearest], q[nearest]))]
+    return LineLoad(breaks, in_powers(np.stack(newton), x[nearest]))
 
 
 def in_powers(newton: Array, places: Array) -> Array:

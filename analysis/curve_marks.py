@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contact1d.analysis.polynomial import Array, lowest_minimum, real_roots, through, value
+from contact1d.analysis.polynomial import Array, divided, lowest_minimum, real_roots, through, value
 
 
 @dataclass(frozen=True)
@@ -78,29 +78,34 @@ def _apart_from(d: Array, tension: Array, i: int) -> tuple[Array, Array, int]:
     return d[kept], tension[kept], int(kept[:i].sum())
 
 
-def _about(d: Array, tension: Array, middle: int, beside: int) -> tuple[float, Array] | None:
-    """Width [LU] of samples, so many on either side of one, and the polynomial through them less it, of d over width.
+def _about(x: Array, y: Array, middle: int, beside: int) -> tuple[float, Array] | None:
+    """Width of samples, so many on either side of one, and the polynomial through them less it, of x over the width.
 
     None where they lie too near to each other.
     """
     near = slice(max(middle - beside, 0), middle + beside + 1)
-    if not are_apart(d[near]):
+    if not are_apart(x[near]):
         return None
-    width = float(np.ptp(d[near]))
-    return width, through((d[near] - d[middle]) / width, tension[near] - tension[middle])
+    width = float(np.ptp(x[near]))
+    return width, through((x[near] - x[middle]) / width, y[near] - y[middle])
 
 
-def vertex(d: Array, tension: Array, middle: int, beside: int) -> tuple[float, float]:
-    """Position and value of the maximum of the polynomial through the highest point and its neighbours on either side.
+def vertex(x: Array, y: Array, highest: int, beside: int) -> tuple[float, float]:
+    """Position and value of the maximum of the polynomial through the highest of samples and its neighbours.
 
-    It lies between the highest point's neighbours.
+    It lies between the next two; where these are too near, it is the sample itself.
+
+    Args:
+        x, y: positions, rising or falling, and values, (n,).
+        highest: index of the highest sample.
+        beside: how many on either side are under the polynomial.
     """
-    place, top = float(d[middle]), float(tension[middle])
-    if (found := _about(d, tension, middle, beside)) is None:
+    place, top = float(x[highest]), float(y[highest])
+    if (found := _about(x, y, highest, beside)) is None:
         return place, top
     width, rise = found
-    after, before = ((d[middle + side] - d[middle]) / width for side in (1, -1))
-    best, _ = lowest_minimum(-rise, float(after), float(before))
+    low, high = sorted(float(x[highest + side] - x[highest]) / width for side in (-1, 1))
+    best, _ = lowest_minimum(-rise, low, high)
     above = value(rise, best)
     return (place + width * best, top + above) if above > 0.0 else (place, top)
 
@@ -144,13 +149,13 @@ def are_apart(d: Array) -> bool:
     return float(np.abs(np.diff(d)).min()) > LEAST_SEPARATION * float(np.ptp(d))
 
 
-def _bend(d: np.ndarray, tension: np.ndarray, i: int) -> float:
+def _bend(d: Array, tension: Array, i: int) -> float:
     """Change of slope that a smooth curve makes over the increments around point i, from the increments before."""
     if i < 2 or d[i - 2] == d[i - 1]:
         return 0.0
-    first = (tension[i - 1] - tension[i - 2]) / (d[i - 2] - d[i - 1])
-    second = (tension[i] - tension[i - 1]) / (d[i - 1] - d[i])
-    return float(first - second) * float((d[i - 1] - d[i + 1]) / (d[i - 2] - d[i]))
+    before = slice(i - 2, i + 1)
+    _, bend = divided(d[before], tension[before])
+    return float(bend[0] * (d[i + 1] - d[i - 1]))
 
 
 def crossing(displacement: Sequence[float], force: Sequence[float], level: float) -> tuple[int, float]:

@@ -18,11 +18,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.polynomial import fitting, lowest_minimum
+from contact1d.analysis.polynomial import divided, fitting, lowest_minimum
 from contact1d.analysis.pressure import Array, spacing_of
 
 INTERPOLANT_SIZES = (7, 5)
@@ -121,9 +122,7 @@ def _smoothest(x: Array, y: Array, index: int, size: int) -> list[slice]:
     """
     lows = range(max(0, index - size + 1), min(index, len(x) - size) + 1)
     near = slice(lows[0], lows[-1] + size)
-    place, difference = x[near], y[near]
-    for k in range(1, size):
-        difference = (difference[1:] - difference[:-1]) / (place[k:] - place[:-k])
+    *_, difference = islice(divided(x[near], y[near]), size - 1)
     costs = [
         abs(slope) * SIDEWAYS_COST ** abs(low + size // 2 - index)
         for low, slope in zip(lows, difference.tolist(), strict=True)
@@ -161,15 +160,14 @@ def _converging(x: Array, y: Array, index: int, noise: float) -> Place | None:
 def _is_smooth(x: Array, y: Array, index: int, noise: float) -> bool:
     """Whether, up to noise, the differences about a sample are DECAY_OF_DIFFERENCES with every even order."""
     near = slice(max(0, index - SIDE_COUNTS[-1]), index + SIDE_COUNTS[-1] + 1)
-    place, difference = x[near], y[near]
-    spacing, before = spacing_of(place), math.inf
-    for order in SMOOTH_ORDERS:
-        for k in (order - 1, order):
-            difference = (difference[1:] - difference[:-1]) / (place[k:] - place[:-k]) * (k * spacing)
-        rough = float(np.abs(difference).max()) / math.comb(order, order // 2)
-        if rough > max(DECAY_OF_DIFFERENCES * before, 2.0 * noise):
-            return False
-        before = rough
+    spacing, before = spacing_of(x[near]), math.inf
+    for order, difference in zip(range(1, SMOOTH_ORDERS[-1] + 1), divided(x[near], y[near]), strict=False):
+        if order in SMOOTH_ORDERS:
+            undivided = math.factorial(order) * spacing**order * float(np.abs(difference).max())
+            rough = undivided / math.comb(order, order // 2)
+            if rough > max(DECAY_OF_DIFFERENCES * before, 2.0 * noise):
+                return False
+            before = rough
     return True
 
 

@@ -16,7 +16,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from contact1d.analysis.polynomial import Array, lowest_minimum, through, value
+from contact1d.analysis.curve_marks import vertex
+from contact1d.analysis.polynomial import Array, divided
 
 STUDENT = (12.71, 4.30, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26)
 """Half-widths of 95 % of Student's distribution with 1, 2, … degrees of freedom, over the standard error."""
@@ -199,15 +200,8 @@ def _summit(friction: Array, place: Array, top: int) -> tuple[float, float] | No
     x, y = place[near], friction[near]
     if top < BESIDE or x.size < 2 * BESIDE + 1 or not (np.diff(x) > 0.0).all():
         return None
-    slopes = np.diff(y) / np.diff(x)
-    bends = np.diff(slopes) / (x[2:] - x[:-2])
+    _, bends, *_ = divided(x, y)
     if bends.min() < EVEN * bends.max():  # or one of them is not below 0
         return None
-    t = (x - place[top]) / np.ptp(x)
-    found = []
-    for inner in (slice(None), slice(1, -1)):
-        c = through(t[inner], (y - friction[top])[inner])
-        at, _ = lowest_minimum(-c, float(t[1]), float(t[-2]))
-        found.append(value(c, at))
-    missed = abs(found[0] - found[1])
-    return (float(friction[top]) + found[0], missed) if math.isfinite(missed) else None
+    (_, largest), (_, coarse) = (vertex(place, friction, top, beside) for beside in (BESIDE, BESIDE - 1))
+    return largest, abs(largest - coarse)

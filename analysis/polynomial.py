@@ -6,6 +6,7 @@ Positions t are of the order of 1 and counted from a sample, or the coefficients
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from functools import cache, lru_cache
 
 import numpy as np
@@ -60,6 +61,13 @@ def through(t: Array, y: Array) -> Array:
     Of several sets of values, (n, m), the coefficients of each, (n, m). It has less round-off than `fitting`.
     """
     return np.asarray(np.linalg.solve(np.vander(t, increasing=True), y), dtype=np.float64)
+
+
+def divided(t: Array, y: Array) -> Iterator[Array]:
+    """Divided differences of orders 1, 2 … n − 1 of values y at positions t, (n,) or (n, m): Newton's coefficients."""
+    for order in range(1, len(t)):
+        y = (y[1:] - y[:-1]) / (t[order:] - t[:-order])
+        yield y
 
 
 def value(c: Array, t: float) -> float:

@@ -101,7 +101,8 @@ def compressive_radius(profile: Profile, residual: float = 0.0) -> ContactRadius
     largest = max(-least, most)
     if least < -NEGLIGIBLE * largest:
         raise ValueError("particles carry tension: the radius is that of maximum tensile stress")
-    return _of_edges(x, p, p > NEGLIGIBLE * largest, partial(_zero, largest=largest, residual=residual))
+    share = p / (largest or 1.0)
+    return _of_edges(x, share, share > NEGLIGIBLE, partial(_zero, residual=residual))
 
 
 def held_radius(profile: Profile) -> ContactRadius:
@@ -197,13 +198,13 @@ def _of_edges(
     return _between(Place(-mirrored.position, mirrored.uncertainty, mirrored.at_end), right)
 
 
-def _zero(x: list[float], p: list[float], first: int, last: int, largest: float, residual: float) -> Place:
-    """Right edge of a contact whose loaded particles are first … last; `largest` is its pressure."""
+def _zero(x: list[float], p: list[float], first: int, last: int, residual: float) -> Place:
+    """Right edge of a contact whose loaded particles are first … last; pressures over the largest one."""
     if last == len(x) - 1:
         return Place(x[last], x[last] - x[last - 1], True)
     inner, outer = x[last], x[last + 1]
     zero, other = (
-        _parabola_zero(x[end - 2 : end + 1], p[end - 2 : end + 1], inner, outer, largest, residual)
+        _parabola_zero(x[end - 2 : end + 1], p[end - 2 : end + 1], inner, outer, residual)
         if end - PARABOLA_POINTS >= first - 1
         else None
         for end in (last, last - 1)
@@ -215,9 +216,7 @@ def _zero(x: list[float], p: list[float], first: int, last: int, largest: float,
     return Place(zero.position, min(abs(zero.position - other.position) + zero.uncertainty, outer - inner))
 
 
-def _parabola_zero(
-    x: list[float], p: list[float], inner: float, outer: float, largest: float, residual: float
-) -> Place | None:
+def _parabola_zero(x: list[float], p: list[float], inner: float, outer: float, residual: float) -> Place | None:
     """Falling zero, between inner and outer, of the parabola through three particles; None if there is none.
 
     c + b t + a t^2 falls with the slope -sqrt(D), D = b^2 - 4ac, at t = c/q for b < 0 and else at q/a, where
@@ -225,8 +224,7 @@ def _parabola_zero(
     special case.
     """
     width = outer - inner
-    first, second, third = ((place - inner) / width for place in x)
-    high, middle, low = (pressure / largest for pressure in p)
+    (first, second, third), (high, middle, low) = ((place - inner) / width for place in x), p
     chord, slope = (low - high) / (third - first), (low - middle) / (third - second)
     a = (slope - chord) / (second - first)
     b = slope - a * (second + third)

@@ -121,8 +121,64 @@ class Contact(ABC):
         return high
 
 
+def punch_tension(contact_modulus: float, work_of_adhesion: float, contact_radius: float) -> float:
+    """Return Kendall's F = sqrt(8 pi E* W a^3) [force], the largest tension of a flat punch; arguments as of one."""
+    return math.sqrt(8.0 * math.pi * contact_modulus * work_of_adhesion * contact_radius**3)
+
+
+class Indenter(Contact):
+    """A body whose contact without adhesion is known, with adhesion of no range: at the same a a punch's tension less.
+
+        d = g(a) - sqrt(2 pi W a/E*),    F = P(a) - sqrt(8 pi E* W a^3)
+
+    with g and P those without it. Derivatives by a vanish where g'(a) sqrt(a) is 3/4 or 1/4 of sqrt(8 pi W/E*).
+    """
+
+    contact_modulus: float
+    work_of_adhesion: float
+
+    @abstractmethod
+    def transformed(self, contact_radius: float) -> float:
+        """Return g(a) [length], d without adhesion; a >= 0 [length]."""
+
+    @abstractmethod
+    def pressed(self, contact_radius: float) -> float:
+        """Return P(a) [force], F without adhesion; a >= 0 [length]."""
+
+    @abstractmethod
+    def _steep(self, wanted: float) -> float:
+        """a at which g'(a) sqrt(a) is so much [length]."""
+
+    def displacement(self, contact_radius: float) -> float:
+        """Return d = g(a) - sqrt(2 pi W a/E*) [length]; a >= 0 [length]."""
+        stretch = math.sqrt(2.0 * math.pi * self.work_of_adhesion * contact_radius / self.contact_modulus)
+        return self.transformed(contact_radius) - stretch
+
+    def force(self, contact_radius: float) -> float:
+        """Return F = P(a) - sqrt(8 pi E* W a^3) [force]; a >= 0 [length]."""
+        drawn = punch_tension(self.contact_modulus, self.work_of_adhesion, contact_radius)
+        return self.pressed(contact_radius) - drawn
+
+    def critical_radius(self) -> float:
+        """Return a where a fixed load pulls off [length]; of JKR (9 pi W R^2/8E*)^(1/3)."""
+        return self._edge(0.75)
+
+    def fixed_grips_radius(self) -> float:
+        """Return a where a prescribed displacement pulls off [length]; of JKR (pi W R^2/8E*)^(1/3)."""
+        return self._edge(0.25)
+
+    def _edge(self, share: float) -> float:
+        wanted = share * math.sqrt(8.0 * math.pi * self.work_of_adhesion / self.contact_modulus)
+        return self._steep(wanted) if wanted else 0.0
+
+    def _tension(self, contact_radius: float) -> float:
+        """What adhesion takes from the pressure on the axis [stress]: sqrt(2 E* W/pi a)."""
+        a = contact_radius
+        return math.sqrt(2.0 * self.contact_modulus * self.work_of_adhesion / (math.pi * a)) if a else 0.0
+
+
 @dataclass(frozen=True)
-class PowerLaw(Contact):
+class PowerLaw(Indenter):
     """The indenter z = c r^n.
 
     Args:
@@ -159,34 +215,17 @@ class PowerLaw(Contact):
     def _rise(self) -> float:
         return galin_factor(self.exponent) * self.coefficient
 
-    def displacement(self, contact_radius: float) -> float:
-        """Return d = kappa_n c a^n - sqrt(2 pi W a/E*) [length]; a >= 0 [length]."""
-        stretch = math.sqrt(2.0 * math.pi * self.work_of_adhesion * contact_radius / self.contact_modulus)
-        return float(self._rise * contact_radius**self.exponent - stretch)
+    def transformed(self, contact_radius: float) -> float:
+        """Return g(a) = kappa_n c a^n [length]; a >= 0 [length]."""
+        return float(self._rise * contact_radius**self.exponent)
 
-    def force(self, contact_radius: float) -> float:
-        """Return F = 2n/(n+1) kappa_n c E* a^(n+1) - sqrt(8 pi E* W a^3) [force]; a >= 0 [length]."""
-        n, e = self.exponent, self.contact_modulus
-        pressed = 2.0 * n / (n + 1.0) * self._rise * e * contact_radius ** (n + 1.0)
-        return float(pressed - math.sqrt(8.0 * math.pi * e * self.work_of_adhesion * contact_radius**3))
+    def pressed(self, contact_radius: float) -> float:
+        """Return P(a) = 2n/(n+1) kappa_n c E* a^(n+1) [force]; a >= 0 [length]."""
+        n = self.exponent
+        return float(2.0 * n / (n + 1.0) * self._rise * self.contact_modulus * contact_radius ** (n + 1.0))
 
-    def critical_radius(self) -> float:
-        """Return a where a fixed load pulls off [length]; of JKR (9 pi W R^2/8E*)^(1/3)."""
-        return self._power(1.5 / (2.0 * self.exponent))
-
-    def fixed_grips_radius(self) -> float:
-        """Return a where a prescribed displacement pulls off [length]; of JKR (pi W R^2/8E*)^(1/3)."""
-        return self._power(0.25 / self.exponent)
-
-    def _power(self, factor: float) -> float:
-        """a with kappa_n c a^(n-1/2) = factor sqrt(8 pi W/E*): where a derivative by a vanishes."""
-        rise = factor * math.sqrt(8.0 * math.pi * self.work_of_adhesion / self.contact_modulus)
-        return float((rise / self._rise) ** (1.0 / (self.exponent - 0.5)))
-
-    def _tension(self, contact_radius: float) -> float:
-        """What adhesion takes from the pressure on the axis [stress]: sqrt(2 E* W/pi a)."""
-        a = contact_radius
-        return math.sqrt(2.0 * self.contact_modulus * self.work_of_adhesion / (math.pi * a)) if a else 0.0
+    def _steep(self, wanted: float) -> float:
+        return float((wanted / (self.exponent * self._rise)) ** (1.0 / (self.exponent - 0.5)))
 
     def central_pressure(self, contact_radius: float) -> float:
         """Return p(0) = E* kappa_n c a^(n-1)/pi n/(n-1) - sqrt(2 E* W/pi a) [stress], infinite at a cone's tip."""
@@ -220,7 +259,7 @@ class PowerLaw(Contact):
 
 
 @dataclass(frozen=True)
-class Ellipsoid(Contact):
+class Ellipsoid(Indenter):
     """The whole ellipsoid z = b (1 - sqrt(1 - r^2/c^2)), a sphere that is b/c times as high; a << c gives Hertz.
 
     Linear elasticity holds for small slopes only, so its use near a = c is to test methods. F loses the digits
@@ -250,29 +289,17 @@ class Ellipsoid(Contact):
         """The rim [length]."""
         return RIM * self.radius
 
-    def displacement(self, contact_radius: float) -> float:
-        """Return d = (b/c) a artanh(a/c) - sqrt(2 pi W a/E*) [length]; 0 <= a < c [length]."""
-        stretch = math.sqrt(2.0 * math.pi * self.work_of_adhesion * contact_radius / self.contact_modulus)
-        return self.half_axis / self.radius * contact_radius * math.atanh(contact_radius / self.radius) - stretch
+    def transformed(self, contact_radius: float) -> float:
+        """Return g(a) = (b/c) a artanh(a/c) [length]; 0 <= a < c [length]."""
+        return self.half_axis / self.radius * contact_radius * math.atanh(contact_radius / self.radius)
 
-    def force(self, contact_radius: float) -> float:
-        """Return F = (b/c) E* [(c^2 + a^2) artanh(a/c) - a c] - sqrt(8 pi E* W a^3) [force]; 0 <= a < c [length]."""
-        a, c, e = contact_radius, self.radius, self.contact_modulus
-        pressed = self.half_axis / c * e * ((c**2 + a**2) * math.atanh(a / c) - a * c)
-        return pressed - math.sqrt(8.0 * math.pi * e * self.work_of_adhesion * a**3)
+    def pressed(self, contact_radius: float) -> float:
+        """Return P(a) = (b/c) E* [(c^2 + a^2) artanh(a/c) - a c] [force]; 0 <= a < c [length]."""
+        a, c = contact_radius, self.radius
+        return self.half_axis / c * self.contact_modulus * ((c**2 + a**2) * math.atanh(a / c) - a * c)
 
-    def critical_radius(self) -> float:
-        """Return a where a fixed load pulls off [length]."""
-        return self._edge(0.75)
-
-    def fixed_grips_radius(self) -> float:
-        """Return a where a prescribed displacement pulls off [length]."""
-        return self._edge(0.25)
-
-    def _edge(self, factor: float) -> float:
-        """a with g'(a) sqrt(a) = factor sqrt(8 pi W/E*): where a derivative by a vanishes."""
-        wanted = factor * math.sqrt(8.0 * math.pi * self.work_of_adhesion / self.contact_modulus)
-        return self._where(lambda a: self._rate(a) * math.sqrt(a), wanted, 0.0) if wanted else 0.0
+    def _steep(self, wanted: float) -> float:
+        return self._where(lambda a: self._rate(a) * math.sqrt(a), wanted, 0.0)
 
     def _rate(self, place: float) -> float:
         """g'(x) = (b/c) [artanh(x/c) + x c/(c^2 - x^2)], 0 <= x < c [length]."""
@@ -287,11 +314,10 @@ class Ellipsoid(Contact):
         if not contact_radius:
             return 0.0
         nodes, weights = gauss(POINTS)
-        half, a = 0.5 * contact_radius, contact_radius
+        half = 0.5 * contact_radius
         places = half * (nodes + 1.0)
         rate = float(weights @ [self._rate(float(x)) / x for x in places])
-        tension = math.sqrt(2.0 * self.contact_modulus * self.work_of_adhesion / (math.pi * a))
-        return self.contact_modulus / math.pi * half * rate - tension
+        return self.contact_modulus / math.pi * half * rate - self._tension(contact_radius)
 
     peak_pressure = central_pressure
 
@@ -329,4 +355,4 @@ class FlatPunch:
 
     def pull_off_force(self) -> float:
         """Return Kendall's F_A = sqrt(8 pi E* W a^3), a positive magnitude [force]."""
-        return math.sqrt(8.0 * math.pi * self.contact_modulus * self.work_of_adhesion * self.radius**3)
+        return punch_tension(self.contact_modulus, self.work_of_adhesion, self.radius)

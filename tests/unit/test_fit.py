@@ -206,6 +206,20 @@ def test_a_range_makes_it_the_contact_of_maugis(tmp_path: Path) -> None:
     assert np.all(found.fit.spread() <= found.allowed)
 
 
+def test_a_range_alone_may_be_asked_for(tmp_path: Path) -> None:
+    """Neither of Maugis's limits, nor Hertz, has a parameter then: none of them is compared."""
+    reach = (RADIUS * WORK**2 / MODULUS**2) ** (1.0 / 3.0)
+    rows = curve("Maugis", sphere=Sphere(MODULUS, WORK, RADIUS, reach))
+    base = BASE | {
+        "material": {"contact_modulus": f"{MODULUS} Pa"},
+        "adhesion": {"work_of_adhesion": f"{WORK} J/m²", "range": f"{2.0 * reach} m"},
+    }
+    found = fit(plan(written(tmp_path / "curve.csv", rows), base=base, parameters=["adhesion.range"]))
+    low, high = found.fit.intervals["adhesion.range"]
+    assert low < reach < high < 2.0 * low
+    assert set(found.models) == {"Maugis"}
+
+
 def test_a_contact_point_may_be_given(good: np.ndarray[Any, Any], tmp_path: Path) -> None:
     """Where it is known the modulus is known better; with its ± as well as that allows."""
     path = written(tmp_path / "curve.csv", good + np.array([500.0, 0.0]))

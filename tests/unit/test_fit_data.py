@@ -66,6 +66,8 @@ FORMS = {
     "spaces": (text(rows(), "height force\nnm nN", " "), 1.0, range(3, 63)),
     "a mark of the encoding": ("\ufeff" + text(rows()), 1.0, range(2, 62)),
     "a blank line": (text(rows()).replace("nN]\n", "nN]\n\n", 1), 1.0, range(3, 63)),
+    "units below a blank line": (text(rows(), "z,F\n\n[nm],[nN]"), 1.0, range(4, 64)),
+    "a remark among the numbers": (text(rows()).replace("\n", "\n# a remark\n", 2), 1.0, [3, *range(5, 64)]),
     "another column": (text(np.column_stack([rows()[:, 0], rows()]), "time,z [nm],F [nN]"), 1.0, range(2, 62)),
 }
 

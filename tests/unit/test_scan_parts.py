@@ -9,20 +9,9 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from contact1d.analysis.scan import (
-    Form,
-    ScanError,
-    autocovariance,
-    bounded,
-    independent,
-    is_two_sided,
-    named,
-    noise_by,
-    noise_in,
-    one_pass,
-    smooth,
-    take,
-)
+from contact1d.analysis.form import Form, named, smooth
+from contact1d.analysis.residual import autocovariance, bounded, independent, noise_by, noise_in
+from contact1d.analysis.scan import ScanError, is_two_sided, one_pass, take
 from tests.unit.test_scan import NOISE, WIDE, Array, curve, white, worn
 
 ROUND_OFF = 1e-12

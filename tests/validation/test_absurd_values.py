@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 import contact1d
-from contact1d.workflow.fit.fit import files_of
+from contact1d.workflow.fit.data import files_of
 from contact1d.workflow.fit.plan import read_fit
 
 

@@ -233,7 +233,8 @@ def fit(
     """
     folder = out or Path("fits") / file.stem
     with command("the fit", folder, "what is known was written", quiet, str(file)) as progress:
-        from contact1d.workflow.fit.many import TABLE, is_series
+        from contact1d.workflow.fit.data import is_series
+        from contact1d.workflow.fit.many import TABLE
         from contact1d.workflow.fit.plan import read_fit
         from contact1d.workflow.fit.report import lines
 

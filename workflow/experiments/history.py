@@ -144,7 +144,7 @@ def _above(trace: Trace) -> float:
     d, top = trace.displacement, int(trace.displacement.argmax())
     if len(set(trace.phase[max(top - 1, 0) : top + 2])) > 1 or not 0 < top < len(trace) - 1:
         return 0.0
-    return vertex(-trace.time, d, top, 1)[1] - float(d[top])
+    return vertex(trace.time, d, top, 1)[1] - float(d[top])
 
 
 def _slopes(trace: Trace) -> dict[str, Reading]:

@@ -37,27 +37,25 @@ class Segment:
     jump: tuple[int, int] | None
     approaches: bool
 
+    def _sides(self, beside: int = 0) -> tuple[Indices, Indices]:
+        """The points before and after the jump, but for so many beside it; without one there are none."""
+        before, after = self.jump or (-1, self.points.size)
+        return self.points[: max(0, before + 1 - beside)], self.points[after + beside :]
+
     @property
     def held(self) -> Indices:
         """Points of a contact that holds; without a jump none is known to."""
-        if self.jump is None:
-            return self.points[:0]
-        return self.points[self.jump[1] :] if self.approaches else self.points[: self.jump[0] + 1]
+        return self._sides()[self.approaches]
 
     @property
     def apart(self) -> Indices:
         """Points of bodies that are known to be apart."""
-        if self.jump is None:
-            return self.points[:0]
-        return self.points[: self.jump[0] + 1] if self.approaches else self.points[self.jump[1] :]
+        return self._sides()[not self.approaches]
 
     @property
     def compared(self) -> Indices:
         """Points that a model is compared with: all but those at the jump and beside it."""
-        if self.jump is None:
-            return self.points
-        before, after = self.jump
-        return np.concatenate([self.points[: max(0, before + 1 - BESIDE)], self.points[after + BESIDE :]])
+        return self.points if self.jump is None else np.concatenate(self._sides(BESIDE))
 
 
 @dataclass(frozen=True)

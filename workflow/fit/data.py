@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from glob import glob
+from itertools import islice
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +15,11 @@ from numpy.typing import NDArray
 from contact1d.workflow.errors import Contact1dError
 from contact1d.workflow.fit.curve import ForceCurve
 from contact1d.workflow.fit.plan import FitPlan
-from contact1d.workflow.scene.profile_file import NAME, require_names, rows_in
+from contact1d.workflow.scene.profile_file import NAME, require_names, rows_in, units_of
 from contact1d.workflow.scene.si_text import UnitTextError, si_value
+
+if TYPE_CHECKING:
+    from pandas import DataFrame, Series
 
 Array = NDArray[np.float64]
 COLUMNS = {
@@ -26,7 +32,12 @@ COLUMNS = {
     "y": ("y",),
 }
 """Names of columns, in small letters."""
+KNOWN = {word: name for name, words in COLUMNS.items() for word in words}
+WORDS, PLACE = ("segment", "curve"), ("x", "y")
+"""Columns that are no numbers, and those of a map's curve."""
 UNITS = {"z": "m", "d": "m", "F": "N"}
+PATTERN = "*.csv"
+"""Curves in a folder."""
 FORM = "name the columns with their units, z [nm] (or d [nm]) and F [nN]"
 APPROACH = ("approach", "trace", "extend", "loading", "annähern", "anfahren", "0")
 RETRACT = ("retract", "retrace", "withdraw", "unloading", "rückzug", "1")
@@ -53,39 +64,71 @@ class DataError(Contact1dError, ValueError):
     """A file that is no force curve; the message says where, why and what to do."""
 
 
-def curves(path: Path, plan: FitPlan) -> Iterator[tuple[str, tuple[float, float] | None, ForceCurve | DataError]]:
+NamedCurve = tuple[str, tuple[float, float] | None, ForceCurve | DataError]
+"""Name of a curve, its place (x, y) in a map, and the curve, or why it is none."""
+
+
+def files_of(plan: FitPlan) -> list[Path]:
+    """The files of data: one, all of a folder, or those of a pattern. Raises DataError where there is none."""
+    place = plan.folder / plan.fit.data
+    if place.is_dir():
+        found = sorted(place.glob(PATTERN))
+    elif any(sign in plan.fit.data for sign in "*?["):
+        found = sorted(plan.folder / name for name in glob(plan.fit.data, root_dir=plan.folder, recursive=True))
+    else:
+        found = [place]
+    if not found or not all(map(Path.is_file, found)):
+        raise DataError(f"{place}: no such file, and no folder with {PATTERN}; data is looked up beside the fit file")
+    return found
+
+
+def curves_of(plan: FitPlan) -> Iterator[NamedCurve]:
+    """All curves of a plan; what is wrong with a file stands for its curve. Raises DataError as `files_of`."""
+    for file in files_of(plan):
+        try:
+            yield from curves(file, plan)
+        except DataError as error:
+            yield file.stem, None, error
+
+
+def is_series(plan: FitPlan) -> bool:
+    """Whether the data of a plan are more than one curve."""
+    return len([*islice(curves_of(plan), 2)]) > 1
+
+
+def curves(path: Path, plan: FitPlan) -> Iterator[NamedCurve]:
     """The curves of a file: name, place (x, y) of a map, and the curve, or why it is none.
 
     Raises:
         DataError: nothing in the file can be read.
     """
-    table, units = _table(path)
-    if "F" not in table or not {"z", "d"} & table.keys():
-        raise DataError(f"{path}: its columns are not known; {FORM}")
-    along = "z" if "z" in table else "d"
-    if along == "z" and not math.isfinite(plan.stiffness):
-        raise DataError(
-            f"{path}: z is the position of the piezo, of which the instrument takes a part: give [instrument] "
-            "stiffness, or a column d, the indentation"
-        )
-    if without := [name for name in (along, "F") if not units.get(name)]:
-        raise DataError(f"{path}: {' and '.join(without)} without a unit; {FORM}")
-    index = table.get("curve")
-    starts = [0] if index is None else [0, *(np.flatnonzero(index[1:] != index[:-1]) + 1)]
-    for start, end in zip(starts, [*starts[1:], table["F"].size], strict=True):
-        part = {name: column[start:end] for name, column in table.items()}
-        name = path.stem if index is None else f"{part['curve'][0]}"
-        place = (float(part["x"][0]), float(part["y"][0])) if {"x", "y"} <= part.keys() else None
+    head = _head(path)
+    try:
+        table, units = _table(path, head)
+        along = "z" if "z" in table else "d"
+        if not {along, "F"} <= {*table}:
+            raise DataError(f"its columns are not known; {FORM}")
+        if along == "z" and not math.isfinite(plan.stiffness):
+            raise DataError(
+                "z is the position of the piezo, of which the instrument takes a part: give [instrument] stiffness, or "
+                "a column d, the indentation"
+            )
+        if without := [name for name in (along, "F") if not units.get(name)]:
+            raise DataError(f"{' and '.join(without)} without a unit; {FORM}")
+    except ValueError as error:
+        raise DataError(f"{path}: {error}") from None
+    maps = table.groupby((table["curve"] != table["curve"].shift()).cumsum()) if "curve" in table else [(1, table)]
+    for _, part in maps:
+        name = part["curve"].iloc[0] if "curve" in part else path.stem
+        place = next(part[[*PLACE]].itertuples(index=False, name=None), None) if {*PLACE} <= {*part} else None
         try:
             yield name, place, _curve(part, along, units, plan)
         except DataError as error:
             yield name, place, DataError(f"{path}: {error}")
 
 
-def _table(path: Path) -> tuple[dict[str, NDArray[np.generic]], dict[str, str]]:
-    """The columns that are known, by our names, the line of each point as `line`, and the units of the columns."""
-    import pandas
-
+def _head(path: Path) -> list[str]:
+    """The first lines of a file. Raises DataError where it is none."""
     try:
         size = path.stat().st_size
         if size > LARGEST:
@@ -94,77 +137,76 @@ def _table(path: Path) -> tuple[dict[str, NDArray[np.generic]], dict[str, str]]:
                 "map into files"
             )
         with path.open(encoding="utf-8-sig") as file:
-            head = [line for line, _ in zip(file, range(HEAD_LINES), strict=False)]
+            return [line.rstrip("\r\n") for line in islice(file, HEAD_LINES)]
     except UnicodeDecodeError:
         raise DataError(f"{path} is not UTF-8 text; export the curve as CSV") from None
     except OSError as error:
         raise DataError(f"{path} cannot be read: {error.strerror}") from None
-    rows = rows_in([line.rstrip("\r\n") for line in head])
-    found = next((row for row in rows if {"F"} < {*_known(row[1])}), None)
-    if found is None:
-        raise DataError(f"{path}: {'is empty' if not rows else 'no line has names of columns that are known'}; {FORM}")
-    line, names = found
+
+
+def _table(path: Path, head: list[str]) -> tuple[DataFrame, dict[str, str]]:
+    """The columns that are known, by our names, each row by its line in the file, and their units.
+
+    Raises ValueError.
+    """
+    from pandas import to_numeric
+
+    rows = rows_in(head)
+    start = next((i for i, (_, cells) in enumerate(rows) if "F" in (found := _known(cells)) and len(found) > 1), None)
+    if start is None:
+        raise DataError(f"{'is empty' if not rows else 'no line has names of columns that are known'}; {FORM}")
+    (line, names), (last, below) = rows[start], (*rows[start + 1 :], (0, []))[0]
     known = _known(names)
-    units = {
-        name: match[2].strip() for name, i in known.items() if (match := NAME.match(names[i].strip('" '))) and match[2]
-    }
-    below = next((cells for number, cells in rows if number > line), [])
-    try:
-        require_names(line + 1, below, names)
-    except ValueError as error:
-        raise DataError(f"{path}: {error}") from None
-    skip = line
-    if (
-        not units
-        and len(below) == len(names)
-        and all(cell.strip() and not any(map(str.isdigit, cell)) for cell in below)
-    ):
-        units = {name: below[i].strip('[]()" ') for name, i in known.items()}
-        skip += 1
+    require_names(last, below, names)
+    units, are_below = units_of(names, below, [*known.values()])
+    table = _rows(path, head, line, last if are_below else line, [*known.values()])
+    table = table.set_axis([*known], axis="columns").dropna(how="all")
+    for name in known:
+        if name in WORDS:
+            table[name] = table[name].astype(str).str.strip().str.lower()
+            continue
+        table[name] = to_numeric(table[name], errors="coerce")
+        bad = table.index[~np.isfinite(table[name])]
+        if bad.size and name not in PLACE:
+            raise DataError(f"line {bad[0]}: {name} is empty or no number; leave such lines out ({bad.size} in all)")
+    return table, dict(zip(known, units, strict=True))
+
+
+def _rows(path: Path, head: list[str], names: int, skip: int, columns: list[int]) -> DataFrame:
+    """The cells of some columns, by their line in the file, below line `skip`; that of the names is `names`.
+
+    Raises DataError.
+    """
+    from pandas import read_csv
+
     while skip < len(head) and not head[skip].strip():  # the first line says how many columns there are
         skip += 1
-    text = head[line - 1]
-    separator = next((one for one in ";\t," if one in text), r"\s+")
+    separator = next((one for one in ";\t," if one in head[names - 1]), r"\s+")
     decimal = "," if separator != "," and any("," in one and "." not in one for one in head[skip : skip + 5]) else "."
     try:
-        frame = pandas.read_csv(
-            path, sep=separator, decimal=decimal, skiprows=skip, header=None, usecols=sorted(known.values()),
-            comment="#", skip_blank_lines=False, encoding="utf-8-sig", low_memory=False,
+        rows = read_csv(
+            path, sep=separator, decimal=decimal, skiprows=skip, header=None, usecols=columns, comment="#",
+            skip_blank_lines=False, encoding="utf-8-sig", low_memory=False,
         )  # fmt: skip
     except ValueError:  # of pandas: no line at all, or lines of several lengths
-        raise DataError(f"{path}: the lines below the names have not as many cells as these; {FORM}") from None
-    lines = skip + 1 + np.arange(len(frame))
-    blank = frame.isna().all(axis=1).to_numpy()
-    table: dict[str, NDArray[np.generic]] = {"line": lines[~blank]}
-    for name, i in known.items():
-        column = frame[i][~blank]
-        if name not in ("segment", "curve"):
-            numbers = pandas.to_numeric(column, errors="coerce").to_numpy(dtype=float)
-            bad = np.flatnonzero(~np.isfinite(numbers))
-            if bad.size and name not in ("x", "y"):
-                at = lines[~blank][bad[0]]
-                raise DataError(
-                    f"{path}: line {at}: {name} is empty or no number; leave such lines out ({bad.size} in all)"
-                )
-            table[name] = numbers
-        else:
-            table[name] = column.astype(str).str.strip().str.lower().to_numpy()
-    return table, units
+        raise DataError(f"the lines below the names have not as many cells as these; {FORM}") from None
+    with path.open(encoding="utf-8-sig") as file:
+        lines = np.fromiter((i for i, one in enumerate(file, 1) if i > skip and not one.startswith("#")), int)
+    return rows[columns].set_axis(lines[: len(rows)], axis="index")
 
 
 def _known(cells: list[str]) -> dict[str, int]:
     """Where the columns are whose names are known; of several of one name the first."""
     found: dict[str, int] = {}
     for i, cell in enumerate(cells):
-        match = NAME.match(cell.strip().strip('"'))
-        word = match[1].lower() if match else ""
-        name = next((name for name, words in COLUMNS.items() if word in words), None)
+        match = NAME.match(cell.strip('" '))
+        name = KNOWN.get(match[1].lower()) if match else None
         if name is not None:
             found.setdefault(name, i)
     return found
 
 
-def _curve(table: dict[str, NDArray[np.generic]], along: str, units: dict[str, str], plan: FitPlan) -> ForceCurve:
+def _curve(table: DataFrame, along: str, units: dict[str, str], plan: FitPlan) -> ForceCurve:
     """One curve. Raises DataError."""
     reverse = plan.fit.reverse or ()
     columns = []
@@ -185,13 +227,13 @@ def _curve(table: dict[str, NDArray[np.generic]], along: str, units: dict[str, s
     turn = _turn(z, table.get("segment"))
     if math.isfinite(plan.stiffness) and along == "d":
         z = z + F / plan.stiffness
-    curve = ForceCurve(z, F, turn, np.asarray(table["line"], dtype=int))
+    curve = ForceCurve(z, F, turn, np.asarray(table.index, dtype=int))
     _require_signs(curve)
     _require_whole(curve, along)
     return curve
 
 
-def _turn(z: Array, segment: NDArray[np.generic] | None) -> int:
+def _turn(z: Array, segment: Series | None) -> int:
     """How many points approach; they come first. Raises DataError where a segment is missing."""
     if segment is not None:
         approaches = np.isin(segment, APPROACH)

@@ -7,7 +7,7 @@ import time
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from glob import glob
+from itertools import islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -18,7 +18,7 @@ from contact1d.files import AnyPath
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import Contact1dError, FolderError
 from contact1d.workflow.fit.curve import ForceCurve
-from contact1d.workflow.fit.data import DataError, curves
+from contact1d.workflow.fit.data import DataError, curves_of, files_of
 from contact1d.workflow.fit.forward import LAWS
 from contact1d.workflow.fit.plan import STIFFNESS, AnyFit, FitPlan, read_fit
 from contact1d.workflow.fit.solution import Fitted, compared, fitted, model_of
@@ -29,8 +29,6 @@ from contact1d.workflow.scene.read import plain_data
 
 LOAD_STEPS = 15
 """Of the run that the found scene is compared with."""
-PATTERN = "*.csv"
-"""Curves in a folder."""
 
 
 @dataclass
@@ -73,22 +71,8 @@ class Found:
 
     @property
     def scene(self) -> Scene:
-        """The base scene with the found values."""
-        return self.fit.subject.scene_with(self.fit.solution.values)
-
-
-def files_of(plan: FitPlan) -> list[Path]:
-    """The files of data: one, all of a folder, or those of a pattern. Raises DataError where there is none."""
-    place = plan.folder / plan.fit.data
-    if place.is_dir():
-        found = sorted(place.glob(PATTERN))
-    elif any(sign in plan.fit.data for sign in "*?["):
-        found = sorted(plan.folder / name for name in glob(plan.fit.data, root_dir=plan.folder, recursive=True))
-    else:
-        found = [place]
-    if not found or not all(map(Path.is_file, found)):
-        raise DataError(f"{place}: no such file, and no folder with {PATTERN}; data is looked up beside the fit file")
-    return found
+        """See `Fitted.scene`."""
+        return self.fit.scene
 
 
 def fit(
@@ -120,8 +104,7 @@ def fit(
     else:
         given = base.given if isinstance(base, Scene) else plain_data(base)
         plan = read_fit({**keys, "data": str(Path(str(data)).absolute()), "base": given})
-    (file, *more), progress = files_of(plan), progress or Silent()
-    read = list(curves(file, plan)) if not more else []
+    read, progress = [*islice(curves_of(plan), 2)], progress or Silent()
     if len(read) != 1:
         raise DataError(f"{plan.fit.data} has several curves: contact1d fit makes a table of them, fit_many in Python")
     curve = read[0][2]
@@ -132,7 +115,7 @@ def fit(
     out = None if folder is None else own_folder(Path(folder))
     begin, found = time.perf_counter(), None
     try:
-        for found in _steps(plan, file, curve, progress):
+        for found in _steps(plan, files_of(plan)[0], curve, progress):
             found.seconds = time.perf_counter() - begin
     finally:
         if out is not None and found is not None:
@@ -149,10 +132,10 @@ def _steps(plan: FitPlan, file: Path, curve: ForceCurve, progress: Progress) -> 
     _judge(found)
     progress.advance(1)
     yield found
-    for name in LAWS:
-        if name != own and _has(plan, name):
+    for law in LAWS.values():
+        if law != own and law.applies(plan.base) and any(map(law.depends_on, plan.fit.parameters)):
             with suppress(Contact1dError, ArithmeticError, np.linalg.LinAlgError):  # it does not describe the curve
-                found.others[name] = compared(found.fit, name)
+                found.others[law.name] = compared(found.fit, law)
         progress.advance(1)
     _judge_models(found)
     yield found
@@ -163,19 +146,6 @@ def _steps(plan: FitPlan, file: Path, curve: ForceCurve, progress: Progress) -> 
         found.warnings["run"] = f"the found scene does not run on LAMMPS: {error}"
     found.finished = True
     yield found
-
-
-def _has(plan: FitPlan, model: str) -> bool:
-    """Whether a base scene has what a contact model needs."""
-    if model == "Hertz":
-        return not all(key.startswith("adhesion.") for key in plan.fit.parameters)
-    adhesion = plan.base.adhesion
-    round_ = plan.base.bodies.profile.curvature_radius is not None
-    return (
-        plan.base.work_of_adhesion > 0.0
-        and (model != "DMT" or round_)
-        and (model != "Maugis" or bool(adhesion and adhesion.range))
-    )
 
 
 def _judge(found: Found) -> None:
@@ -211,8 +181,8 @@ DECISIVE = 10.0
 
 def _judge_models(found: Found) -> None:
     best, *_ = found.models
-    free = found.others.get("Hertz")
-    if free is not None and free.criterion < found.fit.criterion + DECISIVE:
+    free = [one for one in found.others.values() if not one.subject.model.needs]
+    if any(one.criterion < found.fit.criterion + DECISIVE for one in free):
         found.warnings["adhesion"] = (
             "contact without adhesion describes the curve about as well (criteria under models): W may be 0, which its "
             "interval leaves out; fit without [base.adhesion], too, and average more curves"
@@ -227,10 +197,9 @@ def _judge_models(found: Found) -> None:
 
 def _run(found: Found) -> None:
     """The found scene on LAMMPS along the displacements of the fit, beside the model."""
-    one, values = found.fit, found.fit.solution.values
-    branch, k = one.subject.branch(values), one.subject.value_of(STIFFNESS, values)
+    one, branch = found.fit, found.fit.branch
     F, d = branch.forces, branch.displacements
-    least = max(int(np.argmin(d + F / k)), int(np.argmin(d)))
+    least = max(int(np.argmin(branch.positions(one.values.get(STIFFNESS, math.inf)))), int(np.argmin(d)))
     top = float(np.interp(one.forces.max() - one.values[OFFSET], F[least:], d[least:]))
     places = np.linspace(top, d[least] + (top - d[least]) / LOAD_STEPS, LOAD_STEPS)
     scene = found.scene.with_({"experiment": {"kind": "path", "displacements": places.tolist()}})

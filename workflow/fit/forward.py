@@ -15,18 +15,21 @@ noise of the force is in no displacement.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from contact1d.workflow.laws.dugdale import Dugdale
-from contact1d.workflow.scene import Shape
+from contact1d.workflow.laws.jkr import elongation
+from contact1d.workflow.scene import Scene, Shape
 
 Array = NDArray[np.float64]
+RANGE = "adhesion.range"
+"""The key of h₀."""
 EDGES = 300
 """Edges a between which a branch is cubic, in geometric progression over SPAN."""
 THINNED, NODES, BEFORE = 3, 20, 40
@@ -42,9 +45,11 @@ DEEPEST = 8.0
 STEEP = 3.0
 """Slope of the continuation below the least z over that of the branch's first quarter: no model holds a contact there,
 so that a point there pulls the parameters back."""
+kept = lru_cache(maxsize=50)
+"""Bodies and branches are remembered: most steps of a fit change only what the measurement adds."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Body:
     """A profile's transform at EDGES: a, g and G [LU, LU, LU²], the profile f [LU], the radius at its apex [LU]."""
 
@@ -55,6 +60,7 @@ class Body:
     radius: float | None
 
     @classmethod
+    @kept
     def of(cls, shape: Shape, depth: float) -> Body:
         """The profile up to where its transform is DEEPEST times `depth` [LU], or to its end."""
         last = depth
@@ -62,30 +68,16 @@ class Body:
             last *= 0.5
         while last < shape.reach and float(shape.transformed(np.array([last]))[0]) < DEEPEST * depth:
             last *= 1.3
-        a = np.geomspace(SPAN, 1.0, EDGES) * min(last, shape.reach)
-        g = shape.transformed(a)
-        # ∫ g dx of a power between two edges is (g₂x₂ − g₁x₁)/(1 + n), n = log(g₂/g₁)/log(x₂/x₁).
+        a = np.append(0.0, np.geomspace(SPAN, 1.0, EDGES) * min(last, shape.reach))
+        g, f = (np.append(0.0, height(a[1:])) for height in (shape.transformed, shape.height))
+        # ∫ g dx of a power between two edges is (g₂x₂ − g₁x₁)/(1 + n), n = log(g₂/g₁)/log(x₂/x₁), up to the first as
+        # beyond it.
         with np.errstate(divide="ignore", invalid="ignore"):
-            n = np.where(g[:-1] > 0.0, np.log(g[1:] / g[:-1]) / np.log(a[1] / a[0]), math.inf)
-        steps = (g[1:] * a[1:] - g[:-1] * a[:-1]) / (1.0 + n)
-        first = a[0] * g[0] / (1.0 + n[0])
-        areas = first + np.concatenate(
-            [[0.0], np.cumsum(np.where(np.isfinite(n), steps, 0.5 * (g[1:] + g[:-1]) * np.diff(a)))]
-        )
-        zero = np.zeros(1)
-        columns = a, g, areas, shape.height(a)
-        a, g, areas, f = (np.concatenate([zero, one]) for one in columns)
+            n = np.where(g[1:-1] > 0.0, np.log(g[2:] / g[1:-1]) / np.log(a[2] / a[1]), math.inf)
+        n = np.append(n[0], n)
+        steps = np.where(np.isfinite(n), np.diff(g * a) / (1.0 + n), 0.5 * (g[1:] + g[:-1]) * np.diff(a))
+        areas = np.append(0.0, np.cumsum(steps))
         return cls(a, g, areas, f, shape.curvature_radius)
-
-    @cached_property
-    def height(self) -> CubicSpline:
-        """g of places x [LU]."""
-        return CubicSpline(self.edges, self.heights)
-
-    @cached_property
-    def drawn(self) -> CubicSpline:
-        """f of places x [LU]."""
-        return CubicSpline(self.edges, self.surface)
 
 
 @dataclass(frozen=True)
@@ -98,6 +90,10 @@ class Branch:
     displacements: Array
     forces: Array
 
+    def positions(self, stiffness: float) -> Array:
+        """z = d + F/k_c [LU] of the states, with an instrument of this stiffness [FU/LU]."""
+        return np.asarray(self.displacements + self.forces / stiffness)
+
     def at(self, positions: Array, stiffness: float, held: bool, pitch: float = 1e-300) -> Array:
         """F [FU] at positions z [LU] of an instrument of this stiffness [FU/LU], contact point at 0.
 
@@ -108,22 +104,20 @@ class Branch:
                 else it is lost there.
             pitch: distance of positions [LU], over which a contact is lost: of a step no least squares sees a slope.
         """
-        z = self.displacements + self.forces / stiffness
+        z = self.positions(stiffness)
         least = min(int(np.argmin(z)), z.size - 4)  # of an adhesion that is known to be too strong the rest matters not
         a, z, F = self.radii[least:], np.maximum.accumulate(z[least:]), self.forces[least:]
         found, below = _between(a, z, F, positions), positions < z[0]
         if not held:
             return np.asarray(np.clip(0.5 + (positions - z[0]) / pitch, 0.0, 1.0) * found)
-        if below.any():
-            at = np.searchsorted(F, F[0] + 0.25 * abs(F[0])) if F[0] < 0.0 else 1
-            at = int(min(max(at, 1), z.size - 1))
-            slope = STEEP * (F[at] - F[0]) / max(z[at] - z[0], 1e-300)
-            found = np.where(below, F[0] + slope * (positions - z[0]), found)
-        return np.asarray(found)
+        at = np.searchsorted(F, F[0] + 0.25 * abs(F[0])) if F[0] < 0.0 else 1
+        at = int(min(max(at, 1), z.size - 1))
+        slope = STEEP * (F[at] - F[0]) / max(z[at] - z[0], 1e-300)
+        return np.where(below, F[0] + slope * (positions - z[0]), found)
 
     def snap_out(self, stiffness: float) -> tuple[float, float]:
         """Position z [LU] and force [FU] at which the contact is lost."""
-        z = self.displacements + self.forces / stiffness
+        z = self.positions(stiffness)
         least = int(np.argmin(z))
         return float(z[least]), float(self.forces[least])
 
@@ -150,27 +144,23 @@ def _cubic(start: Array, end: Array, leaving: Array, arriving: Array) -> tuple[A
     return start, leaving, 3.0 * rise - 2.0 * leaving - arriving, leaving + arriving - 2.0 * rise
 
 
-Law = Callable[[Body, float, float, float], Branch]
-"""A contact model: the branch of a body, E* [FU/LU²], W [FU/LU] and the range h₀ [LU]."""
+@kept
+def jkr(body: Body, modulus: float, work: float, reach: float) -> Branch:
+    """Adhesion of no range."""
+    a, d = body.edges, body.heights - elongation(body.edges, modulus, work)
+    return Branch(a, d, 2.0 * modulus * (a * d - body.areas))
 
 
 def hertz(body: Body, modulus: float, work: float, reach: float) -> Branch:
     """Without adhesion."""
-    return Branch(body.edges, body.heights, 2.0 * modulus * (body.edges * body.heights - body.areas))
+    return jkr(body, modulus, 0.0, reach)
 
 
 def dmt(body: Body, modulus: float, work: float, reach: float) -> Branch:
     """Adhesion of long range, which adds 2πWR to the load."""
     assert body.radius is not None
     free = hertz(body, modulus, work, reach)
-    return Branch(free.radii, free.displacements, free.forces - 2.0 * math.pi * work * body.radius)
-
-
-def jkr(body: Body, modulus: float, work: float, reach: float) -> Branch:
-    """Adhesion of no range."""
-    a = body.edges
-    d = body.heights - np.sqrt(2.0 * math.pi * work / modulus * a)
-    return Branch(a, d, 2.0 * modulus * (a * d - body.areas))
+    return replace(free, forces=free.forces - 2.0 * math.pi * work * body.radius)
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,16 +183,17 @@ class Zone(Dugdale):
         return np.interp(x, *self.areas)
 
 
+@kept
 def maugis(body: Body, modulus: float, work: float, reach: float) -> Branch:
     """Dugdale's stress σ₀ = W/h₀ over the range h₀ around the contact (`laws.dugdale`), by a rising path.
 
     Its states before contact, a = 0, are explicit in c; of a contact s = √(c² − a²) is a root for each a.
     """
     a = np.concatenate([[0.0], body.edges[1::THINNED]])
+    profile, surface = (Curve(CubicSpline(body.edges, heights)) for heights in (body.heights, body.surface))
     law = Zone(
-        Curve(body.height), Curve(body.drawn), modulus, work / reach, reach, float(a[-1]), NODES, ROOT,
-        areas=(body.edges, body.areas),
-    )  # fmt: skip
+        profile, surface, modulus, work / reach, reach, float(a[-1]), NODES, ROOT, areas=(body.edges, body.areas)
+    )
     s = law.widths(a)
     held = law.states(a, s)
     c = s[0] * np.linspace(0.0, 1.0, BEFORE, endpoint=False)
@@ -210,4 +201,44 @@ def maugis(body: Body, modulus: float, work: float, reach: float) -> Branch:
     return Branch(*(np.concatenate(both) for both in zip(early, late, strict=True)))
 
 
-LAWS: Mapping[str, Law] = {"Hertz": hertz, "DMT": dmt, "Maugis": maugis, "JKR": jkr}
+@dataclass(frozen=True)
+class ContactModel:
+    """A contact model.
+
+    Attributes:
+        name: what it is called.
+        branch: its states, of a body, E* [FU/LU²], W [FU/LU] and the range h₀ [LU].
+        needs: what a scene must have for it: a work of adhesion W, the range h₀ of that, the radius R of the body.
+        limits: the models between which it lies, whose fits are the starts of its own, which takes long.
+    """
+
+    name: str
+    branch: Callable[[Body, float, float, float], Branch]
+    needs: frozenset[str] = frozenset()
+    limits: tuple[str, ...] = ()
+
+    def applies(self, scene: Scene) -> bool:
+        """Whether a scene has what it needs."""
+        adhesion = scene.adhesion
+        known = {
+            "W": scene.work_of_adhesion,
+            "h₀": adhesion and adhesion.range,
+            "R": scene.bodies.profile.curvature_radius,
+        }
+        return all(known[name] for name in self.needs)
+
+    def depends_on(self, key: str) -> bool:
+        """Whether its forces depend on the number at a key of a scene."""
+        return not key.startswith("adhesion.") or ("h₀" if key == RANGE else "W") in self.needs
+
+
+LAWS = {
+    law.name: law
+    for law in (
+        ContactModel("Maugis", maugis, frozenset({"W", "h₀"}), limits=("JKR", "DMT")),
+        ContactModel("JKR", jkr, frozenset({"W"})),
+        ContactModel("DMT", dmt, frozenset({"W", "R"})),
+        ContactModel("Hertz", hertz),
+    )
+}
+"""By name; the first that applies is the one that a scene means."""

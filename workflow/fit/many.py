@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,17 +15,18 @@ from contact1d.analysis import plots
 from contact1d.files import AnyPath, whole
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import Contact1dError
-from contact1d.workflow.fit.curve import ForceCurve
-from contact1d.workflow.fit.data import DataError, curves
-from contact1d.workflow.fit.fit import files_of, own_folder
+from contact1d.workflow.fit.data import DataError, NamedCurve, curves_of
+from contact1d.workflow.fit.fit import own_folder
 from contact1d.workflow.fit.plan import AnyFit, FitPlan, read_fit
 from contact1d.workflow.fit.report import entry
 from contact1d.workflow.fit.solution import fitted, model_of
 from contact1d.workflow.runs.processors import cores, pool
 from contact1d.workflow.units import scale_of
 
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
 TABLE = "fits.csv"
-Job = tuple[str, tuple[float, float] | None, ForceCurve | DataError]
 
 
 @dataclass(frozen=True)
@@ -49,7 +48,7 @@ def fit_many(source: AnyFit, folder: AnyPath, workers: int | None = None, progre
     """
     plan, progress, rows = read_fit(source), progress or Silent(), list[dict[str, Any]]()
     out = own_folder(Path(folder))
-    jobs = list(_jobs(plan))
+    jobs = list(curves_of(plan))
     progress.phase("fits", len(jobs), "curve")
     try:
         with pool(workers or cores()) as executor:
@@ -61,22 +60,7 @@ def fit_many(source: AnyFit, folder: AnyPath, workers: int | None = None, progre
     return Fits(out, dict(Counter(row["status"] for row in rows)))
 
 
-def is_series(plan: FitPlan) -> bool:
-    """Whether the data are more than one curve."""
-    files = files_of(plan)
-    return len(files) > 1 or len(list(islice(curves(files[0], plan), 2))) > 1
-
-
-def _jobs(plan: FitPlan) -> Iterator[Job]:
-    """All curves; what is wrong with a file stands for its curve."""
-    for file in files_of(plan):
-        try:
-            yield from curves(file, plan)
-        except DataError as error:
-            yield file.stem, None, error
-
-
-def attempt(plan: FitPlan, job: Job) -> dict[str, Any]:
+def attempt(plan: FitPlan, job: NamedCurve) -> dict[str, Any]:
     """The line of the table of one curve: what it says, or why it says nothing."""
     name, place, curve = job
     row: dict[str, Any] = {"curve": name, "status": "done", "reason": ""}
@@ -98,29 +82,29 @@ def attempt(plan: FitPlan, job: Job) -> dict[str, Any]:
 
 def _write(plan: FitPlan, rows: Sequence[dict[str, Any]], folder: Path) -> None:
     """The table and the figures."""
-    columns = list(dict.fromkeys(name for row in rows for name in row))
-    with whole(folder / TABLE) as part, part.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, columns, restval="", lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    from pandas import DataFrame
+
+    table = DataFrame(rows, dtype=object)
+    with whole(folder / TABLE) as part:
+        table.to_csv(part, index=False, lineterminator="\n")
     for key in plan.fit.parameters:
-        name = next((name for name in columns if name.startswith(f"{key} [")), None)
-        done = [row for row in rows if name in row]
-        if name is not None and len(done) > 1:
-            _draw(plan, key, name, done, folder)
+        for name in (name for name in table if name.startswith(f"{key} [")):
+            done = table[table[name].notna()]
+            if len(done) > 1:
+                _draw(plan, key, name, done, folder)
 
 
-def _draw(plan: FitPlan, key: str, name: str, rows: Sequence[dict[str, Any]], folder: Path) -> None:
+def _draw(plan: FitPlan, key: str, name: str, done: DataFrame, folder: Path) -> None:
     """Histogram of a parameter, and beside it its map where the curves have places."""
-    values = np.array([row[name] for row in rows])
+    values = done[name].to_numpy(dtype=float)
     factor, unit = scale_of(float(np.median(values)), name.rpartition("[")[2].rstrip("]"))
-    label, has_map = f"{key.rpartition('.')[2].replace('_', ' ')} ({unit})", "x" in rows[0]
+    label, has_map = f"{key.rpartition('.')[2].replace('_', ' ')} ({unit})", "x" in done
     figure = plots.new_figure((10.0 if has_map else 5.0, 4.0))
     axes = figure.subplots(1, 1 + has_map, squeeze=False)[0]
     axes[0].hist(factor * values, bins="auto", color="#0072B2")
     plots.describe(axes[0], label, "curves", plan.fit.title, zero=False)
     if has_map:
-        x, y = (np.array([row[place] for row in rows]) for place in "xy")
+        x, y = (done[place].to_numpy(dtype=float) for place in "xy")
         shown = axes[1].scatter(x, y, c=factor * values, marker="s", cmap="viridis")
         axes[1].set_aspect("equal")
         plots.describe(axes[1], "x", "y", zero=False)

@@ -15,14 +15,14 @@ American Statistical Association 72 (1977) 320.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_banded, solve_triangular
 from scipy.optimize import brentq
-from scipy.special import stdtr
+from scipy.special import softmax, stdtr
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -42,57 +42,43 @@ class Noise:
 
     Attributes:
         share, memory: s and τ [points].
-        filters: of each run, the decay and the gain of its points' prediction, and their standard deviations, (n,).
+        decay: of m from the point before, (n,); 0 at the first point of a run.
+        gain, deviation: of each point's prediction, and its standard deviation, (n,).
     """
 
     share: float
     memory: float
-    filters: tuple[tuple[Array, Array, Array], ...]
+    decay: Array
+    gain: Array
+    deviation: Array
 
     def whitened(self, columns: Array) -> Array:
-        """Columns (n, m) [any unit] of all kept points, run after run, as independent numbers of that unit."""
-        parts, start = [], 0
-        for decay, gain, deviation in self.filters:
-            part = columns[start : start + decay.size]
-            start += decay.size
-            if self.share == 0.0 or len(part) < 2:
-                parts.append(part / deviation[:, None])
-                continue
-            # x_i = (1 − K_i) φ_i x_{i−1} + K_i y_i is what is known of m after point i, φ_{i+1} x_i its prediction.
-            band = np.zeros((2, decay.size))
-            band[0] = 1.0
-            band[1, :-1] = -((1.0 - gain) * decay)[1:]
-            known = solve_banded((1, 0), band, gain[:, None] * part, check_finite=False)
-            predicted = np.zeros_like(part)
-            predicted[1:] = decay[1:, None] * known[:-1]
-            parts.append((part - predicted) / deviation[:, None])
-        return np.concatenate(parts)
+        """A column (n,) or columns (n, m) [any unit] of all kept points, as independent numbers of that unit."""
+        # x_i = (1 − K_i) φ_i x_{i−1} + K_i y_i is what is known of m after point i, φ_{i+1} x_i its prediction.
+        band = np.stack([np.ones_like(self.gain), -np.roll((1.0 - self.gain) * self.decay, -1)])
+        known = solve_banded((1, 0), band, (self.gain * columns.T).T, check_finite=False).T
+        predicted = self.decay * np.roll(known, 1, axis=-1)
+        return np.asarray(((columns.T - predicted) / self.deviation).T)
 
     @property
     def log_determinant(self) -> float:
         """log |V|, V of unit variance."""
-        return 2.0 * sum(float(np.log(deviation).sum()) for _, _, deviation in self.filters)
+        return 2.0 * float(np.log(self.deviation).sum())
 
 
 def noises(pairs: Sequence[tuple[float, float]], runs: Sequence[Indices]) -> list[Noise]:
     """The noises of pairs (s, τ) for runs of kept points, each given by the indices of its points."""
-    share, memory = (np.array(values)[:, None] for values in zip(*pairs, strict=True))
-    tables = []
-    for run in runs:
-        decay = np.exp(-np.diff(run, prepend=run[:1]) / memory)
-        gain, variance = np.empty_like(decay), np.empty_like(decay)
-        left = share[:, 0].copy()  # variance of m before the first point
-        for i in range(run.size):
-            if i:
-                left = decay[:, i] ** 2 * left + share[:, 0] * (1.0 - decay[:, i] ** 2)
-            variance[:, i] = left + 1.0 - share[:, 0]
-            gain[:, i] = left / variance[:, i]
-            left = left * (1.0 - gain[:, i])
-        tables.append((decay, gain, np.sqrt(variance)))
-    return [
-        Noise(one_share, one_memory, tuple((d[j], g[j], v[j]) for d, g, v in tables))
-        for j, (one_share, one_memory) in enumerate(pairs)
-    ]
+    share, memory = np.array(pairs).T
+    gaps = np.concatenate([np.diff(run.astype(np.float64), prepend=-math.inf) for run in runs])
+    decay = np.exp(-gaps[:, None] / memory)
+    gain, variance, left = np.empty_like(decay), np.empty_like(decay), share
+    for i, kept in enumerate(decay**2):
+        left = kept * left + share * (1.0 - kept)
+        variance[i] = left + 1.0 - share
+        gain[i] = left / variance[i]
+        left = left * (1.0 - gain[i])
+    columns = zip(decay.T, gain.T, np.sqrt(variance.T), strict=True)
+    return [Noise(*pair, *column) for pair, column in zip(pairs, columns, strict=True)]
 
 
 @dataclass(frozen=True)
@@ -154,10 +140,6 @@ class Uncertain:
         """The most likely one."""
         return max(self.judged, key=lambda one: one.weight)
 
-    def mean(self, values: Sequence[float]) -> float:
-        """The mean of a value of each."""
-        return float(sum(one.weight * value for one, value in zip(self.judged, values, strict=True)))
-
     def quantile(self, index: int, level: float) -> float:
         """Above its value under the most likely noise a parameter is by at most this much, with a probability `level`.
 
@@ -190,32 +172,20 @@ def uncertain(runs: Sequence[Indices], residuals: Array, slopes: Array, prior: A
     for _ in range(looks):
         pairs = [(float(s), float(m)) for s in shares for m in (memories if s > 0.0 else memories[:1])]
         found = [_judge(noise, residuals, slopes, prior) for noise in noises(pairs, runs)]
-        logs = np.array([log for _, log in found])
         # White noise stands once for all memories.
-        weights = np.exp(logs - logs.max()) * [1.0 if s > 0.0 else memories.size for s, _ in pairs]
-        likely = [pair for pair, weight in zip(pairs, weights, strict=True) if weight > UNLIKELY * weights.max()]
-        shares, memories = (
-            _between(np.array(values), grid)
-            for values, grid in zip(zip(*likely, strict=True), (shares, memories), strict=True)
+        weights = softmax(
+            [log + math.log(1 if s > 0.0 else memories.size) for (_, log), (s, _) in zip(found, pairs, strict=True)]
         )
-    weights /= weights.sum()
+        likely = [pair for pair, weight in zip(pairs, weights, strict=True) if weight > UNLIKELY * weights.max()]
+        of_shares, of_memories = map(np.array, zip(*likely, strict=True))
+        shares, memories = _finer(of_shares, shares, np.linspace), _finer(of_memories, memories, np.geomspace)
     freedom = max(1.0, residuals.size - float(slopes.shape[1] - prior.shape[0]))
-    judged = (
-        Judged(one.noise, one.deviation, one.step, one.covariance, float(w))
-        for (one, _), w in zip(found, weights, strict=True)
-    )
+    judged = (replace(one, weight=float(weight)) for (one, _), weight in zip(found, weights, strict=True))
     return Uncertain(tuple(judged), freedom)
 
 
-def _between(likely: Array, grid: Array) -> Array:
-    """As many places as before between the neighbours of those that are likely."""
-    low, high = (int(np.searchsorted(grid, end)) for end in (likely.min(), likely.max()))
-    low, high = max(0, low - 1), min(grid.size - 1, high + 1)
-    if high - low >= grid.size - 2:
-        return grid
-    ends = grid[low], grid[high]
-    return (
-        np.linspace(*ends, grid.size)
-        if ends[0] == 0.0 or ends[1] == 1.0 or grid[-1] == 1.0
-        else np.geomspace(*ends, grid.size)
-    )
+def _finer(likely: Array, grid: Array, spaced: Callable[..., Array]) -> Array:
+    """As many places as before, so spaced, between the neighbours of those that are likely."""
+    low = max(0, int(np.searchsorted(grid, likely.min())) - 1)
+    high = min(grid.size - 1, int(np.searchsorted(grid, likely.max())) + 1)
+    return grid if high - low >= grid.size - 2 else spaced(grid[low], grid[high], grid.size)

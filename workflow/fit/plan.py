@@ -31,6 +31,11 @@ LOAD = {"kind": "load", "force": "1 nN"}
 """Stands in for the experiment that a base scene has not."""
 
 
+SOUGHT = ("bodies.", "material.", "adhesion.")
+UNITS = ("bodies.spacing", "material.length_unit", "material.force_unit")
+"""Tables whose numbers a message offers as parameters, and those of their numbers that are none of a contact."""
+
+
 class Instrument(Table):
     """What pushes the contact."""
 
@@ -74,11 +79,15 @@ class FitPlan:
     known: Mapping[str, float]
 
     @cached_property
-    def units(self) -> dict[str, str]:
-        """The unit in SI of each number of the scene, by dotted key."""
+    def numbers(self) -> dict[str, Place]:
+        """The numbers of the scene, by dotted key."""
         tables = Place(self.base.model_dump(by_alias=True, exclude_none=True), WHOLE)
-        found = {place.path: place.unit for place in tables if place.allowed.quantity and place.is_number}
-        return {key: unit.text[0] if unit.text else in_si(unit.name) for key, unit in found.items()}
+        return {place.path: place for place in tables if place.allowed.quantity and place.is_number}
+
+    def unit(self, key: str) -> str:
+        """The unit in SI of a number of the scene."""
+        unit = self.numbers[key].unit
+        return unit.text[0] if unit.text else in_si(unit.name)
 
     @property
     def stiffness(self) -> float:
@@ -147,13 +156,10 @@ def _of_parameters(plan: FitPlan) -> list[Problem]:
     """What is wrong with the names of parameters."""
     problems, names = [], plan.fit.parameters
     for i, name in enumerate(names):
-        must = "is no number of the base scene" if name not in plan.units else ""
+        must = "is no number of the base scene" if name not in plan.numbers else ""
         must = "is named twice" if name in names[:i] else must
         if must:
-            known = [key for key in plan.units if key.split(".")[0] in ("bodies", "material", "adhesion")]
-            left = [
-                key for key in known if key not in ("bodies.spacing", "material.length_unit", "material.force_unit")
-            ]
+            left = [key for key in plan.numbers if key.startswith(SOUGHT) and key not in UNITS]
             hint = f"give it there, as a first guess; numbers of the scene are {', '.join(left)}"
             problems.append(Problem(f"parameters[{i}]", must, shown(name), hint))
     return problems

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Iterable
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ import numpy as np
 
 from contact1d.analysis import plots
 from contact1d.analysis.chart import BLACK, COMPRESSION, TENSION, THEORY, Axis, Chart, Panel, Series
+from contact1d.analysis.theory.adhesion import MaugisDugdale
 from contact1d.files import write_whole
 from contact1d.workflow.body.cases import ASSUMED_RANGE
 from contact1d.workflow.fit import curve as curves
@@ -29,17 +31,23 @@ UNITS = {POINT: "m", OFFSET: "N", STIFFNESS: "N/m"}
 
 def write(found: Found, folder: Path) -> None:
     """Write fit.json, curve.csv, scene.toml and fit.png, each whole or not at all."""
+    from pandas import DataFrame
+
     one = found.fit
     write_whole(folder / RECORD, json.dumps(document(found), indent=2, ensure_ascii=False) + "\n")
-    write_whole(folder / "scene.toml", tables_as_toml(found.scene.tables))
-    kept, rows = (
-        set(one.solution.problem.kept.tolist()),
-        ["line,segment,position [m],force [N],predicted force [N],compared"],
+    write_whole(folder / "scene.toml", tables_as_toml(one.scene.tables))
+    points = np.arange(one.forces.size)
+    table = DataFrame(
+        {
+            "line": one.curve.lines,
+            "segment": np.where(points < one.curve.turn, "approach", "retract"),
+            "position [m]": one.curve.positions,
+            "force [N]": one.curve.forces,
+            "predicted force [N]": one.forces,
+            "compared": np.where(np.isin(points, one.solution.problem.kept), "yes", "no"),
+        }
     )
-    for i, numbers in enumerate(zip(one.curve.positions, one.curve.forces, one.forces, strict=True)):
-        way, used = "approach" if i < one.curve.turn else "retract", "yes" if i in kept else "no"
-        rows.append(",".join([str(one.curve.lines[i]), way, *(f"{number:.9g}" for number in numbers), used]))
-    write_whole(folder / TABLE, "\n".join(rows) + "\n")
+    write_whole(folder / TABLE, table.to_csv(index=False, float_format="%.9g", lineterminator="\n"))
     plots.save_figure(plots.draw(chart(found).written(scale_of)), folder / FIGURE)
 
 
@@ -54,11 +62,11 @@ def document(found: Found) -> dict[str, Any]:
         "status": "done" if found.finished else "interrupted",
         "data": str(found.file),
         "model": one.model,
-        "parameters": {key: entry(one, key) for key in plan.fit.parameters if key in one.values},
+        "parameters": entries(one, plan.fit.parameters),
         "fitted": modulus_words(one),
         "contact_modulus": _modulus(one),
-        "calibrations": {key: entry(one, key) for key in one.values if key not in (*plan.fit.parameters, *UNITS)},
-        **{key: entry(one, key) for key in UNITS if key in one.values},
+        "calibrations": entries(one, [key for key in one.values if key not in (*plan.fit.parameters, *UNITS)]),
+        **entries(one, UNITS),
         "noise": {
             "value": best.deviation, "unit": "N", "share_with_memory": best.noise.share, "memory": best.noise.memory,
         },
@@ -78,7 +86,7 @@ def document(found: Found) -> dict[str, Any]:
             name: {
                 "criterion_above_least": other.criterion - least,
                 "reduced_chi_squared": other.misfit,
-                "parameters": {key: entry(other, key) for key in plan.fit.parameters if key in other.values},
+                "parameters": entries(other, plan.fit.parameters),
             }
             for name, other in found.models.items()
         },
@@ -99,8 +107,13 @@ def document(found: Found) -> dict[str, Any]:
 
 def entry(one: Fitted, key: str) -> dict[str, Any]:
     """Value, interval and unit of an unknown."""
-    found: dict[str, Any] = {"value": one.values[key], "unit": UNITS.get(key) or one.plan.units[key]}
+    found: dict[str, Any] = {"value": one.values[key], "unit": UNITS.get(key) or one.plan.unit(key)}
     return found | ({"interval": list(one.intervals[key])} if key in one.intervals else {})
+
+
+def entries(one: Fitted, keys: Iterable[str]) -> dict[str, Any]:
+    """The same of those of some keys that a fit has."""
+    return {key: entry(one, key) for key in keys if key in one.values}
 
 
 def modulus_words(one: Fitted) -> str:
@@ -116,25 +129,19 @@ def modulus_words(one: Fitted) -> str:
 
 def _modulus(one: Fitted) -> dict[str, Any]:
     """E*, and its interval where one modulus is fitted."""
-    keys, values = [key for key in one.intervals if key.startswith("material.")], one.solution.values
-    found = []
-    for end in (None, *(one.intervals[keys[0]] if len(keys) == 1 else ())):
-        tried = [
-            end if end is not None and name == keys[0] else value
-            for name, value in zip(one.subject.names, values, strict=True)
-        ]
-        found.append(modulus_of(one.subject.scene_with(tried)))
-    return {"value": found[0], "unit": "Pa"} | ({"interval": sorted(found[1:])} if found[1:] else {})
+    keys, scene = [key for key in one.intervals if key.startswith("material.")], one.scene
+    ends = one.intervals[keys[0]] if len(keys) == 1 else ()
+    moved = sorted(modulus_of(scene.moved(keys[0], end / one.values[keys[0]])) for end in ends)
+    return {"value": modulus_of(scene), "unit": "Pa"} | ({"interval": moved} if moved else {})
 
 
 def _tabor(one: Fitted) -> dict[str, Any] | None:
     """µ = (R W²/(E*² h₀³))^(1/3); None without adhesion or a radius."""
-    scene = one.subject.scene_with(one.solution.values)
-    radius, adhesion = scene.bodies.profile.curvature_radius, scene.adhesion
+    radius, adhesion = one.scene.bodies.profile.curvature_radius, one.scene.adhesion
     if adhesion is None or radius is None:
         return None
     reach = adhesion.range or ASSUMED_RANGE
-    value = (radius * adhesion.work**2 / (modulus_of(scene) ** 2 * reach**3)) ** (1.0 / 3.0)
+    value = MaugisDugdale(radius, modulus_of(one.scene), adhesion.work, reach).tabor
     return {"value": value, "range": reach, "assumed": not adhesion.range}
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import differential_evolution, least_squares
 
-from contact1d.workflow.fit.noise import Indices, Judged, Noise, Uncertain, uncertain
+from contact1d.workflow.fit.noise import Indices, Judged, Noise, Uncertain, noises, uncertain
 
 Array = NDArray[np.float64]
 STEP = 1e-4
@@ -102,11 +102,16 @@ class Problem:
         return (self.forces - self.model(self.values(u)))[self.kept]
 
     def slopes(self, u: Array, free: Sequence[int] | None = None) -> Array:
-        """∂(predicted force)/∂u of the compared points, (n, p), by central differences."""
-        columns = []
-        for i in range(u.size) if free is None else free:
-            ends = [self.model(self.values(u + side * STEP * (np.arange(u.size) == i))) for side in (-1.0, 1.0)]
-            columns.append(((ends[1] - ends[0]) / (2.0 * STEP))[self.kept])
+        """∂(predicted force)/∂u of the compared points, (n, p)."""
+        return self.derivative(self.model, u, free)[self.kept]
+
+    def derivative(self, of: Model, u: Array, free: Sequence[int] | None = None) -> Array:
+        """∂/∂u of what follows from the values of the unknowns, (n, p), by central differences."""
+        steps = STEP * np.eye(u.size)
+        columns = [
+            (of(self.values(u + steps[i])) - of(self.values(u - steps[i]))) / (2.0 * STEP)
+            for i in (range(u.size) if free is None else free)
+        ]
         return np.column_stack(columns)
 
     def prior(self, u: Array) -> Array:
@@ -121,7 +126,7 @@ class Problem:
         return np.array(rows).reshape(-1, u.size + 1)
 
     def least(
-        self, u: Array, noise: Noise | None, deviation: float, fixed: int | None = None, robust: bool = False
+        self, u: Array, noise: Noise, deviation: float, fixed: int | None = None, robust: bool = False
     ) -> tuple[Array, float]:
         """The least sum of squares from u on, and where; `fixed` is the index of an unknown that stays."""
         free = [i for i in range(u.size) if i != fixed]
@@ -133,13 +138,12 @@ class Problem:
 
         def rows(part: Array) -> Array:
             full = whole(part)
-            data = self.residuals(full)[:, None]
-            return np.concatenate([self._white(noise, data)[:, 0] / deviation, self.prior(full)[:, -1]])
+            return np.concatenate([noise.whitened(self.residuals(full)) / deviation, self.prior(full)[:, -1]])
 
         def jacobian(part: Array) -> Array:
             full = whole(part)
             return -np.concatenate(
-                [self._white(noise, self.slopes(full, free)) / deviation, self.prior(full)[:, :-1][:, free]]
+                [noise.whitened(self.slopes(full, free)) / deviation, self.prior(full)[:, :-1][:, free]]
             )
 
         ends = np.array([LIMIT if one.positive else math.inf for one in self.unknowns])[free]
@@ -149,10 +153,6 @@ class Problem:
             rows, np.clip(u[free], -ends, ends), jacobian, (-ends - EDGE, ends + EDGE), x_scale="jac", **options
         )
         return whole(found.x), 2.0 * float(found.cost)
-
-    @staticmethod
-    def _white(noise: Noise | None, columns: Array) -> Array:
-        return columns if noise is None else noise.whitened(columns)
 
 
 @dataclass(frozen=True)
@@ -193,6 +193,9 @@ def first_look(problem: Problem, sought: Sequence[int], complete: Callable[[Arra
         u[list(sought)] = place
         return complete(u)
 
+    if not sought:
+        return [whole(np.zeros(0))]
+
     def misfit(place: Array) -> float:
         total = float(np.abs(problem.residuals(whole(place))).sum())
         return total if total < 1e100 else 1e100  # of NaN, too; and the square of it is a number
@@ -214,10 +217,10 @@ def solved(problem: Problem, starts: Sequence[Array], judges: bool = True) -> So
         starts: places.
         judges: whether points far outside the noise are taken out.
     """
-    tries = []
+    tries, (white,) = [], noises([(0.0, 1.0)], problem.runs)
     for start in starts:
         spread = float(np.median(np.abs(problem.residuals(start)))) or 1.0
-        u, _ = problem.least(start, None, spread, robust=True)
+        u, _ = problem.least(start, white, spread, robust=True)
         tries.append((float(np.abs(problem.residuals(u)).sum()), u))
     _, u = min(tries, key=lambda one: one[0])
     outliers: list[int] = []
@@ -241,7 +244,7 @@ def _noise_at(problem: Problem, u: Array, looks: int = 2) -> Uncertain:
 
 def _outliers(problem: Problem, u: Array, judged: Judged) -> Indices:
     """Points far outside the noise, the largest of neighbours only."""
-    white = np.abs(judged.noise.whitened(problem.residuals(u)[:, None])[:, 0]) / judged.deviation
+    white = np.abs(judged.noise.whitened(problem.residuals(u))) / judged.deviation
     kept = problem.kept
     far = np.flatnonzero(white > OUTLIER)
     return np.array([kept[i] for i in far if white[i] >= white[max(0, i - 2) : i + 3].max()], dtype=np.intp)

@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 
 from contact1d.workflow.errors import Contact1dError
 from contact1d.workflow.fit.curve import ForceCurve, Indices
-from contact1d.workflow.fit.forward import LAWS
+from contact1d.workflow.fit.forward import LAWS, RANGE, Branch, ContactModel
 from contact1d.workflow.fit.plan import STIFFNESS, FitPlan
-from contact1d.workflow.fit.search import STEP, TWO_SIDED, Solution, Unknown, first_look, interval, solved
-from contact1d.workflow.fit.subject import OFFSET, POINT, Subject, fields, modulus_of
+from contact1d.workflow.fit.search import TWO_SIDED, Solution, Unknown, first_look, interval, solved
+from contact1d.workflow.fit.subject import OFFSET, POINT, Subject, modulus_of
+from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
 SOFTEST = 0.4
@@ -25,8 +26,8 @@ FEWEST_HELD = 15
 """Points in contact."""
 ALIKE = 1e-6
 """Least eigenvalue of the scaled information matrix below which parameters trade off against each other."""
-RANGE, LIMITS, RANGES, BEST = "adhesion.range", ("JKR", "DMT"), (-4.0, -2.5, -1.0, 0.5, 2.0, 3.5), 3
-"""Of Maugis's contact: its range, its two limits, ranges tried (log of the given one), and how many of them go on."""
+RANGES, BEST = (-4.0, -2.5, -1.0, 0.5, 2.0, 3.5), 3
+"""Of a model between two limits: ranges tried (log of the given one), and how many of these starts go on."""
 EXACT = 1e-6
 """± over the value of what is given without one."""
 WIDEST = 1.0
@@ -45,23 +46,36 @@ class Fitted:
 
     Attributes:
         plan, curve: of which.
-        model: the contact model.
-        subject: scene, instrument and unknowns.
+        subject: scene, contact model, instrument and unknowns.
         solution: where the fit settled.
         intervals: of 95 %, for each of the fitted parameters and the contact point.
     """
 
     plan: FitPlan
     curve: ForceCurve
-    model: str
     subject: Subject
     solution: Solution
     intervals: Mapping[str, tuple[float, float]]
+
+    @property
+    def model(self) -> str:
+        """The name of the contact model."""
+        return self.subject.model.name
 
     @cached_property
     def values(self) -> dict[str, float]:
         """Of all unknowns, in units of the scene."""
         return dict(zip(self.subject.names, self.solution.values, strict=True))
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The base scene with the found values."""
+        return self.subject.scene_with(self.solution.values)
+
+    @cached_property
+    def branch(self) -> Branch:
+        """The states of the contact."""
+        return self.subject.parts(self.solution.values)[0]
 
     @cached_property
     def forces(self) -> Array:
@@ -75,7 +89,7 @@ class Fitted:
         spread = np.sqrt(np.diag(covariance))
         return np.asarray(covariance / np.outer(spread, spread))
 
-    @property
+    @cached_property
     def criterion(self) -> float:
         """Bayes's information criterion, −2 log L + p log n: the lower the better.
 
@@ -83,27 +97,22 @@ class Fitted:
         """
         best, problem = self.solution.best, self.solution.problem
         n = problem.kept.size
-        r = best.noise.whitened(problem.residuals(self.solution.u)[:, None])[:, 0]
+        r = best.noise.whitened(problem.residuals(self.solution.u))
         misfit = problem.prior(self.solution.u)[:, -1]
         log = -0.5 * n * math.log(float(r @ r) / n) - 0.5 * best.noise.log_determinant - 0.5 * float(misfit @ misfit)
-        given = self.model == "Maugis" and RANGE not in self.subject.names  # it needs one number more than its limits
         log += self._jumps()
+        given = self.subject.model.depends_on(RANGE) and RANGE not in self.subject.names  # a number that others lack
         return -2.0 * log + (len(self.subject.names) + given) * math.log(n)
 
     def jumps_at(self, values: Sequence[float]) -> Array:
         """Positions z [m] at which contact begins and is lost, (2,)."""
-        branch, k = self.subject.branch(values), self.subject.value_of(STIFFNESS, values)
-        ends = np.array([branch.displacements[0], branch.snap_out(k)[0]])
-        return np.asarray(ends + self.subject.value_of(POINT, values))
+        branch, stiffness, point, _ = self.subject.parts(values)
+        return np.asarray(point + np.array([branch.displacements[0], branch.snap_out(stiffness)[0]]))
 
     def _jumps(self) -> float:
         """log L of the brackets of both jumps, where the parameters leave their positions a spread."""
-        problem, u = self.solution.problem, self.solution.u
-        ends = [
-            [self.jumps_at(problem.values(u + side * STEP * one)) for side in (-1.0, 1.0)] for one in np.eye(u.size)
-        ]
-        slopes = np.array([high - low for low, high in ends]) / (2.0 * STEP)
-        variance = np.einsum("ik,ij,jk->k", slopes, self.solution.best.covariance, slopes)
+        slopes = self.solution.problem.derivative(self.jumps_at, self.solution.u)
+        variance = np.einsum("ki,ij,kj->k", slopes, self.solution.best.covariance, slopes)
         total = 0.0
         for segment, at, known in zip(self.curve.segments, self.jumps_at(self.solution.values), variance, strict=True):
             if segment.jump is not None:
@@ -118,10 +127,8 @@ class Fitted:
         """Mean square of the residuals in contact over that of bodies apart: reduced χ². 1 where either is missing."""
         problem = self.solution.problem
         r = problem.residuals(self.solution.u)
-        apart = np.concatenate([one.apart for one in self.curve.segments])
-        open_ = np.concatenate([one.points for one in self.curve.segments if one.jump is None] or [apart[:0]])
-        apart = np.concatenate([apart, open_[self.curve.positions[open_] < self.values[POINT]]])
-        away = np.isin(problem.kept, apart)
+        before = self.subject.open & (self.curve.positions < self.values[POINT])
+        away = (self.subject.apart | before)[problem.kept]
         return 1.0 if away.all() or not away.any() else float(np.mean(r[~away] ** 2) / np.mean(r[away] ** 2))
 
     def spread(self) -> Array:
@@ -132,49 +139,40 @@ class Fitted:
     @property
     def contact_stiffness(self) -> float:
         """2E*a [N/m] without load, or where nothing adheres under the largest one."""
-        values = self.solution.values
-        branch = self.subject.branch(values)
-        F, least = branch.forces, int(np.argmin(branch.forces))
+        F, least = self.branch.forces, int(np.argmin(self.branch.forces))
         load = 0.0 if F[least] < 0.0 else float(self.curve.forces.max() - self.curve.baseline)
-        return (
-            2.0 * modulus_of(self.subject.scene_with(values)) * float(np.interp(load, F[least:], branch.radii[least:]))
-        )
+        return 2.0 * modulus_of(self.scene) * float(np.interp(load, F[least:], self.branch.radii[least:]))
 
 
-def model_of(plan: FitPlan) -> str:
+def model_of(plan: FitPlan) -> ContactModel:
     """The contact model that a base scene means."""
-    adhesion = plan.base.adhesion
-    if not plan.base.work_of_adhesion:
-        return "Hertz"
-    return "Maugis" if adhesion and adhesion.range and "Maugis" in LAWS else "JKR"
+    return next(one for one in LAWS.values() if one.applies(plan.base))
 
 
-def compared(found: Fitted, model: str) -> Fitted:
+def compared(found: Fitted, model: ContactModel) -> Fitted:
     """Another contact model on the same points, without intervals."""
     subject = _subject(found.plan, found.curve, model)
     problem = subject.problem.without(found.solution.outliers)
     solution = solved(problem, _starts(subject, found.solution.outliers), judges=False)
-    return Fitted(found.plan, found.curve, model, subject, solution, {})
+    return Fitted(found.plan, found.curve, subject, solution, {})
 
 
 def _starts(subject: Subject, outliers: Indices) -> list[Array]:
-    """Starts of a fit: of Maugis's contact, which takes long, those of its two limits at several ranges."""
-    names, problem = subject.names, subject.problem.without(outliers)
-    sought = [i for i, one in enumerate(subject.unknowns) if one.fitted]
-    if subject.law is not LAWS["Maugis"]:
-        return first_look(problem, sought, subject.completed)
-    at = names.index(RANGE) if RANGE in names else None
+    """Starts of a fit: of a model that takes long those of its two limits, at several ranges."""
+    problem = subject.problem.without(outliers)
+    if not subject.model.limits:
+        return first_look(problem, subject.sought, subject.completed)
+    is_range = np.array([name == RANGE for name in subject.names])
     starts = []
-    for name in LIMITS:
-        limit = replace(subject, law=LAWS[name], _branches={})
-        others = [i for i in sought if i != at]
-        u = first_look(limit.problem.without(outliers), others, limit.completed)[0]
-        starts += [u + step * (np.arange(u.size) == at) for step in (RANGES if at is not None else (0.0,))]
+    for name in subject.model.limits:
+        limit = replace(subject, model=LAWS[name])
+        u = first_look(limit.problem.without(outliers), limit.sought, limit.completed)[0]
+        starts += [u + step * is_range for step in (RANGES if is_range.any() else (0.0,))]
     starts.sort(key=lambda u: float(np.abs(problem.residuals(u)).sum()))
     return starts[:BEST]
 
 
-def fitted(plan: FitPlan, curve: ForceCurve, model: str) -> Fitted:
+def fitted(plan: FitPlan, curve: ForceCurve, model: ContactModel) -> Fitted:
     """What a curve says of a plan's parameters under a contact model.
 
     Raises:
@@ -187,10 +185,10 @@ def fitted(plan: FitPlan, curve: ForceCurve, model: str) -> Fitted:
     if found.outliers.size > plan.fit.outliers:
         raise UndeterminedError(
             f"{found.outliers.size} points are no part of the noise, more than outliers = {plan.fit.outliers}: either "
-            f"{model} does not describe the curve, or a unit or the stiffness is wrong, or the noise is not one of the "
-            "instrument; look at the residuals"
+            f"{model.name} does not describe the curve, or a unit or the stiffness is wrong, or the noise is not one "
+            "of the instrument; look at the residuals"
         )
-    result = Fitted(plan, curve, model, subject, found, {})
+    result = Fitted(plan, curve, subject, found, {})
     _require_stiff(result)
     _require_points(result)
     ends = {}
@@ -203,17 +201,14 @@ def fitted(plan: FitPlan, curve: ForceCurve, model: str) -> Fitted:
     return replace(result, intervals=ends)
 
 
-def _subject(plan: FitPlan, curve: ForceCurve, model: str) -> Subject:
-    """Scene, instrument and unknowns of a contact model: Hertz's has no work of adhesion."""
-    scene = plan.base
-    if model == "Hertz" and scene.adhesion is not None:
-        scene = scene.model_copy(update={"adhesion": None})
+def _subject(plan: FitPlan, curve: ForceCurve, model: ContactModel) -> Subject:
+    """Scene, instrument and unknowns of a contact model, without the adhesion that one may not have."""
+    scene = plan.base if model.needs else plan.base.model_copy(update={"adhesion": None})
     unknowns = []
     for key in dict.fromkeys([*plan.fit.parameters, *plan.known, STIFFNESS]):
-        idle = key.startswith("adhesion.") and (scene.adhesion is None or (key == RANGE and model != "Maugis"))
-        if idle or key == POINT:
+        if key == POINT or not model.depends_on(key):
             continue
-        value = plan.stiffness if key == STIFFNESS else _number(scene, key)
+        value = plan.stiffness if key == STIFFNESS else float(plan.numbers[key].value)
         share = plan.known.get(key, EXACT if key == STIFFNESS else None)
         known = None if share is None else (value, share * value / TWO_SIDED)
         if math.isfinite(value):
@@ -224,15 +219,7 @@ def _subject(plan: FitPlan, curve: ForceCurve, model: str) -> Subject:
         known = point, plan.known.get(POINT, 0.0) * abs(point) / TWO_SIDED + EXACT * depth
     unknowns.append(Unknown(POINT, depth, positive=False, known=known))
     unknowns.append(Unknown(OFFSET, float(np.ptp(curve.forces)), positive=False))
-    return Subject(scene, LAWS[model], curve, tuple(unknowns))
-
-
-def _number(scene: object, key: str) -> float:
-    value = scene
-    for name in fields(scene, key):
-        value = getattr(value, name)
-    assert isinstance(value, float)
-    return value
+    return Subject(scene, model, curve, tuple(unknowns))
 
 
 def require_apart(subject: Subject, u: Array) -> None:
@@ -278,9 +265,7 @@ def _require_stiff(found: Fitted) -> None:
 
 def _require_points(found: Fitted) -> None:
     curve = found.curve
-    held = sum(one.held.size for one in curve.segments)
-    if not held:
-        held = int((curve.positions > found.values[POINT]).sum())
+    held = int(found.subject.held.sum()) or int((curve.positions > found.values[POINT]).sum())
     if held < FEWEST_HELD:
         raise UndeterminedError(
             f"only {held} points are in contact, and at least {FEWEST_HELD} are needed: sample faster, or push deeper"

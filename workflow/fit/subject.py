@@ -4,39 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.workflow.fit.curve import ForceCurve
-from contact1d.workflow.fit.forward import Body, Branch, Law
+from contact1d.workflow.fit.forward import Body, Branch, ContactModel
 from contact1d.workflow.fit.plan import STIFFNESS
 from contact1d.workflow.fit.search import Problem, Unknown
 from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
 POINT, OFFSET = "contact_point", "force_offset"
+MEASURED = (POINT, OFFSET, STIFFNESS)
 """Unknowns that are of the measurement."""
-KEPT = 50
-"""Bodies and branches that are remembered."""
-
-
-def fields(value: Any, key: str) -> list[str]:
-    """The names in Python of a dotted key's parts, in a table."""
-    names = []
-    for part in key.split("."):
-        name = next((name for name, field in type(value).model_fields.items() if field.alias == part), part)
-        value = getattr(value, name)
-        names.append(name)
-    return names
-
-
-def changed(table: Any, names: Sequence[str], value: float) -> Any:
-    """A table of a scene with another number at a path of fields; nothing is checked again."""
-    first, *rest = names
-    return table.model_copy(update={first: changed(getattr(table, first), rest, value) if rest else value})
 
 
 @dataclass
@@ -45,31 +27,32 @@ class Subject:
 
     Attributes:
         scene: with a number at each unknown's key.
-        law: the contact model.
+        model: the contact model.
         curve: what was measured.
         unknowns: of the scene, the instrument and the measurement.
     """
 
     scene: Scene
-    law: Law
+    model: ContactModel
     curve: ForceCurve
     unknowns: tuple[Unknown, ...]
-    _bodies: dict[tuple[float, ...], Body] = field(default_factory=dict, repr=False)
-    _branches: dict[tuple[float, ...], Branch] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
-        """Which points may be lost, which hold, and which may be before contact."""
+        """Which points hold and which are apart, and without a jump which may be either, or before contact."""
         self.names = [one.name for one in self.unknowns]
-        self.paths = [[] if name in (POINT, OFFSET, STIFFNESS) else fields(self.scene, name) for name in self.names]
-        self.shaping = [i for i, name in enumerate(self.names) if name.startswith("bodies.profile")]
         n = self.curve.positions.size
-        self.held, self.open, self.early = (np.zeros(n, dtype=bool) for _ in range(3))
+        self.held, self.apart, self.open, self.early = (np.zeros(n, dtype=bool) for _ in range(4))
         for one in self.curve.segments:
-            self.held[one.held] = True
+            self.held[one.held] = self.apart[one.apart] = True
             if one.jump is None:
                 self.open[one.points] = True
                 self.early[one.points] = one.approaches
         self.pitch = float(np.median(np.abs(np.diff(self.curve.positions)))) or 1e-300
+
+    @property
+    def sought(self) -> list[int]:
+        """The unknowns that are asked for and that the contact model knows."""
+        return [i for i, one in enumerate(self.unknowns) if one.fitted and self.model.depends_on(one.name)]
 
     @property
     def problem(self) -> Problem:
@@ -80,60 +63,43 @@ class Subject:
     def scene_with(self, values: Sequence[float]) -> Scene:
         """The scene with these values of its unknowns, unchecked."""
         scene = self.scene
-        for path, value in zip(self.paths, values, strict=True):
-            if path:
-                scene = changed(scene, path, value)
+        for one, value in zip(self.unknowns, values, strict=True):
+            if one.name not in MEASURED:
+                scene = scene.moved(one.name, value / one.scale)
         return scene
 
-    def branch(self, values: Sequence[float]) -> Branch:
-        """The contact's own curve; kept for the values that only the measurement changes."""
-        key = tuple(value for path, value in zip(self.paths, values, strict=True) if path)
-        if key not in self._branches:
-            if len(self._branches) > KEPT:
-                self._branches.clear()
-            self._branches[key] = self._branch(values)
-        return self._branches[key]
-
-    def _branch(self, values: Sequence[float]) -> Branch:
-        scene, shape = self.scene_with(values), tuple(values[i] for i in self.shaping)
-        if shape not in self._bodies:
-            if len(self._bodies) > KEPT:
-                self._bodies.clear()
-            self._bodies[shape] = Body.of(scene.bodies.profile, self.curve.depth)
+    def parts(self, values: Sequence[float]) -> tuple[Branch, float, float, float]:
+        """The contact's own curve; and k_c [FU/LU], contact point [LU] and offset of the force [FU]."""
+        scene = self.scene_with(values)
         reach = scene.adhesion.range if scene.adhesion else None
-        return self.law(self._bodies[shape], modulus_of(scene), scene.work_of_adhesion, reach or 0.0)
-
-    def value_of(self, name: str, values: Sequence[float]) -> float:
-        """The value of an unknown; of a rigid instrument its stiffness is none."""
-        return values[self.names.index(name)] if name in self.names else math.inf
+        body = Body.of(scene.bodies.profile, self.curve.depth)
+        branch = self.model.branch(body, modulus_of(scene), scene.work_of_adhesion, reach or 0.0)
+        named = dict(zip(self.names, values, strict=True))
+        return branch, named.get(STIFFNESS, math.inf), named[POINT], named[OFFSET]
 
     def forces(self, values: Sequence[float]) -> Array:
         """F [FU] at every measured position."""
-        branch, k = self.branch(values), self.value_of(STIFFNESS, values)
-        z = self.curve.positions - self.value_of(POINT, values)
+        branch, stiffness, point, offset = self.parts(values)
+        z = self.curve.positions - point
         found = np.zeros_like(z)
         for points, held in ((self.held, True), (self.open, False)):
             if points.any():
-                found[points] = branch.at(z[points], k, held, self.pitch)
+                found[points] = branch.at(z[points], stiffness, held, self.pitch)
         found[self.early & (z < branch.displacements[0])] = 0.0  # no force before the bodies touch
-        return np.asarray(found + self.value_of(OFFSET, values))
+        return np.asarray(found + offset)
 
     def completed(self, u: Array) -> Array:
         """Unknowns with the contact point such that the largest force is where it was measured."""
-        u = u.copy()
-        units = {one.name: one.scale for one in self.unknowns}
-        u[self.names.index(OFFSET)] = self.curve.baseline / units[OFFSET]
-        place = self.unknowns[self.names.index(POINT)]
-        if place.known is None:
-            values = self.problem.values(u)
-            branch, k = self.branch(values), self.value_of(STIFFNESS, values)
-            z, F = branch.displacements + branch.forces / k, branch.forces
-            least = int(np.argmin(F))
-            top = int(np.argmax(self.curve.forces))
-            at = float(np.interp(self.curve.forces[top] - self.curve.baseline, F[least:], z[least:]))
-            u[self.names.index(POINT)] = (float(self.curve.positions[top]) - at) / place.scale
-        else:
-            u[self.names.index(POINT)] = place.known[0] / place.scale
+        u, place, measured = u.copy(), self.names.index(POINT), self.curve
+        point, offset = self.unknowns[place], self.names.index(OFFSET)
+        u[offset] = measured.baseline / self.unknowns[offset].scale
+        if point.known is not None:
+            u[place] = point.known[0] / point.scale
+            return u
+        branch, stiffness, *_ = self.parts(self.problem.values(u))
+        least, top = int(np.argmin(branch.forces)), int(np.argmax(measured.forces))
+        z, F = branch.positions(stiffness)[least:], branch.forces[least:]
+        u[place] = (measured.positions[top] - np.interp(measured.forces[top] - measured.baseline, F, z)) / point.scale
         return u
 
 

@@ -7,16 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from contact1d.analysis.theory.adhesion import MaugisDugdale
 from contact1d.files import AnyPath
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.experiments.spacing import contact_curve, contact_radius, with_spacing
 from contact1d.workflow.identify.contact import AnyContact, AskedContact, read_contact
 from contact1d.workflow.identify.interaction import IdentifyError, Target, identify, jkr_target, material_scene
-from contact1d.workflow.identify.theories import (
-    Theories,
-    judged,
-    require_size,
-)
+from contact1d.workflow.identify.theories import Theories, judged, require_size
 from contact1d.workflow.runs import advised
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import Scene, scene_from_dict
@@ -57,7 +54,8 @@ def theories_of(contact: AskedContact) -> Theories | None:
     """The theories of an adhesive sphere; None for another body, or without attraction."""
     if contact.radius is None or not contact.work_of_adhesion:
         return None
-    return Theories(contact.radius, contact.contact_modulus, contact.work_of_adhesion, contact.range, contact.load)
+    sphere = MaugisDugdale(contact.radius, contact.contact_modulus, contact.work_of_adhesion, contact.range)
+    return Theories(sphere, contact.load)
 
 
 def chosen(contact: AskedContact) -> Choice:

@@ -15,6 +15,7 @@ from contact1d.workflow.scene import Problem, Scene, SceneError, read_tables, sc
 from contact1d.workflow.scene.problems import nearest, shown
 from contact1d.workflow.scene.profile_file import ProfileFileError, is_scan, read_profile
 from contact1d.workflow.scene.profiles import Profile as Shape
+from contact1d.workflow.scene.read import set_values
 from contact1d.workflow.scene.si_text import UnitTextError, si_value
 from contact1d.workflow.scene.tables import SPHERES
 
@@ -22,7 +23,6 @@ AnyContact = str | PathLike[str] | Mapping[str, Any]
 """What `read_contact` makes a contact of: a TOML file, by its path, or its tables."""
 Model = Literal["plane", "particles"]
 MODELS: tuple[Model, ...] = ("plane", "particles")
-DEFAULT_TOLERANCE = 1e-3
 RIGID = "rigid"
 PLACES = {
     "radius": "bodies.profile.radius",
@@ -39,6 +39,24 @@ PLACES = {
 }
 """Keys that a scene has, too, and where."""
 KEYS = (*PLACES, "roughness", "model")
+STANDS_IN = {
+    "title": "A contact",
+    "bodies.particles": "auto",
+    "bodies.spacing": "auto",
+    "bodies.profile.kind": "parabola",
+    "bodies.profile.radius": 1.0,
+    "bodies.reduction": "mdr",
+    "bodies.lower": "rigid_plane",
+    "bodies.bulk_stiffness": "auto",
+    "material.length_unit": 1.0,
+    "material.force_unit": 1.0,
+    "accuracy.tolerance": 1e-3,
+    "experiment.kind": "load",
+    "experiment.force": 1.0,
+}
+"""A chain on a rigid plane, for what is not given or has no place in a description."""
+NONE_AT_ZERO = ("surface_energy", "work_of_adhesion", "load")
+"""Keys that count as not given where they are 0."""
 
 
 @dataclass(frozen=True)
@@ -170,22 +188,14 @@ def _without_unit(data: Mapping[str, Any], folder: Path) -> Iterator[Problem]:
 
 def _as_scene(data: Mapping[str, Any]) -> dict[str, Any]:
     """A chain on a rigid plane with what is given; what is missing, or no scene has, stands in."""
-    profile = data.get("profile", {"kind": "parabola", "radius": data.get("radius", 1.0)})
-    bodies = {name: data[name] for name in ("upper", "lower") if name in data}
-    elastic = dict.fromkeys(("upper", "lower"), RIGID) | bodies if bodies else {}
-    modulus = {} if bodies else {"contact_modulus": data.get("contact_modulus", 1.0)}
-    tables: dict[str, Any] = {
-        "title": data.get("title", "A contact"),
-        "bodies": {"particles": "auto", "spacing": "auto", "profile": profile, "reduction": "mdr",
-                   "lower": "rigid_plane", "bulk_stiffness": "auto"},
-        "material": {**elastic, **modulus, "length_unit": 1.0, "force_unit": 1.0},
-        "accuracy": {"tolerance": data.get("tolerance", DEFAULT_TOLERANCE)},
-        "experiment": {"kind": "load", "force": data.get("load", 0.0) or 1.0},
-    }  # fmt: skip
-    energy = {key: data[key] for key in ("surface_energy", "work_of_adhesion") if data.get(key)}
-    if energy or "range" in data:
-        reach = {"range": data["range"]} if "range" in data else {}
-        tables["adhesion"] = (energy or {"work_of_adhesion": 1.0}) | reach
+    given = {PLACES[key]: v for key, v in data.items() if key in PLACES and (v or key not in NONE_AT_ZERO)}
+    unknown: dict[str, Any] = dict.fromkeys(("material.upper", "material.lower"), RIGID)
+    if not unknown.keys() & given.keys():
+        unknown = {"material.contact_modulus": 1.0}
+    if "range" in data and not _adheres(data):
+        unknown["adhesion.work_of_adhesion"] = 1.0
+    tables: dict[str, Any] = {}
+    set_values(tables, STANDS_IN | unknown | given)
     return tables
 
 

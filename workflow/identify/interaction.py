@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from contact1d.analysis.curve_marks import vertex
 from contact1d.analysis.theory.indenters import PowerLaw
 from contact1d.digits import apart
 from contact1d.workflow.engine.progress import Progress
@@ -126,27 +127,8 @@ def material_scene(
         IdentifyError: a target out of reach, or a length unit that is too coarse.
     """
     require_held(target, contact_modulus, PARABOLA_SHARE["mdr"] * radius, ("N", "m"))  # the MDR's springs are E*
-    coarsest = target.zero_load_radius / FEWEST_IN_RADIUS
     unit = target.zero_load_radius / RESOLUTION if length_unit is None else length_unit
-    if unit > coarsest:
-        given, most = apart(unit, coarsest, 4)
-        raise IdentifyError(
-            f"a length unit of {given} m gives {target.zero_load_radius / unit:.2g} particles in the zero-load "
-            f"radius of {target.zero_load_radius:.4g} m: use at most {most} m for {FEWEST_IN_RADIUS:g}"
-        )
-    if unit < target.zero_load_radius / MOST_IN_RADIUS:
-        given, least = apart(unit, target.zero_load_radius / MOST_IN_RADIUS, 4)
-        raise IdentifyError(
-            f"a length unit of {given} m gives {target.zero_load_radius / unit:.2g} particles in the zero-load "
-            f"radius of {target.zero_load_radius:.4g} m: use at least {least} m for {MOST_IN_RADIUS:g}"
-        )
-    if target.zero_load_radius > LARGEST_RADIUS_SHARE * radius:
-        share, most = apart(target.zero_load_radius / radius, LARGEST_RADIUS_SHARE, 2)
-        raise IdentifyError(
-            f"the zero-load radius of {target.zero_load_radius:.4g} m is {share} of the "
-            f"sphere's: JKR is for a << R, here up to {most}. Use a "
-            "larger radius, a larger contact modulus or a smaller surface energy"
-        )
+    _require_resolved(target.zero_load_radius, unit, radius)
     force_unit = 2.0 * contact_modulus * unit**2
     wanted = Target(target.adhesion_force / force_unit, target.zero_load_radius / unit)
     depth = wanted.zero_load_radius**2 / (radius / unit)
@@ -171,6 +153,24 @@ def material_scene(
         }
     )
     return scene, wanted
+
+
+def _require_resolved(a_0: float, unit: float, radius: float) -> None:
+    """Refuse an a₀ [m] of too few or too many length units [m], or too large a part of the sphere's radius [m]."""
+    particles = a_0 / unit
+    if not FEWEST_IN_RADIUS <= particles <= MOST_IN_RADIUS:
+        side, count = ("most", FEWEST_IN_RADIUS) if particles < FEWEST_IN_RADIUS else ("least", MOST_IN_RADIUS)
+        given, limit = apart(unit, a_0 / count, 4)
+        raise IdentifyError(
+            f"a length unit of {given} m gives {particles:.2g} particles in the zero-load radius of {a_0:.4g} m: "
+            f"use at {side} {limit} m for {count:g}"
+        )
+    if a_0 > LARGEST_RADIUS_SHARE * radius:
+        share, most = apart(a_0 / radius, LARGEST_RADIUS_SHARE, 2)
+        raise IdentifyError(
+            f"the zero-load radius of {a_0:.4g} m is {share} of the sphere's: JKR is for a << R, here up to {most}. "
+            "Use a larger radius, a larger contact modulus or a smaller surface energy"
+        )
 
 
 def jkr_target(contact_modulus: float, surface_energy: float, radius: float) -> Target:
@@ -261,11 +261,10 @@ def slopes(scene: Scene, at: Array) -> Array:
 
 def scaled(scene: Scene, logarithms: Array) -> Scene:
     """The scene with both amplitudes and both ranges multiplied by the exponentials of `logarithms`."""
-    amplitude, reach = np.exp(logarithms)
     data = scene.model_dump(by_alias=True, exclude_none=True)
     for term in ("repulsion", "attraction"):
-        data["interaction"][term]["amplitude"] *= float(amplitude)
-        data["interaction"][term]["range"] *= float(reach)
+        for key, factor in zip(("amplitude", "range"), np.exp(logarithms).tolist(), strict=True):
+            data["interaction"][term][key] *= factor
     return scene_from_dict(data)
 
 
@@ -281,11 +280,10 @@ def _estimated(scene: Scene) -> Array:
 
 def _largest_tension(estimate: Law) -> float:
     """The undeformed gap [LU] of the force maximum, between the points of the grid by a parabola."""
-    force = estimate.force
+    force, points = estimate.force, np.arange(estimate.force.size, dtype=np.float64)
     i = min(max(int(np.argmin(force)), 1), len(force) - 2)
-    before, lowest, after = (float(f) for f in force[i - 1 : i + 2])
-    shift = 0.5 * (before - after) / (before - 2.0 * lowest + after)
-    return float(np.interp(i + shift, np.arange(len(force)), estimate.gap))
+    place, _ = vertex(points, -force, i, 1)
+    return float(np.interp(place, points, estimate.gap))
 
 
 MOST_RUNS = 8

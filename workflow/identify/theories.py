@@ -15,8 +15,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-from contact1d.analysis.theory.adhesion import MaugisDugdale, Verdict, of_tabor, valid_theory
-from contact1d.analysis.theory.indenters import PowerLaw
+from contact1d.analysis.theory.adhesion import MaugisDugdale, Theory, Verdict, of_tabor, valid_theory
 from contact1d.digits import apart
 from contact1d.workflow.body.validity import beyond_jkr
 from contact1d.workflow.identify.contact import AskedContact
@@ -29,49 +28,36 @@ class Theories:
     """One adhesive sphere by every theory, in SI.
 
     Args:
-        radius: effective R [m].
-        contact_modulus: E* [Pa].
-        work_of_adhesion: W > 0 [J/m²].
-        range_of_attraction: h₀ [m].
+        sphere: the contact with a range of the attraction, by Maugis and Dugdale.
         load: F [N], positive in compression; None: 0.
     """
 
-    radius: float
-    contact_modulus: float
-    work_of_adhesion: float
-    range_of_attraction: float
-    load: float | None = None
+    sphere: MaugisDugdale
+    load: float | None
 
-    @cached_property
+    @property
     def tabor(self) -> float:
         """μ = (R W²/(E*² h₀³))^(1/3)."""
         return self.sphere.tabor
 
-    @property
-    def sphere(self) -> MaugisDugdale:
-        """The contact with a range of the attraction, by Maugis and Dugdale."""
-        return MaugisDugdale(self.radius, self.contact_modulus, self.work_of_adhesion, self.range_of_attraction)
-
     @cached_property
     def verdict(self) -> Verdict:
         """Which theory holds under the load, and why."""
-        return valid_theory(self.tabor, (self.load or 0.0) / (math.pi * self.work_of_adhesion * self.radius))
+        return valid_theory(
+            self.tabor, (self.load or 0.0) / (math.pi * self.sphere.work_of_adhesion * self.sphere.radius)
+        )
 
     @cached_property
     def values(self) -> Mapping[str, Mapping[str, float]]:
         """By theory, F_A [N], a₀ [m], a where a fixed load pulls off [m], a under the load [m] where one is given."""
-        contacts = self.sphere.theories
-        marks = {
+        return {
             str(name): {
                 "adhesion_force": contact.pull_off_force(), "zero_load_radius": contact.zero_load_radius(),
                 "critical_radius": contact.critical_radius(),
+                **({} if self.load is None else {"loaded_radius": contact.contact_radius(self.load)}),
             }
-            for name, contact in contacts.items()
+            for name, contact in self.sphere.theories.items()
         }  # fmt: skip
-        if self.load is not None:
-            for name, contact in contacts.items():
-                marks[name]["loaded_radius"] = contact.contact_radius(self.load)
-        return marks
 
     @property
     def holding(self) -> str:
@@ -99,7 +85,8 @@ def judged(contact: AskedContact, theories: Theories) -> dict[str, str]:
             f"{prefixed(held['zero_load_radius'], 'm')}, and an atom's diameter is {prefixed(ATOM, 'm')}. Continuum "
             "theory does not hold; use an atomistic model"
         )
-    stretch, roughness = -_let_go(contact), contact.roughness or 0.0
+    jkr, roughness = theories.sphere.theories[Theory.JKR], contact.roughness or 0.0
+    stretch = -jkr.displacement(jkr.fixed_grips_radius())
     beside = f"asperities of {prefixed(roughness, 'm')} against an elastic stretch of {prefixed(stretch, 'm')}"
     if roughness > TOO_ROUGH_SHARE * stretch:
         raise IdentifyError(
@@ -113,13 +100,6 @@ def judged(contact: AskedContact, theories: Theories) -> dict[str, str]:
     if (assumed or contact.model == "particles") and (words := beyond_jkr(theories.sphere, assumed)):
         doubts["tabor"] = words
     return doubts
-
-
-def _let_go(contact: AskedContact) -> float:
-    """Displacement of JKR's sphere where it parts under fixed grips [m], < 0."""
-    assert contact.radius is not None
-    jkr = PowerLaw.sphere(contact.radius, contact.contact_modulus, contact.work_of_adhesion)
-    return jkr.displacement(jkr.fixed_grips_radius())
 
 
 def _down(value: float) -> str:

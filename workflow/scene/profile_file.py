@@ -229,11 +229,8 @@ def _header(rows: list[Row]) -> tuple[Sequence[int], str | None, float]:
     words = _words(names)
     sides = RADII if set(words) & set(RADII) else SIDES
     columns = [_only(line, words, allowed) for allowed in (sides, HEIGHTS)]
-    units = [match[2].strip() for column in columns if (match := NAME.match(names[column].strip('" ')))]
-    below = rows[0][1] if rows and not any(units) and len(rows[0][1]) == len(names) else [""]
-    if all(cell and not any(map(str.isdigit, cell)) for cell in below):
-        units = [below[column].strip('[]()"') for column in columns]
-        del rows[0]
+    units, are_below = units_of(names, rows[0][1] if rows else [], columns)
+    del rows[:are_below]
     sizes = []
     for unit in units:
         if unit not in ("", MODEL):
@@ -246,6 +243,15 @@ def _header(rows: list[Row]) -> tuple[Sequence[int], str | None, float]:
         what = "only one of radius and height has a unit"
         raise ProfileFileError(f"line {line}: {what}; give both the same way, r [µm], z [µm]")
     return columns, *((f"1 {units[0]}", float(sizes[1] / sizes[0])) if sizes else (None, 1.0))
+
+
+def units_of(names: list[str], below: list[str], columns: Sequence[int]) -> tuple[list[str], bool]:
+    """The units of columns by their names, "" without one, or else by the cells below; whether they are those."""
+    units = [match[2].strip() if (match := NAME.match(names[column].strip('" '))) else "" for column in columns]
+    words = len(below) == len(names) and all(cell and not any(map(str.isdigit, cell)) for cell in below)
+    if any(units) or not words:
+        return units, False
+    return [below[column].strip('[]()" ') for column in columns], True
 
 
 def require_names(line: int, cells: list[str], names: list[str]) -> None:
