@@ -135,7 +135,8 @@ def _pulled(model: Particles, given: PullOff) -> History:
     force, _ = pull(back)
     first = max(NEAR_ZERO, int(np.argmax(force < 0.0)))
     near = slice(first - NEAR_ZERO, first + NEAR_ZERO)  # a load step at F = 0, by t(F)
-    back = np.unique(np.append(back, np.polynomial.Polynomial.fit(force[near], back[near], 2 * NEAR_ZERO - 1)(0.0)))
+    zero_time = float(np.polynomial.Polynomial.fit(force[near], back[near], 2 * NEAR_ZERO - 1)(0.0))
+    back = np.unique(np.append(back, [0.5 * zero_time, zero_time]))  # one is pressed whatever the preload
     force, path = pull(back)
     top = int(np.argmin(force))
     zero = int(np.argmin(np.abs(force[: top + 1])))
