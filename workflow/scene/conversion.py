@@ -13,19 +13,15 @@ from collections.abc import Mapping
 from copy import copy
 from fractions import Fraction
 
-from contact1d.workflow.scene.experiments import KINDS
-from contact1d.workflow.scene.kinds import Kind
+from contact1d.workflow.scene.draft import Draft
 from contact1d.workflow.scene.quantities import Place, numbers_in
 from contact1d.workflow.scene.si_text import UnitTextError, example, si_value
-from contact1d.workflow.scene.tables import TIMED
 from contact1d.workflow.units import SI
 
 BOLTZMANN = Fraction(1380649, 10**29)
 """k_B [J/K], exact since 2019."""
 UNIT_KEYS = {"LU": "length_unit", "FU": "force_unit", "MU": "mass_unit"}
 """Keys of [material] that say what a unit of the model is in SI."""
-ELASTIC = frozenset({"upper", "lower", "contact_modulus"})
-"""Keys of [material] that say how stiff the bodies are."""
 LISTED = 3
 """Places that a message names before it counts the rest."""
 
@@ -80,40 +76,38 @@ def _scales(scene: Place, texts: list[Place]) -> dict[str, Fraction] | None:
         material.put({})
     if not isinstance(material.value, dict):
         return None  # reported where tables are checked
-    first, stiffness = texts[0], own.value if own else "auto"
-    if "surface_energy" in material.value:
+    first, draft = texts[0], Draft(scene)
+    if "material.surface_energy" in draft:
         message = "LU and FU follow from the run (material.surface_energy), so that units are not known before it"
         first.fault(message, f"write a number in {first.unit.name}")
         return None
     needed = frozenset[str]().union(*(place.unit.bases for place in texts))
-    elastic = not ELASTIC.isdisjoint(material.value)
-    if stiffness == "auto" or not elastic or "MU" in needed:
+    derived = own is not None and own.value != "auto" and draft.holds("elastic")  # FU, of the stiffness and the moduli
+    if not derived or "MU" in needed:
         needed |= {"LU", "FU"}
     units = {base: material.inside[key] for base, key in UNIT_KEYS.items()}
     scales = {base: Fraction(repr(unit.value)) for base, unit in units.items() if is_positive(unit)}
     chosen = frozenset(base for base in needed if units[base].absent)
-    fixed = "FU" in chosen and elastic and stiffness != "auto"
-    kind, method = scene.at("experiment.kind"), scene.at("experiment.method")
-    table = KINDS.get(kind.value, Kind) if kind else Kind
-    timed = {"dynamic"} & {table.only_method, method and method.value} or any(
-        not scene.inside[name].absent for name in TIMED
-    )
-    massless = table.is_massless or not timed  # the mass of a particle matters nowhere
-    plain = [
-        place
-        for place in numbers_in(scene)
-        if place.is_number and place.unit.bases & chosen and not (massless and place.path == "bodies.mass")
-    ]
+    fixed = derived and "FU" in chosen
+    plain = _plain_numbers(draft, chosen)
     if fixed and own and own.sound:
         own.report("follows from the material here", 'write "auto"')
     elif plain and not fixed:
-        _report_mixed(plain, first, chosen, elastic)
+        _report_mixed(plain, first, chosen, draft.holds("elastic"))
     # also where a problem was reported, so that the rules across tables don't report its consequences
     for base in sorted(chosen):
         if base != "FU" or not fixed:
             units[base].put(1.0)
     scales |= dict.fromkeys(chosen, Fraction(1))
     return None if plain or fixed or not needed <= scales.keys() else scales
+
+
+def _plain_numbers(draft: Draft, bases: frozenset[str]) -> list[Place]:
+    """The numbers without a unit that are in units made of one of these, but for a mass that matters nowhere."""
+    in_time = draft.experiment.only_method == "dynamic" or draft.facts["in_time"]
+    without = "" if in_time and not draft.experiment.is_massless else "bodies.mass"
+    numbers = (place for place in numbers_in(draft.scene) if place.is_number and place.path != without)
+    return [place for place in numbers if place.unit.bases & bases]
 
 
 def _report_mixed(plain: list[Place], text: Place, chosen: frozenset[str], elastic: bool) -> None:
