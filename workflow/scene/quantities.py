@@ -8,15 +8,11 @@ conversion between units and rules ask it what stands at a key and what may stan
 
 from __future__ import annotations
 
-import ast
-import inspect
 import types
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache, cached_property, reduce
-from itertools import pairwise
 from operator import or_
-from textwrap import dedent
 from typing import Annotated, Any, ClassVar, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from annotated_types import Ge, Gt, Le, MinLen
@@ -69,7 +65,9 @@ class Table(BaseModel):
         by_name: tables that a name may stand for, each name as `problems.plain` has it.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False, defer_build=True)
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", strict=True, allow_inf_nan=False, defer_build=True, use_attribute_docstrings=True
+    )
 
     as_list: ClassVar[bool] = False
     one_of: ClassVar[tuple[tuple[tuple[str, ...], str], ...]] = ()
@@ -183,31 +181,12 @@ class Allowed:
 
 @dataclass(frozen=True)
 class Key:
-    """A key of a table: its field in Python, allowed values, default (None: none), and the table."""
+    """A key of a table: its field in Python, allowed values, default (None: none), and what it is."""
 
     field: str
     allowed: Allowed
     default: Any
-    table: type[Table]
-
-    @property
-    def description(self) -> str:
-        """What it is."""
-        given = self.table.model_fields[self.field].description
-        return " ".join((given or _texts_below(self.table)[self.field]).split())
-
-
-@cache
-def _texts_below(table: type[Table]) -> dict[str, str]:
-    """The text below each key of a table, which its source alone has."""
-    texts = {}
-    for owner in reversed(table.__mro__[: table.__mro__.index(Table)]):
-        (definition,) = ast.parse(dedent(inspect.getsource(owner))).body
-        for line, text in pairwise(ast.iter_child_nodes(definition)):
-            match line, text:
-                case ast.AnnAssign(target=ast.Name(name)), ast.Expr(ast.Constant(str(said))):
-                    texts[name] = said
-    return texts
+    description: str
 
 
 @cache
@@ -215,7 +194,9 @@ def keys_of(table: type[Table]) -> dict[str, Key]:
     """Every key allowed in `table`, as written in TOML, in order; cached, since every scene needs some tens."""
     hints = get_type_hints(table, include_extras=True)
     return {
-        field.alias or name: Key(name, allowed_by(hints[name]), field.get_default(), table)
+        field.alias or name: Key(
+            name, allowed_by(hints[name]), field.get_default(), " ".join(str(field.description).split())
+        )
         for name, field in table.model_fields.items()
     }
 
