@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache, cached_property, reduce
 from operator import or_
-from typing import Annotated, Any, ClassVar, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, ClassVar, Literal, TypeVar, Union, get_args, get_origin
 
 from annotated_types import Ge, Gt, Le, MinLen
 from pydantic import BaseModel, ConfigDict, Field
@@ -192,10 +192,9 @@ class Key:
 @cache
 def keys_of(table: type[Table]) -> dict[str, Key]:
     """Every key allowed in `table`, as written in TOML, in order; cached, since every scene needs some tens."""
-    hints = get_type_hints(table, include_extras=True)
     return {
         field.alias or name: Key(
-            name, allowed_by(hints[name]), field.get_default(), " ".join(str(field.description).split())
+            name, allowed_by(field.annotation, (*field.metadata,)), field.get_default(), " ".join(str(field.description).split())
         )
         for name, field in table.model_fields.items()
     }
