@@ -117,13 +117,11 @@ class Unit:
 
 
 BASES = {
-    "m": Unit("m", Fraction(1), {"[length]": 1}),
-    "g": Unit("g", Fraction(1, 1000), {"[mass]": 1}),
-    "s": Unit("s", Fraction(1), {"[time]": 1}),
-    "K": Unit("K", Fraction(1), {"[temperature]": 1}),
-    "A": Unit("A", Fraction(1), {"[current]": 1}),
-    "mol": Unit("mol", Fraction(1), {"[substance]": 1}),
-}
+    symbol: Unit(symbol, Fraction(1, 1000 if symbol == "g" else 1), {dimension: 1})
+    for symbol, dimension in {
+        "m": "[length]", "g": "[mass]", "s": "[time]", "K": "[temperature]", "A": "[current]", "mol": "[substance]",
+    }.items()
+}  # fmt: skip
 """Symbols of SI; dimensions by pint's names."""
 FACTOR = re.compile(rf"({'|'.join(PREFIXES)})({'|'.join(BASES | DERIVED)})([²³]?)")
 
