@@ -12,8 +12,9 @@ from typing import Any, Literal
 
 from contact1d.workflow.body.cases import ASSUMED_RANGE
 from contact1d.workflow.scene import Problem, Scene, SceneError, read_tables, scene_from_dict
+from contact1d.workflow.scene.measured import is_scan
 from contact1d.workflow.scene.problems import nearest, shown
-from contact1d.workflow.scene.profile_file import ProfileFileError, is_scan, read_profile
+from contact1d.workflow.scene.profile_file import ProfileFileError, read_profile
 from contact1d.workflow.scene.profiles import Profile as Shape
 from contact1d.workflow.scene.si_text import UnitTextError, si_value
 from contact1d.workflow.scene.tables import SPHERES

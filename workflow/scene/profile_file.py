@@ -7,17 +7,17 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import chain, pairwise
 from pathlib import Path
-from typing import Any
 
 from contact1d.files import read_text
 from contact1d.workflow.scene import instrument_file
 from contact1d.workflow.scene.conversion import is_positive
-from contact1d.workflow.scene.points import FEWEST_POINTS, SCAN_KEYS
+from contact1d.workflow.scene.measured import SCAN_KEYS, is_scan
 from contact1d.workflow.scene.quantities import Place
 from contact1d.workflow.scene.schema import described
+from contact1d.workflow.scene.shapes import FEWEST_POINTS
 from contact1d.workflow.scene.si_text import UnitTextError, si_value
 
 RADII = ("r", "radius", "radii", "rho", "ρ", "rayon", "raggio", "radio")
@@ -87,11 +87,6 @@ def take_points(scene: Place, folder: Path) -> dict[str, list[float]]:
         profile.put({"kind": profile.value["kind"]})
         return {}
     return lists | {"z": [ratio * value for value in lists["z"]]}
-
-
-def is_scan(profile: Mapping[str, Any]) -> bool:
-    """Whether a profile's points are those of a scan, which stand in the scene as they are."""
-    return any(profile.get(key) not in (None, False, "none") for key in SCAN_KEYS)
 
 
 def _sizes(units: object) -> tuple[str, float]:

@@ -192,12 +192,11 @@ class Key:
 @cache
 def keys_of(table: type[Table]) -> dict[str, Key]:
     """Every key allowed in `table`, as written in TOML, in order; cached, since every scene needs some tens."""
-    return {
-        field.alias or name: Key(
-            name, allowed_by(field.annotation, (*field.metadata,)), field.get_default(), " ".join(str(field.description).split())
-        )
-        for name, field in table.model_fields.items()
-    }
+    keys = {}
+    for name, field in table.model_fields.items():
+        allowed, text = allowed_by(field.annotation, (*field.metadata,)), " ".join(str(field.description).split())
+        keys[field.alias or name] = Key(name, allowed, field.get_default(), text)
+    return keys
 
 
 def allowed_by(annotation: Any, marks: tuple[Any, ...] = ()) -> Allowed:

@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 Exponent = Annotated[float, Ge(1.0), Unit("1")]
+FEWEST_POINTS = 4
+"""Points of a measured profile."""
 LAST_SHARE = 1.0 - 1e-12
 """The transform of a circle grows without end at its edge, and is taken up to this share of the radius."""
 
