@@ -93,7 +93,6 @@ class Path(Kind):
 class PullOff(Kind):
     """Compression by a preload, then unloading up to pull-off."""
 
-    only_with_noise = ("loading_rate", "stiffness", "repeats")
     load_key = "preload"
     finds_pull_off = True
 

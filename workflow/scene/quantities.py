@@ -175,8 +175,7 @@ class Allowed:
 
     def table_for(self, value: Mapping[str, Any]) -> type[Table] | None:
         """The table that `value` is meant to be, by its kind where there are several."""
-        alone = len(self.tables) == 1
-        return next((table for kind, table in self.tables.items() if alone or kind == value.get("kind")), None)
+        return self.tables.get("", self.tables.get(str(value.get("kind"))))
 
 
 @dataclass(frozen=True)
@@ -193,9 +192,9 @@ class Key:
 def keys_of(table: type[Table]) -> dict[str, Key]:
     """Every key allowed in `table`, as written in TOML, in order; cached, since every scene needs some tens."""
     keys = {}
-    for name, field in table.model_fields.items():
-        allowed, text = allowed_by(field.annotation, (*field.metadata,)), " ".join(str(field.description).split())
-        keys[field.alias or name] = Key(name, allowed, field.get_default(), text)
+    for name, given in table.model_fields.items():
+        allowed, text = allowed_by(given.annotation, (*given.metadata,)), " ".join(str(given.description).split())
+        keys[given.alias or name] = Key(name, allowed, given.get_default(), text)
     return keys
 
 
@@ -216,6 +215,7 @@ def allowed_by(annotation: Any, marks: tuple[Any, ...] = ()) -> Allowed:
     return Allowed(tables={get_args(kind.annotation)[0] if kind else "": annotation})
 
 
+@dataclass(slots=True, eq=False)
 class Place:
     """A position in a scene: a key of a table or an item of a list, the value there, and what may stand there.
 
@@ -225,23 +225,26 @@ class Place:
         value: what stands there; where nothing does, the default.
         allowed: what may stand there.
         key: the last of its `keys`.
+        above: the table or list that it is in; None of the whole of something.
         absent: whether nothing stands there.
         sound: whether its value, and all in it, can be relied on.
-        problems: what is wrong in the scene.
         source: what was written, where the value follows from that: a text with a unit, or the name of a file.
+        problems: what is wrong in the scene.
     """
 
-    __slots__ = ("_above", "_inside", "absent", "allowed", "key", "problems", "sound", "source", "value")
+    value: Any
+    allowed: Allowed
+    key: str | int = ""
+    above: Place | None = None
+    absent: bool = False
+    sound: bool = True
+    source: Place | None = None
+    problems: list[Problem] = field(init=False)
+    _inside: dict[Any, Place] | None = None
 
-    def __init__(
-        self, value: Any, allowed: Allowed, key: str | int = "", above: Place | None = None, absent: bool = False
-    ) -> None:
-        """The position `key` in the table or list `above`; without one the whole of something."""
-        self.value, self.allowed, self.key, self._above, self.absent = value, allowed, key, above, absent
-        self.problems: list[Problem] = above.problems if above else []
-        self.source: Place | None = None
-        self._inside: dict[Any, Place] | None = None
-        self.sound = True
+    def __post_init__(self) -> None:
+        """All places of a scene share its problems."""
+        self.problems = self.above.problems if self.above else []
 
     def __iter__(self) -> Iterator[Place]:
         """All places in it, a table before its content, which may be corrected meanwhile; absent keys, too."""
@@ -255,18 +258,17 @@ class Place:
         """The places of its keys or items; of a table whose kind is not known that of the kind alone."""
         if self._inside is None:
             value, allowed = self.value, self.allowed
-            found: dict[Any, Place] = {}
+            self._inside = {}
             if isinstance(value, dict):
                 table = allowed.table_for(value)
-                found = {
+                self._inside = {
                     name: Place(value.get(name, key.default), key.allowed, name, self, name not in value)
                     for name, key in (keys_of(table) if table else {}).items()
                 }
                 if allowed.kinds:
-                    found["kind"] = self.kind
+                    self._inside["kind"] = self.kind
             elif allowed.items and isinstance(value, list | tuple):
-                found = {i: Place(item, allowed.items, i, self) for i, item in enumerate(value)}
-            self._inside = found
+                self._inside = {i: Place(item, allowed.items, i, self) for i, item in enumerate(value)}
         return self._inside
 
     @property
@@ -279,7 +281,7 @@ class Place:
     @property
     def keys(self) -> Keys:
         """The keys from the top of the scene down to it."""
-        return (*self._above.keys, self.key) if self._above else ()
+        return (*self.above.keys, self.key) if self.above else ()
 
     def at(self, path: str) -> Place | None:
         """The place at a dotted path from here; None where nothing may stand."""
@@ -290,8 +292,8 @@ class Place:
 
     def put(self, value: object) -> None:
         """Put a value there."""
-        assert self._above is not None
-        self._above.value[self.key] = self.value = value
+        assert self.above is not None
+        self.above.value[self.key] = self.value = value
         self.absent, self._inside = False, None
 
     @property
@@ -330,8 +332,8 @@ class Place:
     def doubt(self) -> None:
         """Take its value for no basis of anything else."""
         self.sound = False
-        if self._above:
-            self._above.doubt()
+        if self.above:
+            self.above.doubt()
 
     def fault(self, message: str, hint: str = "") -> None:
         """Doubt it, and report what is wrong."""

@@ -121,7 +121,7 @@ ATTRACTION: tuple[Row, ...] = (
 )
 """What holds the bodies together, and the edge of an adhesive contact."""
 
-PLATE: tuple[Row, ...] = (
+MOTION: tuple[Row, ...] = (
     ("plate.free", "motion_is_result plate.free=z !plate.free=x",
      'must contain "x" in a slide', 'write free = ["x", "z"]'),
     ("horizontal", "!motion_is_result plate.free=x",
@@ -134,8 +134,9 @@ PLATE: tuple[Row, ...] = (
      "not with a displacement that is held: the plate has no motion of its own", "remove it, or give a force"),
     ("plate", "experiment.kind=hold experiment.force",
      "missing, needed by a force that is held", f"add {EFFECT_TABLES['plate'].how}"),
+    ("damping", "noise !kind", "missing, needed by [noise]", f"add {EFFECT_TABLES['damping'].how}"),
 )
-"""The plate, which moves by itself."""
+"""What moves by itself, in time."""
 
 
 def _normal_loads(d: Draft) -> Rows:
@@ -198,6 +199,9 @@ PULL_OFF: tuple[Row, ...] = (
      "only with a velocity: it is that of the spring", "remove it, or give the velocity of its far end"),
     ("experiment.cycles", "experiment.kind=pull_off noise",
      "not with [noise], whose pulls are repeated with other seeds", "remove it, and give experiment.repeats"),
+    *((f"experiment.{key}", "!noise", "only with [noise]: without thermal fluctuations all repeats are equal",
+       "remove it, or add [noise] with temperature and seed")
+      for key in ("loading_rate", "stiffness", "repeats")),
 )
 """How the bodies are pulled apart, and how often."""
 
@@ -240,11 +244,7 @@ def _excluded(d: Draft) -> Rows:
 def _methods(d: Draft) -> Rows:
     """Each experiment and method has effects that it needs, and a quasi-static one has none in time."""
     kind, experiment, given = d.kind, d.experiment, d["experiment.method"]
-    if kind is None:
-        if "noise" in d:
-            yield _needed("damping", "[noise]")
-        return
-    if given is None and "experiment.method" in d:
+    if kind is None or (given is None and "experiment.method" in d):
         return
     rest = tuple(name for name in d.effects if name not in experiment.excludes)
     method = experiment.only_method or given or default_method(rest)
@@ -262,7 +262,7 @@ def _methods(d: Draft) -> Rows:
 
 
 def _declared_keys(d: Draft) -> Rows:
-    """Of some keys exactly one is there; some are only with noise."""
+    """Of some keys exactly one is there."""
     effects = {name: EFFECT_TABLES[name] for name in d.effects if d[name] is not None}
     profile = keys_of(Bodies)["profile"].allowed.kinds.get(d.profile, Table)
     for name, table in {**effects, "experiment": d.experiment, "bodies.profile": profile}.items():
@@ -271,10 +271,6 @@ def _declared_keys(d: Draft) -> Rows:
             yield (f"{name}.{keys[0]}", not given, "missing", fix)
             for key in given[1:]:
                 yield (f"{name}.{key}", True, f"not together with {given[0]}", fix)
-    for key in d.experiment.only_with_noise:
-        yield (f"experiment.{key}", "noise" not in d,
-               "only with [noise]: without thermal fluctuations all repeats are equal",
-               "remove it, or add [noise] with temperature and seed")
 # fmt: on
 
 
@@ -287,7 +283,7 @@ RULES: tuple[Row | Callable[[Draft], Rows], ...] = (
     _interaction,
     _tension,
     *ATTRACTION,
-    *PLATE,
+    *MOTION,
     _normal_loads,
     _shares,
     _history,
