@@ -175,7 +175,8 @@ class Allowed:
 
     def table_for(self, value: Mapping[str, Any]) -> type[Table] | None:
         """The table that `value` is meant to be, by its kind where there are several."""
-        return self.tables.get("", self.tables.get(str(value.get("kind"))))
+        alone = len(self.tables) == 1
+        return next((table for kind, table in self.tables.items() if alone or kind == value.get("kind")), None)
 
 
 @dataclass(frozen=True)
