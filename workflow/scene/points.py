@@ -258,15 +258,13 @@ MIDDLE = 2
 def _cubics(x: Array, y: Array) -> Array:
     """Coefficients of monotone cubics through the points (x, y), (4, n − 1), as `PPoly` has them."""
     step, rise = np.diff(x), np.diff(y) / np.diff(x)
-    before, after = rise[:-1], rise[1:]
-    inner = (step[1:] * before + step[:-1] * after) / (step[1:] + step[:-1])
+    inner = (step[1:] * rise[:-1] + step[:-1] * rise[1:]) / (step[1:] + step[:-1])
     first = rise[0] + step[0] / (step[0] + step[1]) * (rise[0] - rise[1])
     last = rise[-1] + step[-1] / (step[-1] + step[-2]) * (rise[-1] - rise[-2])
-    least = np.concatenate([rise[:1], np.where(np.abs(before) < np.abs(after), before, after), rise[-1:]])
-    turns = np.concatenate([[False], before * after <= 0.0, [False]])
-    wanted = np.concatenate([[first], inner, [last]])
-    limit = np.where(turns, 0.0, STEEPEST * np.abs(least))
-    slopes = np.sign(least) * np.clip(np.sign(least) * wanted, 0.0, limit)
+    before, after = np.append(rise[0], rise), np.append(rise, rise[-1])
+    least = np.where(np.abs(before) < np.abs(after), before, after)
+    limit = np.where(before * after > 0.0, STEEPEST * np.abs(least), 0.0)
+    slopes = np.sign(least) * np.clip(np.sign(least) * np.concatenate([[first], inner, [last]]), 0.0, limit)
     return np.asarray(CubicHermiteSpline(x, y, slopes).c)
 
 

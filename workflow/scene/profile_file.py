@@ -136,7 +136,7 @@ def read_profile(path: Path, scan: bool) -> tuple[dict[str, list[float]], str | 
     if path.suffix.lower() in instrument_file.ENDINGS:
         x, z, unit = instrument_file.read_line(path)
         return {"x": x, "z": z}, unit, 1.0
-    rows = _rows(path)
+    rows = rows_in(read_text(path).splitlines())
     columns, of_numbers, ratio = _header(rows)
     points = [_point(f"line {line}", cells, columns) for line, cells in rows]
     if not points:
@@ -162,13 +162,8 @@ def _from_the_axis(points: list[list[float]]) -> tuple[list[float], list[float]]
     return r, z
 
 
-def _rows(path: Path) -> list[Row]:
-    """The lines that have content, each with its number, as cells with decimal points."""
-    return rows_in(read_text(path).splitlines())
-
-
 def rows_in(lines: list[str]) -> list[Row]:
-    """The same of lines of text."""
+    """The lines that have content, each with its number, as cells with decimal points."""
     if len(lines) > MOST_LINES:
         raise ProfileFileError(f"has {len(lines)} lines, at most {MOST_LINES} are allowed; use fewer points")
     full = [(i, line) for i, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
