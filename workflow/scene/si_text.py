@@ -16,7 +16,8 @@ from fractions import Fraction
 from functools import cache
 from typing import Any
 
-from contact1d.workflow.units import SI
+from contact1d.workflow.units import FIRST, SI
+from contact1d.workflow.units import PREFIXES as BY_THOUSANDS
 
 DIMENSIONS = {
     "m": "a length",
@@ -77,9 +78,7 @@ DERIVED = {
     "N": "kg·m/s²", "Pa": "N/m²", "J": "N·m", "W": "J/s", "Hz": "W/J", "V": "W/A", "C": "A·s",
 }  # fmt: skip
 """Symbols of SI that are made of base units."""
-PREFIXES = {
-    "": 0, "f": -15, "p": -12, "n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "c": -2, "k": 3, "M": 6, "G": 9,
-}  # fmt: skip
+PREFIXES = {"c": -2, "u": -6, "μ": -6} | {one.strip(): 3 * power for power, one in enumerate(BY_THOUSANDS, FIRST)}
 """Powers of ten."""
 POWER = re.compile(r"(\*\*|\^)?[-+⁻]?[\d⁰¹²³⁴⁵⁶⁷⁸⁹]+")
 LONGEST = 60
