@@ -141,17 +141,15 @@ def read_profile(path: Path, scan: bool) -> tuple[dict[str, list[float]], str | 
     points = [_point(f"line {line}", cells, columns) for line, cells in rows]
     if not points:
         raise ProfileFileError("has no points")
-    if not scan:
-        return dict(zip("rz", _from_the_axis(points), strict=True)), of_numbers, ratio
-    return dict(zip("xz", ([*column] for column in zip(*points, strict=True)), strict=True)), of_numbers, ratio
+    x, z = ([*column] for column in zip(*points, strict=True))
+    return {"x": x, "z": z} if scan else _from_the_axis(x, z), of_numbers, ratio
 
 
-def _from_the_axis(points: list[list[float]]) -> tuple[list[float], list[float]]:
+def _from_the_axis(r: list[float], z: list[float]) -> dict[str, list[float]]:
     """Radii and heights, (n,), of points that are one side of a profile, or both."""
-    if all(after[0] < before[0] for before, after in pairwise(points)):
-        points.reverse()
-    r, z = ([*column] for column in zip(*points, strict=True))
-    if len(r) > 1 and not _rising(r) and (_rising(z) or _rising(z[::-1])):
+    if _rising(r[::-1]):
+        r, z = r[::-1], z[::-1]
+    if not _rising(r) and (_rising(z) or _rising(z[::-1])):
         raise ProfileFileError(
             "its heights increase and its radii do not: the columns may be swapped; name them r and z"
         )
@@ -159,7 +157,7 @@ def _from_the_axis(points: list[list[float]]) -> tuple[list[float], list[float]]
         r, z = _folded(r, z)
     if len(r) < FEWEST_POINTS:
         raise ProfileFileError(f"must have at least {FEWEST_POINTS} points from the axis out, not {len(r)}")
-    return r, z
+    return {"r": r, "z": z}
 
 
 def rows_in(lines: list[str]) -> list[Row]:
