@@ -282,13 +282,14 @@ def remove_effects(data: dict[str, Any], names: Iterable[str]) -> list[Problem]:
     problems = []
     for name in dict.fromkeys(names):
         there = [effect for effect in EFFECTS if effect in data]
-        message, hint = "not an effect that can be removed", suggestion(name, EFFECTS, "effects")
-        if name in EFFECTS:
-            message, hint = "the scene has no such table", f"effects there: {', '.join(there) or 'none'}"
         if name in there:
             del data[name]
+        elif name in EFFECTS:
+            hint = f"effects there: {', '.join(there) or 'none'}"
+            problems.append(Problem(f"without {name}", "the scene has no such table", hint=hint))
         else:
-            problems.append(Problem(f"without {name}", message, hint=hint))
+            hint = suggestion(name, EFFECTS, "effects")
+            problems.append(Problem(f"without {name}", "not an effect that can be removed", hint=hint))
     return problems
 
 

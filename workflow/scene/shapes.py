@@ -171,16 +171,17 @@ class Ellipsoid(Shape):
     """half axis b along the load"""
 
     def height(self, x: Array) -> Array:
-        """z = b (x/c)²/(1 + √(1 − x²/c²))."""
-        share = x / self.radius
-        return self.half_axis * share**2 / (1.0 + ((1.0 - share) * (1.0 + share)) ** 0.5)
+        """z = b − b √(1 − x²/c²), of the sphere of radius c times b/c."""
+        return self.half_axis / self.radius * self._sphere.height(x)
 
     def transformed(self, x: Array) -> Array:
         """g = (b/c) x artanh(x/c)."""
-        import numpy as np
+        return self.half_axis / self.radius * self._sphere.transformed(x)
 
-        share = np.clip(x / self.radius, -LAST_SHARE, LAST_SHARE)
-        return np.asarray(self.half_axis * share * np.arctanh(share))
+    @property
+    def _sphere(self) -> Circle:
+        """That of radius c."""
+        return Circle.model_construct(radius=self.radius)
 
     @property
     def reach(self) -> float:
