@@ -117,10 +117,9 @@ MATERIAL: tuple[Row, ...] = (
       for body, other in (("upper", ""), ("lower", "material.upper"))),
     ("material.upper", "material.upper=rigid material.lower=rigid",
      "one of the two bodies must be elastic", 'give its E and ν, or its name, "steel"'),
-    *((f"material.{unit}", "judged material.surface_energy",
-       "not together with surface_energy, with which both units follow from F_A and a₀ of the run",
-       "remove one of the two")
-      for unit in ("length_unit", "force_unit")),
+    ("material.length_unit material.force_unit", "judged material.surface_energy",
+     "not together with surface_energy, with which both units follow from F_A and a₀ of the run",
+     "remove one of the two"),
     ("material.length_unit", "judged !material.surface_energy",
      "missing", "give one LU in metres, or surface_energy, from which a pull_off finds both units"),
     ("material.force_unit",

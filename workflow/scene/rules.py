@@ -199,18 +199,17 @@ PULL_OFF: tuple[Row, ...] = (
      "only with a velocity: it is that of the spring", "remove it, or give the velocity of its far end"),
     ("experiment.cycles", "experiment.kind=pull_off noise",
      "not with [noise], whose pulls are repeated with other seeds", "remove it, and give experiment.repeats"),
-    *((f"experiment.{key}", "!noise", "only with [noise]: without thermal fluctuations all repeats are equal",
-       "remove it, or add [noise] with temperature and seed")
-      for key in ("loading_rate", "stiffness", "repeats")),
+    ("experiment.loading_rate experiment.stiffness experiment.repeats", "!noise",
+     "only with [noise]: without thermal fluctuations all repeats are equal",
+     "remove it, or add [noise] with temperature and seed"),
 )
 """How the bodies are pulled apart, and how often."""
 
 LISTED = "bodies.profile.r|bodies.profile.x|bodies.profile.z"
 POINTS: tuple[Row, ...] = (
     ("bodies.profile.file", LISTED, "not together with the lists r and z", "give one of the two"),
-    *((f"bodies.profile.{key}", f"{LISTED} !bodies.profile.file",
-       "not together with the lists r and z, which have units of their own", "it belongs to a file: remove it")
-      for key in ("scale", "units")),
+    ("bodies.profile.scale bodies.profile.units", f"{LISTED} !bodies.profile.file",
+     "not together with the lists r and z, which have units of their own", "it belongs to a file: remove it"),
     ("bodies.profile.x", "bodies.profile.r", "not together with r", "give one of the two"),
 )
 """The points of a profile, from a file or from lists."""
@@ -311,18 +310,19 @@ def check_fit(scene: Place) -> None:
             _check(draft, *row)
 
 
-def _check(draft: Draft, key: str, broken: object, message: str, fix: str, *ways: Mapping[str, float]) -> None:
-    """Report one rule, where it is broken."""
-    place = draft.scene.at(key)
-    if not place or SAID_OF.get(message[:4], place.absent) != place.absent:
-        return
+def _check(draft: Draft, keys: str, broken: object, message: str, fix: str, *ways: Mapping[str, float]) -> None:
+    """Report a rule that is broken, at each of its keys that may stand there."""
     if isinstance(broken, str):
-        if not draft.holds(broken):
-            return
+        broken = draft.holds(broken)
         message, fix = (text.format_map(draft.facts) for text in (message, fix))
-    elif not broken:
+    if not broken:
         return
     changes = tuple({path: draft.written(path, number)} for way in ways for path, number in way.items())
-    texts = (f"{one:g}" if isinstance(one, float) else one for way in changes for one in way.values())
-    given = None if isinstance(place.value, Mapping) else place.given
-    draft.scene.problems.append(Problem(key, message, given, fix.format(*texts) if ways else fix, changes))
+    if ways:
+        texts = (f"{one:g}" if isinstance(one, float) else one for way in changes for one in way.values())
+        fix = fix.format(*texts)
+    for key in keys.split():
+        place = draft.scene.at(key)
+        if place and SAID_OF.get(message[:4], place.absent) == place.absent:
+            given = None if isinstance(place.value, Mapping) else place.given
+            draft.scene.problems.append(Problem(key, message, given, fix, changes))
