@@ -25,8 +25,8 @@ PARTICLES = 'bodies.lower = "particles"'
 GIVE_SPACING = "give bodies.spacing as a length (LU)"
 ELASTICITY = "material.upper and material.lower with E and ν, or material.contact_modulus"
 Row = tuple[str, object, str, str] | tuple[str, object, str, str, Mapping[str, float]]
-"""A rule: its keys, between blanks; when it is broken, in words for `Draft.holds` or calculated; what is wrong and what to
-do, after such words with {facts} of the draft; and at times the changes by dotted keys that would each make a scene.
+"""A rule: its keys, between blanks; when it is broken, in words for `Draft.holds` or calculated; what is wrong and what
+to do, after such words with {facts} of the draft; and at times the changes by dotted keys that would each make a scene.
 """
 Rows = Iterator[Row]
 TERMS = {
