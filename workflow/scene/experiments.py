@@ -324,7 +324,7 @@ class History(Kind):
     @property
     def compression(self) -> float | None:
         """The largest force; None where displacements are given."""
-        return max((point.force for point in self.force), default=None) if self.force else None
+        return max((point.force for point in self.force or ()), default=None)
 
     def places(self) -> list[float]:
         """Displacements [LU] of the points, none where forces are given."""

@@ -324,7 +324,7 @@ def plain_data(value: Any, levels: int = DEEPEST) -> Any:
 
 def _rank(problem: Problem) -> int:
     """Place of a problem in a report: the tables in the order of a scene, then what is unknown."""
-    order, table = list(Scene.model_fields), re.split(r"[.\[]", problem.path)[0]
+    order, table = list(Scene.model_fields), keys_in(problem.path)[0]
     return order.index(table) if table in order else len(order)
 
 
