@@ -12,8 +12,8 @@ from itertools import chain, pairwise
 from pathlib import Path
 
 from contact1d.files import read_text
-from contact1d.workflow.scene import instrument_file
 from contact1d.workflow.scene.conversion import is_positive
+from contact1d.workflow.scene.instrument_file import ENDINGS, ProfileFileError, read_line
 from contact1d.workflow.scene.measured import SCAN_KEYS, is_scan
 from contact1d.workflow.scene.quantities import Place
 from contact1d.workflow.scene.schema import described
@@ -44,10 +44,6 @@ HEIGHT_DIFFERENCE = 0.05
 
 Row = tuple[int, list[str]]
 """A line of a file: its number and its cells."""
-
-
-class ProfileFileError(ValueError):
-    """A file that is not a profile; the message has the line and the error."""
 
 
 def take_points(scene: Place, folder: Path) -> dict[str, list[float]]:
@@ -133,8 +129,8 @@ def read_profile(path: Path, scan: bool) -> tuple[dict[str, list[float]], str | 
         ProfileFileError: if it has more than MOST_LINES, a cell is empty or no number, a line has one column, there
             are fewer than FEWEST_POINTS points, names are not known, or the two sides of a profile are not the same.
     """
-    if path.suffix.lower() in instrument_file.ENDINGS:
-        x, z, unit = instrument_file.read_line(path)
+    if path.suffix.lower() in ENDINGS:
+        x, z, unit = read_line(path)
         return {"x": x, "z": z}, unit, 1.0
     rows = rows_in(read_text(path).splitlines())
     columns, of_numbers, ratio = _header(rows)
