@@ -12,7 +12,7 @@ from annotated_types import MinLen
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from contact1d.workflow.scene.quantities import Auto, Height, Length
+from contact1d.workflow.scene.quantities import Auto, Length, SignedLength
 from contact1d.workflow.scene.shapes import FEWEST_POINTS, Shape
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-Coordinates = Annotated[tuple[Height, ...], Field(strict=False), MinLen(FEWEST_POINTS)]
+Coordinates = Annotated[tuple[SignedLength, ...], Field(strict=False), MinLen(FEWEST_POINTS)]
 CURVE_KEYS = {"smooth": None, "fit": "none"}
 """Keys of a profile by which its points are given up for a curve, and what they are by default."""
 SCAN_KEYS = {"centre": None, "level": False, **CURVE_KEYS}
@@ -89,7 +89,7 @@ class Measured(Shape):
     """units of position and height of a file, such as ["µm", "nm"], in place of scale; with a minus for heights of a
     body seen from above: ["µm", "-nm"]
     """
-    centre: Auto[Height] | None = None
+    centre: Auto[SignedLength] | None = None
     """position of the apex in the scan, or "auto": looked for, by both sides of it; absent: 0"""
     level: bool = False
     """whether a tilt of the scan is removed; needs a flat part, or both sides of a given centre"""

@@ -81,8 +81,7 @@ class Table(BaseModel):
 POSITIVE, DIMENSIONLESS = Gt(0), Unit("1")
 
 Length = Annotated[float, POSITIVE, Unit("LU")]
-Height = Annotated[float, Unit("LU")]
-SignedRadius = Annotated[float, Unit("LU")]
+SignedLength = Annotated[float, Unit("LU")]
 Ratio = Annotated[float, POSITIVE, DIMENSIONLESS]
 RatioOrZero = Annotated[float, Ge(0), DIMENSIONLESS]
 Stiffness = Annotated[float, POSITIVE, Unit("FU/LU")]

@@ -20,7 +20,7 @@ from annotated_types import Ge
 from pydantic import BeforeValidator, Field
 from pydantic_core import PydanticCustomError
 
-from contact1d.workflow.scene.quantities import Length, Ratio, SignedRadius, Table, Unit
+from contact1d.workflow.scene.quantities import Length, Ratio, SignedLength, Table, Unit
 from contact1d.workflow.scene.si_text import UnitTextError, si_value
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ class Parabola(Shape):
     """z = x²/2R, the paper's circle"""
     radius: Length
     """radius of curvature R at the apex; with a counter_radius R₁"""
-    counter_radius: SignedRadius | None = None
+    counter_radius: SignedLength | None = None
     """radius of curvature R₂ of the lower body, 1/R = 1/R₁ + 1/R₂: positive for a convex one; negative for a concave
     one, a cup, and then larger in magnitude than the radius; absent: a plane
     """
