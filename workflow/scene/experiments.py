@@ -7,8 +7,7 @@ A prescribed path from d₀ to d₁ in n steps holds d_i = (d₀ (n − i) + d�
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Literal
 
 from annotated_types import MinLen
 from pydantic import Discriminator, Field
@@ -68,7 +67,7 @@ class Load(Kind):
 class Path(Kind):
     """Prescribed displacements of the upper body."""
 
-    excludes: ClassVar[Mapping[str, str]] = {
+    excludes = {
         **Kind.excludes,
         "plate": "a path prescribes the plate's displacement, so the plate has no motion of its own",
     }
@@ -141,7 +140,7 @@ class Slide(Kind):
 
     one_of = ((("distance", "path"), "give a distance (LU), or a path = [[velocity, distance], …]; not both"),)
     only_method = "dynamic"
-    excludes: ClassVar[Mapping[str, str]] = {
+    excludes = {
         "adhesion": "it is that of a rigid plane, which cannot drag the upper body",
         "friction": "its friction results from the interaction of the particles",
         "viscoelasticity": "it is that of a body on a rigid plane, which cannot drag the upper body",
@@ -185,7 +184,7 @@ class Tangential(Kind):
         (("displacements", "cycles"), "give displacements (LU), or cycles = { amplitude, number, points }; not both"),
     )
     only_method = "quasistatic"
-    excludes: ClassVar[Mapping[str, str]] = {
+    excludes = {
         "adhesion": "whether shear peels an adhesive edge or makes it slip is a criterion of its own (Savkoor and "
         "Briggs), which neither JKR nor Mindlin has",
         "neighbours": "friction depends on the loading history, and a minimiser, which such springs need, has none",
@@ -291,7 +290,7 @@ class History(Kind):
         (("displacement", "force"), "give displacement = [[time, displacement], …] or force = [[time, force], …]"),
     )
     only_method = "quasistatic"
-    excludes: ClassVar[Mapping[str, str]] = {
+    excludes = {
         "cantilever": UNPULLED,
         "friction": UNMOVED,
         "neighbours": "it is one of springs that know nothing of their neighbours",
@@ -335,7 +334,7 @@ class Impact(Kind):
     """A body that hits the rigid plane; always dynamic."""
 
     only_method = "dynamic"
-    excludes: ClassVar[Mapping[str, str]] = {
+    excludes = {
         "cantilever": UNPULLED,
         "friction": UNMOVED,
         "neighbours": "it is one of springs that know nothing of their neighbours",
