@@ -7,6 +7,7 @@ A prescribed path from d₀ to d₁ in n steps holds d_i = (d₀ (n − i) + d�
 
 from __future__ import annotations
 
+from itertools import accumulate
 from typing import Annotated, Literal
 
 from annotated_types import MinLen
@@ -166,11 +167,8 @@ class Slide(Kind):
     @property
     def way(self) -> float:
         """Largest excursion of the driven end to one side."""
-        place, farthest = 0.0, self.distance or 0.0
-        for leg in self.path or ():
-            place += leg.distance * ((leg.velocity > 0.0) - (leg.velocity < 0.0))
-            farthest = max(farthest, abs(place))
-        return farthest
+        ends = accumulate(leg.distance * ((leg.velocity > 0.0) - (leg.velocity < 0.0)) for leg in self.path or ())
+        return max([self.distance or 0.0, *map(abs, ends)])
 
 
 class Tangential(Kind):
