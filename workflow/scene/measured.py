@@ -125,10 +125,9 @@ class Measured(Shape):
         from contact1d.analysis.scan import ScanError  # it loads scipy, which other scenes can do without
 
         try:
-            points = self._from_the_axis()
+            return fault_of(*self._from_the_axis()) if self.taken and not self.is_curve else None
         except ScanError as error:
             return str(error)
-        return None if self.is_curve else fault_of(*points)
 
     @property
     def is_scan(self) -> bool:
