@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from contact1d.digits import apart
@@ -34,6 +34,7 @@ TERMS = {
     "on_chain": "bodies.lower=particles|bodies.lower=rigid_chain",
     # a rigid plane neither drags a slide nor holds a pull-off without adhesion
     "touched": "on_plane !motion_is_result !experiment.kind=pull_off|adhesion",
+    "unattracted": "!on_plane|!adhesion on_plane|interaction on_plane|!interaction.attraction",
     "elastic": "material.upper|material.lower|material.contact_modulus",
     # a material of nothing but units says nothing of the bodies
     "judged": "material elastic|!bodies.bulk_stiffness=auto elastic|!material.length_unit|!material.force_unit|"
@@ -118,6 +119,10 @@ class Draft:
             return float(f"{number:.{DIGITS}g}")
         given, unit = split(text)
         return f"{number / self[path] * float(given):.{DIGITS}g}{unit}"
+
+
+Rule = Row | Callable[[Draft], Rows]
+"""A row, or rows that need numbers."""
 
 
 def limit(value: float, of: float) -> str:

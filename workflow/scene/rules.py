@@ -12,20 +12,11 @@ Two periodic chains of n and m particles close together only if n·s_lower = m·
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from itertools import pairwise
 
 from contact1d.digits import apart
-from contact1d.workflow.scene.body_rules import (
-    LOWER_BODY,
-    MATERIAL,
-    OPEN_SPACING,
-    PERIODIC,
-    counter_body,
-    periodic_lengths,
-    punch,
-    reduction,
-)
+from contact1d.workflow.scene.body_rules import BODY_RULES
 from contact1d.workflow.scene.draft import (
     DIGITS,
     PARTICLES,
@@ -34,6 +25,7 @@ from contact1d.workflow.scene.draft import (
     Draft,
     Row,
     Rows,
+    Rule,
     limit,
 )
 from contact1d.workflow.scene.experiments import KINDS
@@ -87,58 +79,6 @@ def _tension(d: Draft) -> Rows:
                "must be greater than 0 (FU) without attraction: compression is positive", f"raise it; {tensile}")
 
 
-ADHERES = "on_plane adhesion"
-ATTRACTION: tuple[Row, ...] = (
-    ("interaction.attraction", "experiment.kind=pull_off bodies.lower=particles interaction !adhesion",
-     "missing, needed by a pull_off", "add interaction.attraction with amplitude and range"),
-    *((f"adhesion.{key}", f"experiment.kind=pull_off adhesion.{key}=0",
-       "must be greater than 0 (FU/LU) in a pull_off, else nothing holds the bodies together",
-       'raise it, or use kind = "load" or "path"')
-      for key in ("work_of_adhesion", "surface_energy")),
-    ("bodies.reduction", f"{ADHERES} bodies.reduction=geike_popov",
-     'must be "mdr" with [adhesion], whose contact edge is that of a contact of three dimensions',
-     'write reduction = "mdr"'),
-    ("adhesion.range", f"{ADHERES} bodies.profile.kind=flat_punch",
-     "not with a flat punch, whose edge has no attraction beyond it", "remove it: a punch is Kendall's"),
-    ("adhesion.range", f"{ADHERES} in_time", "only of contacts at rest, not {in_time}",
-     'remove it, or use method = "quasistatic" without [plate], [damping] and [noise]'),
-    ("adhesion.rate", f"{ADHERES} adhesion.range",
-     "not together with a range: it is that of JKR's edge", "give one of the two"),
-    ("adhesion.rate",
-     f"{ADHERES} !experiment.kind=pull_off|!experiment.velocity !experiment.kind=history|!experiment.displacement",
-     "only in a pull_off with a velocity, or in a history of displacements: other states have no time",
-     'remove it, or give experiment.velocity with kind = "pull_off"'),
-    ("adhesion.rate", f"{ADHERES} in_time|experiment.cycles",
-     "only of one pull in equilibrium, whose edge alone takes time",
-     'remove it, or use method = "quasistatic" without cycles, [plate], [damping] and [noise]'),
-    ("adhesion.rate", f"{ADHERES} bodies.profile.kind=flat_punch",
-     "not with a flat punch, whose edge does not move before it is lost", "remove it"),
-    ("experiment.force", f"{ADHERES} experiment.kind=history",
-     "not with [adhesion], under which a force has two displacements", "give experiment.displacement"),
-    ("damping", f"{ADHERES} experiment.kind=path",
-     "not with [adhesion] in a path, which under displacement control has no dynamics",
-     'remove it: method = "quasistatic" is the same without time'),
-)
-"""What holds the bodies together, and the edge of an adhesive contact."""
-
-MOTION: tuple[Row, ...] = (
-    ("plate.free", "motion_is_result plate.free=z !plate.free=x",
-     'must contain "x" in a slide', 'write free = ["x", "z"]'),
-    ("horizontal", "!motion_is_result plate.free=x",
-     'missing, needed by plate.free with "x"', f'write plate.free = ["z"], or add {EFFECT_TABLES["horizontal"].how}'),
-    ("plate", "experiment.kind=impact",
-     "missing, needed by an impact: it has the mass of the body", "add [plate] with mass"),
-    ("plate.mass", "experiment.kind=impact plate.mass=auto",
-     "must be given in an impact (MU): it is that of the body", "give its mass"),
-    ("plate", "experiment.kind=hold experiment.displacement",
-     "not with a displacement that is held: the plate has no motion of its own", "remove it, or give a force"),
-    ("plate", "experiment.kind=hold experiment.force",
-     "missing, needed by a force that is held", f"add {EFFECT_TABLES['plate'].how}"),
-    ("damping", "noise !kind", "missing, needed by [noise]", f"add {EFFECT_TABLES['damping'].how}"),
-)
-"""What moves by itself, in time."""
-
-
 def _normal_loads(d: Draft) -> Rows:
     given = [key for key in ("experiment.normal_force", "experiment.normal_displacement") if key in d]
     points = d["experiment.cycles.points"] or 0
@@ -186,45 +126,6 @@ def _history(d: Draft) -> Rows:
                *apart(longest, shortest, DIGITS)), "give more steps, or leave it to the program")
 
 
-PULL_OFF: tuple[Row, ...] = (
-    ("experiment.loading_rate", "noise !experiment.method=quasistatic !experiment.velocity",
-     "missing, needed by a pull_off with [noise]",
-     "give the rate (FU/TU) at which the load decreases, or the velocity (LU/TU) of a spring that retracts the "
-     "plate, or remove [noise]"),
-    ("experiment.velocity", "experiment.loading_rate", "not together with a loading_rate", "remove one of the two"),
-    ("experiment.velocity", "experiment.kind=pull_off !noise !adhesion.rate",
-     "only with [noise], or with adhesion.rate: otherwise a pull-off does not depend on it",
-     "remove it, or add one of these"),
-    ("experiment.stiffness", "!experiment.velocity",
-     "only with a velocity: it is that of the spring", "remove it, or give the velocity of its far end"),
-    ("experiment.cycles", "experiment.kind=pull_off noise",
-     "not with [noise], whose pulls are repeated with other seeds", "remove it, and give experiment.repeats"),
-    ("experiment.loading_rate experiment.stiffness experiment.repeats", "!noise",
-     "only with [noise]: without thermal fluctuations all repeats are equal",
-     "remove it, or add [noise] with temperature and seed"),
-)
-"""How the bodies are pulled apart, and how often."""
-
-LISTED = "bodies.profile.r|bodies.profile.x|bodies.profile.z"
-POINTS: tuple[Row, ...] = (
-    ("bodies.profile.file", LISTED, "not together with the lists r and z", "give one of the two"),
-    ("bodies.profile.scale bodies.profile.units", f"{LISTED} !bodies.profile.file",
-     "not together with the lists r and z, which have units of their own", "it belongs to a file: remove it"),
-    ("bodies.profile.x", "bodies.profile.r", "not together with r", "give one of the two"),
-)
-"""The points of a profile, from a file or from lists."""
-
-CHAIN_ONLY: tuple[Row, ...] = tuple(
-    (f"bodies.{key}", f"on_plane !bodies.{key}=false",
-     f"not with {PLANE}, which has no particles", f"remove it, or use {PARTICLES}")
-    for key in ("upper_particles", "upper_spacing", "upper_offset", "periodic")
-)
-"""What only a lower body of particles has."""
-
-
-# What an experiment or an effect declares
-
-
 def _needed(name: str, by: str) -> Row:
     return name, True, f"missing, needed by {by}", f"add {EFFECT_TABLES[name].how}"
 
@@ -270,36 +171,96 @@ def _declared_keys(d: Draft) -> Rows:
             yield (f"{name}.{keys[0]}", not given, "missing", fix)
             for key in given[1:]:
                 yield (f"{name}.{key}", True, f"not together with {given[0]}", fix)
+
+
+ADHERES = "on_plane adhesion"
+LISTED = "bodies.profile.r|bodies.profile.x|bodies.profile.z"
+RULES: tuple[Rule, ...] = (
+    *BODY_RULES,
+    _interaction,
+    _tension,
+    # What holds the bodies together, and the edge of an adhesive contact
+    ("interaction.attraction", "experiment.kind=pull_off bodies.lower=particles interaction !adhesion",
+     "missing, needed by a pull_off", "add interaction.attraction with amplitude and range"),
+    *((f"adhesion.{key}", f"experiment.kind=pull_off adhesion.{key}=0",
+       "must be greater than 0 (FU/LU) in a pull_off, else nothing holds the bodies together",
+       'raise it, or use kind = "load" or "path"')
+      for key in ("work_of_adhesion", "surface_energy")),
+    ("bodies.reduction", f"{ADHERES} bodies.reduction=geike_popov",
+     'must be "mdr" with [adhesion], whose contact edge is that of a contact of three dimensions',
+     'write reduction = "mdr"'),
+    ("adhesion.range", f"{ADHERES} bodies.profile.kind=flat_punch",
+     "not with a flat punch, whose edge has no attraction beyond it", "remove it: a punch is Kendall's"),
+    ("adhesion.range", f"{ADHERES} in_time", "only of contacts at rest, not {in_time}",
+     'remove it, or use method = "quasistatic" without [plate], [damping] and [noise]'),
+    ("adhesion.rate", f"{ADHERES} adhesion.range",
+     "not together with a range: it is that of JKR's edge", "give one of the two"),
+    ("adhesion.rate",
+     f"{ADHERES} !experiment.kind=pull_off|!experiment.velocity !experiment.kind=history|!experiment.displacement",
+     "only in a pull_off with a velocity, or in a history of displacements: other states have no time",
+     'remove it, or give experiment.velocity with kind = "pull_off"'),
+    ("adhesion.rate", f"{ADHERES} in_time|experiment.cycles",
+     "only of one pull in equilibrium, whose edge alone takes time",
+     'remove it, or use method = "quasistatic" without cycles, [plate], [damping] and [noise]'),
+    ("adhesion.rate", f"{ADHERES} bodies.profile.kind=flat_punch",
+     "not with a flat punch, whose edge does not move before it is lost", "remove it"),
+    ("experiment.force", f"{ADHERES} experiment.kind=history",
+     "not with [adhesion], under which a force has two displacements", "give experiment.displacement"),
+    ("damping", f"{ADHERES} experiment.kind=path",
+     "not with [adhesion] in a path, which under displacement control has no dynamics",
+     'remove it: method = "quasistatic" is the same without time'),
+    # What moves by itself, in time
+    ("plate.free", "motion_is_result plate.free=z !plate.free=x",
+     'must contain "x" in a slide', 'write free = ["x", "z"]'),
+    ("horizontal", "!motion_is_result plate.free=x",
+     'missing, needed by plate.free with "x"', f'write plate.free = ["z"], or add {EFFECT_TABLES["horizontal"].how}'),
+    ("plate", "experiment.kind=impact",
+     "missing, needed by an impact: it has the mass of the body", "add [plate] with mass"),
+    ("plate.mass", "experiment.kind=impact plate.mass=auto",
+     "must be given in an impact (MU): it is that of the body", "give its mass"),
+    ("plate", "experiment.kind=hold experiment.displacement",
+     "not with a displacement that is held: the plate has no motion of its own", "remove it, or give a force"),
+    ("plate", "experiment.kind=hold experiment.force",
+     "missing, needed by a force that is held", f"add {EFFECT_TABLES['plate'].how}"),
+    ("damping", "noise !kind", "missing, needed by [noise]", f"add {EFFECT_TABLES['damping'].how}"),
+    _normal_loads,
+    _shares,
+    _history,
+    # How the bodies are pulled apart, and how often
+    ("experiment.loading_rate", "noise !experiment.method=quasistatic !experiment.velocity",
+     "missing, needed by a pull_off with [noise]",
+     "give the rate (FU/TU) at which the load decreases, or the velocity (LU/TU) of a spring that retracts the "
+     "plate, or remove [noise]"),
+    ("experiment.velocity", "experiment.loading_rate", "not together with a loading_rate", "remove one of the two"),
+    ("experiment.velocity", "experiment.kind=pull_off !noise !adhesion.rate",
+     "only with [noise], or with adhesion.rate: otherwise a pull-off does not depend on it",
+     "remove it, or add one of these"),
+    ("experiment.stiffness", "!experiment.velocity",
+     "only with a velocity: it is that of the spring", "remove it, or give the velocity of its far end"),
+    ("experiment.cycles", "experiment.kind=pull_off noise",
+     "not with [noise], whose pulls are repeated with other seeds", "remove it, and give experiment.repeats"),
+    ("experiment.loading_rate experiment.stiffness experiment.repeats", "!noise",
+     "only with [noise]: without thermal fluctuations all repeats are equal",
+     "remove it, or add [noise] with temperature and seed"),
+    # What an experiment or an effect declares
+    _excluded,
+    _methods,
+    _declared_keys,
+    # The points of a profile, from a file or from lists
+    ("bodies.profile.file", LISTED, "not together with the lists r and z", "give one of the two"),
+    ("bodies.profile.scale bodies.profile.units", f"{LISTED} !bodies.profile.file",
+     "not together with the lists r and z, which have units of their own", "it belongs to a file: remove it"),
+    ("bodies.profile.x", "bodies.profile.r", "not together with r", "give one of the two"),
+    # What only a lower body of particles has
+    *((f"bodies.{key}", f"on_plane !bodies.{key}=false",
+       f"not with {PLANE}, which has no particles", f"remove it, or use {PARTICLES}")
+      for key in ("upper_particles", "upper_spacing", "upper_offset", "periodic")),
+)
 # fmt: on
 
 
 SAID_OF = {"miss": True, "not ": False, "only": False}
 """Whether messages that begin so are about a key that is absent; others may be about any."""
-
-
-RULES: tuple[Row | Callable[[Draft], Rows], ...] = (
-    *LOWER_BODY,
-    _interaction,
-    _tension,
-    *ATTRACTION,
-    *MOTION,
-    _normal_loads,
-    _shares,
-    _history,
-    *OPEN_SPACING,
-    punch,
-    *MATERIAL,
-    counter_body,
-    reduction,
-    *PULL_OFF,
-    *PERIODIC,
-    periodic_lengths,
-    _excluded,
-    _methods,
-    _declared_keys,
-    *POINTS,
-    *CHAIN_ONLY,
-)
 
 
 def check_fit(scene: Place) -> None:
