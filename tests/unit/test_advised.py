@@ -14,6 +14,7 @@ from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.errors import SceneEdit, TensionError
 from contact1d.workflow.runs.advised import in_words
 from contact1d.workflow.scene import Scene, SceneError, scene_from_dict
+from contact1d.workflow.scene.remedies import less_compression
 from tests.scenes import STEEL_ON_GLASS, chains
 
 SIDEWAYS = chains(1000.0, horizontal={}, experiment={"kind": "pull_off", "preload": 3.0})
@@ -96,3 +97,8 @@ def test_an_error_and_its_changes_survive_pickling() -> None:
     assert in_words(SceneEdit({"experiment.preload": 1.0}, ("horizontal",))) == (
         "--without horizontal --set experiment.preload=1.0"
     )
+
+
+def test_a_smaller_load_leaves_a_number_alone_that_happens_to_be_as_large() -> None:
+    scene = scene_from_dict(chains(1000.0, experiment={"kind": "pull_off", "preload": 1.0, "cycles": 1}))
+    assert list(less_compression(scene)) == [SceneEdit({"experiment.preload": 0.333})]

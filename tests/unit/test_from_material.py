@@ -155,6 +155,13 @@ def test_measured_profile_is_read_from_beside_its_contact_and_by_its_units(tmp_p
                 read_contact(tmp_path / "tip.toml")
 
 
+@pytest.mark.parametrize(("name", "reason"), [("nowhere.csv", "no such file"), ("tip.x3p", "SurfaceTopography")])
+def test_a_profile_that_cannot_be_read_is_an_error_of_its_contact(name: str, reason: str) -> None:
+    contact = {"upper": "rigid", "lower": STEEL, "load": "10 N", "profile": {"kind": "table", "file": name}}
+    with pytest.raises(SceneError, match=rf"^profile\.file = \"{name}\".*{reason}"):
+        read_contact(contact)
+
+
 def test_two_chains_are_chosen_where_they_are_asked_for() -> None:
     choice = chosen(read_contact(TIP | {"radius": "5 um", "model": "particles"}))
     assert choice.target is not None

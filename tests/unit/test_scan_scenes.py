@@ -140,6 +140,15 @@ def test_a_clean_scan_may_keep_its_points(tmp_path: Path) -> None:
     assert float(body.height(np.asarray([3e-4]))[0]) == pytest.approx(4.5e-6, rel=1e-5)
 
 
+def test_an_apex_that_is_given_at_0_makes_a_scan_of_the_points(tmp_path: Path) -> None:
+    x = np.linspace(-1.0, 1.2, 12)  # the two sides have other positions
+    np.savetxt(tmp_path / "given.csv", np.column_stack([x, 0.5 * x**2]), header="x,z", comments="", delimiter=",")
+    profile = scene(tmp_path / "given.csv", "centre = 0.0, scale = '1 mm'").bodies.profile
+    assert isinstance(profile, Measured)
+    assert profile.is_scan
+    assert len(profile.x or ()) == len(x)
+
+
 def test_ten_million_lines_are_refused_at_once(tmp_path: Path) -> None:
     with (tmp_path / "long.csv").open("w") as many:
         for _ in range(100):

@@ -188,6 +188,10 @@ RULES: list[tuple[str, dict[str, Any], str]] = [
     ("DAMPING CANTILEVER", {"experiment.kind": "indent"}, "experiment.kind"),
     ("NOISE", {"experiment.kind": "indent"}, "experiment.kind damping"),
     ("DAMPING", {"experiment.method": 3}, "experiment.method"),
+    ("PLANE", {"experiment": {"kind": "history", "displacement": "far", "force": [[0.0, 0.0], [1.0, 1.0]]}},
+     "experiment.displacement experiment.force"),
+    ("LOAD AUTO", {"experiment": {"kind": ["load"]}, "bodies.mass": "1 kg"}, "experiment.kind"),
+    ("", {"interaction.attraction": {"amplitude": [0.37, 0.01], "range": 0.26}}, "interaction.attraction.amplitude"),
     ("", {"bodies.lower": 3, "interaction": None}, "bodies.lower"),
 ]  # fmt: skip
 

@@ -12,8 +12,9 @@ from typing import Any, Literal
 
 from contact1d.workflow.body.cases import ASSUMED_RANGE
 from contact1d.workflow.scene import Problem, Scene, SceneError, read_tables, scene_from_dict
+from contact1d.workflow.scene.measured import is_scan
 from contact1d.workflow.scene.problems import nearest, shown
-from contact1d.workflow.scene.profile_file import ProfileFileError, is_scan, read_profile
+from contact1d.workflow.scene.profile_file import read_profile
 from contact1d.workflow.scene.profiles import Profile as Shape
 from contact1d.workflow.scene.read import set_values
 from contact1d.workflow.scene.si_text import UnitTextError, si_value
@@ -180,7 +181,7 @@ def _without_unit(data: Mapping[str, Any], folder: Path) -> Iterator[Problem]:
     """A profile's file has units of its own, or the profile a scale; what else is wrong with it the scene says."""
     profile = data.get("profile")
     if isinstance(profile, Mapping) and isinstance(profile.get("file"), str) and not {"scale", "units"} & {*profile}:
-        with suppress(ProfileFileError):
+        with suppress(ValueError):
             if read_profile(folder / profile["file"], is_scan(profile))[1] is None:
                 hint = 'write scale = "1 um", the length of one of its units, or name the columns r [µm] and z [nm]'
                 yield Problem("profile.scale", "missing: the file has no unit", hint=hint)

@@ -16,6 +16,7 @@ from contact1d.workflow.scene.draft import (
     WHOLE_NUMBER_ERROR,
     Draft,
     Rows,
+    Rule,
     limit,
 )
 from contact1d.workflow.scene.tables import (
@@ -26,68 +27,6 @@ from contact1d.workflow.scene.tables import (
 )
 
 # fmt: off
-
-
-
-def lower_body(d: Draft) -> Rows:
-    """Where a rigid plane, a rigid chain or particles may be the lower body."""
-    pulls_off, slides, along = d.kind == "pull_off", d.experiment.motion_is_result, d.experiment.goes_along
-    # a rigid plane neither drags a slide nor holds a pull-off without adhesion
-    inert = d.on_plane and (slides or (pulls_off and "adhesion" not in d))
-    touched = d.on_plane and not inert
-    yield ("interaction", d.on_chain,
-           "missing, needed by a lower body of particles", f"add [interaction], or use {PLANE}")
-    yield ("interaction", touched,
-           f"not with {PLANE}, which is touched directly", f"remove it, or use {PARTICLES}")
-    yield ("horizontal", touched and "horizontal" in d,
-           "has no effect on a rigid plane, which exerts no tangential force on a particle",
-           f"remove it, or use {PARTICLES}")
-    yield ("bodies.lower", inert and slides,
-           "a rigid plane cannot drag the upper body", 'use lower = "particles" and an [interaction]')
-    yield ("bodies.lower", inert and pulls_off,
-           "a rigid plane cannot hold the upper body",
-           'add [adhesion] with work_of_adhesion, or use lower = "particles" and an [interaction]')
-    yield ("bodies.lower", d.on_chain and along,
-           'must be "rigid_plane" with kind = "tangential", whose friction is Coulomb\'s',
-           'between two chains friction comes from the interaction: use kind = "slide"')
-    yield ("friction", d.on_chain and not along,
-           "not between two chains, whose friction comes from the interaction",
-           f'remove it, or use {PLANE} and kind = "tangential"')
-    what = "[viscoelasticity]" if "viscoelasticity" in d else f'kind = "{d.kind}"'
-    yield ("bodies.lower", d.on_chain and (d.kind in ("history", "impact") or "viscoelasticity" in d),
-           f'must be "rigid_plane" with {what}, whose springs are those of both bodies',
-           f"use {PLANE}, with the contact modulus of both")
-    yield ("adhesion", d.on_chain,
-           "not between two chains, which attract each other by the interaction",
-           f"use interaction.attraction, or {PLANE}")
-
-
-def open_spacing(d: Draft) -> Rows:
-    """A spacing that is left to the program."""
-    if d["bodies.spacing"] != "auto":
-        return
-    yield ("bodies.spacing", d.on_chain,
-           "must be a length (LU) with a lower body of particles, whose forces belong to its particles",
-           f'{GIVE_SPACING}; "auto" is for lower = "rigid_plane", where the results converge with the spacing')
-    if d.on_chain:
-        return
-    yield ("bodies.particles", d["bodies.particles"] not in (None, "auto"),
-           'must be "auto" with spacing = "auto"', f"write it, or {GIVE_SPACING}")
-    yield ("bodies.bulk_stiffness", d["bodies.bulk_stiffness"] not in (None, "auto"),
-           'must be "auto" with spacing = "auto": the stiffness of a particle is E* times the spacing',
-           f"write it, and {ELASTICITY}; or {GIVE_SPACING}")
-    yield ("bodies.bulk_stiffness_tangential", True,
-           'not with spacing = "auto": it is a property of one particle',
-           f"remove it: it follows from ν of material.upper and lower; or {GIVE_SPACING}")
-    yield ("bodies.spacing", d.profile == "flat",
-           "must be a length (LU) of a flat body without an edge", f'{GIVE_SPACING}, or use kind = "flat_punch"')
-    tied = [f"[{name}]" for name in ("neighbours", "damping", "noise", "plate") if name in d]
-    tied = [] if d.experiment.is_massless else tied
-    tied += ['method = "dynamic"'] * (d["experiment.method"] == "dynamic")
-    what = next(iter(tied), "")
-    yield ("bodies.spacing", what,
-           f"must be a length (LU) with {what}: masses, drags and springs between particles belong to one spacing",
-           f"{GIVE_SPACING}, or remove {what}")
 
 
 def punch(d: Draft) -> Rows:
@@ -107,52 +46,6 @@ def punch(d: Draft) -> Rows:
            f"the nearest is {0.5 * count * spacing:g} (LU)")
     yield ("bodies.particles", not between and d["bodies.particles"] not in (None, "auto", count),
            f"must be {count}, the radius times 2 over the spacing", f'write {count} or "auto"')
-
-
-def material(d: Draft) -> Rows:
-    """One elasticity, and one way to the units: given, or by F_A and a₀ of the run with γ and E*."""
-    upper, lower, modulus, length, force, energy = (
-        f"material.{key}" in d
-        for key in ("upper", "lower", "contact_modulus", "length_unit", "force_unit", "surface_energy")
-    )
-    elastic, auto = modulus or upper or lower, d["bodies.bulk_stiffness"] == "auto"
-    yield ("bodies.bulk_stiffness", auto and not elastic,
-           "must be given (FU/LU): the scene has no elastic moduli from which it follows",
-           f"give a number, or {ELASTICITY}")
-    units_alone = length and force and not energy
-    if "material" not in d or (not elastic and (auto or units_alone)):
-        return
-    yield ("material.contact_modulus", upper or lower,
-           "not together with upper or lower", "give E*, or E and ν of both bodies")
-    for body, needed in (("upper", not modulus), ("lower", upper and not modulus)):
-        yield (f"material.{body}", needed,
-               "missing", "write upper and lower, each with youngs_modulus and poisson_ratio, or contact_modulus")
-    yield ("material.upper", d["material.upper"] == d["material.lower"] == "rigid",
-           "one of the two bodies must be elastic", 'give its E and ν, or its name, "steel"')
-    for unit in ("length_unit", "force_unit"):
-        yield (f"material.{unit}", energy,
-               "not together with surface_energy, with which both units follow from F_A and a₀ of the run",
-               "remove one of the two")
-    yield ("material.length_unit", not energy,
-           "missing", "give one LU in metres, or surface_energy, from which a pull_off finds both units")
-    yield ("material.force_unit", not energy and not auto and "bodies.bulk_stiffness" in d,
-           "not together with a given bulk_stiffness, from which it follows",
-           'remove it, or write bodies.bulk_stiffness = "auto"')
-    yield ("material.force_unit", not energy and auto,
-           'missing, needed by bulk_stiffness = "auto"', "give one FU in newtons")
-    yield ("bodies.bulk_stiffness", energy and auto,
-           "must be a number: LU and FU are not known before the run",
-           "give the stiffness (FU/LU), or length_unit and force_unit in place of surface_energy")
-    key = "material.surface_energy"
-    yield (key, d.kind is not None and not d.experiment.finds_pull_off,
-           "not in this experiment, which finds no F_A and a₀",
-           'use kind = "pull_off", whose results give length_unit and force_unit')
-    nothing = "adhesion" not in d if d.on_plane else "interaction" in d and "interaction.attraction" not in d
-    yield (key, energy and d.kind == "path" and nothing,
-           "has no effect without attraction: there is no F_A and no a₀",
-           'use length_unit, or lower = "particles" with an interaction.attraction')
-    yield (key, d.profile not in (None, *SPHERES),
-           "not with this profile: JKR is for a sphere", "use a parabola or a circle, or length_unit")
 
 
 def counter_body(d: Draft) -> Rows:
@@ -184,17 +77,10 @@ def reduction(d: Draft) -> Rows:
            'write "mdr", which has force, displacement and radius of any axisymmetric body, or leave it out')
 
 
-def periodic(d: Draft) -> Rows:
-    """What flat chains without ends need, and which scenes may have them."""
-    periodic = d["bodies.periodic"]
-    yield ("bodies.profile.kind", d.profile == "flat" and periodic is False,
-           "needs bodies.periodic", 'write periodic = true, or use kind = "flat_punch", which has an edge')
-    if not periodic:
+def periodic_lengths(d: Draft) -> Rows:
+    """Springs and lengths of two periodic chains, which close together."""
+    if not d["bodies.periodic"]:
         return
-    yield ("bodies.periodic", d.profile not in (None, "flat"),
-           "not with a body that is not flat: a periodic body has no end",
-           'use profile = { kind = "flat" }, or leave periodic out')
-    yield ("bodies.periodic", d.kind not in (None, "slide"), "only in a slide", 'remove it, or use kind = "slide"')
     normal, tangential = d["bodies.bulk_stiffness"], d["bodies.bulk_stiffness_tangential"]
     if normal not in (None, "auto") and tangential is not None:
         yield ("bodies.bulk_stiffness_tangential", tangential > normal,
@@ -205,9 +91,6 @@ def periodic(d: Draft) -> Rows:
         d[path] if path in d else below  # noqa: SIM401 (a draft is no dict)
         for path, below in (("bodies.upper_particles", count), ("bodies.upper_spacing", spacing))
     )
-    yield ("bodies.particles", count == "auto",
-           "must be a number with bodies.periodic",
-           "give a number: it does not follow from the contact of a periodic body")
     if {None, "auto"} & {count, spacing, upper, pitch} or upper == 1:
         return
     ratio = Fraction(pitch / spacing).limit_denominator(LONGEST_CELL)
@@ -222,3 +105,102 @@ def periodic(d: Draft) -> Rows:
     yield ("bodies.upper_spacing", abs(count * spacing - upper * pitch) > WHOLE_NUMBER_ERROR * count * spacing,
            f"the periodic chains differ in length: {count} · {one} LU below and {upper} · {other} LU above",
            f"the nearest equal lengths: {nearest}")
+
+
+OPEN = "bodies.spacing=auto !on_chain"
+BODY_RULES: tuple[Rule, ...] = (
+    # Where a rigid plane, a rigid chain or particles may be the lower body
+    ("interaction", "on_chain",
+     "missing, needed by a lower body of particles", f"add [interaction], or use {PLANE}"),
+    ("interaction", "touched",
+     f"not with {PLANE}, which is touched directly", f"remove it, or use {PARTICLES}"),
+    ("horizontal", "touched horizontal",
+     "has no effect on a rigid plane, which exerts no tangential force on a particle",
+     f"remove it, or use {PARTICLES}"),
+    ("bodies.lower", "on_plane motion_is_result",
+     "a rigid plane cannot drag the upper body", 'use lower = "particles" and an [interaction]'),
+    ("bodies.lower", "on_plane experiment.kind=pull_off !adhesion",
+     "a rigid plane cannot hold the upper body",
+     'add [adhesion] with work_of_adhesion, or use lower = "particles" and an [interaction]'),
+    ("bodies.lower", "on_chain goes_along",
+     'must be "rigid_plane" with kind = "tangential", whose friction is Coulomb\'s',
+     'between two chains friction comes from the interaction: use kind = "slide"'),
+    ("friction", "on_chain !goes_along",
+     "not between two chains, whose friction comes from the interaction",
+     f'remove it, or use {PLANE} and kind = "tangential"'),
+    ("bodies.lower", "on_chain viscoelasticity",
+     'must be "rigid_plane" with [viscoelasticity], whose springs are those of both bodies',
+     f"use {PLANE}, with the contact modulus of both"),
+    ("bodies.lower", "on_chain !viscoelasticity experiment.kind=history|experiment.kind=impact",
+     'must be "rigid_plane" with kind = "{kind}", whose springs are those of both bodies',
+     f"use {PLANE}, with the contact modulus of both"),
+    ("adhesion", "on_chain",
+     "not between two chains, which attract each other by the interaction",
+     f"use interaction.attraction, or {PLANE}"),
+    # A spacing that is left to the program
+    ("bodies.spacing", "bodies.spacing=auto on_chain",
+     "must be a length (LU) with a lower body of particles, whose forces belong to its particles",
+     f'{GIVE_SPACING}; "auto" is for lower = "rigid_plane", where the results converge with the spacing'),
+    ("bodies.particles", f"{OPEN} bodies.particles=* !bodies.particles=auto",
+     'must be "auto" with spacing = "auto"', f"write it, or {GIVE_SPACING}"),
+    ("bodies.bulk_stiffness", f"{OPEN} bodies.bulk_stiffness=* !bodies.bulk_stiffness=auto",
+     'must be "auto" with spacing = "auto": the stiffness of a particle is E* times the spacing',
+     f"write it, and {ELASTICITY}; or {GIVE_SPACING}"),
+    ("bodies.bulk_stiffness_tangential", OPEN,
+     'not with spacing = "auto": it is a property of one particle',
+     f"remove it: it follows from ν of material.upper and lower; or {GIVE_SPACING}"),
+    ("bodies.spacing", f"{OPEN} bodies.profile.kind=flat",
+     "must be a length (LU) of a flat body without an edge", f'{GIVE_SPACING}, or use kind = "flat_punch"'),
+    ("bodies.spacing", f"{OPEN} tied",
+     "must be a length (LU) with {tied}: masses, drags and springs between particles belong to one spacing",
+     f"{GIVE_SPACING}, or remove {{tied}}"),
+    punch,
+    # One elasticity, and one way to the units: given, or by F_A and a₀ of the run with γ and E*
+    ("bodies.bulk_stiffness", "bodies.bulk_stiffness=auto !elastic",
+     "must be given (FU/LU): the scene has no elastic moduli from which it follows",
+     f"give a number, or {ELASTICITY}"),
+    ("material.contact_modulus", "material.upper|material.lower",
+     "not together with upper or lower", "give E*, or E and ν of both bodies"),
+    *((f"material.{body}", f"judged !material.contact_modulus {other}",
+       "missing", "write upper and lower, each with youngs_modulus and poisson_ratio, or contact_modulus")
+      for body, other in (("upper", ""), ("lower", "material.upper"))),
+    ("material.upper", "material.upper=rigid material.lower=rigid",
+     "one of the two bodies must be elastic", 'give its E and ν, or its name, "steel"'),
+    ("material.length_unit material.force_unit", "judged material.surface_energy",
+     "not together with surface_energy, with which both units follow from F_A and a₀ of the run",
+     "remove one of the two"),
+    ("material.length_unit", "judged !material.surface_energy",
+     "missing", "give one LU in metres, or surface_energy, from which a pull_off finds both units"),
+    ("material.force_unit",
+     "judged !material.surface_energy bodies.bulk_stiffness !bodies.bulk_stiffness=auto",
+     "not together with a given bulk_stiffness, from which it follows",
+     'remove it, or write bodies.bulk_stiffness = "auto"'),
+    ("material.force_unit", "judged !material.surface_energy bodies.bulk_stiffness=auto",
+     'missing, needed by bulk_stiffness = "auto"', "give one FU in newtons"),
+    ("bodies.bulk_stiffness", "judged material.surface_energy bodies.bulk_stiffness=auto",
+     "must be a number: LU and FU are not known before the run",
+     "give the stiffness (FU/LU), or length_unit and force_unit in place of surface_energy"),
+    ("material.surface_energy", "judged kind !finds_pull_off",
+     "not in this experiment, which finds no F_A and a₀",
+     'use kind = "pull_off", whose results give length_unit and force_unit'),
+    ("material.surface_energy", "judged material.surface_energy experiment.kind=path unattracted",
+     "has no effect without attraction: there is no F_A and no a₀",
+     'use length_unit, or lower = "particles" with an interaction.attraction'),
+    ("material.surface_energy",
+     f"judged bodies.profile.kind=* {' '.join(f'!bodies.profile.kind={kind}' for kind in SPHERES)}",
+     "not with this profile: JKR is for a sphere", "use a parabola or a circle, or length_unit"),
+    counter_body,
+    reduction,
+    # What flat chains without ends need, and which scenes may have them
+    ("bodies.profile.kind", "bodies.profile.kind=flat bodies.periodic=false",
+     "needs bodies.periodic", 'write periodic = true, or use kind = "flat_punch", which has an edge'),
+    ("bodies.periodic", "bodies.periodic=true bodies.profile.kind=* !bodies.profile.kind=flat",
+     "not with a body that is not flat: a periodic body has no end",
+     'use profile = {{ kind = "flat" }}, or leave periodic out'),
+    ("bodies.periodic", "bodies.periodic=true kind !experiment.kind=slide",
+     "only in a slide", 'remove it, or use kind = "slide"'),
+    ("bodies.particles", "bodies.periodic=true bodies.particles=auto",
+     "must be a number with bodies.periodic",
+     "give a number: it does not follow from the contact of a periodic body"),
+    periodic_lengths,
+)

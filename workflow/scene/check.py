@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from itertools import chain
+from typing import Any
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from contact1d.workflow.scene.kinds import Kind
-from contact1d.workflow.scene.problems import MOST_PROBLEMS, as_toml, nearest, plain, suggestion
-from contact1d.workflow.scene.quantities import Allowed, OutOfRange, Place, keys_of, tables_in
+from contact1d.workflow.scene.problems import MOST_PROBLEMS, Problem, as_toml, nearest, path_of, plain, suggestion
+from contact1d.workflow.scene.quantities import OutOfRange, Place, keys_of, tables_in
 from contact1d.workflow.scene.schema import statement, text_of
 from contact1d.workflow.scene.tables import Tables
 
@@ -23,23 +24,26 @@ def mend_words(scene: Place) -> None:
     """Report and correct every word that is misspelt or unknown; put tables where names and lists stand for them."""
     for place in chain((scene,), scene):
         _mend_word(place)
-        value, allowed, listed = place.value, place.allowed, place.allowed.table
-        if listed and listed.as_list and isinstance(value, list) and len(value) == len(keys_of(listed)):
-            place.put(dict(zip(keys_of(listed), value, strict=True)))
-        if not isinstance(value, dict):
-            continue
-        if allowed.kinds and "kind" not in value:
-            for similar in [key for key in value if nearest(key, ["kind"])][:1]:
-                _mend_key(place, ["kind"], similar)
-        if allowed.kinds:
-            _mend_word(place.kind)
-        if table := allowed.table_for(value):
-            unknown = [key for key in value if key not in keys_of(table)]
-            for key in unknown[:MOST_PROBLEMS]:
-                _mend_key(place, keys_of(table), key)
-            for key in unknown[MOST_PROBLEMS:]:  # they are counted only
-                del value[key]
-                Place(None, Allowed(), key, place, absent=True).report("unknown key")
+        value, table = place.value, place.allowed.table
+        if isinstance(value, dict):
+            _mend_keys(place, value)
+        elif table and table.as_list and isinstance(value, list) and len(value) == len(keys_of(table)):
+            place.put(dict(zip(keys_of(table), value, strict=True)))
+
+
+def _mend_keys(place: Place, value: dict[str, Any]) -> None:
+    """The same of the keys of a table, and of its kind."""
+    if place.allowed.kinds:
+        for similar in [key for key in value if "kind" not in value and nearest(key, ["kind"])][:1]:
+            _mend_key(place, ["kind"], similar)
+        _mend_word(place.kind)
+    table = place.allowed.table_for(value)
+    unknown = [key for key in value if key not in keys_of(table)] if table else []
+    for key in unknown[:MOST_PROBLEMS]:
+        _mend_key(place, keys_of(table), key)
+    for key in unknown[MOST_PROBLEMS:]:  # they are counted only
+        del value[key]
+        place.problems.append(Problem(path_of((*place.keys, key)), "unknown key"))
 
 
 def _mend_word(place: Place) -> None:
@@ -69,7 +73,7 @@ def _mend_key(place: Place, known: Collection[str], key: str) -> None:
     elif homes := _homes(key):
         begin = f"it belongs in {' or '.join(homes)}; "
     what = "unknown table" if isinstance(value, dict) else "unknown key"
-    Place(None, Allowed(), key, place, absent=True).report(what, begin + suggestion(key, known))
+    place.problems.append(Problem(path_of((*place.keys, key)), what, hint=begin + suggestion(key, known)))
 
 
 def _homes(key: str) -> list[str]:

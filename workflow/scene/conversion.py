@@ -9,23 +9,19 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from copy import copy
 from fractions import Fraction
 
-from contact1d.workflow.scene.experiments import KINDS
-from contact1d.workflow.scene.kinds import Kind
+from contact1d.workflow.scene.draft import Draft
 from contact1d.workflow.scene.quantities import Place, numbers_in
 from contact1d.workflow.scene.si_text import UnitTextError, example, si_value
-from contact1d.workflow.scene.tables import TIMED
 from contact1d.workflow.units import SI
 
 BOLTZMANN = Fraction(1380649, 10**29)
 """k_B [J/K], exact since 2019."""
 UNIT_KEYS = {"LU": "length_unit", "FU": "force_unit", "MU": "mass_unit"}
 """Keys of [material] that say what a unit of the model is in SI."""
-ELASTIC = frozenset({"upper", "lower", "contact_modulus"})
-"""Keys of [material] that say how stiff the bodies are."""
 LISTED = 3
 """Places that a message names before it counts the rest."""
 
@@ -71,58 +67,55 @@ def _put(place: Place, value: Fraction) -> None:
 
 
 def _scales(scene: Place, texts: list[Place]) -> dict[str, Fraction] | None:
-    """What LU, FU and MU are in SI, those that `texts` need; chosen and put into the scene where they are open.
-
-    None, and reported, where they cannot be known.
-    """
-    material, own = scene.inside["material"], scene.at("bodies.bulk_stiffness")
+    """What LU, FU and MU are in SI, those that `texts` need. None, and reported, where they cannot be known."""
+    material = scene.inside["material"]
     if material.absent:
         material.put({})
     if not isinstance(material.value, dict):
         return None  # reported where tables are checked
-    first, stiffness = texts[0], own.value if own else "auto"
-    if "surface_energy" in material.value:
+    first, draft = texts[0], Draft(scene)
+    if "material.surface_energy" in draft:
         message = "LU and FU follow from the run (material.surface_energy), so that units are not known before it"
         first.fault(message, f"write a number in {first.unit.name}")
         return None
-    needed = frozenset[str]().union(*(place.unit.bases for place in texts))
-    elastic = not ELASTIC.isdisjoint(material.value)
-    if stiffness == "auto" or not elastic or "MU" in needed:
+    return _chosen(draft, texts)
+
+
+def _chosen(draft: Draft, texts: list[Place]) -> dict[str, Fraction] | None:
+    """The same, chosen and put into the scene where they are open."""
+    own, elastic = draft.scene.at("bodies.bulk_stiffness"), draft.holds("elastic")
+    stiffness = own if own and own.value != "auto" and elastic else None  # FU follows from it and the moduli
+    needed = {base for place in texts for base in place.unit.bases}
+    if not stiffness or "MU" in needed:
         needed |= {"LU", "FU"}
-    units = {base: material.inside[key] for base, key in UNIT_KEYS.items()}
+    units = {base: draft.scene.inside["material"].inside[UNIT_KEYS[base]] for base in sorted(needed)}
+    chosen = [base for base, unit in units.items() if unit.absent]
+    plain = _plain_numbers(draft, chosen)
+    if stiffness and "FU" in chosen:
+        chosen.remove("FU")
+        if stiffness.sound:
+            stiffness.report("follows from the material here", 'write "auto"')
+    elif plain:
+        _report_mixed(plain, texts[0], chosen, elastic)
+    for base in chosen:  # in spite of a problem, so that the rules across tables don't report its consequences
+        units[base].put(1.0)
     scales = {base: Fraction(repr(unit.value)) for base, unit in units.items() if is_positive(unit)}
-    chosen = frozenset(base for base in needed if units[base].absent)
-    fixed = "FU" in chosen and elastic and stiffness != "auto"
-    kind, method = scene.at("experiment.kind"), scene.at("experiment.method")
-    table = KINDS.get(kind.value, Kind) if kind else Kind
-    timed = {"dynamic"} & {table.only_method, method and method.value} or any(
-        not scene.inside[name].absent for name in TIMED
-    )
-    massless = table.is_massless or not timed  # the mass of a particle matters nowhere
-    plain = [
-        place
-        for place in numbers_in(scene)
-        if place.is_number and place.unit.bases & chosen and not (massless and place.path == "bodies.mass")
-    ]
-    if fixed and own and own.sound:
-        own.report("follows from the material here", 'write "auto"')
-    elif plain and not fixed:
-        _report_mixed(plain, first, chosen, elastic)
-    # also where a problem was reported, so that the rules across tables don't report its consequences
-    for base in sorted(chosen):
-        if base != "FU" or not fixed:
-            units[base].put(1.0)
-    scales |= dict.fromkeys(chosen, Fraction(1))
-    return None if plain or fixed or not needed <= scales.keys() else scales
+    return scales if scales.keys() == needed and not plain else None
 
 
-def _report_mixed(plain: list[Place], text: Place, chosen: frozenset[str], elastic: bool) -> None:
+def _plain_numbers(draft: Draft, bases: Collection[str]) -> list[Place]:
+    """The numbers without a unit that are in units made of one of these, but for a mass that matters nowhere."""
+    in_time = draft.experiment.only_method == "dynamic" or draft.facts["in_time"]
+    without = "" if in_time and not draft.experiment.is_massless else "bodies.mass"
+    numbers = (place for place in numbers_in(draft.scene) if place.is_number and place.path != without)
+    return [place for place in numbers if place.unit.bases & {*bases}]
+
+
+def _report_mixed(plain: list[Place], text: Place, chosen: Collection[str], elastic: bool) -> None:
     """Plain numbers beside numbers with a unit, and nothing says what the units of the model are."""
     first = plain[0]
-    open_ = {base for place in plain for base in place.unit.bases} & chosen
-    if not elastic:
-        open_ |= {"LU", "FU"} & chosen
-    bases = [base for base in UNIT_KEYS if base in open_]
+    unknown = {base for place in plain for base in place.unit.bases} | (set() if elastic else {"LU", "FU"})
+    bases = [base for base in UNIT_KEYS if base in unknown and base in chosen]
     what = f"what {' and '.join(bases)} stand{'s' * (len(bases) == 1)} for"
     others = ", ".join(place.path for place in plain[1:LISTED])
     more = f" and {len(plain) - LISTED} more" if len(plain) > LISTED else ""

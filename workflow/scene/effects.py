@@ -155,7 +155,7 @@ class Adhesion(Effect):
     one_of = (
         (("work_of_adhesion", "surface_energy"), "give W, or with surface_energy γ of one side, half of it; not both"),
     )
-    excludes: ClassVar[Mapping[str, str]] = {
+    excludes = {
         "neighbours": "the springs of a JKR contact are independent, and neighbours would couple them",
         "noise": "particles that are fixed to their body have no thermal motion",
     }
@@ -201,7 +201,7 @@ class Viscoelasticity(Effect):
 
     one_of = ((("terms", "retardation_time"), "give the terms of a Prony series, or one retardation_time; not both"),)
     how = "[viscoelasticity] with terms = [{ share, time }, …]"
-    excludes: ClassVar[Mapping[str, str]] = {
+    excludes = {
         "adhesion": "what opens the edge of such a contact depends on all that came before, which no rule for the edge "
         "of an elastic contact has",
         "friction": "a slip depends on the order in which pressure and shear relax, which is not exact here",

@@ -7,8 +7,8 @@ A prescribed path from d₀ to d₁ in n steps holds d_i = (d₀ (n − i) + d�
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Annotated, ClassVar, Literal
+from itertools import accumulate
+from typing import Annotated, Literal
 
 from annotated_types import MinLen
 from pydantic import Discriminator, Field
@@ -68,7 +68,7 @@ class Load(Kind):
 class Path(Kind):
     """Prescribed displacements of the upper body."""
 
-    excludes: ClassVar[Mapping[str, str]] = {
+    excludes = {
         **Kind.excludes,
         "plate": "a path prescribes the plate's displacement, so the plate has no motion of its own",
     }
@@ -93,7 +93,6 @@ class Path(Kind):
 class PullOff(Kind):
     """Compression by a preload, then unloading up to pull-off."""
 
-    only_with_noise = ("loading_rate", "stiffness", "repeats")
     load_key = "preload"
     finds_pull_off = True
 
@@ -142,7 +141,7 @@ class Slide(Kind):
 
     one_of = ((("distance", "path"), "give a distance (LU), or a path = [[velocity, distance], …]; not both"),)
     only_method = "dynamic"
-    excludes: ClassVar[Mapping[str, str]] = {
+    excludes = {
         "adhesion": "it is that of a rigid plane, which cannot drag the upper body",
         "friction": "its friction results from the interaction of the particles",
         "viscoelasticity": "it is that of a body on a rigid plane, which cannot drag the upper body",
@@ -168,11 +167,8 @@ class Slide(Kind):
     @property
     def way(self) -> float:
         """Largest excursion of the driven end to one side."""
-        place, farthest = 0.0, self.distance or 0.0
-        for leg in self.path or ():
-            place += leg.distance * ((leg.velocity > 0.0) - (leg.velocity < 0.0))
-            farthest = max(farthest, abs(place))
-        return farthest
+        ends = accumulate(leg.distance * ((leg.velocity > 0.0) - (leg.velocity < 0.0)) for leg in self.path or ())
+        return max([self.distance or 0.0, *map(abs, ends)])
 
 
 class Tangential(Kind):
@@ -186,7 +182,7 @@ class Tangential(Kind):
         (("displacements", "cycles"), "give displacements (LU), or cycles = { amplitude, number, points }; not both"),
     )
     only_method = "quasistatic"
-    excludes: ClassVar[Mapping[str, str]] = {
+    excludes = {
         "adhesion": "whether shear peels an adhesive edge or makes it slip is a criterion of its own (Savkoor and "
         "Briggs), which neither JKR nor Mindlin has",
         "neighbours": "friction depends on the loading history, and a minimiser, which such springs need, has none",
@@ -292,7 +288,7 @@ class History(Kind):
         (("displacement", "force"), "give displacement = [[time, displacement], …] or force = [[time, force], …]"),
     )
     only_method = "quasistatic"
-    excludes: ClassVar[Mapping[str, str]] = {
+    excludes = {
         "cantilever": UNPULLED,
         "friction": UNMOVED,
         "neighbours": "it is one of springs that know nothing of their neighbours",
@@ -325,7 +321,7 @@ class History(Kind):
     @property
     def compression(self) -> float | None:
         """The largest force; None where displacements are given."""
-        return max((point.force for point in self.force), default=None) if self.force else None
+        return max((point.force for point in self.force or ()), default=None)
 
     def places(self) -> list[float]:
         """Displacements [LU] of the points, none where forces are given."""
@@ -336,7 +332,7 @@ class Impact(Kind):
     """A body that hits the rigid plane; always dynamic."""
 
     only_method = "dynamic"
-    excludes: ClassVar[Mapping[str, str]] = {
+    excludes = {
         "cantilever": UNPULLED,
         "friction": UNMOVED,
         "neighbours": "it is one of springs that know nothing of their neighbours",

@@ -11,8 +11,8 @@ ENDINGS = frozenset({
 """Endings of files of instruments, which are no text."""
 
 
-class InstrumentFileError(ValueError):
-    """A file that is no line scan; the message has the reason."""
+class ProfileFileError(ValueError):
+    """A file that is no profile; the message has the error, and the line of a text."""
 
 
 def read_line(path: Path) -> tuple[list[float], list[float], str]:
@@ -21,13 +21,13 @@ def read_line(path: Path) -> tuple[list[float], list[float], str]:
     An instrument's heights grow out of the sample, those of a profile away from the plane: their sign is changed.
 
     Raises:
-        InstrumentFileError: SurfaceTopography is not installed, or can't read the file, or it has no unit or gaps.
+        ProfileFileError: SurfaceTopography is not installed, or can't read the file, or it has no unit or gaps.
     """
     try:
         import numpy as np
         from SurfaceTopography import read_topography
     except ImportError:
-        raise InstrumentFileError(
+        raise ProfileFileError(
             "is a file of an instrument, which SurfaceTopography reads: pip install contact1d[instruments], or export "
             "the line as text with columns x and z"
         ) from None
@@ -36,13 +36,13 @@ def read_line(path: Path) -> tuple[list[float], list[float], str]:
         x, *_, heights = scan.positions_and_heights()
     except Exception as error:
         reason = type(error).__name__  # its text may quote the file
-        raise InstrumentFileError(f"SurfaceTopography can't read it ({reason}); export the line as text") from None
+        raise ProfileFileError(f"SurfaceTopography can't read it ({reason}); export the line as text") from None
     heights = np.ma.filled(heights, np.nan)
     if not scan.unit:
-        raise InstrumentFileError("has no unit; export the line as text, with units in the names: x [µm], z [nm]")
+        raise ProfileFileError("has no unit; export the line as text, with units in the names: x [µm], z [nm]")
     if scan.dim == 2:
         row = np.unravel_index(np.nanargmax(heights), heights.shape)[1]
         x, heights = x[:, row], heights[:, row]
     if not np.isfinite(heights).all():
-        raise InstrumentFileError("has gaps in the line through its highest point; fill them, or export another line")
+        raise ProfileFileError("has gaps in the line through its highest point; fill them, or export another line")
     return x.tolist(), (-heights).tolist(), f"1 {scan.unit}"

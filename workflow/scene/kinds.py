@@ -91,7 +91,6 @@ class Kind(Table):
         excludes: effects that it cannot have by any method, and why.
         needs: effects that it cannot do without by any method.
         needs_in_time: effects that a dynamic one cannot do without.
-        only_with_noise: keys that say how a thermal one is repeated.
         load_key: the key of its one normal force, which may be tensile (not a preload) if the bodies attract.
         finds_pull_off: whether its results have F_A and a₀.
         way_is_given: the scene prescribes the loading history, so that nothing is searched for and states are unique.
@@ -107,7 +106,6 @@ class Kind(Table):
     }  # fmt: skip
     needs: ClassVar[tuple[str, ...]] = ()
     needs_in_time: ClassVar[tuple[str, ...]] = ("damping", "plate")
-    only_with_noise: ClassVar[tuple[str, ...]] = ()
     load_key: ClassVar[str | None] = None
     finds_pull_off: ClassVar[bool] = False
     way_is_given: ClassVar[bool] = False

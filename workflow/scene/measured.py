@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import statistics
+from collections.abc import Mapping
 from functools import lru_cache
 from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
@@ -10,9 +12,8 @@ from annotated_types import MinLen
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from contact1d.workflow.scene.points import AS_A_SCAN, FEWEST_POINTS, SHARP, Piecewise, Points, fault_of
-from contact1d.workflow.scene.quantities import Auto, Height, Length, Unit
-from contact1d.workflow.scene.shapes import Circle, Parabola, Power, Shape
+from contact1d.workflow.scene.quantities import Auto, Length, SignedLength
+from contact1d.workflow.scene.shapes import FEWEST_POINTS, Shape
 
 if TYPE_CHECKING:
     import numpy as np
@@ -22,82 +23,50 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-Radii = Annotated[tuple[Height, ...], Field(strict=False), MinLen(FEWEST_POINTS)]
-Positions = Annotated[tuple[Height, ...], Field(strict=False), MinLen(FEWEST_POINTS)]
-Heights = Annotated[tuple[Height, ...], Field(strict=False), MinLen(FEWEST_POINTS)]
-OFF_AXIS = 1
-"""Intervals from the axis on of a smooth curve whose slope may rise as it likes: an apex is no kink beside it."""
+Coordinates = Annotated[tuple[SignedLength, ...], Field(strict=False), MinLen(FEWEST_POINTS)]
+CURVE_KEYS = {"smooth": None, "fit": "none"}
+"""Keys of a profile by which its points are given up for a curve, and what they are by default."""
+SCAN_KEYS = {"centre": None, "level": False, **CURVE_KEYS}
+"""Keys that say how its points are read as a scan."""
+AS_A_SCAN = (
+    'of a noisy scan, centre = "auto" with smooth = "auto" or fit = "parabola" takes the apex and a curve that rises'
+)
+"""The way out for points that are no profile by themselves."""
+GAP = 10.0
+"""A step of the radii counts as a gap beyond this many times the median step."""
 
 
-class Smoothed(Piecewise):
-    """A body whose slope is linear between knots: what was taken of a scan."""
-
-    knots: tuple[float, ...]
-    slopes: tuple[float, ...]
-
-    @property
-    def reach(self) -> float:
-        """The last knot."""
-        return self.knots[-1]
-
-    @property
-    def kinks(self) -> tuple[float, ...]:
-        """The middle of an interval in which the slope rises SHARP times as fast as over all: a jump that was seen so.
-
-        What is infinite at a kink is then no number that depends on the distance of the knots.
-        """
-        cells = zip(pairwise(self.knots), pairwise(self.slopes), strict=True)
-        steep = SHARP * max(self.slopes) / self.reach
-        found = [0.5 * (start + end) for (start, end), (low, high) in cells if high - low > steep * (end - start)]
-        return tuple(place for place in found if place > self.knots[OFF_AXIS])
-
-    def _curve(self) -> Any:
-        return _quadratics(self.knots, self.slopes)
+def is_scan(profile: Mapping[str, Any], keys: Mapping[str, Any] = SCAN_KEYS) -> bool:
+    """Whether a profile's points are those of a scan: one of these keys says how they are read."""
+    return any(profile.get(key, default) not in (default, "none") for key, default in keys.items())
 
 
-@lru_cache(maxsize=64)
-def _quadratics(knots: tuple[float, ...], slopes: tuple[float, ...]) -> Any:
-    """The curve of these slopes, 0 on the axis."""
-    import numpy as np
-    from scipy.interpolate import PPoly
-
-    x, slope = np.asarray(knots), np.asarray(slopes)
-    return PPoly(
-        np.stack([0.0 * x[1:], np.diff(slope) / np.diff(x), slope[:-1]]), x, extrapolate=False
-    ).antiderivative()
-
-
-class Fitted(Shape):
-    """A named shape out to the end of the scan that it was fitted to."""
-
-    slow = True
-    inner: Shape
-    end: float
-
-    def height(self, x: Array) -> Array:
-        """That of the shape."""
-        import numpy as np
-
-        return self.inner.height(np.minimum(np.abs(x), self.end))
-
-    def transformed(self, x: Array) -> Array:
-        """That of the shape."""
-        import numpy as np
-
-        return self.inner.transformed(np.minimum(np.abs(x), self.end))
-
-    @property
-    def reach(self) -> float:
-        """The end."""
-        return min(self.end, self.inner.reach)
-
-    @property
-    def curvature_radius(self) -> float | None:
-        """That of the shape."""
-        return self.inner.curvature_radius
-
-
-Centre = Annotated[float, Unit("LU")]
+def fault_of(r: tuple[float, ...], z: tuple[float, ...]) -> str | None:
+    """What keeps the points (r, z) from being a profile, with what would do; None where nothing does."""
+    if len(r) != len(z):
+        return f"must have as many radii as heights, not {len(r)} and {len(z)}"
+    steps = [after - before for before, after in pairwise(r)]
+    if min(steps) <= 0.0:
+        at = next(at for at, step in enumerate(steps) if step <= 0.0)
+        return f"radii must increase; {r[at + 1]:.6g} follows {r[at]:.6g}"
+    if r[0] != 0.0:
+        return f"must begin at the radius 0, not {r[0]:.6g}: the transform needs the slope from the axis on"
+    middle = statistics.median(steps)
+    for at, step in enumerate(steps):
+        if step > GAP * middle:
+            return (
+                f"has a gap from r = {r[at]:.6g} to {r[at + 1]:.6g}: the median step is {middle:.4g}, and "
+                f"the largest gap allowed {GAP * middle:.4g}; add points there"
+            )
+    if z[0] - min(z) > max(z) - z[0]:
+        return "has heights that decrease from the axis: heights are measured from the plane; change the sign"
+    lowest = z.index(min(z))
+    if z[lowest] < z[0]:
+        off = f"at r = {r[lowest]:.6g} LU the height is lower by {z[0] - z[lowest]:.4g} LU"
+        return f"must have its apex at r = 0; {off}; {AS_A_SCAN}"
+    if max(z) == z[0]:
+        return 'is flat: write kind = "flat_punch"'
+    return None
 
 
 class Measured(Shape):
@@ -120,7 +89,7 @@ class Measured(Shape):
     """units of position and height of a file, such as ["µm", "nm"], in place of scale; with a minus for heights of a
     body seen from above: ["µm", "-nm"]
     """
-    centre: Auto[Centre] | None = None
+    centre: Auto[SignedLength] | None = None
     """position of the apex in the scan, or "auto": looked for, by both sides of it; absent: 0"""
     level: bool = False
     """whether a tilt of the scan is removed; needs a flat part, or both sides of a given centre"""
@@ -128,11 +97,11 @@ class Measured(Shape):
     """distance of the knots of a smooth curve that rises from the apex on, or "auto": by the noise of the scan"""
     fit: Literal["none", "parabola", "circle", "power"] = "none"
     """shape that is fitted to the points in place of a smooth curve"""
-    x: Positions | None = None
+    x: Coordinates | None = None
     """positions of the points from side to side, in place of r; with centre, level, smooth or fit"""
-    r: Radii | None = None
+    r: Coordinates | None = None
     """radii of the points, from 0, rising"""
-    z: Heights | None = None
+    z: Coordinates | None = None
     """heights at these radii; the first one counts as 0"""
 
     @model_validator(mode="after")
@@ -156,43 +125,47 @@ class Measured(Shape):
         from contact1d.analysis.scan import ScanError  # it loads scipy, which other scenes can do without
 
         try:
-            body = self.body
+            return fault_of(*self._from_the_axis()) if self.taken and not self.is_curve else None
         except ScanError as error:
             return str(error)
-        return fault_of(body.r, body.z) if isinstance(body, Points) else None
 
     @property
     def is_scan(self) -> bool:
         """Whether the profile is what is taken of the points, and not these themselves."""
-        return self.centre is not None or self.level or self.is_curve
+        return is_scan(vars(self))
 
     @property
     def is_curve(self) -> bool:
         """Whether the points are given up for a curve."""
-        return self.smooth not in (None, "none") or self.fit != "none"
+        return is_scan(vars(self), CURVE_KEYS)
 
     @property
     def taken(self) -> Taken | None:
         """What is taken of the scan, where there is one."""
-        return self._read(self.smooth if isinstance(self.smooth, float | int) else None) if self.is_scan else None
-
-    def _read(self, length: float | None) -> Taken:
-        """What is taken with knots at this distance; None: by the noise."""
-        centre = None if self.centre == "auto" else self.centre or 0.0
+        if not self.is_scan:
+            return None
         along = self.r if self.x is None else self.x
-        shape = None if self.fit == "none" else self.fit
-        return _take(along or (), self.z or (), centre, self.level, length, shape)
+        centre = None if self.centre == "auto" else self.centre or 0.0
+        length = self.smooth if isinstance(self.smooth, float | int) else None
+        return _take(along or (), self.z or (), centre, self.level, length, None if self.fit == "none" else self.fit)
+
+    def _from_the_axis(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Radii and heights of the points, of a scan the mean of its sides."""
+        taken = self.taken
+        if taken is None:
+            return self.r or (), self.z or ()
+        r, z = taken.folded()
+        return tuple(r.tolist()), tuple(z.tolist())
 
     @property
     def body(self) -> Shape:
         """The body that is taken."""
-        taken = self.taken
-        if taken is None:
-            return Points.model_construct(r=self.r or (), z=self.z or ())
-        if self.is_curve:
-            return _shape_of(taken, taken.parameters)
-        r, z = taken.folded()
-        return Points.model_construct(r=tuple(r.tolist()), z=tuple(z.tolist()))
+        from contact1d.workflow.scene.points import Points, curve_of  # it loads scipy as well
+
+        if self.is_curve and (taken := self.taken):
+            return curve_of(taken, taken.parameters)
+        r, z = self._from_the_axis()
+        return Points.model_construct(r=r, z=z)
 
     def height(self, x: Array) -> Array:
         """That of the body."""
@@ -217,8 +190,8 @@ class Measured(Shape):
         """Those of the points; of a curve with knots at a given distance that with half of it."""
         if not self.is_curve:
             return self.body.alternatives
-        finer = [self._read(0.5 * self.smooth)] if isinstance(self.smooth, float | int) else []
-        return tuple(_shape_of(one, one.parameters) for one in finer)
+        finer = {"smooth": 0.5 * self.smooth} if isinstance(self.smooth, float | int) else {}
+        return (self.model_copy(update=finer).body,) if finer else ()
 
     @property
     def coarser(self) -> tuple[Shape, ...]:
@@ -228,9 +201,11 @@ class Measured(Shape):
     @property
     def deviations(self) -> tuple[tuple[Shape, Shape], ...]:
         """Curves that the noise of the scan allows as well."""
+        from contact1d.workflow.scene.points import curve_of
+
         if not self.is_curve or (taken := self.taken) is None:
             return ()
-        return tuple((_shape_of(taken, more), _shape_of(taken, less)) for more, less in taken.deviations)
+        return tuple((curve_of(taken, more), curve_of(taken, less)) for more, less in taken.deviations)
 
 
 @lru_cache(maxsize=8)
@@ -241,16 +216,3 @@ def _take(along: tuple[float, ...], z: tuple[float, ...], *how: Any) -> Taken:
     from contact1d.analysis.scan import take
 
     return take(np.asarray(along), np.asarray(z), *how)
-
-
-def _shape_of(taken: Taken, parameters: Array) -> Shape:
-    """The body with these parameters."""
-    first, *more = parameters.tolist()
-    if taken.shape == "smooth":
-        return Smoothed.model_construct(knots=tuple(taken.knots.tolist()), slopes=(0.0, first, *more))
-    inner: Shape
-    if taken.shape == "power":
-        inner = Power.model_construct(exponent=more[0], radius=float(taken.x[-1] - taken.x[0]), height_there=first)
-    else:
-        inner = (Circle if taken.shape == "circle" else Parabola).model_construct(radius=1.0 / first)
-    return Fitted.model_construct(inner=inner, end=taken.reach)

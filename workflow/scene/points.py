@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import math
-import statistics
 from abc import abstractmethod
 from functools import lru_cache
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
-from contact1d.workflow.scene.shapes import Shape
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline, PPoly
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+from contact1d.analysis.scan import Taken
+from contact1d.workflow.scene.shapes import FEWEST_POINTS, Circle, Parabola, Power, Shape
 
-    Array = NDArray[np.float64]
+Array = NDArray[np.float64]
 
-FEWEST_POINTS = 4
-"""Points of a measured profile."""
 STEEPEST = 3.0
 """Slope at a measured point over the rise to its neighbour up to which a cubic has no overshoot."""
 CELLS = 1_000_000
@@ -41,8 +39,6 @@ class Piecewise(Shape):
 
     def height(self, x: Array) -> Array:
         """z(|x|) − z(0)."""
-        import numpy as np
-
         return np.asarray(self._curve()(np.minimum(np.abs(x), self.reach)))
 
     def transformed(self, x: Array) -> Array:
@@ -50,8 +46,6 @@ class Piecewise(Shape):
 
         ∫ (p₀ + p₁ r + p₂ r²)/√(x² − r²) dr = (p₀ + p₂ x²/2) arcsin(r/x) − (p₁ + p₂ r/2) √(x² − r²).
         """
-        import numpy as np
-
         radii, p_0, p_1, p_2 = _slopes(self._curve())
         flat = np.minimum(np.abs(np.ravel(x)), self.reach)
         g = np.zeros_like(flat)
@@ -144,20 +138,26 @@ FLANK = 3
 """Points on either side of a jump whose parabola goes on to where it meets the other one."""
 
 
+def _bends(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Array, Array, Array]:
+    """Radii; heights above the apex; slopes of the chords; and by how much they change, over the length where they do.
+
+    The body is even in x: the chords begin at the point on the other side of the axis, (n,), and the bends on the axis,
+    (n − 1,).
+    """
+    x, y = np.asarray(r), np.asarray(z) - z[0]
+    slope = np.diff(y, prepend=y[1]) / np.diff(x, prepend=-x[1])
+    return x, y, slope, np.diff(slope) / np.append(2.0 * x[1], x[2:] - x[:-2])
+
+
 @lru_cache(maxsize=8)
-def _points(r: tuple[float, ...], z: tuple[float, ...], sharpness: float = SHARP) -> tuple[Array, Array, list[int]]:
+def _points(r: tuple[float, ...], z: tuple[float, ...], sharpness: float = SHARP) -> tuple[Array, Array, Any]:
     """Radii and heights with a point where the slope jumps between two, and the numbers of all at which it does.
 
     It jumps between two points whose curvatures are in sum `sharpness` times those beside them: where the parabolas of
-    either side meet, or at a point where they do not meet between two. The body is even in x.
+    either side meet, or at a point where they do not meet between two.
     """
-    import numpy as np
-
-    x, y = np.asarray(r), np.asarray(z) - z[0]
-    slope = np.diff(np.append(y[1], y)) / np.diff(np.append(-x[1], x))
-    jump = np.abs(np.diff(slope))
-    curvature = jump / np.append(2.0 * x[1], x[2:] - x[:-2])
-    curvature[jump <= LEAST_JUMP * np.abs(slope).max()] = 0.0
+    x, y, slope, bend = _bends(r, z)
+    curvature = np.where(np.abs(np.diff(slope)) > LEAST_JUMP * np.abs(slope).max(), np.abs(bend), 0.0)
     beside = np.maximum(curvature[:-3], curvature[3:])
     excess = curvature[1:-2] + curvature[2:-1] - sharpness * beside
     found, taken = dict[float, float](), set[int]()
@@ -177,31 +177,27 @@ def _points(r: tuple[float, ...], z: tuple[float, ...], sharpness: float = SHARP
         found[float(x[i])] = float(y[i])
     every = dict(zip(x.tolist(), y.tolist(), strict=True)) | found
     places = sorted(every)
-    return np.asarray(places), np.asarray([every[one] for one in places]), [places.index(one) for one in sorted(found)]
+    return np.asarray(places), np.asarray([every[one] for one in places]), np.searchsorted(places, sorted(found))
 
 
-def _cornered(r: tuple[float, ...], z: tuple[float, ...]) -> dict[str, tuple[float, ...]]:
+def _cornered(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Array]:
     """The points, and in each cell the one where the chords on both sides of it meet, if they do there."""
-    import numpy as np
-
-    x, y = np.asarray(r), np.asarray(z)
-    slope = np.diff(y) / np.diff(x)
-    before, after, start, end = slope[:-2], slope[2:], slice(1, -2), slice(2, -1)
+    x, y, slope, _ = _bends(r, z)
+    before, after, start, end = slope[1:-2], slope[3:], slice(1, -2), slice(2, -1)
     with np.errstate(divide="ignore", invalid="ignore"):
         meet = (y[end] - y[start] + before * x[start] - after * x[end]) / (before - after)
     # Where a point is a corner by itself, it is not beside it.
-    own = np.isin(x, _points(r, z)[0][_points(r, z)[2]])
+    places, _, corners = _points(r, z)
+    own = np.isin(x, places[corners])
     inside = (meet > x[start]) & (meet < x[end]) & ~own[start] & ~own[end]
     places = np.append(x, meet[inside])
     heights = np.append(y, (y[start] + before * (meet - x[start]))[inside])
     order = np.argsort(places)
-    return {"r": tuple(places[order].tolist()), "z": tuple(heights[order].tolist())}
+    return places[order], heights[order]
 
 
 def _digit(z: tuple[float, ...]) -> float:
     """The power of ten of which all heights are whole multiples; 0 where that is beyond MOST_DIGITS of the largest."""
-    import numpy as np
-
     heights = np.asarray(z)
     first = math.ceil(math.log10(np.abs(heights).max()))
     for power in range(first, first - MOST_DIGITS, -1):
@@ -214,28 +210,20 @@ def _digit(z: tuple[float, ...]) -> float:
 @lru_cache(maxsize=8)
 def _angular(r: tuple[float, ...], z: tuple[float, ...], corners: bool) -> Any:
     """The curve through the points, straight in rough cells, or with a corner there."""
-    import numpy as np
-    from scipy.interpolate import PPoly
-
-    own, points = _spline(r, z), _cornered(r, z) if corners else {"r": r, "z": z}
-    x, y = np.asarray(points["r"]), np.asarray(points["z"]) - z[0]
+    own = _spline(r, z)
+    x, y = _cornered(r, z) if corners else (np.asarray(r), np.asarray(z) - z[0])
     places = np.union1d(own.x, x)
-    start, cell = places[:-1], np.searchsorted(np.asarray(r), places[:-1], side="right") - 1
-    smooth = [own.derivative(k)(start) / math.factorial(k) for k in (3, 2, 1)]
+    start = places[:-1]
+    smooth = [own(start, k) / math.factorial(k) for k in (3, 2, 1, 0)]
     chord = (np.diff(y) / np.diff(x))[np.searchsorted(x, start, side="right") - 1]
-    straight = [0.0 * start, 0.0 * start, chord]
-    curve = np.where(_is_rough(r, z)[cell], straight, smooth)
-    heights = np.where(_is_rough(r, z)[cell], np.interp(start, x, y), own(start))
-    return PPoly(np.vstack([curve, heights]), places, extrapolate=False)
+    straight = [0.0 * start, 0.0 * start, chord, np.interp(start, x, y)]
+    rough = _is_rough(r, z)[np.searchsorted(r, start, side="right") - 1]
+    return PPoly(np.where(rough, straight, smooth), places, extrapolate=False)
 
 
 def _is_rough(r: tuple[float, ...], z: tuple[float, ...]) -> NDArray[np.bool_]:
     """Of each cell, whether the curvatures at the points around it, or near by, differ by more than ROUGH, (n − 1,)."""
-    import numpy as np
-
-    x, y = np.asarray((-r[1], *r)), np.asarray((z[1], *z))
-    slope = np.diff(y) / np.diff(x)
-    bend = np.diff(slope) / (x[2:] - x[:-2])
+    x, _, slope, bend = _bends(r, z)
     bend = np.concatenate([bend[1:2], bend, bend[-1:], bend[-1:]])  # of the points from −1 to n
     around = np.lib.stride_tricks.sliding_window_view(bend, 4)
     low, high = around.min(axis=1), around.max(axis=1)
@@ -253,9 +241,6 @@ def _spline(r: tuple[float, ...], z: tuple[float, ...]) -> Any:
     overshoots (F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238). Where the slope jumps, each side has
     its own.
     """
-    import numpy as np
-    from scipy.interpolate import PPoly
-
     x, y, corners = _points(r, z)
     ends = [0]
     for corner in corners:
@@ -272,19 +257,14 @@ MIDDLE = 2
 
 def _cubics(x: Array, y: Array) -> Array:
     """Coefficients of monotone cubics through the points (x, y), (4, n − 1), as `PPoly` has them."""
-    import numpy as np
-    from scipy.interpolate import CubicHermiteSpline
-
     step, rise = np.diff(x), np.diff(y) / np.diff(x)
-    before, after = rise[:-1], rise[1:]
-    inner = (step[1:] * before + step[:-1] * after) / (step[1:] + step[:-1])
+    inner = (step[1:] * rise[:-1] + step[:-1] * rise[1:]) / (step[1:] + step[:-1])
     first = rise[0] + step[0] / (step[0] + step[1]) * (rise[0] - rise[1])
     last = rise[-1] + step[-1] / (step[-1] + step[-2]) * (rise[-1] - rise[-2])
-    least = np.concatenate([rise[:1], np.where(np.abs(before) < np.abs(after), before, after), rise[-1:]])
-    turns = np.concatenate([[False], before * after <= 0.0, [False]])
-    wanted = np.concatenate([[first], inner, [last]])
-    limit = np.where(turns, 0.0, STEEPEST * np.abs(least))
-    slopes = np.sign(least) * np.clip(np.sign(least) * wanted, 0.0, limit)
+    before, after = np.append(rise[0], rise), np.append(rise, rise[-1])
+    least = np.where(np.abs(before) < np.abs(after), before, after)
+    limit = np.where(before * after > 0.0, STEEPEST * np.abs(least), 0.0)
+    slopes = np.sign(least) * np.clip(np.sign(least) * np.concatenate([[first], inner, [last]]), 0.0, limit)
     return np.asarray(CubicHermiteSpline(x, y, slopes).c)
 
 
@@ -295,39 +275,79 @@ def _slopes(curve: Any) -> tuple[Array, Array, Array, Array]:
     return curve.x, constant - linear * start + square * start**2, linear - 2.0 * square * start, square
 
 
-AS_A_SCAN = (
-    'of a noisy scan, centre = "auto" with smooth = "auto" or fit = "parabola" takes the apex and a curve that rises'
-)
-"""The way out for points that are no profile by themselves."""
-SCAN_KEYS = ("centre", "level", "smooth", "fit")
-"""Keys of a table that say how its scan is read."""
-GAP = 10.0
-"""A step of the radii counts as a gap beyond this many times the median step."""
+OFF_AXIS = 1
+"""Intervals from the axis on of a smooth curve whose slope may rise as it likes: an apex is no kink beside it."""
 
 
-def fault_of(r: tuple[float, ...], z: tuple[float, ...]) -> str | None:
-    """What keeps the points (r, z) from being a profile, with what would do; None where nothing does."""
-    if len(r) != len(z):
-        return f"must have as many radii as heights, not {len(r)} and {len(z)}"
-    steps = [after - before for before, after in pairwise(r)]
-    if min(steps) <= 0.0:
-        at = next(at for at, step in enumerate(steps) if step <= 0.0)
-        return f"radii must increase; {r[at + 1]:.6g} follows {r[at]:.6g}"
-    if r[0] != 0.0:
-        return f"must begin at the radius 0, not {r[0]:.6g}: the transform needs the slope from the axis on"
-    middle = statistics.median(steps)
-    for at, step in enumerate(steps):
-        if step > GAP * middle:
-            return (
-                f"has a gap from r = {r[at]:.6g} to {r[at + 1]:.6g}: the median step is {middle:.4g}, and "
-                f"the largest gap allowed {GAP * middle:.4g}; add points there"
-            )
-    if z[0] - min(z) > max(z) - z[0]:
-        return "has heights that decrease from the axis: heights are measured from the plane; change the sign"
-    lowest = z.index(min(z))
-    if z[lowest] < z[0]:
-        off = f"at r = {r[lowest]:.6g} LU the height is lower by {z[0] - z[lowest]:.4g} LU"
-        return f"must have its apex at r = 0; {off}; {AS_A_SCAN}"
-    if max(z) == z[0]:
-        return 'is flat: write kind = "flat_punch"'
-    return None
+class Smoothed(Piecewise):
+    """A body whose slope is linear between knots: what was taken of a scan."""
+
+    knots: tuple[float, ...]
+    slopes: tuple[float, ...]
+
+    @property
+    def reach(self) -> float:
+        """The last knot."""
+        return self.knots[-1]
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """The middle of an interval in which the slope rises SHARP times as fast as over all: a jump that was seen so.
+
+        What is infinite at a kink is then no number that depends on the distance of the knots.
+        """
+        cells = zip(pairwise(self.knots), pairwise(self.slopes), strict=True)
+        steep = SHARP * max(self.slopes) / self.reach
+        found = [0.5 * (start + end) for (start, end), (low, high) in cells if high - low > steep * (end - start)]
+        return tuple(place for place in found if place > self.knots[OFF_AXIS])
+
+    def _curve(self) -> Any:
+        return _quadratics(self.knots, self.slopes)
+
+
+@lru_cache(maxsize=64)
+def _quadratics(knots: tuple[float, ...], slopes: tuple[float, ...]) -> Any:
+    """The curve of these slopes, 0 on the axis."""
+    x, slope = np.asarray(knots), np.asarray(slopes)
+    return PPoly(
+        np.stack([0.0 * x[1:], np.diff(slope) / np.diff(x), slope[:-1]]), x, extrapolate=False
+    ).antiderivative()
+
+
+class Fitted(Shape):
+    """A named shape out to the end of the scan that it was fitted to."""
+
+    slow = True
+    inner: Shape
+    end: float
+
+    def height(self, x: Array) -> Array:
+        """That of the shape."""
+        return self.inner.height(np.minimum(np.abs(x), self.end))
+
+    def transformed(self, x: Array) -> Array:
+        """That of the shape."""
+        return self.inner.transformed(np.minimum(np.abs(x), self.end))
+
+    @property
+    def reach(self) -> float:
+        """The end."""
+        return min(self.end, self.inner.reach)
+
+    @property
+    def curvature_radius(self) -> float | None:
+        """That of the shape."""
+        return self.inner.curvature_radius
+
+
+def curve_of(taken: Taken, parameters: Array) -> Shape:
+    """The body with these parameters."""
+    first, *more = parameters.tolist()
+    if taken.shape == "smooth":
+        return Smoothed.model_construct(knots=tuple(taken.knots.tolist()), slopes=(0.0, first, *more))
+    inner: Shape
+    if taken.shape == "power":
+        inner = Power.model_construct(exponent=more[0], radius=float(taken.x[-1] - taken.x[0]), height_there=first)
+    else:
+        inner = (Circle if taken.shape == "circle" else Parabola).model_construct(radius=1.0 / first)
+    return Fitted.model_construct(inner=inner, end=taken.reach)

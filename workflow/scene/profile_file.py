@@ -7,17 +7,17 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import chain, pairwise
 from pathlib import Path
-from typing import Any
 
 from contact1d.files import read_text
-from contact1d.workflow.scene import instrument_file
 from contact1d.workflow.scene.conversion import is_positive
-from contact1d.workflow.scene.points import FEWEST_POINTS, SCAN_KEYS
+from contact1d.workflow.scene.instrument_file import ENDINGS, ProfileFileError, read_line
+from contact1d.workflow.scene.measured import SCAN_KEYS, is_scan
 from contact1d.workflow.scene.quantities import Place
 from contact1d.workflow.scene.schema import described
+from contact1d.workflow.scene.shapes import FEWEST_POINTS
 from contact1d.workflow.scene.si_text import UnitTextError, si_value
 
 RADII = ("r", "radius", "radii", "rho", "ρ", "rayon", "raggio", "radio")
@@ -44,10 +44,6 @@ HEIGHT_DIFFERENCE = 0.05
 
 Row = tuple[int, list[str]]
 """A line of a file: its number and its cells."""
-
-
-class ProfileFileError(ValueError):
-    """A file that is not a profile; the message has the line and the error."""
 
 
 def take_points(scene: Place, folder: Path) -> dict[str, list[float]]:
@@ -87,11 +83,6 @@ def take_points(scene: Place, folder: Path) -> dict[str, list[float]]:
         profile.put({"kind": profile.value["kind"]})
         return {}
     return lists | {"z": [ratio * value for value in lists["z"]]}
-
-
-def is_scan(profile: Mapping[str, Any]) -> bool:
-    """Whether a profile's points are those of a scan, which stand in the scene as they are."""
-    return any(profile.get(key) not in (None, False, "none") for key in SCAN_KEYS)
 
 
 def _sizes(units: object) -> tuple[str, float]:
@@ -138,25 +129,23 @@ def read_profile(path: Path, scan: bool) -> tuple[dict[str, list[float]], str | 
         ProfileFileError: if it has more than MOST_LINES, a cell is empty or no number, a line has one column, there
             are fewer than FEWEST_POINTS points, names are not known, or the two sides of a profile are not the same.
     """
-    if path.suffix.lower() in instrument_file.ENDINGS:
-        x, z, unit = instrument_file.read_line(path)
+    if path.suffix.lower() in ENDINGS:
+        x, z, unit = read_line(path)
         return {"x": x, "z": z}, unit, 1.0
-    rows = _rows(path)
+    rows = rows_in(read_text(path).splitlines())
     columns, of_numbers, ratio = _header(rows)
     points = [_point(f"line {line}", cells, columns) for line, cells in rows]
     if not points:
         raise ProfileFileError("has no points")
-    if not scan:
-        return dict(zip("rz", _from_the_axis(points), strict=True)), of_numbers, ratio
-    return dict(zip("xz", ([*column] for column in zip(*points, strict=True)), strict=True)), of_numbers, ratio
+    x, z = ([*column] for column in zip(*points, strict=True))
+    return {"x": x, "z": z} if scan else _from_the_axis(x, z), of_numbers, ratio
 
 
-def _from_the_axis(points: list[list[float]]) -> tuple[list[float], list[float]]:
+def _from_the_axis(r: list[float], z: list[float]) -> dict[str, list[float]]:
     """Radii and heights, (n,), of points that are one side of a profile, or both."""
-    if all(after[0] < before[0] for before, after in pairwise(points)):
-        points.reverse()
-    r, z = ([*column] for column in zip(*points, strict=True))
-    if len(r) > 1 and not _rising(r) and (_rising(z) or _rising(z[::-1])):
+    if _rising(r[::-1]):
+        r, z = r[::-1], z[::-1]
+    if not _rising(r) and (_rising(z) or _rising(z[::-1])):
         raise ProfileFileError(
             "its heights increase and its radii do not: the columns may be swapped; name them r and z"
         )
@@ -164,16 +153,11 @@ def _from_the_axis(points: list[list[float]]) -> tuple[list[float], list[float]]
         r, z = _folded(r, z)
     if len(r) < FEWEST_POINTS:
         raise ProfileFileError(f"must have at least {FEWEST_POINTS} points from the axis out, not {len(r)}")
-    return r, z
-
-
-def _rows(path: Path) -> list[Row]:
-    """The lines that have content, each with its number, as cells with decimal points."""
-    return rows_in(read_text(path).splitlines())
+    return {"r": r, "z": z}
 
 
 def rows_in(lines: list[str]) -> list[Row]:
-    """The same of lines of text."""
+    """The lines that have content, each with its number, as cells with decimal points."""
     if len(lines) > MOST_LINES:
         raise ProfileFileError(f"has {len(lines)} lines, at most {MOST_LINES} are allowed; use fewer points")
     full = [(i, line) for i, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]

@@ -8,16 +8,12 @@ conversion between units and rules ask it what stands at a key and what may stan
 
 from __future__ import annotations
 
-import ast
-import inspect
 import types
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache, cached_property, reduce
-from itertools import pairwise
 from operator import or_
-from textwrap import dedent
-from typing import Annotated, Any, ClassVar, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, ClassVar, Literal, TypeVar, Union, get_args, get_origin
 
 from annotated_types import Ge, Gt, Le, MinLen
 from pydantic import BaseModel, ConfigDict, Field
@@ -69,7 +65,9 @@ class Table(BaseModel):
         by_name: tables that a name may stand for, each name as `problems.plain` has it.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False, defer_build=True)
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", strict=True, allow_inf_nan=False, defer_build=True, use_attribute_docstrings=True
+    )
 
     as_list: ClassVar[bool] = False
     one_of: ClassVar[tuple[tuple[tuple[str, ...], str], ...]] = ()
@@ -83,8 +81,7 @@ class Table(BaseModel):
 POSITIVE, DIMENSIONLESS = Gt(0), Unit("1")
 
 Length = Annotated[float, POSITIVE, Unit("LU")]
-Height = Annotated[float, Unit("LU")]
-SignedRadius = Annotated[float, Unit("LU")]
+SignedLength = Annotated[float, Unit("LU")]
 Ratio = Annotated[float, POSITIVE, DIMENSIONLESS]
 RatioOrZero = Annotated[float, Ge(0), DIMENSIONLESS]
 Stiffness = Annotated[float, POSITIVE, Unit("FU/LU")]
@@ -183,41 +180,22 @@ class Allowed:
 
 @dataclass(frozen=True)
 class Key:
-    """A key of a table: its field in Python, allowed values, default (None: none), and the table."""
+    """A key of a table: its field in Python, allowed values, default (None: none), and what it is."""
 
     field: str
     allowed: Allowed
     default: Any
-    table: type[Table]
-
-    @property
-    def description(self) -> str:
-        """What it is."""
-        given = self.table.model_fields[self.field].description
-        return " ".join((given or _texts_below(self.table)[self.field]).split())
-
-
-@cache
-def _texts_below(table: type[Table]) -> dict[str, str]:
-    """The text below each key of a table, which its source alone has."""
-    texts = {}
-    for owner in reversed(table.__mro__[: table.__mro__.index(Table)]):
-        (definition,) = ast.parse(dedent(inspect.getsource(owner))).body
-        for line, text in pairwise(ast.iter_child_nodes(definition)):
-            match line, text:
-                case ast.AnnAssign(target=ast.Name(name)), ast.Expr(ast.Constant(str(said))):
-                    texts[name] = said
-    return texts
+    description: str
 
 
 @cache
 def keys_of(table: type[Table]) -> dict[str, Key]:
     """Every key allowed in `table`, as written in TOML, in order; cached, since every scene needs some tens."""
-    hints = get_type_hints(table, include_extras=True)
-    return {
-        field.alias or name: Key(name, allowed_by(hints[name]), field.get_default(), table)
-        for name, field in table.model_fields.items()
-    }
+    keys = {}
+    for name, given in table.model_fields.items():
+        allowed, text = allowed_by(given.annotation, (*given.metadata,)), " ".join(str(given.description).split())
+        keys[given.alias or name] = Key(name, allowed, given.get_default(), text)
+    return keys
 
 
 def allowed_by(annotation: Any, marks: tuple[Any, ...] = ()) -> Allowed:
@@ -237,6 +215,7 @@ def allowed_by(annotation: Any, marks: tuple[Any, ...] = ()) -> Allowed:
     return Allowed(tables={get_args(kind.annotation)[0] if kind else "": annotation})
 
 
+@dataclass(slots=True, eq=False)
 class Place:
     """A position in a scene: a key of a table or an item of a list, the value there, and what may stand there.
 
@@ -246,23 +225,26 @@ class Place:
         value: what stands there; where nothing does, the default.
         allowed: what may stand there.
         key: the last of its `keys`.
+        above: the table or list that it is in; None of the whole of something.
         absent: whether nothing stands there.
         sound: whether its value, and all in it, can be relied on.
-        problems: what is wrong in the scene.
         source: what was written, where the value follows from that: a text with a unit, or the name of a file.
+        problems: what is wrong in the scene.
     """
 
-    __slots__ = ("_above", "_inside", "absent", "allowed", "key", "problems", "sound", "source", "value")
+    value: Any
+    allowed: Allowed
+    key: str | int = ""
+    above: Place | None = None
+    absent: bool = False
+    sound: bool = True
+    source: Place | None = None
+    problems: list[Problem] = field(init=False)
+    _inside: dict[Any, Place] | None = None
 
-    def __init__(
-        self, value: Any, allowed: Allowed, key: str | int = "", above: Place | None = None, absent: bool = False
-    ) -> None:
-        """The position `key` in the table or list `above`; without one the whole of something."""
-        self.value, self.allowed, self.key, self._above, self.absent = value, allowed, key, above, absent
-        self.problems: list[Problem] = above.problems if above else []
-        self.source: Place | None = None
-        self._inside: dict[Any, Place] | None = None
-        self.sound = True
+    def __post_init__(self) -> None:
+        """All places of a scene share its problems."""
+        self.problems = self.above.problems if self.above else []
 
     def __iter__(self) -> Iterator[Place]:
         """All places in it, a table before its content, which may be corrected meanwhile; absent keys, too."""
@@ -276,18 +258,17 @@ class Place:
         """The places of its keys or items; of a table whose kind is not known that of the kind alone."""
         if self._inside is None:
             value, allowed = self.value, self.allowed
-            found: dict[Any, Place] = {}
+            self._inside = {}
             if isinstance(value, dict):
                 table = allowed.table_for(value)
-                found = {
+                self._inside = {
                     name: Place(value.get(name, key.default), key.allowed, name, self, name not in value)
                     for name, key in (keys_of(table) if table else {}).items()
                 }
                 if allowed.kinds:
-                    found["kind"] = self.kind
+                    self._inside["kind"] = self.kind
             elif allowed.items and isinstance(value, list | tuple):
-                found = {i: Place(item, allowed.items, i, self) for i, item in enumerate(value)}
-            self._inside = found
+                self._inside = {i: Place(item, allowed.items, i, self) for i, item in enumerate(value)}
         return self._inside
 
     @property
@@ -300,7 +281,7 @@ class Place:
     @property
     def keys(self) -> Keys:
         """The keys from the top of the scene down to it."""
-        return (*self._above.keys, self.key) if self._above else ()
+        return (*self.above.keys, self.key) if self.above else ()
 
     def at(self, path: str) -> Place | None:
         """The place at a dotted path from here; None where nothing may stand."""
@@ -311,8 +292,8 @@ class Place:
 
     def put(self, value: object) -> None:
         """Put a value there."""
-        assert self._above is not None
-        self._above.value[self.key] = self.value = value
+        assert self.above is not None
+        self.above.value[self.key] = self.value = value
         self.absent, self._inside = False, None
 
     @property
@@ -351,8 +332,8 @@ class Place:
     def doubt(self) -> None:
         """Take its value for no basis of anything else."""
         self.sound = False
-        if self._above:
-            self._above.doubt()
+        if self.above:
+            self.above.doubt()
 
     def fault(self, message: str, hint: str = "") -> None:
         """Doubt it, and report what is wrong."""

@@ -15,6 +15,7 @@ from pydantic import ConfigDict, PrivateAttr, ValidationError
 from contact1d.files import UnreadableError, read_text
 from contact1d.workflow.scene.check import mend_words, report_faults
 from contact1d.workflow.scene.conversion import UNIT_KEYS, convert
+from contact1d.workflow.scene.draft import Draft
 from contact1d.workflow.scene.problems import BARE, Problem, SceneError, keys_in, shown, suggestion, tables_as_toml
 from contact1d.workflow.scene.profile_file import put_points, take_points
 from contact1d.workflow.scene.quantities import Place, Table, keys_of
@@ -223,8 +224,8 @@ def _at_ends(scene: Scene) -> Iterator[Problem]:
 
 def _in_si(tables: Place, has_texts: bool) -> list[Problem]:
     """The problems of a scene with SI in place of LU, FU and MU, where its numbers are written in it."""
-    units = (tables.at(f"material.{key}") for key in UNIT_KEYS.values())
-    length, force, mass = (unit.value if unit and isinstance(unit.value, float) else None for unit in units)
+    draft = Draft(tables)
+    length, force, mass = (draft[f"material.{key}"] for key in UNIT_KEYS.values())
     if not (length and force and (has_texts or length == force == 1.0)):
         return tables.problems
     words = Scales(length, force, mass=mass).in_words
@@ -282,13 +283,14 @@ def remove_effects(data: dict[str, Any], names: Iterable[str]) -> list[Problem]:
     problems = []
     for name in dict.fromkeys(names):
         there = [effect for effect in EFFECTS if effect in data]
-        message, hint = "not an effect that can be removed", suggestion(name, EFFECTS, "effects")
-        if name in EFFECTS:
-            message, hint = "the scene has no such table", f"effects there: {', '.join(there) or 'none'}"
         if name in there:
             del data[name]
+        elif name in EFFECTS:
+            hint = f"effects there: {', '.join(there) or 'none'}"
+            problems.append(Problem(f"without {name}", "the scene has no such table", hint=hint))
         else:
-            problems.append(Problem(f"without {name}", message, hint=hint))
+            hint = suggestion(name, EFFECTS, "effects")
+            problems.append(Problem(f"without {name}", "not an effect that can be removed", hint=hint))
     return problems
 
 
@@ -323,7 +325,7 @@ def plain_data(value: Any, levels: int = DEEPEST) -> Any:
 
 def _rank(problem: Problem) -> int:
     """Place of a problem in a report: the tables in the order of a scene, then what is unknown."""
-    order, table = list(Scene.model_fields), re.split(r"[.\[]", problem.path)[0]
+    order, table = list(Scene.model_fields), keys_in(problem.path)[0]
     return order.index(table) if table in order else len(order)
 
 

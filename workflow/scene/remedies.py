@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from contact1d.workflow.errors import SceneEdit
+from contact1d.workflow.scene.quantities import Unit, keys_of
 from contact1d.workflow.scene.read import Scene
 
 STEP = 3.0
@@ -23,9 +24,9 @@ def less_compression(scene: Scene, carried: float | None = None) -> Iterator[Sce
     given = scene.experiment.compression
     force = 0.5 * carried if carried is not None else (given or 0.0) / STEP
     if given and force > 0.0:
-        for key, value in scene.experiment:
-            if value == given:
-                yield SceneEdit({f"experiment.{key}": float(f"{force:.3g}")})
+        for name, key in keys_of(type(scene.experiment)).items():
+            if key.allowed.unit == Unit("FU") and getattr(scene.experiment, key.field) == given:
+                yield SceneEdit({f"experiment.{name}": float(f"{force:.3g}")})
 
 
 def against_passing(scene: Scene) -> Iterator[SceneEdit]:

@@ -16,24 +16,16 @@ from collections.abc import Mapping
 from itertools import pairwise
 
 from contact1d.digits import apart
-from contact1d.workflow.scene.body_rules import (
-    counter_body,
-    lower_body,
-    material,
-    open_spacing,
-    periodic,
-    punch,
-    reduction,
-)
+from contact1d.workflow.scene.body_rules import BODY_RULES
 from contact1d.workflow.scene.draft import (
     DIGITS,
     PARTICLES,
     PLANE,
-    SAID_OF,
     WHOLE_NUMBER_ERROR,
     Draft,
     Row,
     Rows,
+    Rule,
     limit,
 )
 from contact1d.workflow.scene.experiments import KINDS
@@ -74,67 +66,17 @@ def _interaction(d: Draft) -> Rows:
                f"must be greater than the force-free distance, {limit(cutoff, r_0)} (LU)", 'raise it, or use "auto"')
 
 
-def _attraction(d: Draft) -> Rows:
-    pulls_off, attracts = d.kind == "pull_off", "interaction.attraction" in d
-    held = attracts or ("adhesion" in d and "adhesion" not in d.experiment.excludes)
+def _tension(d: Draft) -> Rows:
+    """A force that does not press needs bodies that attract each other."""
     force = d[f"experiment.{d.experiment.load_key}"]
-    yield ("interaction.attraction",
-           pulls_off and d.lower == "particles" and "interaction" in d and "adhesion" not in d,
-           "missing, needed by a pull_off", "add interaction.attraction with amplitude and range")
+    adheres = "adhesion" in d and "adhesion" not in d.experiment.excludes
+    broken = force is not None and force <= 0.0 and not adheres and "interaction.attraction" not in d
     for key, tensile in (
         ("force", "a tensile force needs interaction.attraction, or on a rigid plane [adhesion]"),
         ("normal_force", "a force of 0 or a tensile one needs interaction.attraction"),
     ):
-        yield (f"experiment.{key}", key == d.experiment.load_key and force is not None and force <= 0 and not held,
+        yield (f"experiment.{key}", broken,
                "must be greater than 0 (FU) without attraction: compression is positive", f"raise it; {tensile}")
-    for key in ("work_of_adhesion", "surface_energy"):
-        yield (f"adhesion.{key}", pulls_off and d[f"adhesion.{key}"] == 0.0,
-               "must be greater than 0 (FU/LU) in a pull_off, else nothing holds the bodies together",
-               'raise it, or use kind = "load" or "path"')
-    adheres = d.on_plane and "adhesion" in d
-    yield ("bodies.reduction", adheres and d["bodies.reduction"] == "geike_popov",
-           'must be "mdr" with [adhesion], whose contact edge is that of a contact of three dimensions',
-           'write reduction = "mdr"')
-    yield ("adhesion.range", adheres and "adhesion.range" in d and d.profile == "flat_punch",
-           "not with a flat punch, whose edge has no attraction beyond it", "remove it: a punch is Kendall's")
-    timed = [name for name in TIMED if name in d]
-    yield ("adhesion.range", adheres and "adhesion.range" in d and bool(timed or d["experiment.method"] == "dynamic"),
-           f"only of contacts at rest, not {f'with [{timed[0]}]' if timed else 'in time'}",
-           'remove it, or use method = "quasistatic" without [plate], [damping] and [noise]')
-    rated, pulled = adheres and "adhesion.rate" in d, d.kind == "pull_off" and "experiment.velocity" in d
-    yield ("adhesion.rate", rated and "adhesion.range" in d, "not together with a range: it is that of JKR's edge",
-           "give one of the two")
-    yield ("adhesion.rate", rated and not (pulled or (d.kind == "history" and "experiment.displacement" in d)),
-           "only in a pull_off with a velocity, or in a history of displacements: other states have no time",
-           'remove it, or give experiment.velocity with kind = "pull_off"')
-    yield ("adhesion.rate", rated and bool(timed or d["experiment.method"] == "dynamic" or "experiment.cycles" in d),
-           "only of one pull in equilibrium, whose edge alone takes time",
-           'remove it, or use method = "quasistatic" without cycles, [plate], [damping] and [noise]')
-    yield ("adhesion.rate", rated and d.profile == "flat_punch",
-           "not with a flat punch, whose edge does not move before it is lost", "remove it")
-    yield ("experiment.force", adheres and d.kind == "history" and "experiment.force" in d,
-           "not with [adhesion], under which a force has two displacements", "give experiment.displacement")
-    yield ("damping", adheres and d.kind == "path",
-           "not with [adhesion] in a path, which under displacement control has no dynamics",
-           'remove it: method = "quasistatic" is the same without time')
-
-
-def _plate(d: Draft) -> Rows:
-    slides, free = d.experiment.motion_is_result, d["plate.free"]
-    yield ("plate.free", slides and free is not None and "x" not in free,
-           'must contain "x" in a slide', 'write free = ["x", "z"]')
-    yield ("horizontal", not slides and "x" in (free or ()),
-           'missing, needed by plate.free with "x"',
-           f'write plate.free = ["z"], or add {EFFECT_TABLES["horizontal"].how}')
-    yield ("plate", d.kind == "impact",
-           "missing, needed by an impact: it has the mass of the body", "add [plate] with mass")
-    yield ("plate.mass", d.kind == "impact" and d["plate.mass"] == "auto",
-           "must be given in an impact (MU): it is that of the body", "give its mass")
-    held = d.kind == "hold"
-    yield ("plate", held and "experiment.displacement" in d,
-           "not with a displacement that is held: the plate has no motion of its own", "remove it, or give a force")
-    yield ("plate", held and "experiment.force" in d,
-           "missing, needed by a force that is held", f"add {EFFECT_TABLES['plate'].how}")
 
 
 def _normal_loads(d: Draft) -> Rows:
@@ -156,18 +98,20 @@ def _normal_loads(d: Draft) -> Rows:
     yield (given[0], max(loads) <= 0.0, "must be greater than 0 somewhere, else the bodies never touch", "raise it")
 
 
-def _relaxing(d: Draft) -> Rows:
-    """A body that relaxes, and the times of a history."""
-    shares = [term["share"] for term in d["viscoelasticity.terms"] or []]
-    whole = math.fsum(shares)
+def _shares(d: Draft) -> Rows:
+    whole = math.fsum(term["share"] for term in d["viscoelasticity.terms"] or [])
     yield ("viscoelasticity.terms", whole > 1.0 + WHOLE_NUMBER_ERROR,
            f"the shares of the instantaneous modulus must add up to 1 at most, not {apart(whole, 1.0, DIGITS)[0]}",
            "lower one of them")
-    points = d["experiment.displacement"] or d["experiment.force"] if d.kind == "history" else None
-    if not points:
+
+
+def _history(d: Draft) -> Rows:
+    """Times that rise, and load steps that a body that relaxes can follow."""
+    given = [key for key in ("displacement", "force") if d.kind == "history" and d[f"experiment.{key}"]]
+    if not given:
         return
-    key = "experiment.displacement" if "experiment.displacement" in d else "experiment.force"
-    times, values = zip(*((point["time"], point[key.partition(".")[2]]) for point in points), strict=True)
+    key = f"experiment.{given[0]}"
+    times, values = zip(*((point["time"], point[given[0]]) for point in d[key]), strict=True)
     back = next((i for i in range(1, len(times)) if times[i] <= times[i - 1]), 0)
     yield (key, back, f"times must rise; {times[back]:.6g} follows {times[back - 1]:.6g}",
            "each point is later than the one before; a jump is a leg as short as you want")
@@ -177,51 +121,32 @@ def _relaxing(d: Draft) -> Rows:
            "must begin apart with a retardation_time: dashpots resist a jump without bound", "begin with 0 or less")
     longest = max(after - before for before, after in pairwise(times)) / (steps or 1)
     shortest = min([retarded] if retarded else [term["time"] for term in d["viscoelasticity.terms"] or []], default=0.0)
-    yield ("experiment.steps", steps is not None and "experiment.force" in d and longest > shortest > 0.0,
+    yield ("experiment.steps", steps is not None and "force" in given and longest > shortest > 0.0,
            "a load step under a given force would take {} (TU), longer than the shortest time of the body, {}".format(
                *apart(longest, shortest, DIGITS)), "give more steps, or leave it to the program")
-
-
-def _pull_off(d: Draft) -> Rows:
-    if d.kind != "pull_off":
-        return
-    rate, velocity = "experiment.loading_rate" in d, "experiment.velocity" in d
-    thermal = "noise" in d and d["experiment.method"] != "quasistatic"
-    yield ("experiment.loading_rate", thermal and not velocity,
-           "missing, needed by a pull_off with [noise]",
-           "give the rate (FU/TU) at which the load decreases, or the velocity (LU/TU) of a spring that retracts the "
-           "plate, or remove [noise]")
-    yield ("experiment.velocity", rate, "not together with a loading_rate", "remove one of the two")
-    yield ("experiment.velocity", "noise" not in d and "adhesion.rate" not in d,
-           "only with [noise], or with adhesion.rate: otherwise a pull-off does not depend on it",
-           "remove it, or add one of these")
-    yield ("experiment.stiffness", not velocity,
-           "only with a velocity: it is that of the spring",
-           "remove it, or give the velocity of its far end")
-
-
-# What an experiment or an effect declares
 
 
 def _needed(name: str, by: str) -> Row:
     return name, True, f"missing, needed by {by}", f"add {EFFECT_TABLES[name].how}"
 
 
-def _methods(d: Draft) -> Rows:
-    """Each experiment and method has effects that it needs and effects that it cannot have."""
-    kind, experiment, given = d.kind, d.experiment, d["experiment.method"]
-    if kind is None:
-        if "noise" in d:
-            yield _needed("damping", "[noise]")
-        return
-    excluded = experiment.excludes
+def _excluded(d: Draft) -> Rows:
+    """Effects that an experiment cannot have, and those that another one cannot have beside it on a rigid plane."""
     others = (one for one, table in KINDS.items() if not table.excludes.keys() & {*d.effects})
     other = next((f', or use kind = "{one}"' for one in others), "")
-    for name, why in excluded.items():
-        yield (name, True, f"not in a {kind}: {why}", f"remove it{other}")
-    if given is None and "experiment.method" in d:
+    for name, why in d.experiment.excludes.items() if d.kind else ():
+        yield (name, True, f"not in a {d.kind}: {why}", f"remove it{other}")
+    for effect in d.effects if d.holds("on_plane") else ():
+        for name, why in EFFECT_TABLES[effect].excludes.items():
+            yield (name, True, f"not with [{effect}]: {why}", f"remove [{name}], or [{effect}]")
+
+
+def _methods(d: Draft) -> Rows:
+    """Each experiment and method has effects that it needs, and a quasi-static one has none in time."""
+    kind, experiment, given = d.kind, d.experiment, d["experiment.method"]
+    if kind is None or (given is None and "experiment.method" in d):
         return
-    rest = tuple(name for name in d.effects if name not in excluded)
+    rest = tuple(name for name in d.effects if name not in experiment.excludes)
     method = experiment.only_method or given or default_method(rest)
     for name in experiment.needs:
         yield _needed(name, f"a {kind}")
@@ -237,7 +162,7 @@ def _methods(d: Draft) -> Rows:
 
 
 def _declared_keys(d: Draft) -> Rows:
-    """Of some keys exactly one is there; some are only with noise, or only with a lower body of particles."""
+    """Of some keys exactly one is there."""
     effects = {name: EFFECT_TABLES[name] for name in d.effects if d[name] is not None}
     profile = keys_of(Bodies)["profile"].allowed.kinds.get(d.profile, Table)
     for name, table in {**effects, "experiment": d.experiment, "bodies.profile": profile}.items():
@@ -246,64 +171,119 @@ def _declared_keys(d: Draft) -> Rows:
             yield (f"{name}.{keys[0]}", not given, "missing", fix)
             for key in given[1:]:
                 yield (f"{name}.{key}", True, f"not together with {given[0]}", fix)
-    for key in d.experiment.only_with_noise:
-        yield (f"experiment.{key}", "noise" not in d,
-               "only with [noise]: without thermal fluctuations all repeats are equal",
-               "remove it, or add [noise] with temperature and seed")
-    yield ("experiment.cycles", d.kind == "pull_off" and "noise" in d,
-           "not with [noise], whose pulls are repeated with other seeds", "remove it, and give experiment.repeats")
-    yield ("experiment.preload", d.kind == "pull_off" and "experiment.cycles" in d and d["experiment.preload"] == 0.0,
-           "must be greater than 0 (FU) with cycles, whose bodies are pressed together again", "raise it")
-    listed = any(f"bodies.profile.{key}" in d for key in "rxz")
-    yield ("bodies.profile.file", listed,
-           "not together with the lists r and z", "give one of the two")
-    yield ("bodies.profile.scale", listed and "bodies.profile.file" not in d,
-           "not together with the lists r and z, which have units of their own", "it belongs to a file: remove it")
-    yield ("bodies.profile.units", listed and "bodies.profile.file" not in d,
-           "not together with the lists r and z, which have units of their own", "it belongs to a file: remove it")
-    yield ("bodies.profile.x", "bodies.profile.r" in d and "bodies.profile.x" in d,
-           "not together with r", "give one of the two")
-    for key in ("upper_particles", "upper_spacing", "upper_offset", "periodic"):
-        path = f"bodies.{key}"
-        yield (path, d.on_plane and d[path] is not False,
-               f"not with {PLANE}, which has no particles", f"remove it, or use {PARTICLES}")
 
 
-def _beside_effects(d: Draft) -> Rows:
-    """Effects that another one cannot have beside it, on the lower body that this one belongs to."""
-    for effect in d.effects if d.on_plane else ():
-        for name, why in EFFECT_TABLES[effect].excludes.items():
-            yield (name, True, f"not with [{effect}]: {why}", f"remove [{name}], or [{effect}]")
+ADHERES = "on_plane adhesion"
+LISTED = "bodies.profile.r|bodies.profile.x|bodies.profile.z"
+RULES: tuple[Rule, ...] = (
+    *BODY_RULES,
+    _interaction,
+    _tension,
+    # What holds the bodies together, and the edge of an adhesive contact
+    ("interaction.attraction", "experiment.kind=pull_off bodies.lower=particles interaction !adhesion",
+     "missing, needed by a pull_off", "add interaction.attraction with amplitude and range"),
+    *((f"adhesion.{key}", f"experiment.kind=pull_off adhesion.{key}=0",
+       "must be greater than 0 (FU/LU) in a pull_off, else nothing holds the bodies together",
+       'raise it, or use kind = "load" or "path"')
+      for key in ("work_of_adhesion", "surface_energy")),
+    ("bodies.reduction", f"{ADHERES} bodies.reduction=geike_popov",
+     'must be "mdr" with [adhesion], whose contact edge is that of a contact of three dimensions',
+     'write reduction = "mdr"'),
+    ("adhesion.range", f"{ADHERES} bodies.profile.kind=flat_punch",
+     "not with a flat punch, whose edge has no attraction beyond it", "remove it: a punch is Kendall's"),
+    ("adhesion.range", f"{ADHERES} in_time", "only of contacts at rest, not {in_time}",
+     'remove it, or use method = "quasistatic" without [plate], [damping] and [noise]'),
+    ("adhesion.rate", f"{ADHERES} adhesion.range",
+     "not together with a range: it is that of JKR's edge", "give one of the two"),
+    ("adhesion.rate",
+     f"{ADHERES} !experiment.kind=pull_off|!experiment.velocity !experiment.kind=history|!experiment.displacement",
+     "only in a pull_off with a velocity, or in a history of displacements: other states have no time",
+     'remove it, or give experiment.velocity with kind = "pull_off"'),
+    ("adhesion.rate", f"{ADHERES} in_time|experiment.cycles",
+     "only of one pull in equilibrium, whose edge alone takes time",
+     'remove it, or use method = "quasistatic" without cycles, [plate], [damping] and [noise]'),
+    ("adhesion.rate", f"{ADHERES} bodies.profile.kind=flat_punch",
+     "not with a flat punch, whose edge does not move before it is lost", "remove it"),
+    ("experiment.force", f"{ADHERES} experiment.kind=history",
+     "not with [adhesion], under which a force has two displacements", "give experiment.displacement"),
+    ("damping", f"{ADHERES} experiment.kind=path",
+     "not with [adhesion] in a path, which under displacement control has no dynamics",
+     'remove it: method = "quasistatic" is the same without time'),
+    # What moves by itself, in time
+    ("plate.free", "motion_is_result plate.free=z !plate.free=x",
+     'must contain "x" in a slide', 'write free = ["x", "z"]'),
+    ("horizontal", "!motion_is_result plate.free=x",
+     'missing, needed by plate.free with "x"', f'write plate.free = ["z"], or add {EFFECT_TABLES["horizontal"].how}'),
+    ("plate", "experiment.kind=impact",
+     "missing, needed by an impact: it has the mass of the body", "add [plate] with mass"),
+    ("plate.mass", "experiment.kind=impact plate.mass=auto",
+     "must be given in an impact (MU): it is that of the body", "give its mass"),
+    ("plate", "experiment.kind=hold experiment.displacement",
+     "not with a displacement that is held: the plate has no motion of its own", "remove it, or give a force"),
+    ("plate", "experiment.kind=hold experiment.force",
+     "missing, needed by a force that is held", f"add {EFFECT_TABLES['plate'].how}"),
+    ("damping", "noise !kind", "missing, needed by [noise]", f"add {EFFECT_TABLES['damping'].how}"),
+    _normal_loads,
+    _shares,
+    _history,
+    # How the bodies are pulled apart, and how often
+    ("experiment.loading_rate", "noise !experiment.method=quasistatic !experiment.velocity",
+     "missing, needed by a pull_off with [noise]",
+     "give the rate (FU/TU) at which the load decreases, or the velocity (LU/TU) of a spring that retracts the "
+     "plate, or remove [noise]"),
+    ("experiment.velocity", "experiment.loading_rate", "not together with a loading_rate", "remove one of the two"),
+    ("experiment.velocity", "experiment.kind=pull_off !noise !adhesion.rate",
+     "only with [noise], or with adhesion.rate: otherwise a pull-off does not depend on it",
+     "remove it, or add one of these"),
+    ("experiment.stiffness", "!experiment.velocity",
+     "only with a velocity: it is that of the spring", "remove it, or give the velocity of its far end"),
+    ("experiment.cycles", "experiment.kind=pull_off noise",
+     "not with [noise], whose pulls are repeated with other seeds", "remove it, and give experiment.repeats"),
+    ("experiment.loading_rate experiment.stiffness experiment.repeats", "!noise",
+     "only with [noise]: without thermal fluctuations all repeats are equal",
+     "remove it, or add [noise] with temperature and seed"),
+    # What an experiment or an effect declares
+    _excluded,
+    _methods,
+    _declared_keys,
+    # The points of a profile, from a file or from lists
+    ("bodies.profile.file", LISTED, "not together with the lists r and z", "give one of the two"),
+    ("bodies.profile.scale bodies.profile.units", f"{LISTED} !bodies.profile.file",
+     "not together with the lists r and z, which have units of their own", "it belongs to a file: remove it"),
+    ("bodies.profile.x", "bodies.profile.r", "not together with r", "give one of the two"),
+    # What only a lower body of particles has
+    *((f"bodies.{key}", f"on_plane !bodies.{key}=false",
+       f"not with {PLANE}, which has no particles", f"remove it, or use {PARTICLES}")
+      for key in ("upper_particles", "upper_spacing", "upper_offset", "periodic")),
+)
 # fmt: on
 
 
-RULES = (
-    lower_body,
-    _interaction,
-    _attraction,
-    _plate,
-    _normal_loads,
-    _relaxing,
-    open_spacing,
-    punch,
-    material,
-    counter_body,
-    reduction,
-    _pull_off,
-    periodic,
-    _methods,
-    _declared_keys,
-    _beside_effects,
-)
+SAID_OF = {"miss": True, "not ": False, "only": False}
+"""Whether messages that begin so are about a key that is absent; others may be about any."""
 
 
 def check_fit(scene: Place) -> None:
     """Report every violation of a rule across the tables of a scene that does not depend on values that are doubted."""
     draft = Draft(scene)
-    for key, broken, message, fix, *ways in (row for rows in RULES for row in rows(draft)):
-        place = scene.at(key)
-        if broken and place and SAID_OF.get(message[:4], place.absent) == place.absent:
-            changes = tuple({path: draft.written(path, number)} for way in ways for path, number in way.items())
-            texts = (f"{one:g}" if isinstance(one, float) else one for way in changes for one in way.values())
+    for rule in RULES:
+        for row in rule(draft) if callable(rule) else [rule]:
+            _check(draft, *row)
+
+
+def _check(draft: Draft, keys: str, broken: object, message: str, fix: str, *ways: Mapping[str, float]) -> None:
+    """Report a rule that is broken, at each of its keys that may stand there."""
+    if isinstance(broken, str):
+        broken = draft.holds(broken)
+        message, fix = (text.format_map(draft.facts) for text in (message, fix))
+    if not broken:
+        return
+    changes = tuple({path: draft.written(path, number)} for way in ways for path, number in way.items())
+    if ways:
+        texts = (f"{one:g}" if isinstance(one, float) else one for way in changes for one in way.values())
+        fix = fix.format(*texts)
+    for key in keys.split():
+        place = draft.scene.at(key)
+        if place and SAID_OF.get(message[:4], place.absent) == place.absent:
             given = None if isinstance(place.value, Mapping) else place.given
-            scene.problems.append(Problem(key, message, given, fix.format(*texts) if ways else fix, changes))
+            draft.scene.problems.append(Problem(key, message, given, fix, changes))

@@ -20,7 +20,7 @@ from annotated_types import Ge
 from pydantic import BeforeValidator, Field
 from pydantic_core import PydanticCustomError
 
-from contact1d.workflow.scene.quantities import Length, Ratio, SignedRadius, Table, Unit
+from contact1d.workflow.scene.quantities import Length, Ratio, SignedLength, Table, Unit
 from contact1d.workflow.scene.si_text import UnitTextError, si_value
 
 if TYPE_CHECKING:
@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 Exponent = Annotated[float, Ge(1.0), Unit("1")]
+FEWEST_POINTS = 4
+"""Points of a measured profile."""
 LAST_SHARE = 1.0 - 1e-12
 """The transform of a circle grows without end at its edge, and is taken up to this share of the radius."""
 
@@ -103,7 +105,7 @@ class Parabola(Shape):
     """z = x²/2R, the paper's circle"""
     radius: Length
     """radius of curvature R at the apex; with a counter_radius R₁"""
-    counter_radius: SignedRadius | None = None
+    counter_radius: SignedLength | None = None
     """radius of curvature R₂ of the lower body, 1/R = 1/R₁ + 1/R₂: positive for a convex one; negative for a concave
     one, a cup, and then larger in magnitude than the radius; absent: a plane
     """
@@ -169,16 +171,17 @@ class Ellipsoid(Shape):
     """half axis b along the load"""
 
     def height(self, x: Array) -> Array:
-        """z = b (x/c)²/(1 + √(1 − x²/c²))."""
-        share = x / self.radius
-        return self.half_axis * share**2 / (1.0 + ((1.0 - share) * (1.0 + share)) ** 0.5)
+        """z = b − b √(1 − x²/c²), of the sphere of radius c times b/c."""
+        return self.half_axis / self.radius * self._sphere.height(x)
 
     def transformed(self, x: Array) -> Array:
         """g = (b/c) x artanh(x/c)."""
-        import numpy as np
+        return self.half_axis / self.radius * self._sphere.transformed(x)
 
-        share = np.clip(x / self.radius, -LAST_SHARE, LAST_SHARE)
-        return np.asarray(self.half_axis * share * np.arctanh(share))
+    @property
+    def _sphere(self) -> Circle:
+        """That of radius c."""
+        return Circle.model_construct(radius=self.radius)
 
     @property
     def reach(self) -> float:

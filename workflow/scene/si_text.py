@@ -16,7 +16,8 @@ from fractions import Fraction
 from functools import cache
 from typing import Any
 
-from contact1d.workflow.units import SI
+from contact1d.workflow.units import FIRST, SI
+from contact1d.workflow.units import PREFIXES as BY_THOUSANDS
 
 DIMENSIONS = {
     "m": "a length",
@@ -70,33 +71,15 @@ COMMON = (
 """Units among which a misspelt one is looked for."""
 OFFSET = frozenset({"degree_Celsius", "degree_Fahrenheit"})
 """Units of temperature whose zero is not the absolute one, by pint's name."""
-LENGTH, MASS, TIME, TEMPERATURE = "[length]", "[mass]", "[time]", "[temperature]"
-CURRENT, SUBSTANCE = "[current]", "[substance]"
-"""Dimensions, by pint's names."""
 ANGLES = frozenset({"radian", "degree", "turn", "gradian", "arcminute", "arcsecond", "steradian"})
 NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+(?![.\d]))?")
 NAME = re.compile(r"[^\W\d_]+|°[CF]?|%|deg[CF]|delta_deg[CF]")
-SYMBOLS: dict[str, tuple[int, dict[str, int]]] = {
-    "m": (0, {LENGTH: 1}),
-    "g": (-3, {MASS: 1}),
-    "s": (0, {TIME: 1}),
-    "K": (0, {TEMPERATURE: 1}),
-    "N": (0, {LENGTH: 1, MASS: 1, TIME: -2}),
-    "Pa": (0, {LENGTH: -1, MASS: 1, TIME: -2}),
-    "J": (0, {LENGTH: 2, MASS: 1, TIME: -2}),
-    "W": (0, {LENGTH: 2, MASS: 1, TIME: -3}),
-    "Hz": (0, {TIME: -1}),
-    "V": (0, {LENGTH: 2, MASS: 1, TIME: -3, CURRENT: -1}),
-    "A": (0, {CURRENT: 1}),
-    "C": (0, {TIME: 1, CURRENT: 1}),
-    "mol": (0, {SUBSTANCE: 1}),
-}
-"""Of SI: the power of ten to base units, and the dimension."""
-PREFIXES = {
-    "": 0, "f": -15, "p": -12, "n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "c": -2, "k": 3, "M": 6, "G": 9,
+DERIVED = {
+    "N": "kg·m/s²", "Pa": "N/m²", "J": "N·m", "W": "J/s", "Hz": "W/J", "V": "W/A", "C": "A·s",
 }  # fmt: skip
+"""Symbols of SI that are made of base units."""
+PREFIXES = {"c": -2, "u": -6, "μ": -6} | {one.strip(): 3 * power for power, one in enumerate(BY_THOUSANDS, FIRST)}
 """Powers of ten."""
-FACTOR = re.compile(rf"({'|'.join(PREFIXES)})({'|'.join(SYMBOLS)})([²³]?)")
 POWER = re.compile(r"(\*\*|\^)?[-+⁻]?[\d⁰¹²³⁴⁵⁶⁷⁸⁹]+")
 LONGEST = 60
 """Characters of a text that may be a number with a unit."""
@@ -119,17 +102,27 @@ class UnitTextError(ValueError):
 
 @dataclass(frozen=True)
 class Unit:
-    """A unit as read: its text, size in base units of SI, where its zero is, dimension, and whether it is of angles."""
+    """A unit as read: its text, size in base units of SI, dimension, where its zero is, and whether it is of angles."""
 
     text: str
     factor: Fraction
-    zero: Fraction
     dimension: Mapping[str, Any]
+    zero: Fraction = Fraction(0)
     angular: bool = False
 
     def measures(self, unit: str) -> bool:
         """Whether it is of the dimension of this unit of SI; an angle is no number."""
         return self.dimension == _dimension(unit) and self.angular == (unit == "rad")
+
+
+BASES = {
+    symbol: Unit(symbol, Fraction(1, 1000 if symbol == "g" else 1), {dimension: 1})
+    for symbol, dimension in {
+        "m": "[length]", "g": "[mass]", "s": "[time]", "K": "[temperature]", "A": "[current]", "mol": "[substance]",
+    }.items()
+}  # fmt: skip
+"""Symbols of SI; dimensions by pint's names."""
+FACTOR = re.compile(rf"({'|'.join(PREFIXES)})({'|'.join(BASES | DERIVED)})([²³]?)")
 
 
 def in_words(unit: str) -> str:
@@ -245,27 +238,29 @@ def _for_pint(unit: str) -> str:
     return re.sub(r"(?<=[^\W\d_])(-?\d+)", r"**\1", plain)
 
 
+@cache
+def _unit(text: str) -> Unit:
+    """What the text of a unit means. Raises UnitTextError."""
+    return _of_si(text) or _of_pint(text)
+
+
 def _of_si(text: str) -> Unit | None:
     """A unit of symbols of SI with their prefixes, products and quotients; None where it has others."""
-    powers: Counter[str] = Counter()
-    exponent = 0
+    factor, powers = Fraction(1), Counter[str]()
     for sign, name in re.findall("([·/])([^·/]*)", f"·{text}"):
         found = FACTOR.fullmatch(name)
         if found is None:
             return None
         prefix, symbol, raised = found.groups()
         power = (-1 if sign == "/" else 1) * (int(unicodedata.digit(raised)) if raised else 1)
-        ten, dimension = SYMBOLS[symbol]
-        exponent += power * (ten + PREFIXES[prefix])
-        powers.update({base: power * own for base, own in dimension.items()})
-    return Unit(text, Fraction(10) ** exponent, Fraction(0), {base: power for base, power in powers.items() if power})
+        own = BASES[symbol] if symbol in BASES else _unit(DERIVED[symbol])
+        factor *= (own.factor * Fraction(10) ** PREFIXES[prefix]) ** power
+        powers.update({base: power * raised for base, raised in own.dimension.items()})
+    return Unit(text, factor, {base: power for base, power in powers.items() if power})
 
 
-@cache
-def _unit(text: str) -> Unit:
-    """What the text of a unit means. Raises UnitTextError."""
-    if found := _of_si(text):
-        return found
+def _of_pint(text: str) -> Unit:
+    """Any other unit. Raises UnitTextError."""
     unit = re.sub("°(?![CF])", "deg", text)  # pint's parser knows the sign, and its names don't
     names = [part for part in re.split(r"[\s·*×/()]+", POWER.sub("", unit)) if part]
     unknown = [name for name in names if not NAME.fullmatch(name) or not _is_known(name)]
@@ -285,7 +280,7 @@ def _unit(text: str) -> Unit:
     if relative and (unit not in names or known.isdisjoint(OFFSET)):
         raise UnitTextError("is a relative scale: give a temperature in K or °C; levels (dB) are not allowed")
     zero = registry.Quantity(Fraction(0), found).to("K").magnitude if relative else Fraction(0)
-    return Unit(text, Fraction(factor), zero, dict(found.dimensionality), not known.isdisjoint(ANGLES))
+    return Unit(text, Fraction(factor), dict(found.dimensionality), zero, not known.isdisjoint(ANGLES))
 
 
 def _is_known(name: str) -> bool:

@@ -65,25 +65,24 @@ def _parts(value: object) -> tuple[Any, Any] | None:
 
 def _read(place: Place, value: Any, spread: Any) -> tuple[Any, Fraction]:
     """The value as a scene has it, and the half-width over it. Raises UnitTextError."""
-    number, units = _plain(value), place.unit.texts
-    half = _plain(spread)
-    if not any(map(str.isdigit, str(spread))):
+    number, half, text, units = _plain(value), _plain(spread), str(spread).strip(), place.unit.texts
+    if not any(map(str.isdigit, text)):
         raise UnitTextError('must have a number behind ±, as in "10 ± 0.1 mm" or "10 mm ± 1 %"')
-    if half is None and str(spread).strip().endswith("%"):
-        share = _plain(str(spread).strip()[:-1])
+    if text.endswith("%"):
+        share = _plain(text[:-1])
         if share is None:
             raise UnitTextError("must have a number before %")
         return value if number is None else float(number), share / 100
     if number is not None and half is not None:
         return float(number), half / abs(number) if number else Fraction(0)
-    if number is not None:  # 10 ± 0.1 mm
-        value, number = f"{value} {split(str(spread))[1]}", None
     if half is not None:
         raise UnitTextError(f'must have a unit or % behind ± as well: write "{value} ± {spread} %"')
-    if quantity(str(spread))[1].zero:
+    if number is not None:  # 10 ± 0.1 mm
+        value = f"{value} {split(text)[1]}"
+    if quantity(text)[1].zero:
         raise UnitTextError("must have the uncertainty of a temperature in K, or in %")
     size = si_value(str(value), *units)[0]
-    return value, si_value(str(spread), *units)[0] / abs(size) if size else Fraction(0)
+    return value, si_value(text, *units)[0] / abs(size) if size else Fraction(0)
 
 
 def _plain(value: Any) -> Fraction | None:
