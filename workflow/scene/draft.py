@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cache
 from typing import Any
 
 from contact1d.digits import apart
@@ -45,6 +46,16 @@ VALUES: Mapping[str, Any] = {"0": 0.0, "true": True, "false": False}
 """Values in a condition that are no text."""
 KNOWN = "*"
 """Any value that can be relied on."""
+
+
+@cache
+def _read(conditions: str) -> list[list[tuple[str, str | None, bool]]]:
+    """Alternatives of each condition: its word, the value that is wanted, and whether it must hold."""
+    found = []
+    for words in conditions.split():
+        parts = [(word, *word.removeprefix("!").partition("=")) for word in words.split("|")]
+        found.append([(name, text if equal else None, word[0] != "!") for word, name, equal, text in parts])
+    return found
 
 
 class Draft:
@@ -96,20 +107,19 @@ class Draft:
         A condition is one of `TERMS` or of the `facts`, a path at which something stands, or a path with "=" and the
         value that is known to be there or in the list there. With "!" before it, it must not hold.
         """
-        return all(any(map(self._is, words.split("|"))) for words in conditions.split())
+        return all(any(self._is(*one) for one in alternatives) for alternatives in _read(conditions))
 
-    def _is(self, word: str) -> bool:
-        name, equal, text = word.removeprefix("!").partition("=")
+    def _is(self, name: str, text: str | None, wanted: bool) -> bool:
         if name in TERMS:
             found = self.holds(TERMS[name])
-        elif equal:
+        elif text is not None:
             known, value = self[name], VALUES.get(text, text)
             found = known is not None and (
                 text == KNOWN or known == value or (isinstance(known, list | tuple) and value in known)
             )
         else:
             found = bool(self.facts[name]) if name in self.facts else name in self
-        return found != word.startswith("!")
+        return found == wanted
 
     def written(self, path: str, number: float) -> float | str:
         """A number for `path` to six digits, in the unit of the text that stands there."""
