@@ -20,6 +20,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +36,7 @@ POINTS = 200
 """Of Gauss's quadrature of a smooth function: its error is below round-off."""
 
 
+@cache
 def galin_factor(exponent: float) -> float:
     """Return kappa_n = (sqrt(pi)/2) n Gamma(n/2)/Gamma((n+1)/2): pi/2 for a cone, 2 for a paraboloid; `exponent` n."""
     n = exponent
