@@ -39,7 +39,7 @@ MOST = 1000
 """Particles on a side that are used, and radii that p is given at; of more, every second, third …"""
 RADII = 100
 """Evenly from 0 to the contact radius, at which q is given, and at its kinks besides."""
-ANGLES, PIECES = 12, 10
+ANGLES, PIECES = 12, 5
 """Positions of Gauss's at which p(r) is added up to a force, between kinks, and pieces of a body whose shape is a table
 or whose springs are not elastic: a corner of its history is a kink of the line load."""
 BETWEEN = 101

@@ -64,6 +64,10 @@ def edges_of(profile: Profile, x: Array, spacing: float) -> Edges:
     return Edges(heights, np.where(flat, least, outer - inner), np.where(flat, least, heights - inner))
 
 
+Ahead = tuple[float, Array, Array, Array]
+"""Response, free surfaces (n,) [LU], decay and gain of each arm after a time."""
+
+
 class Memory:
     """The state of particles in time: how far each surface is pressed in, and what its arms remember.
 
@@ -82,9 +86,15 @@ class Memory:
         self.arms = np.zeros((len(terms), cells.heights.size))
         self.place, self.surface, self.outer = 0.0, *np.zeros((2, cells.heights.size))
         self._held = np.zeros(cells.heights.size, dtype=bool)
+        self._known: tuple[float, Ahead] | None = None
 
-    def _ahead(self, time: float) -> tuple[float, Array, Array, Array]:
-        """Response, free surfaces (n,) [LU], decay and gain of each arm after a time [TU]."""
+    def _ahead(self, time: float) -> Ahead:
+        """What is ahead of this state after a time [TU]; kept until it moves."""
+        if self._known is None or self._known[0] != time:
+            self._known = time, self._after(time)
+        return self._known[1]
+
+    def _after(self, time: float) -> Ahead:
         if self._retarded:
             none = np.empty(0)
             return 1.0, self.outer * np.exp(-time / self._retarded), none, none
@@ -175,7 +185,7 @@ class Memory:
         else:
             after = np.maximum(place - self._cells.heights, free)
             self.arms = decay[:, None] * self.arms + gain[:, None] * (after - self.surface)
-        self.place, self.surface = place, after
+        self.place, self.surface, self._known = place, after, None
 
     def _left(self, velocity: float) -> Array:
         """u at which a body that moves off at a velocity [LU/TU] leaves the surfaces that it has held, where f = 0."""
