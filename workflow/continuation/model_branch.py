@@ -20,7 +20,7 @@ from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
-COARSE, DENSE, FINE, ZOOMS = 48, 100, 30, 2
+COARSE, DENSE, FINE, ZOOMS = 24, 100, 30, 2
 """Positions of the first look for the force maximum, on a rigid plane and between particles, and of each closer one,
 and how many of these: none where the curve is smooth, since the model's forces are straight between the points of a
 grid, whose corners would move a top."""

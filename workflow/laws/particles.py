@@ -149,8 +149,11 @@ class Particles(ABC):
         return None
 
     def unloading(self, start: float, end: float, count: int) -> Array:
-        """Displacements [LU] of load steps of a contact that is unloaded, after the first one."""
-        return np.linspace(start, end, count + 1)[1:]
+        """Displacements [LU] of load steps of a contact that is unloaded, after the first one, closer to its limit point.
+
+        There the force rises as a root.
+        """
+        return end + (start - end) * np.linspace(1.0, 0.0, count + 1)[1:] ** 2
 
     def work(self, start: float, every: int) -> float | None:
         """∫ −F dd [FU·LU] of a contact that is unloaded from a displacement [LU], where its curve is known.
