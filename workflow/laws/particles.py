@@ -149,9 +149,9 @@ class Particles(ABC):
         return None
 
     def unloading(self, start: float, end: float, count: int) -> Array:
-        """Displacements [LU] of load steps of a contact that is unloaded, after the first one, closer to its limit point.
+        """Displacements [LU] of load steps of a contact that is unloaded, after the first one.
 
-        There the force rises as a root.
+        Closer towards the end, its limit point, where the force rises as a root.
         """
         return end + (start - end) * np.linspace(1.0, 0.0, count + 1)[1:] ** 2
 
