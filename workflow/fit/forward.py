@@ -144,7 +144,6 @@ def _cubic(start: Array, end: Array, leaving: Array, arriving: Array) -> tuple[A
     return start, leaving, 3.0 * rise - 2.0 * leaving - arriving, leaving + arriving - 2.0 * rise
 
 
-@kept
 def jkr(body: Body, modulus: float, work: float, reach: float) -> Branch:
     """Adhesion of no range."""
     a, d = body.edges, body.heights - elongation(body.edges, modulus, work)
@@ -183,7 +182,6 @@ class Zone(Dugdale):
         return np.interp(x, *self.areas)
 
 
-@kept
 def maugis(body: Body, modulus: float, work: float, reach: float) -> Branch:
     """Dugdale's stress σ₀ = W/h₀ over the range h₀ around the contact (`laws.dugdale`), by a rising path.
 

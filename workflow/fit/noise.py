@@ -107,17 +107,19 @@ def _judge(noise: Noise, residuals: Array, slopes: Array, prior: Array) -> tuple
     column the misfit, in standard deviations.
     """
     white = noise.whitened(np.column_stack([slopes, residuals]))
-    J, r = white[:, :-1], white[:, -1]
-    P, known = prior[:, :-1], prior[:, -1]
-    freedom = max(1.0, r.size - float(J.shape[1] - P.shape[0]))
-    step, deviation = np.zeros(J.shape[1]), math.sqrt(float(r @ r) / freedom)
+    # A triangle keeps the digits that JᵀJ squares away: of the slopes, of the residuals along them, and what is left.
+    whole = np.asarray(np.linalg.qr(white, mode="r"), dtype=np.float64)
+    J, r, rest = whole[:-1, :-1], whole[:-1, -1], float(whole[-1, -1])
+    P, known, count = prior[:, :-1], prior[:, -1], residuals.size
+    freedom = max(1.0, count - float(J.shape[1] - P.shape[0]))
+    deviation = math.sqrt((float(r @ r) + rest**2) / freedom)
     for _ in range(3):  # σ weighs the data against what is known of the parameters
-        q, triangle = np.linalg.qr(np.vstack([J / deviation, P]))  # keeps the digits that JᵀJ squares away
+        q, triangle = np.linalg.qr(np.vstack([J / deviation, P]))
         step = solve_triangular(triangle, q.T @ np.append(r / deviation, known))
         left = r - J @ step
-        deviation = math.sqrt(float(left @ left) / freedom)
+        deviation = math.sqrt((float(left @ left) + rest**2) / freedom)
     misfit = known - P @ step
-    log = -0.5 * noise.log_determinant - r.size * math.log(deviation) - 0.5 * float(misfit @ misfit)
+    log = -0.5 * noise.log_determinant - count * math.log(deviation) - 0.5 * float(misfit @ misfit)
     log -= float(np.log(np.abs(np.diag(triangle))).sum())
     root = solve_triangular(triangle, np.eye(J.shape[1]))
     return Judged(noise, deviation, step, root @ root.T, 0.0), log

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.workflow.fit.curve import ForceCurve
-from contact1d.workflow.fit.forward import Body, Branch, ContactModel
+from contact1d.workflow.fit.forward import Body, Branch, ContactModel, kept
 from contact1d.workflow.fit.plan import STIFFNESS
 from contact1d.workflow.fit.search import Problem, Unknown
 from contact1d.workflow.scene import Scene
@@ -19,6 +19,8 @@ Array = NDArray[np.float64]
 POINT, OFFSET = "contact_point", "force_offset"
 MEASURED = (POINT, OFFSET, STIFFNESS)
 """Unknowns that are of the measurement."""
+Factors = tuple[tuple[str, float], ...]
+"""Keys of a scene, and what their numbers are multiplied by."""
 
 
 @dataclass
@@ -48,6 +50,7 @@ class Subject:
                 self.open[one.points] = True
                 self.early[one.points] = one.approaches
         self.pitch = float(np.median(np.abs(np.diff(self.curve.positions)))) or 1e-300
+        self._branches = kept(self._branch)
 
     @property
     def sought(self) -> list[int]:
@@ -62,20 +65,28 @@ class Subject:
 
     def scene_with(self, values: Sequence[float]) -> Scene:
         """The scene with these values of its unknowns, unchecked."""
+        return self._moved(self._factors(values))
+
+    def _factors(self, values: Sequence[float]) -> Factors:
+        numbers = zip(self.unknowns, values, strict=True)
+        return tuple((one.name, value / one.scale) for one, value in numbers if one.name not in MEASURED)
+
+    def _moved(self, factors: Factors) -> Scene:
         scene = self.scene
-        for one, value in zip(self.unknowns, values, strict=True):
-            if one.name not in MEASURED:
-                scene = scene.moved(one.name, value / one.scale)
+        for key, factor in factors:
+            scene = scene.moved(key, factor)
         return scene
+
+    def _branch(self, factors: Factors) -> Branch:
+        scene = self._moved(factors)
+        reach = scene.adhesion.range if scene.adhesion else None
+        body = Body.of(scene.bodies.profile, self.curve.depth)
+        return self.model.branch(body, modulus_of(scene), scene.work_of_adhesion, reach or 0.0)
 
     def parts(self, values: Sequence[float]) -> tuple[Branch, float, float, float]:
         """The contact's own curve; and k_c [FU/LU], contact point [LU] and offset of the force [FU]."""
-        scene = self.scene_with(values)
-        reach = scene.adhesion.range if scene.adhesion else None
-        body = Body.of(scene.bodies.profile, self.curve.depth)
-        branch = self.model.branch(body, modulus_of(scene), scene.work_of_adhesion, reach or 0.0)
         named = dict(zip(self.names, values, strict=True))
-        return branch, named.get(STIFFNESS, math.inf), named[POINT], named[OFFSET]
+        return self._branches(self._factors(values)), named.get(STIFFNESS, math.inf), named[POINT], named[OFFSET]
 
     def forces(self, values: Sequence[float]) -> Array:
         """F [FU] at every measured position."""
