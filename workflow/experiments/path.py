@@ -148,20 +148,18 @@ class PathExperiment(Scripted[Path]):
 
     def _lost(self, trace: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
         """The area of a closed path; of an open one what its instabilities lose, ∫F dd less the energy gained."""
-        if (work := work_of(*trace.lists)) is None:
+        closed = self.closes(trace, settings)
+        gained = 0.0 if closed else _gained(trace, settings)
+        if gained is None or (work := work_of(*trace.lists)) is None:
             return {}
-        errors, d = {"sampling": work.uncertainty}, trace.displacement
-        if self.closes(trace, settings):
+        errors = {"sampling": work.uncertainty}
+        if closed:
             # Springs lose nothing, nor does a contact that is held all along, where particles neither snap nor buckle.
             may_jump = settings.law.attracts and (settings.snaps or scene.horizontal or _is_unstable(trace))
             known = not (self.is_statistical or may_jump)
             scale = work.whole if known else None
             return {"dissipated_energy": Reading(work.area, ENERGY, errors, scale=scale, prescribed=known)}
-        ends = (0, len(trace) - 1)
-        first, last = (settings.law.energy(float(d[i]), trace.radius(i) or 0.0) for i in ends)
-        if first is None or last is None or not _is_unstable(trace):
-            return {}
-        return {"instability_energy": Reading(work.area - (last - first), ENERGY, errors)}
+        return {"instability_energy": Reading(work.area - gained, ENERGY, errors)}
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """The schedule that runs: a phase for each stretch of rising ("loading") or falling displacement."""
@@ -307,6 +305,13 @@ def _is_unstable(trace: Trace) -> bool:
     """Whether the contact is made or lost along the path."""
     held = [trace.radius(state) is not None for state in range(len(trace))]
     return any(before != after for before, after in pairwise(held))
+
+
+def _gained(trace: Trace, settings: Settings) -> float | None:
+    """Energy [FU·LU] of the last state without that of the first; None where no contact is made or lost between."""
+    ends = ((float(trace.displacement[i]), trace.radius(i) or 0.0) for i in (0, len(trace) - 1))
+    first, last = (settings.law.energy(*end) for end in ends)
+    return None if first is None or last is None or not _is_unstable(trace) else last - first
 
 
 def _fixed_grips(branch: Trace) -> dict[str, Reading]:

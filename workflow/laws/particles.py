@@ -56,7 +56,7 @@ class Particles(ABC):
     deepest: float
     body: Undeformed | None = field(default=None, kw_only=True)
 
-    dense: ClassVar[int] = 16
+    dense: ClassVar[int] = 8
     """Positions in one step of a path that show what its steps miss."""
 
     @property
