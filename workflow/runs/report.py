@@ -213,8 +213,9 @@ def read_results(folder: Path) -> dict[str, Any]:
 
 
 def as_json(document: Mapping[str, Any]) -> str:
-    """The text of results.json."""
-    return json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    """The text of results.json, a line for each entry."""
+    entries = (json.dumps({name: one}, ensure_ascii=False, allow_nan=False)[1:-1] for name, one in document.items())
+    return "{\n  " + ",\n  ".join(entries) + "\n}\n"
 
 
 def write_results(folder: Path, document: Mapping[str, Any]) -> None:
