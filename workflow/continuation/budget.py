@@ -16,236 +16,34 @@ Nothing here depends on the experiment: whatever a script passes and a reader re
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import Any
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.convergence import extrapolated
 from contact1d.workflow.continuation.marks import displacement_under
-from contact1d.workflow.continuation.model_branch import MOST_NUMBERS, ModelBranch, Script
-from contact1d.workflow.continuation.outcome import LATTICE, Move, Reading, Result, in_squares
+from contact1d.workflow.continuation.model_branch import MOST_NUMBERS
+from contact1d.workflow.continuation.outcome import LATTICE, Result, in_squares
+from contact1d.workflow.continuation.reduction import MARGIN, WAYS, Reader, Reduction, Values, values_of
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace
-from contact1d.workflow.errors import SettingsError
-from contact1d.workflow.laws.particles import Particles
-from contact1d.workflow.model.reduced import reduced
-from contact1d.workflow.model.settings import Settings, settings_for
-from contact1d.workflow.scene import Scene, Shape
+from contact1d.workflow.model.settings import Settings
+from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
-MARGIN = 1.25
-"""Error over the change of the model with the lattice: it has no neighbour springs. Measured on both parities: 1.01."""
 STEP_MARGIN, PATH_MARGIN = 1.25, 1.5
-"""The same of the steps of a path: dense ones have errors, too; the second if the model's maximum is elsewhere."""
-PHASES = (0.25, 0.0)
-"""Positions of the apex between particles, over the spacing, that an even chain is compared with."""
-UNEVEN = (0.93, 0.86)
-"""Spacings over the own one that put a kink of the profile elsewhere between particles, on both sides alike."""
-MORE_PHASES = (0.375, 0.25, 0.125, 0.0)
-"""Such positions where friction makes several edges, the errors of which may cancel at two positions."""
-FINER = (0.5, 0.25)
-"""Spacings over the own one on which errors converge."""
+"""Error over the change of the model with dense steps, which have errors, too; the second if its maximum is elsewhere."""
 BY_CHANCE = 0.5
 """Least error of a row over those beside it."""
 SHIFTS = (0.0, 0.25, 0.5, 0.75)
 """Shifts of a path's steps over their width, of which the worst counts where the model is no copy of the deck."""
 FEWEST = 200
 """Particles that the model of a plane keeps for dense positions."""
-FOLLOWED = 0.5
-"""Difference of the model from a motion, over the result, beyond which its lattice says nothing of that."""
 BEFORE = 1e-3
 """Distance of two displacements that show the stiffness of the model, over its path."""
-LEAST_MOVE = 0.05
-"""Least relative change of an input that shows what a smaller one does, to first order: readers have errors."""
 REACHED = 1.1
 """Of a displacement, over that of a force that was missed to first order: nothing else may err."""
-WAYS = (-1.0, 1.0)
-"""Both ways."""
-
-
-Reader = Callable[[Trace], Mapping[str, Reading]]
-Values = dict[str, Any]
-"""Numbers by name of a result; by name of a column of curve.csv one for each of its rows, (m,)."""
-
-
-@dataclass(frozen=True)
-class Reduction:
-    """How results go with the lattice of the model: script and reader of a scene's experiment; `of` another scene.
-
-    Or, of states that were `passed`, how each of them does.
-    """
-
-    scene: Scene
-    settings: Settings
-    script: Script
-    read: Reader
-    of: Callable[[Scene, Settings], Reduction]
-    passed: Trace | None = None
-
-    def along(self, trace: Trace) -> Reduction:
-        """The same for each state of a trace; the models are shared."""
-        found = replace(self, passed=trace, of=lambda *other: replace(self.of(*other), passed=trace))
-        vars(found).update(model=self.model, _lattices=self._lattices)
-        return found
-
-    def values(self, model: Particles, dense: int = 1, shift: float = 0.0) -> Values:
-        """The results of the model; `shift` of the displacements that the scene gives [LU]."""
-        if self.passed:
-            return self.passed.again(self.scene, self.settings, model)
-        return _values(self.read(self.trace(model, dense, shift)))
-
-    def trace(self, model: Particles, dense: int = 1, shift: float = 0.0, whole: bool = False) -> Trace:
-        """What the script makes of the reduced model."""
-        return self.driven(model, dense, shift).trace(whole)
-
-    def driven(self, model: Particles, dense: int = 1, shift: float = 0.0) -> ModelBranch:
-        """The reduced model when the script has ended."""
-        branch = ModelBranch(self.scene, self.settings, model, dense, shift)
-        self.script(branch)
-        return branch
-
-    @property
-    def is_open(self) -> bool:
-        """Whether the scene leaves anything open."""
-        profile = self.scene.bodies.profile
-        return bool(self.scene.shares or profile.deviations or profile.alternatives)
-
-    @property
-    def on_lattice(self) -> bool:
-        """Whether the positions of the particles are chosen by the program, and not part of the scene."""
-        bodies = self.scene.bodies
-        return bodies.particles == "auto" and bodies.own_count is None
-
-    @property
-    def converges(self) -> bool:
-        """Whether sums over particles come closer to the body's own steadily: where cells share the edge.
-
-        Whole particles touch or don't, and what they miss goes up and down with the spacing.
-        """
-        return self.model.shares_edges
-
-    @cached_property
-    def model(self) -> Particles:
-        """The model of the chain that runs."""
-        return reduced(self.scene, self.settings)
-
-    @cached_property
-    def path(self) -> Trace:
-        """What the script makes of it."""
-        return self.trace(self.model)
-
-    @cached_property
-    def readings(self) -> Mapping[str, Reading]:
-        """What is read of that."""
-        return self.read(self.path)
-
-    @cached_property
-    def own(self) -> Values:
-        """Its results."""
-        return self.values(self.model) if self.passed else _values(self.readings)
-
-    def followed(self, values: Values) -> Values:
-        """`lattice` of results in time; where the model does not follow the motion, by how much they differ."""
-        off = {name: np.abs(values[name] - self.own.get(name, 0.0)) for name in values.keys() & self.lattice.keys()}
-        return {
-            name: np.maximum(self.lattice[name], one * (one > FOLLOWED * np.abs(values[name])))
-            for name, one in off.items()
-        }
-
-    @cached_property
-    def _lattices(self) -> tuple[list[Particles], list[Particles]]:
-        """The model with its particles elsewhere, and on finer spacings."""
-        if not (self.on_lattice or self.converges):
-            return [], []
-        kinks = self.scene.bodies.profile.kinks
-        beside = [self.model.resized(factor) for factor in UNEVEN if kinks]
-        if not self.converges or kinks:
-            phases = MORE_PHASES if self.model.law.has_zones or kinks else PHASES
-            beside += [self.model.shifted(phase) for phase in phases]
-        return beside, [self.model.resized(factor) for factor in FINER if self.converges]
-
-    @cached_property
-    def lattice(self) -> Values:
-        """By name of a result, its discretisation error; a result that another lattice does not have may be 0."""
-        beside, finer = self._lattices
-        if not (beside or finer):
-            return {}
-        found = self._apart(beside)
-        if finer:
-            others = [self.values(model) for model in finer]
-            for name, value in self.own.items():
-                found[name] = np.maximum(found[name], extrapolated(value, *(one.get(name, 0.0) for one in others)))
-        return {name: MARGIN * error for name, error in found.items()}
-
-    @cached_property
-    def moves(self) -> tuple[Move, ...]:
-        """Of the scene, each number with ± moved both ways; of each pair of bodies half of their difference.
-
-        So of a number, too, that moves so little that its results are read off no better: it is moved further.
-        """
-        scene, moves = self.scene, list[Move]()
-        for key, share in scene.shares.items():
-            ends, times = [scene.moved(key, 1.0 + way * share) for way in WAYS], max(1.0, LEAST_MOVE / share)
-            try:
-                both = [self._of(scene.moved(key, 1.0 + way * times * share)) for way in WAYS]
-            except SettingsError:
-                times, both = 1.0, [self._of(end) for end in ends]
-            moves += self._changes(key, ends, both, times, apart=times > 1.0)
-        for number, pair in enumerate(scene.bodies.profile.deviations, 1):
-            ends = [scene.with_profile(shape) for shape in pair]
-            try:
-                both = [self._of(end) for end in ends]
-            except SettingsError:  # one of them is no contact
-                continue
-            moves += self._changes(f"bodies.profile: deviation {number}", ends, both, 1.0, apart=True)
-        return tuple(moves)
-
-    def _changes(
-        self, key: str, ends: Sequence[Scene], both: Sequence[Values], times: float, apart: bool
-    ) -> list[Move]:
-        """What an input does at its ends, from results so many times as far; `apart`: half of their difference."""
-        found = []
-        for end, one, other in zip(ends, both, both[::-1], strict=True):
-            middle = {n: 0.5 * (one[n] + other[n]) for n in one.keys() & other.keys()} if apart else self.own
-            shared = self.own.keys() & middle.keys()
-            changes = {name: (one.get(name, middle[name]) - middle[name]) / times for name in shared}
-            found.append(Move(key, end, changes))
-        return found
-
-    def _of(self, scene: Scene) -> Values:
-        """The results of the model of another scene."""
-        case = self.of(scene, settings_for(scene, self.settings.tolerance))
-        return case.values(case.model)
-
-    @cached_property
-    def inputs(self) -> Values:
-        """By name of a result, what the scene leaves open: independent changes in squares, and other bodies in sum."""
-        profile = self.scene.bodies.profile
-        others = [model for shape in profile.alternatives if (model := self._of_shape(shape))]
-        if len(others) < len(profile.alternatives):
-            others += [model for shape in profile.coarser if (model := self._of_shape(shape))]
-        each = [self._apart([other]) for other in others]
-        return {name: sum(one[name] for one in each) + in_squares(self.moves, name) for name in self.own}
-
-    def _of_shape(self, shape: Shape) -> Particles | None:
-        """The model of another body; None of one that is no contact, as where its edge would jump at a corner."""
-        scene = self.scene.with_profile(shape)
-        try:
-            return reduced(scene, replace(self.settings, law=settings_for(scene).law))
-        except SettingsError:
-            return None
-
-    def _apart(self, models: Sequence[Particles]) -> Values:
-        """How far results of other models are off, at most."""
-        found = {name: np.zeros_like(value) for name, value in self.own.items()}
-        for one in map(self.values, models):
-            for name, value in self.own.items():
-                found[name] = np.maximum(found[name], np.abs(one.get(name, 0.0) - value))
-        return found
 
 
 def curve_errors(
@@ -368,7 +166,7 @@ def budgeted(
         repeated: by the source of the error that they show, the same measured in other ways: "time" of a motion.
     """
     readings = case.read(trace)
-    values = _values(readings)
+    values = values_of(readings)
     solver = _changes(case.read, values, _off_balance(case, trace, force_error, sampled, length))
     read = _changes(case.read, values, misread(trace))
     between = sampling_errors(case, trace) if sampled else {}
@@ -459,11 +257,7 @@ def _changes(read: Reader, values: Values, perturbed: list[Trace], missing: bool
     """The largest change of each value; where `missing` counts, one that a perturbed reader lacks is 0."""
     found = dict.fromkeys(values, 0.0)
     for trace in perturbed:
-        others = _values(read(trace))
+        others = values_of(read(trace))
         for name, value in values.items():
             found[name] = max(found[name], abs(others.get(name, 0.0 if missing else value) - value))
     return found
-
-
-def _values(readings: Mapping[str, Reading]) -> Values:
-    return {name: one.value for name, one in readings.items()}

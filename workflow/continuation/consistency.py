@@ -17,8 +17,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from contact1d.workflow.continuation.budget import Reduction
 from contact1d.workflow.continuation.outcome import Agreement
+from contact1d.workflow.continuation.reduction import Reduction
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.laws.particles import Array, Particles
 from contact1d.workflow.laws.path import Path, legs, path_of

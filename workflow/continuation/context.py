@@ -13,9 +13,9 @@ from types import TracebackType
 from typing import Self
 
 from contact1d.workflow.continuation import consistency
-from contact1d.workflow.continuation.budget import Reduction
 from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.outcome import Agreement, Outcome
+from contact1d.workflow.continuation.reduction import Reduction
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Array, Search, Trace, of_states
 from contact1d.workflow.continuation.trust import UntrustedError

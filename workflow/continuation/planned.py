@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.pressure import Profile, zoned
 from contact1d.workflow.continuation import consistency
-from contact1d.workflow.continuation.budget import Reduction
 from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.context import ContactBranch, RunContext
 from contact1d.workflow.continuation.model_branch import ModelBranch
 from contact1d.workflow.continuation.outcome import Agreement
+from contact1d.workflow.continuation.reduction import Reduction
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trust import DigitsError, TensionError, require_trust
 from contact1d.workflow.deck.deck import Deck

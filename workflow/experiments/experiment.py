@@ -9,17 +9,13 @@ from typing import ClassVar, Generic, TypeVar, cast
 
 from contact1d.workflow.continuation import consistency
 from contact1d.workflow.continuation.branch import Branch, SecondMaximumError
-from contact1d.workflow.continuation.budget import (
-    Reduction,
-    budgeted,
-    curve_errors,
-    force_errors,
-)
+from contact1d.workflow.continuation.budget import budgeted, curve_errors, force_errors
 from contact1d.workflow.continuation.context import ContactBranch, RunContext
 from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.load_control import LoadBranch
 from contact1d.workflow.continuation.outcome import Agreement, Outcome, Reading, Result
 from contact1d.workflow.continuation.planned import Plan, PlannedBranch
+from contact1d.workflow.continuation.reduction import Reduction
 from contact1d.workflow.continuation.replayed import ReplayedBranch
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace

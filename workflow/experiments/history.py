@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.curve_marks import vertex
 from contact1d.analysis.polynomial import through
-from contact1d.workflow.continuation.budget import MARGIN
 from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.outcome import Outcome, Reading
+from contact1d.workflow.continuation.reduction import MARGIN
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
 from contact1d.workflow.laws import law_of

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.polynomial import lowest_minimum, through, value
 from contact1d.workflow.continuation import consistency
-from contact1d.workflow.continuation.budget import Reduction
 from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.outcome import Agreement, Outcome, Reading, Result
+from contact1d.workflow.continuation.reduction import Reduction
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.deck.steps import Fly, Launch, Phase

@@ -13,7 +13,7 @@ import numpy as np
 
 from contact1d.analysis.curve_marks import closes, work_of
 from contact1d.workflow.continuation import consistency
-from contact1d.workflow.continuation.budget import ForceErrors, Reduction, budgeted, curve_errors, force_errors, of_rows
+from contact1d.workflow.continuation.budget import ForceErrors, budgeted, curve_errors, force_errors, of_rows
 from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.driver import Driver
@@ -21,6 +21,7 @@ from contact1d.workflow.continuation.marks import unloading
 from contact1d.workflow.continuation.model_branch import UNSEEN
 from contact1d.workflow.continuation.outcome import LOSSES, Outcome, Reading, Result
 from contact1d.workflow.continuation.planned import Plan
+from contact1d.workflow.continuation.reduction import Reduction
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import doubts, require_trust
