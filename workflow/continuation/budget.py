@@ -33,7 +33,7 @@ from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
 STEP_MARGIN, PATH_MARGIN = 1.25, 1.5
-"""Error over the change of the model with dense steps, which have errors, too; the second where a search has its own."""
+"""Error over the change with dense steps, which have errors, too; the second where a search ends elsewhere."""
 BY_CHANCE = 0.5
 """Least error of a row over those beside it."""
 SHIFTS = (0.0, 0.25, 0.5, 0.75)
