@@ -1,14 +1,14 @@
-"""The reduced model: particles that know their own spring and what is opposite, and nothing of their neighbours.
+"""Particles as the law of their contact has them; on a rigid plane they are those of the deck, with the same numbers.
 
     springs on a rigid plane    f = k max(0, d − h(x))
-    pairs of opposite chains    f = f(r),  G(r) = r₀ + h(x) − d, on the branch that a pair came by
-    cells that adhere           f = k φ [d − g(x) + c (1 − φ)], while the contact is held (`adhesion`)
-    cells with an attraction    f = ∫ q dx over the cell, where the contact is on its curve (`cohesive`)
+    pairs of opposite chains    f = f(r),  G(r) = r₀ + h(x) − d, on the branch that a pair came by (`pairs`)
+    cells that adhere           f = k φ [d − g(x) + c (1 − φ)], while the contact is held (`jkr`)
+    cells with an attraction    f = ∫ q dx over the cell, where the contact is on its curve (`maugis`)
     springs with a memory       f = k (part u + Σ share s_j) ≥ 0  (`relaxing`)
-    springs with a slider       s ← clip(s + k_t Δu, ±μ f)
+    springs with a slider       s ← clip(s + k_t Δu, ±μ f)  (`friction`)
 
-It follows any path of displacements with the memory that its particles have, all positions at once. No result
-depends on it: it is a predictor, and it gives the discretisation error (`shifted`, `resized`).
+They follow any path of displacements with the memory that they have, all positions at once. On a rigid plane that is the
+plan of a run; of pairs it is a predictor, and of both it gives the discretisation error (`shifted`, `resized`).
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Effect [adhesion]: d = g(a) − √(2π a W/E*) at the edge a of the contact, the rule of Heß, which makes it JKR's.
 
-With a range it is Maugis and Dugdale's: an attraction σ₀ = W/h₀ beyond the edge (`model.cohesive`). There, and where
+With a range it is Maugis and Dugdale's: an attraction σ₀ = W/h₀ beyond the edge (`laws.maugis`). There, and where
 the edge takes time, each load step has its edges.
 """
 

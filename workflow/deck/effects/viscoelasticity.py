@@ -1,4 +1,4 @@
-"""Effect [viscoelasticity]: the spring of each particle relaxes, or has a dashpot beside it (`model.relaxing`).
+"""Effect [viscoelasticity]: the spring of each particle relaxes, or has a dashpot beside it (`laws.relaxing`).
 
 Its force takes the place of the plane's own. Atoms keep the memory, which goes on at the end of each step.
 """
