@@ -7,8 +7,8 @@
     springs with a memory       f = k (part u + Σ share s_j) ≥ 0  (`relaxing`)
     springs with a slider       s ← clip(s + k_t Δu, ±μ f)  (`friction`)
 
-They follow any path of displacements with the memory that they have, all positions at once. On a rigid plane that is the
-plan of a run; of pairs it is a predictor, and of both it gives the discretisation error (`shifted`, `resized`).
+They follow any path of displacements with the memory that they have, all positions at once. On a rigid plane that is
+the plan of a run; of pairs it is a predictor, and of both it gives the discretisation error (`shifted`, `resized`).
 """
 
 from __future__ import annotations

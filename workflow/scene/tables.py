@@ -233,7 +233,7 @@ class Bodies(Table):
 
     @property
     def spacing(self) -> float:
-        """Distance [LU] of neighbouring particles; "auto" is a number once `experiments.spacing.with_spacing` chose it."""
+        """Distance [LU] of neighbouring particles; "auto" is a number once `with_spacing` has chosen it."""
         assert self.given_spacing != "auto", "no spacing was chosen yet"
         return self.given_spacing
 
