@@ -299,14 +299,22 @@ class Maugis(Zoned):
         passed = np.flatnonzero(d >= np.maximum.accumulate(d))
         return [float(d[a]) for a, b in pairwise(passed) if d[a + 1 : b].min(initial=np.inf) < d[a] - SAME * np.ptp(d)]
 
+    @cached_property
+    def _falls(self) -> list[int]:
+        """How often the displacement falls along the curve, up to each of its points."""
+        found: list[int] = np.cumsum(np.diff(self.curve.displacement, prepend=-np.inf) < 0.0).tolist()
+        return found
+
     def lost_between(self, before: float, after: float) -> float:
         """Energy [FU·LU] that a contact loses as it jumps on its way from one place of the curve to another."""
         low, high = sorted((math.ceil(max(before, 0.0)), math.ceil(max(after, 0.0))))
+        if self._falls[high] == self._falls[low]:
+            return 0.0
         way = 1 if after > before else -1
         d = way * self.curve.displacement[low : high + 1][::way]
         least = SAME * float(np.ptp(self.curve.displacement))
         passed = np.maximum.accumulate(d)
-        if d.size < 2 or (passed - d).max() < least:
+        if (passed - d).max() < least:
             return 0.0
         top = int(np.argmax(passed == passed[int(np.argmax(passed - d >= least))]))
         place = float(low + top if way > 0 else high - top)
