@@ -163,6 +163,10 @@ def test_mistakes_of_a_fit_file_are_named_together(tmp_path: Path) -> None:
         fit(plan(tmp_path / "curve.csv", parameters=["adhesion.work"]))
     with pytest.raises(SceneError, match="base"):
         fit({"data": "curve.csv", "parameters": PARAMETERS})
+    neighbours = {name: table for name, table in BASE.items() if name != "adhesion"}
+    neighbours |= {"neighbours": {"stiffness": "1 N/m"}, "bodies": BASE["bodies"] | {"spacing": "50 nm"}}
+    with pytest.raises(SceneError, match="contact models are of linear springs"):
+        fit(plan(tmp_path / "curve.csv", parameters=["material.contact_modulus"], base=neighbours))
 
 
 @pytest.mark.parametrize(

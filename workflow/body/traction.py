@@ -25,6 +25,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from contact1d.analysis.abel import FEWEST, LineLoad
+from contact1d.analysis.curve_marks import vertex
 from contact1d.analysis.polynomial import gauss
 from contact1d.analysis.pressure import Array, Profile, ZonedProfile
 from contact1d.analysis.shear import kinks_of, shear_load
@@ -43,8 +44,8 @@ ANGLES, ZONED, PIECES = 12, 40, 5
 """Positions of Gauss's at which p(r) is added up to a force, between kinks, and where an attraction with a range acts
 beyond the contact, on a small part of it: 3e-7 of the force for µ = 400. And pieces of a body whose shape is a table or
 whose springs are not elastic: a corner of its history is a kink of the line load."""
-BETWEEN = 101
-"""Radii between two particles at which the largest pressure is searched."""
+BETWEEN = 21
+"""Radii between two particles at which the largest pressure is searched, the vertex of the parabola through three."""
 ROUND_OFF = 2e-12
 """Error of a pressure over the stiffness of the layer: of positions beside the depth of the wall that carries them."""
 SOLVED = 5e-6
@@ -269,7 +270,10 @@ def _largest(
     smooth = p[top] > 0.0 and (top == 0 or len(levels) == 3) and _is_bounded(state, fine, top, noise * p[top])
     peak = p[top]
     if smooth and top:  # on the axis it is one by symmetry
-        peak = pressure(np.linspace(r[top - 1], r[min(top + 1, r.size - 1)], BETWEEN)).max()
+        near = np.linspace(r[top - 1], r[min(top + 1, r.size - 1)], BETWEEN)
+        p_near = pressure(near)
+        highest = int(p_near.argmax())
+        peak = vertex(near, p_near, highest, 1)[1] if 0 < highest < BETWEEN - 1 else p_near[highest]
     hidden = any(map(state.has_kinks, shape.alternatives))
     found: dict[str, tuple[Quantity, int, Callable[[Array], Any]]] = {}
     for name, place, read, value, is_open, may_have in (

@@ -143,6 +143,9 @@ def _base(base: Mapping[str, Any], folder: Path) -> tuple[Scene | None, list[Pro
         return None, [Problem(f"base.{one.path}", one.message, one.given, one.hint) for one in error.problems]
     if scene.bodies.lower != "rigid_plane" or scene.bodies.reduction != "mdr":
         return scene, [Problem("base.bodies.lower", 'must be "rigid_plane", with the reduction "mdr"')]
+    others = [name for name, one in zip(scene.effects, scene.present, strict=True) if not one.keeps_springs]
+    if others:
+        return scene, [Problem(f"base.{others[0]}", "not in a fit, whose contact models are of linear springs")]
     material = scene.material
     if material is None or (material.length_unit, material.force_unit) != (1.0, 1.0):
         hint = (
