@@ -271,6 +271,32 @@ def test_terms_and_points_of_a_list_have_uncertainties() -> None:
     assert deeper.peak_displacement.uncertainty == pytest.approx(0.4e-6)
 
 
+@pytest.mark.parametrize("given", ["displacement", "force"])
+@pytest.mark.parametrize(("key", "value", "share"), [("share", 0.5, 0.05), ("time", 1.0, 0.1)])
+def test_a_pressure_goes_with_the_terms_of_a_body_that_relaxes(
+    given: str, key: str, value: float, share: float
+) -> None:
+    points = [[0.0, 0.0], [1.0, 1.0], [2.0, 0.8]] if given == "displacement" else [[0.0, 0.0], [1.0, 20.0]]
+
+    def run(number: object) -> contact1d.Quantity:
+        terms = [{"share": 0.5, "time": 1.0} | {key: number}]
+        bodies = {
+            "particles": "auto",
+            "spacing": 1.0,
+            "reduction": "mdr",
+            "lower": "rigid_plane",
+            "bulk_stiffness": 1.0,
+        }
+        tables = {"bodies": bodies | {"profile": {"kind": "parabola", "radius": 1000.0}}}
+        experiment = {"kind": "history", given: points}
+        scene = {"title": "a term", **tables, "viscoelasticity": {"terms": terms}, "experiment": experiment}
+        return contact1d.run(scene).results["central_pressure"]
+
+    low, high = (run(value * (1.0 + way * share)).value for way in (-1.0, 1.0))
+    own, known = run([value, value * share]), run(value)
+    assert own.uncertainty - known.uncertainty == pytest.approx(0.5 * abs(high - low), rel=0.15)
+
+
 @pytest.mark.parametrize(
     ("share", "time", "said"),
     [

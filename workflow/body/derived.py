@@ -29,7 +29,8 @@ from contact1d.workflow.body.cases import Case
 from contact1d.workflow.body.reading import product
 from contact1d.workflow.body.theory import tabor
 from contact1d.workflow.body.traction import BodyPressure, body_pressures, is_of_a_body
-from contact1d.workflow.continuation.outcome import MODEL, Made, Outcome, Result
+from contact1d.workflow.continuation.outcome import MODEL, Made, Outcome, Result, in_squares
+from contact1d.workflow.continuation.reduction import PRESSURE
 from contact1d.workflow.laws import law_of
 from contact1d.workflow.laws.pairs import row_force
 from contact1d.workflow.model.settings import Settings
@@ -153,7 +154,9 @@ def pressures_of(scene: Scene, outcome: Outcome) -> dict[str, BodyPressure]:
 
 
 def _pressure_share(scene: Scene, outcome: Outcome) -> float:
-    """What uncertain numbers of the scene change pressures by, relatively."""
+    """What uncertain numbers of the scene change pressures by, relatively; of springs that are linear by a formula."""
+    if not scene.keeps_springs and scene.is_stepped:
+        return float(in_squares(outcome.moves, PRESSURE))
     return sum(given / size.value for size, given in outcome.made(scene, _pressure_size).values())
 
 

@@ -165,12 +165,12 @@ def _pressure(state: Loaded, share: float, given: float) -> BodyPressure | None:
     moves = np.maximum(np.abs(p), at_most)
     if zone:  # the attraction's edge goes with that of the contact
         moves += np.abs(_drawn(scene, zone, STEP)[1](r) - pulled(r)) / STEP
-    spread = state.radius.uncertainty / state.radius.value * moves + given * np.abs(p)
+    spread = state.radius.uncertainty / state.radius.value * moves
     spread = _between(state, own, spread, [p, *coarser], lambda line: line.pressure(r) - pulled(r))
     by_shape = _by_shape(state, own, r, p, pulled)
     within = np.count_nonzero(side < state.radius.value / state.wider)
     told = [one for i, one in enumerate((p, *coarser)) if within >= FEWEST * 2**i]
-    error = spread + share * moves + ROUND_OFF * state.layer
+    error = spread + share * moves + given * np.abs(p) + ROUND_OFF * state.layer
     results = {
         name: replace(one, uncertainty=one.uncertainty or float(error[place] + by_shape(read)))
         for name, (one, place, read) in _largest(state, fine, r, told, lambda r: fine.pressure(r) - pulled(r)).items()

@@ -6,6 +6,7 @@ particles, and of each scene that this one may mean (`budget`).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -41,6 +42,8 @@ WAYS = (-1.0, 1.0)
 """Both ways."""
 
 
+PRESSURE = "ln p"
+"""Among the changes of a move: of the logarithm of p(0), so that it is relative."""
 Reader = Callable[[Trace], Mapping[str, Reading]]
 Values = dict[str, Any]
 """Numbers by name of a result; by name of a column of curve.csv one for each of its rows, (m,)."""
@@ -122,6 +125,17 @@ class Reduction:
         """Its results."""
         return self.values(self.model) if self.passed else values_of(self.readings)
 
+    @cached_property
+    def seen(self) -> Values:
+        """`own`, and where springs are not linear what a pressure goes with."""
+        if self.passed or self.scene.keeps_springs:
+            return self.own
+        at = len(self.path) - 1 if self.model.law.in_time else int(self.path.displacement.argmax())
+        profile = self.path.profile(at)
+        x, q = profile.x[profile.x > 0.0], profile.pressure[profile.x > 0.0]
+        on_axis = -float(np.sum(np.diff(q) / (x[1:] + x[:-1])))  # ∫ −dq/x, but for a factor
+        return self.own | ({PRESSURE: math.log(on_axis)} if on_axis > 0.0 else {})
+
     def followed(self, values: Values) -> Values:
         """`lattice` of results in time; where the model does not follow the motion, by how much they differ."""
         off = {name: np.abs(values[name] - self.own.get(name, 0.0)) for name in values.keys() & self.lattice.keys()}
@@ -184,16 +198,15 @@ class Reduction:
         """What an input does at its ends, from results so many times as far; `apart`: half of their difference."""
         found = []
         for end, one, other in zip(ends, both, both[::-1], strict=True):
-            middle = {n: 0.5 * (one[n] + other[n]) for n in one.keys() & other.keys()} if apart else self.own
-            shared = self.own.keys() & middle.keys()
+            middle = {n: 0.5 * (one[n] + other[n]) for n in one.keys() & other.keys()} if apart else self.seen
+            shared = self.seen.keys() & middle.keys()
             changes = {name: (one.get(name, middle[name]) - middle[name]) / times for name in shared}
             found.append(Move(key, end, changes))
         return found
 
     def _of(self, scene: Scene) -> Values:
         """The results of the model of another scene."""
-        case = self.of(scene, settings_for(scene, self.settings.tolerance))
-        return case.values(case.model)
+        return self.of(scene, settings_for(scene, self.settings.tolerance)).seen
 
     @cached_property
     def inputs(self) -> Values:
