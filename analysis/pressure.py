@@ -48,19 +48,23 @@ class ZonedProfile(Profile):
     """A profile of which it is known where the contact ends.
 
     edge: contact radius a [LU]; reach: how far an attraction with a range goes beyond, c [LU]; jump: the line load just
-    inside of a without what it is just outside [FU/LU]; doubt: how far a may be off [LU].
+    inside of a without what it is just outside [FU/LU]; doubt: how far a may be off [LU]; layer: what the line load may
+    rise by just inside of a, on less than the spacing [FU/LU].
     """
 
     edge: float
     reach: float
     jump: float
     doubt: float = 0.0
+    layer: float = 0.0
 
 
-def zoned(profile: Profile, edge: float, reach: float, jump: float, doubt: float = 0.0) -> ZonedProfile:
+def zoned(
+    profile: Profile, edge: float, reach: float, jump: float, doubt: float = 0.0, layer: float = 0.0
+) -> ZonedProfile:
     """Return a profile whose contact ends at an edge [LU] by a jump [FU/LU]."""
     own = profile.x, profile.z_lower, profile.z_upper, profile.pressure, profile.shear
-    return ZonedProfile(*own, edge, reach, jump, doubt)
+    return ZonedProfile(*own, edge, reach, jump, doubt, layer)
 
 
 def pressure_profile(

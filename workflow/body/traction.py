@@ -171,6 +171,8 @@ def _pressure(state: Loaded, share: float, given: float) -> BodyPressure | None:
     within = np.count_nonzero(side < state.radius.value / state.wider)
     told = [one for i, one in enumerate((p, *coarser)) if within >= FEWEST * 2**i]
     error = spread + share * moves + given * np.abs(p) + ROUND_OFF * state.layer
+    if zone:  # a layer acts as a jump, but for the particle that is in it
+        error += zone.layer / (np.pi * np.sqrt(fine.edge**2 - r**2)) * (r > fine.edge - scene.bodies.spacing)
     results = {
         name: replace(one, uncertainty=one.uncertainty or float(error[place] + by_shape(read)))
         for name, (one, place, read) in _largest(state, fine, r, told, lambda r: fine.pressure(r) - pulled(r)).items()

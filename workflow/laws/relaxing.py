@@ -191,12 +191,12 @@ class RelaxingSprings(Particles):
             each[i], margin[i] = memory.pressed(place, time, velocity)
             memory.go(place, time, velocity)
         each *= self.law.stiffness
-        edge = self._edges(margin)
-        doubt: Array = AGAIN * self.law.spacing * _returned(edge).astype(np.float64)
+        edge, doubt = self._edges(margin)
+        doubt = np.maximum(doubt, AGAIN * self.law.spacing * _returned(edge))
         if self.shares_edges:
             spacing = self.law.spacing
             doubt += np.abs(0.5 * spacing * memory.width(margin, counts) - edge) + EDGE * spacing * (edge > 0.0)
-        zone = (edge, edge, self._jumps(edge, displacement, velocities), doubt)
+        zone = (edge, edge, self._jumps(edge, displacement, velocities), doubt, self._layers(edge, spent, velocities))
         return Followed(self.x, each @ counts, lambda state: each[state][own], zone=zone)
 
     def energies(self, path: Path) -> tuple[float, float]:
@@ -217,6 +217,13 @@ class RelaxingSprings(Particles):
         grows = (edge > 0.0) & (velocity >= 0.0) & (push > JUMPS * np.abs(displacement)) & (retarded > 0.0)
         return np.where(grows, estimate.stiffness / estimate.spacing * push, 0.0)
 
+    def _layers(self, edge: Array, spent: Array, velocity: Array) -> Array:
+        """What arms push in a layer at an edge that grows [FU/LU], where it is narrower than the spacing, a′ τ."""
+        stiffness, spacing = self.law.stiffness, self.law.spacing
+        grown = np.maximum(np.diff(edge, prepend=0.0), 0.0) / spent / spacing
+        arms = (one.share * one.time * np.exp(-one.time * grown) for one in self.law.material.terms or ())
+        return np.asarray(stiffness / spacing * np.maximum(velocity, 0.0) * sum(arms) * (grown > 0.0))
+
     @cached_property
     def _places(self) -> tuple[Array, Array]:
         """Heights [LU], rising, and where the body has them [LU]."""
@@ -232,11 +239,11 @@ class RelaxingSprings(Particles):
         missed = np.divide(heights - shape.height(found), rise, out=np.zeros_like(found), where=rise > 0.0)
         return np.clip(found + wide * missed, x[cell - 1], x[cell])
 
-    def _edges(self, margin: Array) -> Array:
+    def _edges(self, margin: Array) -> tuple[Array, Array]:
         """a [LU] of states whose overlaps are (m, n) [LU], (m,): where these fall to 0, straight over the height.
 
         Where the contact grows the overlap has a kink at a, and only the next two free particles tell; where it
-        shrinks, the last particle and the next are nearer.
+        shrinks, the last particle and the next are nearer. Another particle in place of one of two tells the error.
         """
         heights, touching = self._cells[0].heights, margin > 0.0
         end = heights.size - 1
@@ -250,10 +257,11 @@ class RelaxingSprings(Particles):
             return self._at(np.clip(place, heights[last], heights[after]))
 
         ahead, across = crossing(after, np.minimum(last + 2, end)), crossing(last, after)
-        shrinks = np.append(False, ahead[1:] < ahead[:-1])
-        reach = self.law.profile.reach
-        inside = np.where(last == end, min(reach, self._reach), np.where(shrinks, across, ahead))
-        return np.where(touching.any(axis=1), inside, 0.0)
+        beyond, behind = crossing(after, np.minimum(last + 3, end)), crossing(np.maximum(last - 1, 0), after)
+        shrinks, touches = np.append(False, ahead[1:] < ahead[:-1]), touching.any(axis=1)
+        edge, other = np.where(shrinks, across, ahead), np.where(shrinks, behind, beyond)
+        edge, other = (np.where(last == end, min(self.law.profile.reach, self._reach), one) for one in (edge, other))
+        return np.where(touches, edge, 0.0), np.abs(edge - other) * touches
 
 
 def _returned(edge: Array) -> NDArray[np.bool_]:
