@@ -127,11 +127,15 @@ def applying(one: Combination) -> set[str]:
 
 @cases("checks", lambda one: True)
 def test_the_checks_are_there_and_hold(made: Runs, one: Combination) -> None:
-    found = finished(made(one)).consistency
+    run = finished(made(one))
+    found = run.consistency
     assert set(found) == set(SAID)
     for name, check in found.items():
         assert check is not None or name not in applying(one), name
         assert check is None or 0.0 <= check["difference"] <= check["allowed"], name
+    assert run.done is not None
+    missing = " ".join(text for name, text in run.done.warnings.items() if name.startswith("no_"))
+    assert not [name for name in run.done.results if "_" in name and name in missing]
 
 
 @cases("units", lambda one: True, long=("rate",))
