@@ -136,6 +136,10 @@ def test_the_checks_are_there_and_hold(made: Runs, one: Combination) -> None:
     assert run.done is not None
     missing = " ".join(text for name, text in run.done.warnings.items() if name.startswith("no_"))
     assert not [name for name in run.done.results if "_" in name and name in missing]
+    outcome = run.done.outcome
+    if outcome is not None and "critical" in outcome.marked and one.method == "quasistatic":
+        least = min(state.force for state in outcome.states)
+        assert outcome.marked["critical"].force <= (1.0 - run.done.scene.accuracy.tolerance) * least
 
 
 @cases("units", lambda one: True, long=("rate",))

@@ -34,6 +34,8 @@ LAST = 1e-9
 """How much of the path from F = 0 to the limit point is left before it."""
 NEAR = 1e-6
 """Distance over the spacing from a jump of the force at which it has jumped, or not yet."""
+NEAREST = 3
+"""Last states before a limit point, of which that with the largest tension is the force maximum."""
 MOST_NUMBERS = 400_000
 """Forces that are worked out in a path with dense positions."""
 UNSEEN = ""
@@ -176,6 +178,8 @@ class ModelBranch:
         found = np.unique(np.append(found, np.clip(beside, end, zero)))[::-1]
         found = found[found < zero]
         last = int(np.count_nonzero(found > place - 0.5 * step)) if place < zero else 0
+        if (near := found[max(last - NEAREST, 0) : last]).size:  # at its limit point a chain may have lost a part
+            last -= near.size - 1 - int(np.argmin(self.model.held(near)))
         self._add(found[:last])
         self._beyond = found[last:]
 
