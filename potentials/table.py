@@ -93,7 +93,7 @@ class Table:
         return np.asarray(between * r)
 
     # A scene asks for the same ones again and again; what is kept is small, tables being equal by value.
-    @lru_cache(maxsize=64)  # noqa: B019
+    @lru_cache(maxsize=64)  # noqa: B019  # a table is small, and equal by value
     def error_beyond(self, r_min: float) -> float:
         """Largest interpolation error of the force [FU] for r_min ≤ r ≤ r_c, from SAMPLES dense near r_min."""
         r = r_min * (self.cutoff / r_min) ** np.linspace(0.0, 1.0, SAMPLES)

@@ -31,10 +31,11 @@ from tests.contracts.members import (
 )
 from validation.references import impact
 from validation.references.axisymmetric import Body, Contact, Slipping
+from validation.references.creeping import Creeping
 from validation.references.dashpots import Pressed
 from validation.references.dugdale import Cohesive
 from validation.references.receding_edge import Receding
-from validation.references.relaxing import Creeping, Indentation, KelvinVoigt, Legs, Material, Power, Punch
+from validation.references.relaxing import Indentation, KelvinVoigt, Legs, Material, Power, Punch
 
 Numbers = dict[str, float]
 MASS, SPEED, GUESS = 10.0, 0.3, 20.0

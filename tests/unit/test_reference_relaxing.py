@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from validation.references.creeping import Creeping
 from validation.references.impact import Adhesive, elastic, kelvin_voigt, relaxing
 from validation.references.receding_edge import Receding
 from validation.references.recovering import Prony, Retarded, evenly, followed
-from validation.references.relaxing import Creeping, Indentation, KelvinVoigt, Legs, Material, Power, Punch, sphere
+from validation.references.relaxing import Indentation, KelvinVoigt, Legs, Material, Power, Punch, sphere
 
 SOLID, FLUID = Material(((0.5, 1.0),)), Material(((1.0, 1.0),))
 THREE = Material(((0.3, 0.2), (0.3, 1.0), (0.2, 10.0)))

@@ -30,9 +30,9 @@ from validation.hard.relaxing_draws import (
     profile_of,
     scene_of,
 )
+from validation.references.creeping import Creeping
 from validation.references.recovering import Prony, evenly, followed
 from validation.references.relaxing import (
-    Creeping,
     Indentation,
     KelvinVoigt,
     Legs,

@@ -15,10 +15,10 @@ import numpy as np
 
 from validation.hard.plane_bodies import Scene
 from validation.hard.plane_draws import Drawn, Pressure
+from validation.references.creeping import Creeping
 from validation.references.line_load import Line, lines
 from validation.references.recovering import Followed, Prony, Retarded, evenly, followed
 from validation.references.relaxing import (
-    Creeping,
     Flat,
     Indentation,
     KelvinVoigt,

@@ -74,12 +74,16 @@ class Deck:
         Raises:
             DeckError: if fragments and variables do not fit together.
         """
-        plain = "atomic" if self.scene.stands else "bond"
-        atom_style = next((part.atom_style for part in self.parts if part.atom_style), plain)
-        styles = [f"pair_style      {part.pair_style}\n" for part in self.parts if part.pair_style]
-        bonds = "" if self.scene.stands else "bond_style      harmonic\n"
-        styles = [f"atom_style      {atom_style}\n", *styles, bonds]
-        blocks = [block("start", {}) + "".join(styles)]
+        stands = self.scene.stands
+        slots = {
+            "atom_style": next(
+                (part.atom_style for part in self.parts if part.atom_style), "atomic" if stands else "bond"
+            ),
+            "pair_style": next((part.pair_style for part in self.parts if part.pair_style), ""),
+            "bond_style": "" if stands else "harmonic",
+        }
+        styles = "".join(f"{slot:<16}{style}\n" for slot, style in slots.items() if style)
+        blocks = [block("start", {}) + styles]
         for part in self.parts:
             for index, name in enumerate(part.fragments):
                 blocks.append(block(name, part.variables if index == 0 else {}))

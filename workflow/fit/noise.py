@@ -107,7 +107,7 @@ def _judge(noise: Noise, residuals: Array, slopes: Array, prior: Array) -> tuple
     column the misfit, in standard deviations.
     """
     white = noise.whitened(np.column_stack([slopes, residuals]))
-    # A triangle keeps the digits that JᵀJ squares away: of the slopes, of the residuals along them, and what is left.
+    # R of J = QR has the precision that JᵀJ loses; its last column is Qᵀr, and the norm of the residual of the fit.
     whole = np.asarray(np.linalg.qr(white, mode="r"), dtype=np.float64)
     J, r, rest = whole[:-1, :-1], whole[:-1, -1], float(whole[-1, -1])
     P, known, count = prior[:, :-1], prior[:, -1], residuals.size

@@ -1,0 +1,132 @@
+"""Rigid bodies on a viscoelastic half-space under a force that grows, is held and falls: Lee, Radok, Ting (`relaxing`).
+
+While the radius grows 2 n/(n + 1) kappa_n c a^(n + 1) = int C(t - s) dF(s), and d = g(a). After its largest value
+a(t) = a(t_1) with F(t) = 2 int_0^(t_1) E(t - s) a(s) dd(s), and d follows from int_(t_1)^t E(t - s) dd(s) = 0, by C.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from scipy.optimize import brentq
+
+from validation.references.relaxing import ROOT, Floats, Legs, Material, Power, largest, rule, smooth
+
+NODES = 24
+"""Of a rule for the approach after the largest radius."""
+PLACES, PARTS = rule(80)
+"""Of a rule for a past, on 0 to 1."""
+
+
+@dataclass(frozen=True)
+class Creeping:
+    """A body under a force that grows, is held, and falls, so that the radius has one maximum."""
+
+    body: Power
+    material: Material
+    force: Legs
+
+    def _yielded(self, t: float) -> float:
+        return self.force.hereditary(self.material.yielded, t)
+
+    @cached_property
+    def turn(self) -> float:
+        """When the radius is largest."""
+        turn, _ = largest(self._yielded, self.force.times)
+
+        def rate(t: float) -> float:
+            creep = self.material.creep
+            return sum(
+                s * (creep(t - a) - (creep(t - b) if b < t else 0.0)) for a, b, s in self.force.pieces(-math.inf, t)
+            )
+
+        for low, high in pairwise(self.force.times):
+            if low < turn < high and rate(low) > 0.0 > rate(high):
+                return float(brentq(rate, low, high, xtol=1e-300, rtol=ROOT))
+        return turn
+
+    def grown(self, t: float) -> float:
+        """a(t) [length] while the radius grows."""
+        return self.body.of_volume(self._yielded(t))
+
+    def _approach(self, t: float) -> float:
+        """d(t) [length] while the radius grows."""
+        return self.body.depth(self.grown(t))
+
+    def before(self, t: float) -> float:
+        """t_1(t)."""
+        if t <= self.turn:
+            return t
+        target = self.force(t)
+
+        def off(s: float) -> float:
+            return self._held(s, t) - target
+
+        start = self.force.touched(0.0)
+        if target <= 0.0 or off(self.turn) <= 0.0:  # at the turn itself by round-off
+            return start if target <= 0.0 else self.turn
+        return float(brentq(off, start, self.turn, xtol=1e-300, rtol=1e-13))
+
+    def _past(self, values: Callable[[Floats], Floats], low: float, high: float, t: float) -> float:
+        """int_low^high E(t - s) d values(s), by parts: the values have a steep start, and no derivative there."""
+        total, corners = 0.0, [low, *(c for c in self.force.times if low < c < high), high]
+        for start, stop in pairwise(corners):
+            s = start + (stop - start) * PLACES
+            fading = sum(p / tau * np.exp((s - t) / tau) for p, tau in self.material.terms)
+            total += (stop - start) * float(PARTS @ (values(s) * fading))
+        ends = values(np.array([low, high]))
+        relaxed = self.material.relaxed
+        return relaxed(t - high) * float(ends[1]) - relaxed(t - low) * float(ends[0]) - self.material.modulus * total
+
+    def _held(self, before: float, t: float) -> float:
+        """2 int_0^t1 E(t - s) a(s) dd(s)."""
+        return self._past(self._volumes, self.force.touched(0.0), before, t)
+
+    def _volumes(self, s: Floats) -> Floats:
+        """int C dF at many times."""
+        at_once, flow, arms = self.material.retarded
+
+        def yielded(t: Floats) -> Floats:
+            slow = sum((c * (np.expm1(k * t) / k - t) for c, k in arms), np.zeros_like(t))
+            return np.asarray(at_once * t + 0.5 * flow * t * t + slow)
+
+        pieces = self.force.pieces(-math.inf, math.inf)
+        parts = (rate * (yielded(np.maximum(s - a, 0.0)) - yielded(np.maximum(s - b, 0.0))) for a, b, rate in pieces)
+        return np.asarray(sum(parts, np.zeros_like(s)))
+
+    def _approaches(self, s: Floats) -> Floats:
+        """d at many times while the radius grows."""
+        n = self.body.exponent
+        radii = (self._volumes(s).clip(0.0) * (n + 1.0) / (2.0 * n * self.body.reduced)) ** (1.0 / (n + 1.0))
+        return np.asarray(self.body.reduced * radii**n)
+
+    def _lost(self, t: float) -> float:
+        """int_(t_1)^(t_m) E(t - s) dd(s)."""
+        return self._past(self._approaches, self.before(t), self.turn, t)
+
+    def radius(self, t: float) -> float:
+        """a(t) [length]."""
+        return self.grown(self.before(t))
+
+    def displacement(self, t: float) -> float:
+        """d(t) [length]."""
+        if t <= self.turn:
+            return self._approach(t)
+        lost, turn = self._lost, self.turn
+        corners = [turn, *(c for c in self.force.times if turn < c < t), t]
+        past = sum(
+            smooth(lambda s: self.material.creep_rate(t - s) * lost(s), low, high, NODES)
+            for low, high in pairwise(corners)
+        )
+        return self._approach(turn) - self.material.retarded[0] * lost(t) - past
+
+    @cached_property
+    def peak_displacement(self) -> float:
+        """The largest d(t) [length]."""
+        times = [t for t in self.force.times if t < self.turn]
+        return largest(self._approach, [*times, self.turn])[1]
