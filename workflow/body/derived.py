@@ -150,13 +150,15 @@ def pressures_of(scene: Scene, outcome: Outcome) -> dict[str, BodyPressure]:
     radii = dict.fromkeys(outcome.profiles, radius)
     if critical and critical.value and "critical" in radii:
         radii["critical"] = max(radius, critical.uncertainty / critical.value)
-    return body_pressures(scene, outcome.profiles, radii, sum(shares.values()), _pressure_share(scene, outcome))
+    given = {name: _pressure_share(scene, outcome, name) for name in outcome.profiles}
+    return body_pressures(scene, outcome.profiles, radii, sum(shares.values()), given)
 
 
-def _pressure_share(scene: Scene, outcome: Outcome) -> float:
-    """What uncertain numbers of the scene change pressures by, relatively; of springs that are linear by a formula."""
+def _pressure_share(scene: Scene, outcome: Outcome, state: str) -> float:
+    """What uncertain numbers of the scene change the pressures of a state by, relatively."""
     if not scene.keeps_springs and scene.is_stepped:
-        return float(in_squares(outcome.moves, PRESSURE))
+        told = any(PRESSURE + state in move.changes for move in outcome.moves)
+        return float(in_squares(outcome.moves, PRESSURE + state * told))
     return sum(given / size.value for size, given in outcome.made(scene, _pressure_size).values())
 
 
@@ -178,7 +180,7 @@ def with_body(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressu
     if not is_of_a_body(scene):
         return outcome
     of_pressure: Made = {}
-    share = _pressure_share(scene, outcome)
+    share = max((_pressure_share(scene, outcome, name) for name in reported_state(outcome)), default=0.0)
     for name in reported_state(outcome):
         if pressure := pressures.get(name):
             # What is not quite 0 at F = 0 is spread over the contact.

@@ -121,7 +121,11 @@ def is_of_a_body(scene: Scene) -> bool:
 
 
 def body_pressures(
-    scene: Scene, profiles: Mapping[str, Profile], of_radius: Mapping[str, float], of_all: float, given: float
+    scene: Scene,
+    profiles: Mapping[str, Profile],
+    of_radius: Mapping[str, float],
+    of_all: float,
+    given: Mapping[str, float],
 ) -> dict[str, BodyPressure]:
     """p(r) of the reported states in which the bodies touch over a width; none where there is no body for them.
 
@@ -130,7 +134,7 @@ def body_pressures(
         profiles: of the reported states.
         of_radius: relative uncertainty of each contact radius, of which pressures under elastic springs are functions.
         of_all: the sum of those of all results, for the pressure under others.
-        given: of pressures, by the numbers of the scene that are uncertain.
+        given: of pressures of each state, by the numbers of the scene that are uncertain.
     """
     if not is_of_a_body(scene):
         return {}
@@ -141,7 +145,7 @@ def body_pressures(
             share = of_radius[name] if state.is_elastic and not scene.bodies.profile.has_edge else of_all
             if scene.adheres:
                 share = max(share, SOLVED)
-            if one := _pressure(state, share, given):
+            if one := _pressure(state, share, given[name]):
                 found[name] = replace(one, doubt=one.doubt + of_all)
     return found
 

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from contact1d.analysis.convergence import extrapolated
+from contact1d.analysis.pressure import Profile
 from contact1d.workflow.continuation.model_branch import ModelBranch, Script
 from contact1d.workflow.continuation.outcome import Move, Reading, in_squares
 from contact1d.workflow.continuation.trace import Trace
@@ -42,8 +43,9 @@ WAYS = (-1.0, 1.0)
 """Both ways."""
 
 
-PRESSURE = "ln p"
-"""Among the changes of a move: of the logarithm of p(0), so that it is relative."""
+PRESSURE = "ln p "
+"""Before a state's name, among the changes of a move: of the logarithm of p(0), so that it is relative; of the last
+state, or the deepest of a law without time, without a name."""
 Reader = Callable[[Trace], Mapping[str, Reading]]
 Values = dict[str, Any]
 """Numbers by name of a result; by name of a column of curve.csv one for each of its rows, (m,)."""
@@ -113,7 +115,11 @@ class Reduction:
     @cached_property
     def path(self) -> Trace:
         """What the script makes of it."""
-        return self.trace(self.model)
+        return self._driven.trace()
+
+    @cached_property
+    def _driven(self) -> ModelBranch:
+        return self.driven(self.model)
 
     @cached_property
     def readings(self) -> Mapping[str, Reading]:
@@ -127,14 +133,14 @@ class Reduction:
 
     @cached_property
     def seen(self) -> Values:
-        """`own`, and where springs are not linear what a pressure goes with."""
+        """`own`, and where springs are not linear what the pressures of its states go with."""
         if self.passed or self.scene.keeps_springs:
             return self.own
-        at = len(self.path) - 1 if self.model.law.in_time else int(self.path.displacement.argmax())
-        profile = self.path.profile(at)
-        x, q = profile.x[profile.x > 0.0], profile.pressure[profile.x > 0.0]
-        on_axis = -float(np.sum(np.diff(q) / (x[1:] + x[:-1])))  # ∫ −dq/x, but for a factor
-        return self.own | ({PRESSURE: math.log(on_axis)} if on_axis > 0.0 else {})
+        whole = self._driven.trace(whole=True)
+        last = len(whole) - 1 if self.model.law.in_time else int(whole.displacement.argmax())
+        states = {"": last} | {name: i for i, names in self._driven.marks.items() for name in names}
+        found = {PRESSURE + name: _on_axis(whole.profile(i)) for name, i in states.items()}
+        return self.own | {name: math.log(one) for name, one in found.items() if one > 0.0}
 
     def followed(self, values: Values) -> Values:
         """`lattice` of results in time; where the model does not follow the motion, by how much they differ."""
@@ -238,3 +244,9 @@ class Reduction:
 def values_of(readings: Mapping[str, Reading]) -> Values:
     """Numbers of a reading."""
     return {name: one.value for name, one in readings.items()}
+
+
+def _on_axis(profile: Profile) -> float:
+    """p(0) but for a factor, ∫ −dq/x from the first particle on."""
+    x, q = profile.x[profile.x > 0.0], profile.pressure[profile.x > 0.0]
+    return -float(np.sum(np.diff(q) / (x[1:] + x[:-1])))
