@@ -55,7 +55,7 @@ def stick_radius(profile: Profile, coefficient: float, direction: int) -> Contac
 
 @dataclass(frozen=True)
 class Slip:
-    """Changes of particles in contact during a whole load step: arrays (n,).
+    """Changes of particles in contact during a whole load step: arrays (…, n).
 
     force: tangential force after it [FU]; way: by how much each slipped [LU]; work: that it took [FU·LU].
     """
@@ -74,13 +74,13 @@ def slip(force: Array, pushed: Array, limit: Array, next_limit: Array, stiffness
     there. It slips by (s₀ + k Δu − s₁)/k, from where s₀ + k Δu t = ±B(t), under the mean of B from there on.
 
     Args:
-        force: s₀ [FU], (n,), |s₀| ≤ B₀.
-        pushed: k Δu [FU], (n,).
-        limit, next_limit: B₀ and B₁ = μ f, before and after [FU], (n,).
+        force: s₀ [FU], (…, n), |s₀| ≤ B₀.
+        pushed: k Δu [FU], (…, n).
+        limit, next_limit: B₀ and B₁ = μ f, before and after [FU], (…, n).
         stiffness: k [FU/LU].
     """
     wanted = force + pushed
-    after = np.clip(wanted, -next_limit, next_limit)
+    after = np.minimum(np.maximum(wanted, -next_limit), next_limit)
     way = (wanted - after) / stiffness
     side = np.sign(way)
     faster = pushed - side * (next_limit - limit)

@@ -34,7 +34,7 @@ ENERGY, LEAST_LOSS, OPEN = 1e-3, 0.05, 4.0
 the spacing and half the steps change, where that is more: forces rise as roots at first."""
 DENSER = 4
 """Load steps for each of a history that show what these miss: twice as many may miss the same by chance."""
-EACH_STEP, EACH_LEG, BESIDE, NEAREST = 32, 80, 60, 1e-9
+EACH_STEP, EACH_LEG, BESIDE, NEAREST = 32, 80, 30, 1e-9
 """Positions in a step of a tangential path that changes the load, and in all of the displacement of others, between
 which forces are straight lines; on both sides of a jump, the nearest of them over the spacing."""
 

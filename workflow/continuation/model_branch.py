@@ -36,7 +36,7 @@ NEAR = 1e-6
 """Distance over the spacing from a jump of the force at which it has jumped, or not yet."""
 NEAREST = 3
 """Last states before a limit point, of which that with the largest tension is the force maximum."""
-MOST_NUMBERS = 4_000_000
+MOST_NUMBERS = 2_000_000
 """Forces that are worked out in a path with dense positions."""
 UNSEEN = ""
 """Phase of states that make the history of a path and are none of it."""

@@ -10,13 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.shear import slip
+from contact1d.analysis.shear import Slip, slip
 from contact1d.workflow.laws.pairs import Independent, Springs, on_plane
 from contact1d.workflow.laws.path import Followed, Path
 from contact1d.workflow.laws.shape import Profile
@@ -44,10 +43,6 @@ class Sliders:
     normal: float
     tangential: float
     coefficient: float
-
-    def normal_forces(self, displacement: float) -> Array:
-        """f_i [FU], (n,)."""
-        return self.normal * np.maximum(displacement - self.heights, 0.0)
 
     def displacement_under(self, force: float) -> float:
         """The displacement [LU] that carries a force [FU] ≥ 0; for none, just short of the first touch."""
@@ -148,8 +143,9 @@ class SlidingSprings(Springs):
 
     def energies(self, path: Path) -> tuple[float, float]:
         """½ Σ (k u² + s²/k_t); the work of slip."""
-        forces, lost = self._slid(path)
-        return super().energies(path)[0] + 0.5 * float(np.sum(forces[-1] ** 2)) / self.chain.tangential, lost
+        _, rows = self._slid(path)
+        stored = 0.5 * float(np.sum(rows.force[-1:] ** 2)) / self.chain.tangential
+        return super().energies(path)[0] + stored, float(rows.work.sum())
 
     def prescribed(self, path: Path) -> dict[str, Array]:
         """With positions along x."""
@@ -158,22 +154,19 @@ class SlidingSprings(Springs):
     def carried(self, columns: Mapping[str, Array]) -> Followed:
         """Straight from one state to the next; see `Particles.carried`."""
         depths, places = columns["displacement"], columns["place"]
-        forces, _ = self._slid(Path(depths, places, np.zeros_like(depths)))
-        normal = [self.chain.normal_forces(depth) for depth in depths.tolist()]
-        total = np.asarray([each.sum() for each in normal])
-        return Followed(self.x, total, normal.__getitem__, lambda state: -forces[state])
+        normal, rows = self._slid(Path(depths, places, np.zeros_like(depths)))
+        shears = np.pad(rows.force, ((1, 0), (0, 0)))
+        return Followed(self.x, normal.sum(axis=1), normal.__getitem__, lambda state: -shears[state])
 
-    def _slid(self, path: Path) -> tuple[list[Array], float]:
-        """Tangential forces of the particles in each state [FU], and what slip has lost [FU·LU]."""
-        chain, stops = self.chain, list(zip(path.displacement.tolist(), path.along.tolist(), strict=True))
-        force = np.zeros_like(chain.heights)
-        shears, lost = [force], 0.0
-        for (before, start), (after, position) in pairwise(stops):
-            old, new = (np.maximum(depth - chain.heights, 0.0) for depth in (before, after))
-            touched = np.where(old > 0.0, 1.0, 0.0) if after == before else (new - old) / (after - before)
-            limit, next_limit = (chain.coefficient * chain.normal * overlap for overlap in (old, new))
-            pushed = chain.tangential * (position - start) * touched
-            row = slip(force, pushed, limit, next_limit, chain.tangential)
-            force, lost = row.force, lost + float(row.work.sum())
-            shears.append(force)
-        return shears, lost
+    def _slid(self, path: Path) -> tuple[Array, Slip]:
+        """Normal forces of the particles in each state, (m, n) [FU], and what each load step does, (m − 1, n)."""
+        chain = self.chain
+        overlap = np.maximum(path.displacement[:, None] - chain.heights, 0.0)
+        moved, pressed = np.diff(path.displacement)[:, None], np.diff(overlap, axis=0)
+        touched = np.divide(pressed, moved, out=np.sign(overlap[:-1]), where=moved != 0.0)
+        pushed = chain.tangential * np.diff(path.along)[:, None] * touched
+        normal = chain.normal * overlap
+        limits, before, force = chain.coefficient * normal, np.zeros_like(pushed), np.zeros_like(chain.heights)
+        for i, (push, limit) in enumerate(zip(pushed, limits[1:], strict=True)):
+            before[i], force = force, np.minimum(np.maximum(force + push, -limit), limit)
+        return normal, slip(before, pushed, limits[:-1], limits[1:], chain.tangential)

@@ -187,41 +187,45 @@ class Memory:
             self.arms = decay[:, None] * self.arms + gain[:, None] * (after - self.surface)
         self.place, self.surface, self._known = place, after, None
 
-    def _left(self, velocity: float) -> Array:
-        """u at which a body that moves off at a velocity [LU/TU] leaves the surfaces that it has held, where f = 0."""
-        return np.minimum(self.surface, max(-self._retarded * velocity, 0.0))
-
     def _recovered(self, place: float, time: float, velocity: float) -> Array:
         """u of surfaces that are free at the end of a step, some of them since they were left within it."""
-        left, kept = self._left(velocity), np.exp(-time / self._retarded)
+        kept = np.exp(-time / self._retarded)
         if velocity >= 0.0:
             return np.asarray(self.surface * kept)
+        left = np.minimum(self.surface, -self._retarded * velocity)  # where f = 0
         since = np.exp(np.minimum((left - place + self._cells.heights) / (self._retarded * velocity), 0.0))
         return np.asarray(np.where(self._held, left * since, self.surface * kept))
 
-    @property
-    def stored(self) -> Array:
-        """½ (part u² + Σ share_j s_j²), (n,) [LU²]: energies over the stiffness."""
-        return np.asarray(0.5 * (self._lasting * self.surface**2 + self._share @ self.arms**2))
+    def along(self, places: Array, times: Array, velocities: Array) -> tuple[Array, Array]:
+        """What is stored after load steps (m,), as of `go`, and what dashpots lose in them, over the stiffness.
 
-    def losing(self, place: float, time: float, velocity: float) -> Array:
-        """What dashpots lose as `go` does that, over the stiffness, (n,) [LU²].
-
-        Of an arm ∫ share s²/τ dt with s = α + (s₀ − α) e^(−t/τ), α = u′τ. Beside a spring T ∫ u′² dt: of the part of a
-        cell that touches at the velocity of the body, of a free surface what its spring gives.
+        Both (n,) [LU²]. Of an arm ∫ share s²/τ dt with s = α + (s₀ − α) e^(−t/τ), α = u′τ. Beside a spring T ∫ u′² dt:
+        of the part of a cell that touches at the velocity of the body, of a free surface what its spring gives.
         """
-        _, free, decay, gain = self._ahead(time)
+        before, passed = self.place, [self._now]
+        for step in zip(places.tolist(), times.tolist(), velocities.tolist(), strict=True):
+            self.go(*step)
+            passed.append(self._now)
+        surface, outer, held, *arms = (np.stack(one) for one in zip(*passed, strict=True))
+        duration, moved = times[:, None], np.diff(np.append(before, places))[:, None]
+        lost = np.zeros(surface.shape[1])
+        for share, time, arm in zip(self._share, self._time, arms, strict=True):
+            age = duration / time
+            steady = np.diff(surface, axis=0) / age
+            start, faded = arm[:-1] - steady, -np.expm1(-age)
+            exact = steady**2 * age + 2.0 * steady * start * faded + 0.5 * start**2 * faded * (2.0 - faded)
+            short = age / 3.0 * (arm[:-1] ** 2 + arm[:-1] * arm[1:] + arm[1:] ** 2)
+            lost += share * np.where(age < SHORT, short, exact).sum(axis=0)
         if self._retarded:
-            margins = [self._forces(at, self._retarded * velocity, 1.0, free)[1] for at in (self.place, place)]
-            before, part = (self._part(margin) for margin in margins)
-            left = np.where(self._held, self._left(velocity), self.surface)
-            given = np.where(margins[1] > 0.0, 0.0, 0.5 * (left**2 - self._recovered(place, time, velocity) ** 2))
-            mean = (place - self.place) / time
-            return np.asarray(self._retarded * mean**2 * time * 0.5 * (before + part) + given)
-        age = (time / self._time)[:, None]
-        steady = (np.maximum(place - self._cells.heights, free) - self.surface) / age
-        start, faded = self.arms - steady, gain[:, None] * age
-        exact = steady**2 * age + 2.0 * steady * start * faded + 0.5 * start**2 * faded * (1.0 + decay[:, None])
-        after = decay[:, None] * self.arms + gain[:, None] * steady * age
-        short = age / 3.0 * (self.arms**2 + self.arms * after + after**2)
-        return np.asarray(self._share @ np.where(age < SHORT, short, exact))
+            free, drag = outer[:-1] * np.exp(-duration / self._retarded), self._retarded * velocities[:, None]
+            end = places[:, None] - self._cells.heights
+            begins, ends = (np.minimum(overlap - free, overlap + drag) for overlap in (end - moved, end))
+            left = np.where(held[:-1], np.minimum(surface[:-1], np.maximum(-drag, 0.0)), surface[:-1])
+            given = np.where(ends > 0.0, 0.0, 0.5 * (left**2 - surface[1:] ** 2))
+            touching = 0.5 * (self._part(begins) + self._part(ends))
+            lost += np.sum(self._retarded * moved**2 / duration * touching + given, axis=0)
+        return np.asarray(0.5 * (self._lasting * self.surface**2 + self._share @ self.arms**2)), lost
+
+    @property
+    def _now(self) -> tuple[Array, ...]:
+        return self.surface, self.outer, self._held, *self.arms

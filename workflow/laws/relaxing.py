@@ -202,13 +202,9 @@ class RelaxingSprings(Particles):
     def energies(self, path: Path) -> tuple[float, float]:
         """Of springs and arms, those included whose particles have left; what dashpots lose."""
         cells, _, counts = self._cells
-        memory, lost = Memory(self.law.material, cells), 0.0
-        columns = self.prescribed(path).values()
-        for place, time, velocity in zip(*(one.tolist() for one in columns), strict=True):
-            lost += float(memory.losing(place, time, velocity) @ counts)
-            memory.go(place, time, velocity)
-        stiffness = self.law.stiffness
-        return stiffness * float(memory.stored @ counts), stiffness * lost
+        places, times, velocities = self.prescribed(path).values()
+        stored, lost = Memory(self.law.material, cells).along(places, times, velocities)
+        return self.law.stiffness * float(stored @ counts), self.law.stiffness * float(lost @ counts)
 
     def _jumps(self, edge: Array, displacement: Array, velocity: Array) -> Array:
         """The line load at an edge [FU/LU], what dashpots push where it does not recede."""
