@@ -21,7 +21,7 @@ from contact1d.digits import apart
 from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.laws.dugdale import DOUBLINGS, Dugdale, Zone, covered
 from contact1d.workflow.laws.jkr import Jkr
-from contact1d.workflow.laws.path import Path
+from contact1d.workflow.laws.path import Path, legs
 from contact1d.workflow.laws.shape import Profile, beside_kinks
 from contact1d.workflow.laws.zoned import Zoned, ZonedCells
 from contact1d.workflow.scene import Adhesion, Scene
@@ -137,26 +137,19 @@ class Maugis(Zoned):
 
     def places(self, displacements: Array, place: float = APART) -> Array:
         """Places on the curve of a contact that goes from one of them along displacements [LU]: indices, or APART."""
-        d, found = self.curve.displacement, np.empty(displacements.size)
-        first = float(d[0])
-        for i, wanted in enumerate(displacements.tolist()):
-            if place == APART:
-                place = APART if wanted < first else 0.0
-            if place != APART:
-                at = int(place)
-                if wanted > self._at(d, place):
-                    further = np.flatnonzero(d[at + 1 :] >= wanted)
-                    end = at + 1 + int(further[0]) if further.size else d.size - 1
-                    place = _between(d, end - 1, wanted)
-                else:
-                    back = np.flatnonzero(d[: at + 1] <= wanted)
-                    place = _between(d, int(back[-1]), wanted) if back.size else APART
-            found[i] = place
-        return found
-
-    @staticmethod
-    def _at(column: Array, place: float) -> float:
-        return float(np.interp(place, np.arange(column.size), column))
+        d = self.curve.displacement
+        start = -math.inf if place == APART else float(np.interp(place, np.arange(d.size), d))
+        every, found = np.append(start, displacements), np.full(displacements.size + 1, place)
+        for leg in legs(every):
+            before = max(leg.start - 1, 0)
+            wanted, at = every[leg], int(max(found[before], 0.0))
+            if wanted[-1] > every[before]:
+                low = at + np.searchsorted(np.maximum.accumulate(d[at + 1 :]), wanted)
+            else:
+                low = at - np.searchsorted(-np.minimum.accumulate(d[at::-1]), -wanted)
+            is_held = (low >= 0) & ((found[before] != APART) | (wanted >= d[0]))
+            found[leg] = np.where(is_held, _between(d, np.clip(low, 0, d.size - 2), wanted), APART)
+        return found[1:]
 
     def at(self, places: Array) -> Zone:
         """The states at places of the curve; bodies apart feel nothing, at a displacement that is not known."""
@@ -221,7 +214,7 @@ class Maugis(Zoned):
         places, jumps = [float(passed[0])], list[float]()
         for before, after in pairwise(passed):
             if after > before + 1 and d[before + 1 : after].max() > d[after] + least:
-                places.append(_between(d, before, float(d[after])))
+                places.append(float(_between(d, before, d[after])))
                 jumps.append(float(d[after]))
             places.append(float(after))
         return places, jumps if passed[0] == 0 else [float(d[passed[0]]), *jumps]
@@ -322,10 +315,11 @@ class Maugis(Zoned):
         return self.energy_at(place) - self.energy_at(float(beyond[0]))
 
 
-def _between(column: Array, low: int, value: float) -> float:
-    """The place of a value in the cell of a column that begins at `low`."""
-    start, end = float(column[low]), float(column[min(low + 1, column.size - 1)])
-    return low + (min(max((value - start) / (end - start), 0.0), 1.0) if end > start else 0.0)
+def _between(column: Array, low: NDArray[np.intp] | int, values: Array) -> Array:
+    """The places of values, (m,), in the cells of a column that begin at `low`."""
+    rise = column[low + 1] - column[low]
+    share = np.divide(values - column[low], rise, out=np.zeros_like(rise), where=rise > 0.0)
+    return np.asarray(low + np.clip(share, 0.0, 1.0))
 
 
 def _with_range(jkr: Jkr, reach: float, surface: Profile, wanted: float, load: float) -> Maugis:

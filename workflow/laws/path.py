@@ -109,6 +109,7 @@ class Followed:
 def legs(displacements: Array) -> list[slice]:
     """Stretches of a path along which displacements do not turn."""
     ways = np.sign(np.diff(displacements))
-    turns = [i + 1 for i in range(1, len(ways)) if ways[i] * ways[i - 1] < 0.0]
-    edges = [0, *turns, len(displacements)]
+    moves = np.flatnonzero(ways)
+    turns = moves[1:][ways[moves[1:]] != ways[moves[:-1]]] + 1
+    edges = [0, *turns.tolist(), len(displacements)]
     return [slice(first, last) for first, last in pairwise(edges) if last > first]
