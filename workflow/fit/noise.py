@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_banded, solve_triangular
+from scipy.linalg import solve_banded
 from scipy.optimize import brentq
 from scipy.special import softmax, stdtr
 
@@ -100,29 +100,30 @@ class Judged:
     weight: float
 
 
-def _judge(noise: Noise, residuals: Array, slopes: Array, prior: Array) -> tuple[Judged, float]:
-    """One noise, and the logarithm of its likelihood.
+def _judged(found: Sequence[Noise], residuals: Array, slopes: Array, prior: Array) -> tuple[list[Judged], Array]:
+    """What the residuals say under each noise, without its weight, and the logarithms of the likelihoods, (m,).
 
     The residuals change by −slopes·step; `prior` (q, p + 1) has rows of what is known of the parameters, its last
     column the misfit, in standard deviations.
     """
-    white = noise.whitened(np.column_stack([slopes, residuals]))
+    columns = np.column_stack([slopes, residuals])
     # R of J = QR has the precision that JᵀJ loses; its last column is Qᵀr, and the norm of the residual of the fit.
-    whole = np.asarray(np.linalg.qr(white, mode="r"), dtype=np.float64)
-    J, r, rest = whole[:-1, :-1], whole[:-1, -1], float(whole[-1, -1])
-    P, known, count = prior[:, :-1], prior[:, -1], residuals.size
-    freedom = max(1.0, count - float(J.shape[1] - P.shape[0]))
-    deviation = math.sqrt((float(r @ r) + rest**2) / freedom)
+    whole: Array = np.asarray(np.linalg.qr([noise.whitened(columns) for noise in found], mode="r"))
+    J, r, rest = whole[:, :-1, :-1], whole[:, :-1, -1:], whole[:, -1, -1]
+    P, known = (np.broadcast_to(one, (len(found), *one.shape)) for one in (prior[:, :-1], prior[:, -1:]))
+    freedom = max(1.0, residuals.size - float(J.shape[2] - prior.shape[0]))
+    deviation = np.sqrt((np.sum(r**2, axis=(1, 2)) + rest**2) / freedom)
     for _ in range(3):  # σ weighs the data against what is known of the parameters
-        q, triangle = np.linalg.qr(np.vstack([J / deviation, P]))
-        step = solve_triangular(triangle, q.T @ np.append(r / deviation, known))
-        left = r - J @ step
-        deviation = math.sqrt((float(left @ left) + rest**2) / freedom)
-    misfit = known - P @ step
-    log = -0.5 * noise.log_determinant - count * math.log(deviation) - 0.5 * float(misfit @ misfit)
-    log -= float(np.log(np.abs(np.diag(triangle))).sum())
-    root = solve_triangular(triangle, np.eye(J.shape[1]))
-    return Judged(noise, deviation, step, root @ root.T, 0.0), log
+        scale = deviation[:, None, None]
+        q, triangle = np.linalg.qr(np.concatenate([J / scale, P], axis=1))
+        step = np.linalg.solve(triangle, q.mT @ np.concatenate([r / scale, known], axis=1))
+        deviation = np.sqrt((np.sum((r - J @ step) ** 2, axis=(1, 2)) + rest**2) / freedom)
+    logs = -0.5 * np.asarray([noise.log_determinant for noise in found]) - residuals.size * np.log(deviation)
+    logs -= 0.5 * np.sum((known - P @ step) ** 2, axis=(1, 2))
+    logs -= np.log(np.abs(np.diagonal(triangle, axis1=1, axis2=2))).sum(axis=1)
+    root = np.linalg.inv(triangle)
+    each = zip(found, deviation.tolist(), step[:, :, 0], root @ root.mT, strict=True)
+    return [Judged(*one, 0.0) for one in each], logs
 
 
 @dataclass(frozen=True)
@@ -165,7 +166,7 @@ def uncertain(runs: Sequence[Indices], residuals: Array, slopes: Array, prior: A
         runs: indices of the kept points of each run; whitening begins anew with each.
         residuals: (n,) of all runs.
         slopes: (n, p), −∂residuals/∂parameters.
-        prior: (q, p + 1), see `_judge`.
+        prior: (q, p + 1), see `_judged`.
         looks: 1 where the most likely noise is enough.
     """
     longest = max(4.0, LONGEST_SHARE * max(run.size for run in runs))
@@ -173,16 +174,14 @@ def uncertain(runs: Sequence[Indices], residuals: Array, slopes: Array, prior: A
     shares: Array = np.array(SHARES)
     for _ in range(looks):
         pairs = [(float(s), float(m)) for s in shares for m in (memories if s > 0.0 else memories[:1])]
-        found = [_judge(noise, residuals, slopes, prior) for noise in noises(pairs, runs)]
+        found, logs = _judged(noises(pairs, runs), residuals, slopes, prior)
         # White noise stands once for all memories.
-        weights = softmax(
-            [log + math.log(1 if s > 0.0 else memories.size) for (_, log), (s, _) in zip(found, pairs, strict=True)]
-        )
+        weights = softmax(logs + np.log([1.0 if s > 0.0 else memories.size for s, _ in pairs]))
         likely = [pair for pair, weight in zip(pairs, weights, strict=True) if weight > UNLIKELY * weights.max()]
         of_shares, of_memories = map(np.array, zip(*likely, strict=True))
         shares, memories = _finer(of_shares, shares, np.linspace), _finer(of_memories, memories, np.geomspace)
     freedom = max(1.0, residuals.size - float(slopes.shape[1] - prior.shape[0]))
-    judged = (replace(one, weight=float(weight)) for (one, _), weight in zip(found, weights, strict=True))
+    judged = (replace(one, weight=float(weight)) for one, weight in zip(found, weights, strict=True))
     return Uncertain(tuple(judged), freedom)
 
 
