@@ -76,7 +76,7 @@ class HistoryExperiment(Scripted[History]):
                 whole = _work(d, force) if law_of(scene).is_lossless else None
                 found["dissipated_energy"] = Reading(float(np.trapezoid(force, d)), ENERGY, scale=whole)
             found["contact_time"] = lost(trace, _touched(trace, by_force))
-            if radius := touches(trace)[last - 1] and trace.radius(last - 1):  # where the last load step ends, or not yet
+            if radius := touches(trace)[last - 1] and trace.radius(last - 1):  # not yet apart?
                 found["contact_radius"] = Reading(0.0, LENGTH, {"sampling": radius})
         return found if law_of(scene).jumps(scene) else found | _slopes(trace)
 
