@@ -172,7 +172,7 @@ def _of_axis(table: Any, where: str) -> Iterator[Rule]:
     missing = [name for name in SPAN_KEYS[:3] if name not in table]
     if values is not None:
         path = f"{where}.values"
-        yield bool(named), path, f"not together with {', '.join(named)}", None, "give the one"
+        yield bool(named), path, f"not together with {', '.join(named)}", None, "give one of the two"
         yield not _is_list(values), path, "must be a list", values, ""
         yield _is_list(values) and not values, path, "is empty: the sweep would have no point", None, ""
     elif missing:
