@@ -236,7 +236,7 @@ def fit(
 
     The file names the data (CSV with columns z or d, and F, with units), parameters, the instrument and a base scene.
     Leaves fit.json, curve.csv and fit.png; of several curves fits.csv, histograms and maps. Exit code 3: the data do
-    not tell what was asked for, and the message says what would help.
+    not determine the parameters, and the message suggests a fix.
     """
     folder = out or Path("fits") / file.stem
     with command("the fit", folder, "the results so far were written", quiet, str(file)) as progress:
@@ -385,7 +385,7 @@ def _write(path: Path, text: str, instead: str) -> None:
     except FileExistsError:
         stop(f"{path} exists and is not overwritten; {instead}", CALL_IS_WRONG)
     except OSError:
-        path.unlink(missing_ok=True)  # whole or not at all
+        path.unlink(missing_ok=True)  # no incomplete file is left
         raise
 
 

@@ -52,8 +52,8 @@ def identify(
         surface_energy = "0.05 J/m²"
         range = "0.3 nm"
 
-    (docs/identify.md has every key): a scene with everything chosen, its run, with JKR, DMT and Maugis-Dugdale beside
-    it, and which of them holds.
+    (docs/identify.md has every key): a scene with every number chosen, its run, the predictions of JKR, DMT
+    and Maugis-Dugdale, and which of them holds.
 
     With `--run`: the length and force unit, in metres and newtons, with which a finished pull_off is JKR's contact of
     the material (Eq. 9, Table 1). With `--radius`: a scene whose interaction has JKR's F_A and a_0 of that sphere, or

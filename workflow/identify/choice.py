@@ -75,14 +75,14 @@ def choose(contact: AskedContact) -> Choice:
         return _particles(contact, theories, doubts)
     experiment: dict[str, Any] = {"kind": "load", "force": contact.load}
     if contact.work_of_adhesion:
-        experiment = {"kind": "pull_off", "preload": contact.load or usual_preload(contact)}
+        experiment = {"kind": "pull_off", "preload": contact.load or default_preload(contact)}
     scene = on_plane(contact, experiment)
     radius = contact_radius(scene)
     require_size(contact, radius)
     return Choice(contact, with_spacing(scene), theories, None, doubts, radius)
 
 
-def usual_preload(contact: AskedContact) -> float:
+def default_preload(contact: AskedContact) -> float:
     """Return the preload of a pull-off without a given one [N]: PRELOAD_SHARE of JKR's pull-off force of the body."""
     return -PRELOAD_SHARE * float(contact_curve(on_plane(contact, {"kind": "load", "force": 1.0}))[2].min())
 

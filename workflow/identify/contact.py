@@ -25,7 +25,7 @@ AnyContact = str | PathLike[str] | Mapping[str, Any]
 Model = Literal["plane", "particles"]
 MODELS: tuple[Model, ...] = ("plane", "particles")
 RIGID = "rigid"
-PLACES = {
+SCENE_KEYS = {
     "radius": "bodies.profile.radius",
     "profile": "bodies.profile",
     "upper": "material.upper",
@@ -39,7 +39,7 @@ PLACES = {
     "title": "title",
 }
 """Keys of a description that a scene has, too, with their dotted keys there."""
-KEYS = (*PLACES, "roughness", "model")
+KEYS = (*SCENE_KEYS, "roughness", "model")
 DEFAULTS = {
     "title": "A contact",
     "bodies.particles": "auto",
@@ -189,7 +189,7 @@ def _without_unit(data: Mapping[str, Any], folder: Path) -> Iterator[Problem]:
 
 def _as_scene(data: Mapping[str, Any]) -> dict[str, Any]:
     """Return the tables of a chain on a rigid plane with the described values, and DEFAULTS for all others."""
-    given = {PLACES[key]: v for key, v in data.items() if key in PLACES and (v or key not in NONE_AT_ZERO)}
+    given = {SCENE_KEYS[key]: v for key, v in data.items() if key in SCENE_KEYS and (v or key not in NONE_AT_ZERO)}
     unknown: dict[str, Any] = dict.fromkeys(("material.upper", "material.lower"), RIGID)
     if not unknown.keys() & given.keys():
         unknown = {"material.contact_modulus": 1.0}
@@ -202,9 +202,9 @@ def _as_scene(data: Mapping[str, Any]) -> dict[str, Any]:
 
 def _as_given(problem: Problem, data: Mapping[str, Any]) -> Problem:
     """Return a problem of the scene with the key of the description in place of the scene's."""
-    keys = [key for key in PLACES if key in data]
-    described = next((key for key in keys if problem.path.startswith(PLACES[key])), problem.path)
-    path = problem.path.replace(PLACES.get(described, described), described, 1)
+    keys = [key for key in SCENE_KEYS if key in data]
+    described = next((key for key in keys if problem.path.startswith(SCENE_KEYS[key])), problem.path)
+    path = problem.path.replace(SCENE_KEYS.get(described, described), described, 1)
     return Problem(path, problem.message, problem.given, problem.hint)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, overload
 
 from contact1d.files import AnyPath
-from contact1d.workflow.identify.choice import on_plane, usual_preload
+from contact1d.workflow.identify.choice import default_preload, on_plane
 from contact1d.workflow.identify.contact import AskedContact, read_contact
 from contact1d.workflow.runs.advised import run
 from contact1d.workflow.runs.finished import Run
@@ -36,7 +36,7 @@ class Contact:
             SceneError: all problems of the scene.
         """
         if kind == "pull_off" and experiment.get("preload") is None:
-            experiment["preload"] = usual_preload(self.asked)
+            experiment["preload"] = default_preload(self.asked)
         tables: dict[str, Any] = {} if friction is None else {"friction": {"coefficient": friction}}
         return on_plane(self.asked, experiment | {"kind": kind}, **tables)
 

@@ -24,17 +24,20 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#9
 """The palette of Okabe and Ito, which colour-blind readers can distinguish."""
 GREY = "#bbbbbb"
 DASHES = {"": "solid", "-": "solid", "--": "dash", ":": "dot", "-.": "dashdot"}
-"""Line styles of matplotlib by plotly's names."""
+"""Plotly's names of line styles, by those of matplotlib."""
 INDEX = re.compile(r"(?<!\w)([^\W\d_][\u0303\u0304]?)_(\w{1,3})(?!\w)")
-TOGETHER = re.compile(r" ?= ?(?=[\d−-])|(?<=\d) (?=(?:LU|FU|[nµmkMG]?[mN]|[kMG]?Pa)\b|%)")
+"""A symbol with an index, such as F_A."""
+UNBREAKABLE = re.compile(r" ?= ?(?=[\d−-])|(?<=\d) (?=(?:LU|FU|[nµmkMG]?[mN]|[kMG]?Pa)\b|%)")
+"""Spaces in a number with a unit, and around = before a number."""
 EXPONENT = re.compile(r"\^(?:\{([^{}]+)\}|([−-]?\d+(?:[./]\d+)?|[a-z](?!\w)))")
+"""An exponent, such as ^2 or ^{2/3}."""
 Data = dict[str, Any]
 """A chart in plotly's form: title, data and layout."""
 
 
 def symbols(text: str) -> str:
     """Return `text` as HTML, escaped: `F_A` has an index, `R^{2/3}` an exponent, no line ends inside `R = 1000 LU`."""
-    unbroken = TOGETHER.sub(lambda match: match[0].replace(" ", "\u00a0"), escape(text))
+    unbroken = UNBREAKABLE.sub(lambda match: match[0].replace(" ", "\u00a0"), escape(text))
     indexed = INDEX.sub(r"<i>\1</i><sub>\2</sub>", unbroken)
     return EXPONENT.sub(lambda match: f"<sup>{match[1] or match[2]}</sup>", indexed)
 
@@ -177,5 +180,5 @@ def listed(values: Any) -> list[Any]:
 
 
 def _words(text: str) -> str:
-    """A text with marks of TeX as HTML."""
+    """Return a text with TeX marks as HTML."""
     return symbols(text.replace("$", ""))

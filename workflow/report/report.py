@@ -31,7 +31,7 @@ from contact1d.workflow.sweep.table import RECORD, counts_in, read_record, read_
 from contact1d.workflow.units import NUMBER, SI, Quantity, Scales
 
 PACKAGE = files("contact1d.workflow.report")
-MARKS = (
+SIGNATURES = (
     b'<meta name="generator" content="contact1d report">',
     b'<script type="application/json" id="data">{"charts": ',
 )
@@ -52,7 +52,7 @@ def report(folders: Sequence[AnyPath], out: AnyPath = "report.html") -> Path:
         FolderError: a folder holds neither a run nor a sweep, or there are too many; or the file is there and no page.
     """
     path = Path(out)
-    if path.exists() and not (path.is_file() and any(mark in path.read_bytes() for mark in MARKS)):
+    if path.exists() and not (path.is_file() and any(signature in path.read_bytes() for signature in SIGNATURES)):
         raise FolderError(f"{path} is no page of contact1d: a page replaces an earlier page only; choose another file")
     paths = [Path(folder) for folder in folders]
     sweeps = [folder for folder in paths if (folder / RECORD).is_file()]

@@ -234,7 +234,7 @@ def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
-UNKNOWN = ("unknown key", "unknown table", "not a path of keys")
+UNKNOWN_KEY = ("unknown key", "unknown table", "not a path of keys")
 """Messages of problems with a key that is no key of a scene."""
 
 
@@ -279,7 +279,7 @@ def require_keys(plan: SweepPlan) -> None:
         wrong = [
             problem
             for problem in error.problems
-            if problem.path.startswith("set ") or (problem.message in UNKNOWN and _is_of_axis(problem.path, keys))
+            if problem.path.startswith("set ") or (problem.message in UNKNOWN_KEY and _is_of_axis(problem.path, keys))
         ]
         if wrong:
             raise SceneError(wrong) from None

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 SEED = "noise.seed"
-LOOKS = ("-", "--", ":", "-.")
+LINE_STYLES = ("-", "--", ":", "-.")
 """Line styles of the closed forms, in turn."""
 DARK_TO_LIGHT = ("#440154", "#46327e", "#365c8d", "#277f8e", "#1fa187", "#4ac16d", "#7ad151", "#a0da39")
 """Viridis without its light end: colours of lines that have an order."""
@@ -91,7 +91,7 @@ def _lines(points: DataFrame) -> list[Series]:
         at_place = line.groupby("place")
         x, y = np.asarray([*at_place.groups]), at_place.value.mean().to_numpy()
         if form:
-            look = LOOKS[forms.index(form) % len(LOOKS) - 1] if x.size > 1 else "x"
+            look = LINE_STYLES[forms.index(form) % len(LINE_STYLES) - 1] if x.size > 1 else "x"
             theories.append(Series(*_dense(x, y), form, colour, look))
         else:
             error = at_place.value.sem().fillna(at_place.uncertainty.first()).to_numpy()

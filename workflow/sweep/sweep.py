@@ -218,7 +218,7 @@ def _through(
                 raise
             except CalledProcessError as error:
                 raise ExecutorError(f"the job was refused: {' '.join(map(str, error.cmd))} gives the reason") from None
-            except Exception as error:  # of the executor: a job that was cancelled, a node that went away
+            except Exception as error:  # of the executor, such as a cancelled job or a lost node
                 answers = [answer_in(path) or _not_run(error) for _, path in job]
             yield from ((path.name, answer) for (_, path), answer in zip(job, answers, strict=True))
 
@@ -267,7 +267,7 @@ def _finish(plan: SweepPlan, folder: Path, rows: Sequence[str | Answer], answers
     return Sweep(folder, counts_in(folder), units)
 
 
-NAMES = ("local", "slurm")
+EXECUTORS = ("local", "slurm")
 JOB_POINTS = 100
 """Points of a job of Slurm: the start of a job takes as long as some tens of quick runs."""
 
@@ -307,13 +307,13 @@ def workplace_of(
     """
     ahead = 4  # chunks for each worker that are submitted before their turn, so that no worker waits for the parent
     if isinstance(executor, Executor):
-        many = 16  # an executor does not give its number of workers
-        return Workplace(lambda: nullcontext(executor), 1, ahead * (workers or many))
+        assumed_workers = 16  # an executor does not give its number of workers
+        return Workplace(lambda: nullcontext(executor), 1, ahead * (workers or assumed_workers))
     count = workers or cores()
     if executor == "local":
         return Workplace(lambda: pool(count), 1, ahead * count)
     if executor != "slurm":
-        raise ExecutorError(f"there is no executor {executor!r}: take {' or '.join(NAMES)}")
+        raise ExecutorError(f"there is no executor {executor!r}: take {' or '.join(EXECUTORS)}")
     if find_spec("executorlib") is None:
         raise ExecutorError("Slurm is reached through executorlib: install it with pip install 'contact1d[cluster]'")
     if which("sbatch") is None:

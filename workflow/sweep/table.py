@@ -28,7 +28,7 @@ RUNS = "runs"
 """Folder with the run folders of all points."""
 TABLE = "results.csv"
 PARQUET = "results.parquet"
-FIXED = ("status", "reason", "run")
+STATUS_COLUMNS = ("status", "reason", "run")
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ def write_table(
     of_results = {column: unit for name, unit in units.items() if unit not in SI for column in columns_of(name)}
     with whole(folder / TABLE) as part, part.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(headed([*(axis.key for axis in axes), *FIXED, *columns], of_axes | of_results))
+        writer.writerow(headed([*(axis.key for axis in axes), *STATUS_COLUMNS, *columns], of_axes | of_results))
         for cells, answer in rows():
             numbers = {
                 name: (quantity.value, quantity.uncertainty)
