@@ -10,8 +10,8 @@ import pytest
 
 from contact1d import read_scene
 from contact1d.workflow.continuation.outcome import Result
-from contact1d.workflow.cost.report import CostRecord, Error, Measured, summary, table, write_report
-from contact1d.workflow.cost.study import judged, measured
+from contact1d.workflow.cost.report import CostRecord, Error, VariantRuns, summary, table, write_report
+from contact1d.workflow.cost.study import run_once, with_errors
 from contact1d.workflow.cost.variants import finer, variants_of
 from contact1d.workflow.errors import SceneEdit
 from tests.costs import markdown, read_record
@@ -125,8 +125,8 @@ def result(value: float, **errors: float) -> Result:
 def test_an_error_is_a_number_where_the_reference_is_known_ten_times_better(
     value: float, chance: float, error: Error
 ) -> None:
-    ran = Measured({"adhesion_force": result(value, statistics=chance, sampling=0.1)})
-    found = judged(ran, {"adhesion_force": result(1.0, solver=0.0004, model=0.0006)}).error
+    ran = VariantRuns({"adhesion_force": result(value, statistics=chance, sampling=0.1)})
+    found = with_errors(ran, {"adhesion_force": result(1.0, solver=0.0004, model=0.0006)}).error
     assert found.relative == pytest.approx(error.relative)
     assert found.is_bound == error.is_bound
     assert str(found).startswith("less than") == error.is_bound
@@ -134,33 +134,35 @@ def test_an_error_is_a_number_where_the_reference_is_known_ten_times_better(
 
 def test_a_number_with_an_uncertainty_is_the_same_in_the_reference() -> None:
     ran, best = (replace(result(value, solver=1e-4, input=0.05), given=0.05) for value in (1.02, 1.0))
-    found = judged(Measured({"adhesion_force": ran}), {"adhesion_force": best})
+    found = with_errors(VariantRuns({"adhesion_force": ran}), {"adhesion_force": best})
     assert (found.error.is_bound, found.dominant) == (False, "solver of adhesion_force")
     assert found.error.relative == pytest.approx(0.02)
 
 
 def test_the_dominant_error_is_that_of_the_result_with_the_largest_error() -> None:
     results = {"adhesion_force": result(1.1, solver=3.0, sampling=2.0), "critical_radius": result(1.0, sampling=9.0)}
-    found = judged(Measured(results), dict.fromkeys(results, result(1.0, solver=0.0)))
+    found = with_errors(VariantRuns(results), dict.fromkeys(results, result(1.0, solver=0.0)))
     assert found.dominant == "solver of adhesion_force"
     assert found.errors["critical_radius"].relative == 0.0
 
 
 def test_a_variant_without_a_main_result_is_a_row_with_the_reason() -> None:
-    found = judged(Measured({"critical_radius": result(1.0, solver=0.0)}), {"adhesion_force": result(1.0, solver=0.0)})
+    found = with_errors(
+        VariantRuns({"critical_radius": result(1.0, solver=0.0)}), {"adhesion_force": result(1.0, solver=0.0)}
+    )
     assert found.failure == "no adhesion_force"
     assert table(record(found))[1][-1] == "no adhesion_force"
 
 
 def test_a_variant_that_its_run_refuses_is_a_row_with_the_reason(tmp_path: Path) -> None:
     """A lower chain that is too short for the sliding distance is found as the run begins."""
-    done = measured(read_scene(SCENES / "slide.toml", ["bodies.particles=34"]), tmp_path)
+    done = run_once(read_scene(SCENES / "slide.toml", ["bodies.particles=34"]), tmp_path)
     assert "too short for the sliding distance" in done.failure
     assert not done.results
 
 
-def row(edit: Mapping[str, object], error: float, *cpu: float, warnings: tuple[str, ...] = ()) -> Measured:
-    return Measured(
+def row(edit: Mapping[str, object], error: float, *cpu: float, warnings: tuple[str, ...] = ()) -> VariantRuns:
+    return VariantRuns(
         {}, cpu, warnings, "", SceneEdit(edit), {"adhesion_force": Error(error)}, "solver of adhesion_force"
     )
 
@@ -169,7 +171,7 @@ OWN = row({TOLERANCE: 1e-3}, 1e-5, 1.2, 0.9, 1.0)
 COARSE, COARSEST = row({TOLERANCE: 1e-2}, 2e-4, 0.4), row({TOLERANCE: 1e-1}, 2e-3, 0.2)
 
 
-def record(*others: Measured, own: Measured = OWN) -> CostRecord:
+def record(*others: VariantRuns, own: VariantRuns = OWN) -> CostRecord:
     return CostRecord("a pull-off", 1e-3, 1e-6, {"adhesion_force": result(1.5, solver=1e-9)}, (*others, own))
 
 
@@ -208,7 +210,7 @@ def test_the_table_has_error_time_its_part_of_the_scenes_and_new_warnings() -> N
         (TOLERANCE, "0.01", "0.0002", "0.4 s", "0.40", "solver of adhesion_force; the run warns: lattice"),
         (TOLERANCE, "0.001 (as it is)", "1e-05", "1 s", "1.00", "solver of adhesion_force"),
     ]
-    without = Measured(cpu_runs=(0.5,), edit=SceneEdit(without=("horizontal",)), errors=OWN.errors)
+    without = VariantRuns(cpu_runs=(0.5,), edit=SceneEdit(without=("horizontal",)), errors=OWN.errors)
     assert table(record(without))[1][:2] == ("without", "horizontal")
 
 
@@ -230,6 +232,6 @@ def test_the_kept_record_is_of_the_scene_as_it_is_and_runs_today(tmp_path: Path)
     kept, scene = read_record(ROOT / "docs" / "cost.json"), read_scene(SCENES / "pull_off.toml")
     found = [edit for edit, other in variants_of(scene) if other.accuracy.tolerance > kept.reference_tolerance]
     assert [one.edit for one in kept.rows] == found
-    today = judged(measured(scene, tmp_path), kept.reference)
-    assert today.dominant == kept.own.dominant
-    assert today.error.relative == pytest.approx(kept.own.error.relative, rel=OUTCOME)
+    today = with_errors(run_once(scene, tmp_path), kept.reference)
+    assert today.dominant == kept.baseline.dominant
+    assert today.error.relative == pytest.approx(kept.baseline.error.relative, rel=OUTCOME)

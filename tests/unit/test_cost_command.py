@@ -64,9 +64,9 @@ def test_the_errors_of_jkr_are_those_against_its_closed_form(tmp_path: Path) -> 
     errors = {
         float(str(one.edit.values[SPACING])): one.error.relative for one in found.rows if SPACING in one.edit.values
     }
-    assert errors[0.8] > errors[0.4] > found.own.error.relative > errors[0.1]
-    assert found.own.dominant.startswith("discretisation")
-    assert found.own.error.relative > 0.0
+    assert errors[0.8] > errors[0.4] > found.baseline.error.relative > errors[0.1]
+    assert found.baseline.dominant.startswith("discretisation")
+    assert found.baseline.error.relative > 0.0
     assert "Keep the scene as it is" in done.stdout
 
 
@@ -91,7 +91,7 @@ def test_the_command_prints_a_table_and_leaves_two_files(tmp_path: Path, monkeyp
     found = read_record(folder / "cost.json")
     assert not [one.failure for one in found.rows if one.failure]
     assert {one.change[0] for one in found.rows} == {TOLERANCE, SPACING, STEPS, "without"}
-    assert found.own.cpu_s > 0.0
+    assert found.baseline.cpu_s > 0.0
     assert f"{found.tolerance:g} (as it is)" in done.stdout
     assert found.advice in done.stdout
 

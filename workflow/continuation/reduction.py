@@ -30,7 +30,8 @@ MARGIN = 1.25
 PHASES = (0.25, 0.0)
 """Positions of the apex between particles, over the spacing, that an even chain is compared with."""
 UNEVEN = (0.93, 0.86)
-"""Spacings over the own one that put a kink of the profile elsewhere between particles, on both sides alike."""
+"""Spacings over the own one that put a kink of the profile elsewhere between particles, on both sides alike; so do they
+with the edge of a cone, the sums of which are off by as much wherever its apex is."""
 MORE_PHASES = (0.375, 0.25, 0.125, 0.0)
 """Such positions where friction makes several edges, the errors of which may cancel at two positions."""
 FINER = (0.5, 0.25)
@@ -39,6 +40,8 @@ FOLLOWED = 0.5
 """Difference of the model from a motion, over the result, beyond which its lattice says nothing of that."""
 LEAST_MOVE = 0.05
 """Least relative change of an input that shows what a smaller one does, to first order: readers have errors."""
+FEWEST_BODIES = 2
+"""Bodies at least that show what the points of a profile leave open."""
 WAYS = (-1.0, 1.0)
 """Both ways."""
 
@@ -155,8 +158,9 @@ class Reduction:
         """The model with its particles elsewhere, and on finer spacings."""
         if not (self.on_lattice or self.converges):
             return [], []
-        kinks = self.scene.bodies.profile.kinks
-        beside = [self.model.resized(factor) for factor in UNEVEN if kinks]
+        profile = self.scene.bodies.profile
+        kinks, is_pointed = profile.kinks, profile.curvature_radius is None
+        beside = [self.model.resized(factor) for factor in UNEVEN if kinks or is_pointed]
         if not self.converges or kinks:
             phases = MORE_PHASES if self.model.law.has_zones or kinks else PHASES
             beside += [self.model.shifted(phase) for phase in phases]
@@ -216,11 +220,20 @@ class Reduction:
 
     @cached_property
     def inputs(self) -> Values:
-        """By name of a result, what the scene leaves open: independent changes in squares, and other bodies in sum."""
+        """By name of a result, what the scene leaves open: independent changes in squares, and other bodies in sum.
+
+        Raises:
+            SettingsError: most curves through the points of a profile are no contact, so that nothing is known of these.
+        """
         profile = self.scene.bodies.profile
         others = [model for shape in profile.alternatives if (model := self._of_shape(shape))]
         if len(others) < len(profile.alternatives):
             others += [model for shape in profile.coarser if (model := self._of_shape(shape))]
+        if len(others) < min(FEWEST_BODIES, len(profile.alternatives)):
+            raise SettingsError(
+                "the points of bodies.profile allow a corner at which the contact edge would jump, and too few other "
+                "curves through them are a contact to tell the uncertainty: give more points where the slope changes"
+            )
         each = [self._apart([other]) for other in others]
         return {name: sum(one[name] for one in each) + in_squares(self.moves, name) for name in self.own}
 
