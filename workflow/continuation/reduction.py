@@ -223,7 +223,7 @@ class Reduction:
         """By name of a result, what the scene leaves open: independent changes in squares, and other bodies in sum.
 
         Raises:
-            SettingsError: most curves through the points of a profile are no contact, so that nothing is known of these.
+            SettingsError: most curves through the points of a profile are no contact, so that nothing tells the error.
         """
         profile = self.scene.bodies.profile
         others = [model for shape in profile.alternatives if (model := self._of_shape(shape))]
