@@ -179,8 +179,8 @@ class ModelBranch:
         found = found[found < zero]
         last = int(np.count_nonzero(found > place - 0.5 * step)) if place < zero else 0
         if (near := found[max(last - NEAREST, 0) : last]).size:
-            tensions = -self.model.held(near)
-            if tensions[-1] < (1.0 - self.settings.tolerance) * tensions.max():  # a chain lost a part at its limit
+            tensions = -self.model.held(near)  # a chain may lose a part at its limit point, the top that a law knows
+            if known is None or tensions[-1] < (1.0 - self.settings.tolerance) * tensions.max():
                 last -= near.size - 1 - int(np.argmax(tensions))
         self._add(found[:last])
         self._beyond = found[last:]
