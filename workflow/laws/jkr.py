@@ -29,9 +29,10 @@ from numpy.typing import NDArray
 
 from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.laws.law import FARTHEST_RATIO, Law, stopped_at
-from contact1d.workflow.laws.pairs import Springs, springs
+from contact1d.workflow.laws.pairs import springs
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import Followed, Path
+from contact1d.workflow.laws.radius import Clinging, Held, RadiusRule
 from contact1d.workflow.laws.shape import Profile, beside_kinks
 from contact1d.workflow.scene import Adhesion, Scene
 
@@ -122,19 +123,29 @@ class Jkr(Law):
         known: the greatest position up to which it is known [LU].
     """
 
-    holds: ClassVar[bool] = True
-    is_lossless: ClassVar[bool] = False
-    file: ClassVar[str] = "adhesion.cells"
-    beside: ClassVar[tuple[str, ...]] = ("pressed", "adhesive", "zone", "dmt")
-    exact: ClassVar[tuple[str, ...]] = ("pressed", "adhesive")
+    is_lossless = False
+    rules: ClassVar[tuple[type[RadiusRule], ...]] = (Clinging, Held)
+    file = "adhesion.cells"
+    beside: ClassVar[tuple[str, ...]] = ("adhesive", "transition", "dmt")
+    exact: ClassVar[tuple[str, ...]] = ("adhesive",)
 
     work: float = field(kw_only=True)
     known: float = field(kw_only=True)
 
     @classmethod
     def applies(cls, scene: Scene) -> bool:
-        """Of [adhesion]."""
-        return scene.adhesion is not None
+        """Of [adhesion]; without W a contact is that of springs."""
+        return scene.work_of_adhesion > 0.0
+
+    @classmethod
+    def attracts(cls, scene: Scene) -> bool:
+        """Always."""
+        return True
+
+    @classmethod
+    def range_of(cls, scene: Scene, assumed: float) -> float:
+        """The assumed one."""
+        return assumed
 
     @classmethod
     def of(cls, scene: Scene, profile: Profile) -> Law:
@@ -169,17 +180,21 @@ class Jkr(Law):
         return jkr
 
     def particles(self, x: Array, deepest: float) -> Particles:
-        """See `Law`; springs alone where W = 0."""
-        return JkrCells(self, x, deepest) if self.attracts else Springs(self, x, deepest)
+        """See `Law`."""
+        return JkrCells(self, x, deepest)
 
     def extent(self, deepest: float, half: float) -> float:
         """See `Law`: all of a chain."""
-        return half if self.attracts else super().extent(deepest, half)
+        return half
 
     def columns(self, body: Profile, x: Array) -> Mapping[str, tuple[int, Array]]:
         """See `Law`."""
         cells = self.cells(x, body)
         return {"hold": (1, cells.hold), "width": (1, cells.width), "fall": (1, cells.fall), "bend": (0, cells.bend)}
+
+    def strained(self, displacement: float) -> float:
+        """See `Law`: a punch that adheres and carries nothing is not deep, and its springs hold it up to its limit."""
+        return max(displacement, -self.fixed_grips[1])
 
     @property
     def modulus(self) -> float:
@@ -197,10 +212,10 @@ class Jkr(Law):
             inner = np.geomspace(FIRST**level * self.known, self.known, level * PLACES)
             x = beside_kinks(np.append(0.0, inner), self.profile)
             least = int(np.argmin(opened(x)))
-            if self.work == 0.0 or x[least] > SEEN * inner[0]:
+            if x[least] > SEEN * inner[0]:
                 break
         near, at = x, least
-        for _ in range(ROUNDS if self.work else 0):
+        for _ in range(ROUNDS):
             near = np.linspace(near[max(at - 1, 0)], near[min(at + 1, near.size - 1)], LOOKS)
             at = int(np.argmin(opened(near)))
         x = np.unique(np.append(x, near[at]))
@@ -250,12 +265,9 @@ class Jkr(Law):
             )
 
     def cells(self, x: Array, body: Profile) -> Cells:
-        """The cells of particles at positions x, (n,) [LU], of `body`. Without adhesion they separate at touch."""
+        """The cells of particles at positions x, (n,) [LU], of `body`."""
         at, half = np.abs(x), 0.5 * self.spacing
         heights, narrowest = body.height(at), NARROWEST * self.spacing
-        if self.work == 0.0:
-            none = np.zeros_like(x)
-            return Cells(heights, none, none + narrowest, none, none)
         least = self.fixed_grips[0]
 
         def threshold(place: Array) -> Array:
@@ -305,11 +317,6 @@ class Jkr(Law):
         _, h, force, least = self._grid
         top = least + int(np.argmin(force[least:]))
         return h[top:], force[top:]
-
-    @cached_property
-    def attracts(self) -> bool:
-        """Whether W > 0."""
-        return self.work > 0.0
 
     def pull_off_force(self) -> float:
         """F_A [FU]."""
