@@ -190,18 +190,14 @@ def with_body(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressu
                 key: (replace(one, uncertainty=one.uncertainty - given[key] + left), given[key])
                 for key, one in pressure.results.items()
             }
-    if is_at_rest(scene):
+    # Springs in equilibrium, without an attraction: dF/dd is theirs.
+    if "pressed" in law_of(scene).beside and not (scene.interaction or scene.noise):
         for name in reported_state(outcome):
             if (pressure := pressures.get(name)) and pressure.stiffness:
                 of_pressure["contact_stiffness"] = (pressure.stiffness, share * pressure.stiffness.value)
     makers = (_of_the_contact, _adhesion_energy, _tabor)
     made = {name: one for make in makers for name, one in outcome.made(scene, make).items()}
     return _with(outcome, of_pressure | made)
-
-
-def is_at_rest(scene: Scene) -> bool:
-    """Whether springs on a plane are in equilibrium and have no attraction, so that dF/dd is theirs."""
-    return "pressed" in law_of(scene).beside and not (scene.interaction or scene.noise)
 
 
 def reported_state(outcome: Outcome) -> list[str]:
@@ -232,7 +228,7 @@ def _tabor(scene: Scene, found: Mapping[str, Quantity]) -> dict[str, Quantity]:
 def _adhesion_energy(scene: Scene, found: Mapping[str, Quantity]) -> dict[str, Quantity]:
     """πa²W on a plane with adhesion; 2a w/s where an interaction holds the bodies."""
     a, line = first_of(found, "zero_load_radius", "contact_radius"), found.get("separation_energy")
-    within = not law_of(scene).range_of(scene, 0.0)  # a cohesive zone has most of it
-    if a is not None and within and scene.work_of_adhesion:
+    # Of an attraction with a range the cohesive zone has most of it.
+    if a is not None and scene.work_of_adhesion and not law_of(scene).range_of(scene, 0.0):
         return {"adhesion_energy": product(math.pi * scene.work_of_adhesion, ENERGY, (a, 2.0))}
     return {} if a is None or line is None else {"adhesion_energy": product(2.0, ENERGY, (a, 1.0), (line, 1.0))}

@@ -300,13 +300,13 @@ MOMENTS = 200
 def indented(case: Case) -> Indented | None:
     """The history of a body that relaxes; None of anything else, or where it is pressed more than once."""
     given: Any = case.scene.experiment
-    profile: Any = case.scene.bodies.profile
-    exponent, terms = EXPONENTS.get(case.kind, getattr(profile, "exponent", None)), case.law.series(case.scene)
-    if not terms or exponent is None or not given.places():
+    exponent = EXPONENTS.get(case.kind) or getattr(case.scene.bodies.profile, "exponent", None)
+    terms, places = case.law.series(case.scene), given.places()
+    if not (terms and exponent and places):
         return None
-    force = case.body.force(case.body.radius_at(max(given.places())))
+    force = case.body.force(case.body.radius_at(max(places)))
     try:
-        return Indented(tuple(given.times), tuple(given.places()), force, exponent, terms)
+        return Indented(tuple(given.times), tuple(places), force, exponent, terms)
     except ValueError:
         return None
 

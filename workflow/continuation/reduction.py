@@ -85,12 +85,6 @@ class Reduction:
         profile = self.scene.bodies.profile
         return bool(self.scene.shares or profile.deviations or profile.alternatives)
 
-    @property
-    def on_lattice(self) -> bool:
-        """Whether the positions of the particles are chosen by the program, and not part of the scene."""
-        bodies = self.scene.bodies
-        return bodies.particles == "auto" and bodies.own_count is None
-
     @cached_property
     def model(self) -> Particles:
         """The model of the chain that runs."""
@@ -137,7 +131,9 @@ class Reduction:
     @cached_property
     def _lattices(self) -> tuple[list[Particles], list[Particles]]:
         """The model with its particles elsewhere, and on finer spacings."""
-        return self.model.lattices if self.on_lattice or self.model.shares_edges else ([], [])
+        bodies = self.scene.bodies
+        is_chosen = bodies.particles == "auto" and bodies.own_count is None  # else positions are part of the scene
+        return self.model.lattices if is_chosen or self.model.shares_edges else ([], [])
 
     @cached_property
     def lattice(self) -> Values:

@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.workflow.errors import SettingsError
-from contact1d.workflow.laws.law import FARTHEST_RATIO, Law, stopped_at
+from contact1d.workflow.laws.law import FARTHEST_RATIO, SOFTEST_SHARE, Law, stopped_at
 from contact1d.workflow.laws.pairs import springs
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import Followed, Path
@@ -56,8 +56,6 @@ NEAR_AN_END = 0.1
 BENDS, WHOLE = 401, 1.0 - 1e-9
 """Values of κ that are tried for the cell of the limit point, and share from which on it is held as a whole. The rest
 of the share is an error of the force: at a kink between two cells all lattices have the same one, so none shows it."""
-SOFTEST = 0.998
-"""Tension over the largest one at which a contact counts as softest."""
 TOUCH = 1e-9
 """Distance over the spacing at which bodies touch: round-off of a displacement of 0."""
 
@@ -291,7 +289,7 @@ class Jkr(Law):
                 fall[i] = (heights[i] - held) / (1.0 - share)
         return Cells(heights, heights - inner, width, fall, bend)
 
-    def energy(self, displacement: float, radius: float) -> float | None:
+    def energy(self, displacement: float, radius: float) -> float:
         """U(d, a) = E* ∫_0^a (d − g)² dx − πa²W [FU·LU], 0 of bodies apart; ∂U/∂a = 0 in equilibrium."""
         x = np.linspace(0.0, radius, PLACES)
         elastic = self.modulus * float(np.trapezoid((displacement - self.profile.height(x)) ** 2, x))
@@ -328,9 +326,9 @@ class Jkr(Law):
         return float(np.interp(force, forces, places))
 
     def _stiffness_under(self, force: float) -> float:
-        """dF/dd [FU/LU] under a force [FU]; a tension above SOFTEST of the largest counts as that."""
+        """dF/dd [FU/LU] under a force [FU]; a tension above SOFTEST_SHARE of the largest counts as that."""
         places, forces = self._rising
-        return float(np.interp(max(force, -SOFTEST * self.pull_off_force()), forces, np.gradient(forces, places)))
+        return float(np.interp(max(force, -SOFTEST_SHARE * self.pull_off_force()), forces, np.gradient(forces, places)))
 
     def parted(self, share: float) -> float:
         """Displacement [LU] of pull-off under fixed grips, where the tensile force vanishes at once."""
@@ -346,11 +344,7 @@ class JkrCells(Particles):
     """The cells of a chain on a rigid plane, which adhere from touch to where fixed grips lose all of it at once."""
 
     law: Jkr
-
-    @property
-    def shares_edges(self) -> bool:
-        """Always."""
-        return True
+    shares_edges = True
 
     @cached_property
     def _cells(self) -> Cells:
@@ -395,7 +389,7 @@ class JkrCells(Particles):
         held = self._holds(path.displacement)
 
         def energy(displacement: float) -> float:
-            return self.law.energy(displacement, float(self.law.radii(np.asarray([displacement]))[0])) or 0.0
+            return self.law.energy(displacement, float(self.law.radii(np.asarray([displacement]))[0]))
 
         made, lost = (np.count_nonzero(np.diff(held.astype(int), prepend=0) == way) for way in (1, -1))
         end = energy(float(path.displacement[-1])) if held[-1] else 0.0

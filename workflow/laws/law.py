@@ -189,9 +189,7 @@ class Law(ABC):
         return displacement
 
     def untouched_radius(self, displacement: float) -> float | None:
-        """Contact radius at the deepest displacement [LU] where the particles show less than the law: what they have
-        touched before is no part of it.
-        """
+        """Contact radius [LU] at the largest displacement [LU] of a body that was untouched; None: particles tell it."""
         return None
 
     def contact_force(self, displacement: float) -> float:

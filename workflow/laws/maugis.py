@@ -265,7 +265,7 @@ class Maugis(Zoned):
     def require_one_edge(self) -> None:
         """Nothing: where the edge would jump, the curve has a limit point."""
 
-    def energy(self, displacement: float, radius: float) -> float | None:
+    def energy(self, displacement: float, radius: float) -> float:
         """See `energy_of`, of a contact that is unloaded from the widest."""
         width = (float(self.profile.height(np.asarray([radius]))[0]) - displacement) / self.equations.ratio
         c = math.hypot(radius, width) if radius > 0.0 else float(self.reaches(np.asarray([displacement]))[0])

@@ -145,7 +145,7 @@ class Particles(ABC):
     @property
     def parted(self) -> float | None:
         """Displacement [LU] at which a contact that is unloaded is lost; None where the history decides that."""
-        return self.apart
+        return None if self.law.in_time else self.apart
 
     @property
     def limits(self) -> tuple[float, ...]:

@@ -154,11 +154,6 @@ class RecedingCells(ZonedCells):
         """Where fixed grips would lose a contact that takes its time [LU]."""
         return self.law.fixed_grips[1]
 
-    @property
-    def parted(self) -> None:
-        """See `Particles.parted`."""
-        return
-
     def held(self, displacements: Array) -> Array:
         """F [FU] at rest."""
         edge = self.law.radii(displacements)
@@ -179,7 +174,7 @@ class RecedingCells(ZonedCells):
         excess = estimate.modulus * opened**2 - 2.0 * math.pi * a * estimate.work
         fell = np.minimum(np.diff(a), 0.0) * (a[1:] > 0.0)
         lost = -float(np.sum(0.5 * (excess[1:] + excess[:-1]) * fell))
-        energies = [0.0, *(estimate.energy(float(d[i]), float(a[i])) or 0.0 for i in range(a.size))]
+        energies = [0.0, *(estimate.energy(float(d[i]), float(a[i])) for i in range(a.size))]
         jumps = np.flatnonzero(np.diff(a > 0.0, prepend=False))
         return energies[-1], lost + sum(energies[at] - energies[at + 1] for at in jumps.tolist())
 

@@ -126,6 +126,7 @@ class RelaxingSprings(Particles):
     law: Relaxing
 
     dense = 4
+    apart = 0.0
 
     @property
     def shares_edges(self) -> bool:
@@ -138,16 +139,6 @@ class RelaxingSprings(Particles):
         every = vars(edges_of(self.shape, self.x, self.law.spacing))
         found, own = np.unique(np.stack([*every.values()]), axis=1, return_inverse=True)
         return Edges(*found), own, np.bincount(own).astype(np.float64)
-
-    @property
-    def apart(self) -> float:
-        """Where a body that is untouched feels nothing [LU]."""
-        return 0.0
-
-    @property
-    def parted(self) -> None:
-        """See `Particles.parted`."""
-        return
 
     def held(self, displacements: Array) -> Array:
         """F [FU] of a body that has had no time."""

@@ -93,11 +93,7 @@ class ZonedCells(Particles):
     """The cells of a chain on a rigid plane, the edges of whose contact each load step gives."""
 
     law: Zoned
-
-    @property
-    def shares_edges(self) -> bool:
-        """Always."""
-        return True
+    shares_edges = True
 
     def _edges_of(self, zone: Zone) -> dict[str, Array]:
         """The columns of load steps: d, a, c and the mean of g(x) over the contact."""
