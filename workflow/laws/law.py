@@ -189,7 +189,7 @@ class Law(ABC):
         return displacement
 
     def untouched_radius(self, displacement: float) -> float | None:
-        """Contact radius [LU] at the largest displacement [LU] of a body that was untouched; None: particles tell it."""
+        """Contact radius [LU] at the largest displacement [LU] of an untouched body; None: its particles tell it."""
         return None
 
     def contact_force(self, displacement: float) -> float:
