@@ -51,7 +51,13 @@ def test_nothing_is_pulled_off_that_nothing_holds() -> None:
     tables = scene(adhesion={"surface_energy": 0.0}, experiment={"kind": "pull_off", "preload": 1.0})
     with pytest.raises(SceneError, match=r"adhesion\.surface_energy = 0\.0: must be greater than 0"):
         scene_from_dict(tables)
-    assert scene_from_dict(tables | {"experiment": {"kind": "load", "force": 1.0}}).adheres is False
+
+
+@pytest.mark.parametrize("more", [{}, {"range": 0.1}])
+def test_adhesion_without_an_energy_is_none(more: dict[str, float], tmp_path: Path) -> None:
+    load = scene(experiment={"kind": "load", "force": 1.0})
+    found = run(load | {"adhesion": {"work_of_adhesion": 0.0} | more}, tmp_path / "none", figures=False)
+    assert found.results == run(load, tmp_path / "without", figures=False).results
 
 
 @pytest.mark.parametrize("load", [0.1, 3.0, 77.7])

@@ -186,7 +186,7 @@ class Deck:
             step += "_gently" * self.settings.gentle or "_snapping" * self.settings.snaps
         if self.stepped:
             return (*["steps/keep"] * self.keeps, "steps/sweep" if kind is Displace else f"steps/{step}")
-        again = ["steps/again"] * (kind is Hold and bool(self.scene.adhesion))
+        again = ["steps/again"] * (kind is Hold and self.scene.work_of_adhesion > 0.0)
         return (*again, f"steps/{step}", *self._measuring, self._named("steps/line"), *kept)
 
     @property

@@ -13,8 +13,10 @@ TOUCH = 1e-9
 
 
 def adhesion(scene: Scene, settings: Settings) -> Contribution:
-    """The cells of the particles are in a file of their own. The effect follows the plane."""
+    """The cells of the particles are in a file of their own. The effect follows the plane. Without W it is none."""
     own, stiffness = scene.the(Adhesion), {"adhesion_stiffness": number(scene.bulk_stiffness)}
+    if not own.work:
+        return Contribution("adhesion", Stage.CONTACT, ())
     if own.range or own.rate:
         modulus, stress = scene.bulk_stiffness / scene.bodies.spacing, own.work / own.range if own.range else 0.0
         stiffness |= {"adhesion_modulus": number(modulus), "adhesion_stress": number(stress)}
