@@ -115,7 +115,7 @@ class Relaxing(Independent):
         """See `Law`; of dashpots."""
         if not self.material.retardation_time:
             return {}
-        edges = edges_of(self.profile, x, self.spacing)
+        edges = edges_of(body, x, self.spacing)
         return {"width": (1, edges.widths), "rise": (1, edges.rises)}
 
 
