@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from contact1d.workflow.deck.effects import Contribution, contributions
 from contact1d.workflow.deck.fragments import DeckError, Fragment, block, commands, deleted, fragment, indexed, listed
-from contact1d.workflow.deck.parts import bins, moving, own_units, standing
+from contact1d.workflow.deck.parts import bins, free_to_move, own_units, rigidly_mounted
 from contact1d.workflow.deck.steps import (
     APPENDED,
     NEW,
@@ -60,7 +60,8 @@ class Deck:
     def parts(self) -> tuple[Contribution, ...]:
         """Return the parts of bodies, lower body, effects and method, in deck order."""
         scene, settings = self.written
-        parts = [*contributions(scene, settings), *(standing if scene.stands else moving)(scene, settings)]
+        mounting = rigidly_mounted if scene.stands else free_to_move
+        parts = [*contributions(scene, settings), *mounting(scene, settings)]
         if self.units.are_own:
             parts.append(own_units(self.units))
         if scene.interaction:

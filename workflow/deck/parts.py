@@ -24,7 +24,7 @@ CHOSEN_BINS = ("far_bin", "wide_bin")
 """Variables with which effects choose the edge of a bin."""
 
 
-def standing(scene: Scene, settings: Settings) -> list[Contribution]:
+def rigidly_mounted(scene: Scene, settings: Settings) -> list[Contribution]:
     """Return the parts of a rigid body over a plane that has its springs: in single steps, or moved in time."""
     if not scene.is_stepped:
         clock = Contribution("dynamic", Stage.MOTION, ("clock",), {"time_step": number(settings.motion.time_step)})
@@ -36,7 +36,7 @@ def standing(scene: Scene, settings: Settings) -> list[Contribution]:
     return [Contribution("bodies", Stage.BODIES, ("standing",)), _plane("standing_plane", scene, settings), motion]
 
 
-def moving(scene: Scene, settings: Settings) -> list[Contribution]:
+def free_to_move(scene: Scene, settings: Settings) -> list[Contribution]:
     """Return the parts of bodies whose particles are free to move, each on the spring of its bulk."""
     softer = min(settings.forces.bulk_stiffness, scene.tangential_stiffness)
     coefficient = softer if settings.chains.far else settings.forces.bulk_stiffness
@@ -68,8 +68,8 @@ def bins(scene: Scene, settings: Settings, parts: Sequence[Contribution], most: 
     edges = np.ptp(np.concatenate(atoms), axis=0) + 2.0 * np.asarray(margins(scene, settings), dtype=np.float64)
     default = edge = max([*chosen, 0.5 * reach(scene, settings)])
 
-    def exceed(edge: float, most: float) -> bool:
-        return bool(np.log(np.maximum(edges / edge, 1.0)).sum() > math.log(most))  # the number itself may overflow
+    def exceed(bin_edge: float, limit: float) -> bool:
+        return bool(np.log(np.maximum(edges / bin_edge, 1.0)).sum() > math.log(limit))  # the number may overflow
 
     while exceed(edge, most):
         edge *= 2.0

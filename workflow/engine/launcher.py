@@ -51,18 +51,18 @@ def on_one_node(environ: Mapping[str, str]) -> bool:
     return next((environ[key] for key in NODE_COUNTS if key in environ), "1") == "1"
 
 
-class Calls:
+class Listener:
     """A socket to which rank 0 connects, in a folder without access for other users."""
 
     def __init__(self, path: Path, interval: float = 0.2) -> None:
-        """Listen at a path that doesn't exist yet; every `interval` [s] `answered` checks the ranks."""
+        """Listen at a path that doesn't exist yet; every `interval` [s] `connection_to` checks the ranks."""
         self.address = str(path)
         self._socket = socket.socket(socket.AF_UNIX)
         self._socket.bind(self.address)
         self._socket.listen(1)
         self._socket.settimeout(interval)
 
-    def __enter__(self) -> Calls:
+    def __enter__(self) -> Listener:
         """Return the socket, which listens already."""
         return self
 
@@ -70,7 +70,7 @@ class Calls:
         """Close the socket; a connection stays open."""
         self._socket.close()
 
-    def answered(self, process: subprocess.Popen[bytes]) -> Connection:
+    def connection_to(self, process: subprocess.Popen[bytes]) -> Connection:
         """Return the connection to rank 0; a closed one where the process ended before it connected."""
         while process.poll() is None:
             try:

@@ -24,7 +24,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
-from contact1d.workflow.engine.launcher import Calls, cause_among_ranks, launcher_of, on_one_node
+from contact1d.workflow.engine.launcher import Listener, cause_among_ranks, launcher_of, on_one_node
 
 BOOT = """
 import sys, types
@@ -87,7 +87,7 @@ class WorkerProcess:
     Attributes:
         ranks: number of its MPI ranks.
         pid: its process id; that of the launcher for several ranks.
-        last_words: its output before it died; "" while it lives.
+        last_output: its output before it died; "" while it lives.
     """
 
     def __init__(self, ranks: int) -> None:
@@ -103,7 +103,7 @@ class WorkerProcess:
         self._ready = select.poll()
         self._ready.register(self._connection.fileno(), select.POLLIN)
         self.pid = self._process.pid
-        self.last_words, self._last_board = "", (0, 0)
+        self.last_output, self._last_board = "", (0, 0)
 
     def _start(self) -> None:
         self._connection, worker_end = Pipe()
@@ -119,9 +119,9 @@ class WorkerProcess:
         with tempfile.TemporaryDirectory() as folder, (Path(folder) / "board").open("w+b") as file:
             file.truncate(16)
             self._board_map = mmap.mmap(file.fileno(), 16)
-            with Calls(Path(folder) / "socket") as calls:
-                self._run(launcher, RANKS, (calls.address, file.name))
-                self._connection = calls.answered(self._process)
+            with Listener(Path(folder) / "socket") as listener:
+                self._run(launcher, RANKS, (listener.address, file.name))
+                self._connection = listener.connection_to(self._process)
 
     def _run(self, launcher: Sequence[str], entry: str, arguments: tuple[object, ...], *files: int) -> None:
         packages = (str(parent) for parent in reversed(Path(__file__).parents[:3]))
@@ -176,7 +176,7 @@ class WorkerProcess:
                     tick()
             return receive(self._connection)
         except (EOFError, ConnectionError):
-            raise WorkerLostError(self._cause_of_death()) from None
+            raise WorkerLostError(self._cause_of_end()) from None
         except BaseException:
             self.kill()
             raise
@@ -214,23 +214,23 @@ class WorkerProcess:
         self._connection.close()
         if not self._board_map.closed:
             self._output.seek(0)
-            self.last_words = self._output.read(4000).decode(errors="replace").strip()
+            self.last_output = self._output.read(4000).decode(errors="replace").strip()
             self._last_board = self._board[0], self._board[1]
             self._board.release()
             self._board_map.close()
             self._output.close()
 
-    def _cause_of_death(self) -> str:
+    def _cause_of_end(self) -> str:
         try:
             self._process.wait(5.0)
         except subprocess.TimeoutExpired:
             self._end()
         self._release()
         code = self._process.returncode
-        if self.ranks > 1 and (cause := cause_among_ranks(self.ranks, self.last_words)):
+        if self.ranks > 1 and (cause := cause_among_ranks(self.ranks, self.last_output)):
             return cause
         if code >= 0:
-            words = self.last_words.splitlines()[-1:] or ["no message"]
+            words = self.last_output.splitlines()[-1:] or ["no message"]
             return f"the LAMMPS process ended by itself with exit code {code} ({words[0]})"
         name = signal.Signals(-code).name
         if name == "SIGKILL":

@@ -199,7 +199,7 @@ class Session:
 
     def _failure(self, message: str, log_lines: int = 25) -> EngineError:
         self._end_reason = message
-        lines = self._log().splitlines()[-log_lines:] + self._worker.last_words.splitlines()
+        lines = self._log().splitlines()[-log_lines:] + self._worker.last_output.splitlines()
         tail = "\n".join(lines)
         return EngineError(message, self.phase, self.timestep, self.folder, tail)
 

@@ -1,7 +1,7 @@
-"""Effect [adhesion]: d = g(a) − √(2π a W/E*) at the edge a of the contact, the rule of Heß, which makes it JKR's.
+"""Effect [adhesion]: d = g(a) − √(2π a W/E*) at the edge a of the contact, the rule of Heß for JKR contacts.
 
-With a range it is Maugis and Dugdale's: an attraction σ₀ = W/h₀ beyond the edge (`laws.maugis`). There, and where
-the edge takes time, each load step has its edges.
+With a range the contact is that of Maugis and Dugdale: an attraction σ₀ = W/h₀ beyond the edge (`laws.maugis`). With a
+range or a rate each load step gives its edges.
 """
 
 from contact1d.workflow.deck.effects import Contribution, Stage, number

@@ -4,7 +4,7 @@ Plate and particles move at v on average, and so does their heat bath: drag is r
 
     F_i = −γ (v_i − v)  on each upper particle,    F = −c_plate (V − v)  on the plate,
 
-since the bulk goes with its body. Otherwise the cantilever would pull at a drag that is no friction of the contact.
+since the bulk moves with its body. Otherwise the cantilever would measure a drag that is no friction of the contact.
 """
 
 from contact1d.workflow.deck.effects import Contribution, Stage, first_upper_anchor, number
