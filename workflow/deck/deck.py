@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from contact1d.workflow.deck.effects import Contribution, contributions
 from contact1d.workflow.deck.fragments import DeckError, Fragment, block, commands, deleted, fragment, indexed, listed
-from contact1d.workflow.deck.parts import bins, free_to_move, own_units, rigidly_mounted
+from contact1d.workflow.deck.parts import bins, free_to_move, rigidly_mounted, unit_conversion
 from contact1d.workflow.deck.steps import (
     APPENDED,
     NEW,
@@ -62,8 +62,8 @@ class Deck:
         scene, settings = self.written
         mounting = rigidly_mounted if scene.stands else free_to_move
         parts = [*contributions(scene, settings), *mounting(scene, settings)]
-        if self.units.are_own:
-            parts.append(own_units(self.units))
+        if self.units.are_rescaled:
+            parts.append(unit_conversion(self.units))
         if scene.interaction:
             parts += bins(scene, settings, parts)
         return tuple(sorted(parts, key=lambda part: part.stage))
@@ -180,7 +180,7 @@ class Deck:
         return (self._named("output_swept"), *[self._named("output_states")] * self.keeps, "set_up")
 
     def _named(self, fragment: str) -> str:
-        return f"{fragment}_in_units" if self.units.are_own else fragment
+        return f"{fragment}_in_units" if self.units.are_rescaled else fragment
 
     def _columns(self, kind: type[Row]) -> tuple[str, ...]:
         return (*kind.columns(), *["row_append"] * (self.keeps and not self.stepped))

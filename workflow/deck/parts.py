@@ -84,8 +84,8 @@ def bins(scene: Scene, settings: Settings, parts: Sequence[Contribution], most: 
     return [] if edge == default else [Contribution("bins", Stage.MOTION, ("bins",), {"bin_edge": number(least)})]
 
 
-def own_units(units: DeckUnits) -> Contribution:
-    """Return the variables that convert the numbers of a deck with units of its own to LU and FU."""
+def unit_conversion(units: DeckUnits) -> Contribution:
+    """Return the variables that convert the numbers of a deck with rescaled units to LU and FU."""
     variables = {"unit_length": number(units.length), "unit_force": number(units.force)}
     return Contribution("units", Stage.MOTION, ("units",), variables)
 

@@ -40,7 +40,7 @@ class DeckUnits:
     force: float
 
     @property
-    def are_own(self) -> bool:
+    def are_rescaled(self) -> bool:
         """Return whether the units differ from those of the scene."""
         return (self.length, self.force) != (1.0, 1.0)
 
@@ -50,15 +50,15 @@ class DeckUnits:
 
     def to_deck(self, value: float, unit: str) -> float:
         """Return a number of the scene in deck units."""
-        return value / self.of(unit) if self.are_own else value
+        return value / self.of(unit) if self.are_rescaled else value
 
     def from_deck(self, value: Value, unit: str) -> Value:
         """Return a number of the deck, or an array of such, in the scene's units."""
-        return value * self.of(unit) if self.are_own else value
+        return value * self.of(unit) if self.are_rescaled else value
 
     def scene(self, scene: Scene) -> Scene:
         """Return the scene with its numbers in deck units, and with the values that follow from a material."""
-        if not self.are_own:
+        if not self.are_rescaled:
             return scene
         given = {"bulk_stiffness": scene.bulk_stiffness, "bulk_stiffness_tangential": scene.tangential_stiffness}
         bodies = scene.bodies.model_copy(update=given)
@@ -70,7 +70,7 @@ class DeckUnits:
 
     def settings(self, settings: Settings) -> Settings:
         """Return the settings in deck units, except for the predictor, which no deck uses."""
-        if not self.are_own:
+        if not self.are_rescaled:
             return settings
         converted: Settings = self._converted(settings)
         if (table := settings.forces.table) is None:
