@@ -51,7 +51,13 @@ def test_nothing_is_pulled_off_that_nothing_holds() -> None:
     tables = scene(adhesion={"surface_energy": 0.0}, experiment={"kind": "pull_off", "preload": 1.0})
     with pytest.raises(SceneError, match=r"adhesion\.surface_energy = 0\.0: must be greater than 0"):
         scene_from_dict(tables)
-    assert scene_from_dict(tables | {"experiment": {"kind": "load", "force": 1.0}}).adheres is False
+
+
+@pytest.mark.parametrize("more", [{}, {"range": 0.1}])
+def test_adhesion_without_an_energy_is_none(more: dict[str, float], tmp_path: Path) -> None:
+    load = scene(experiment={"kind": "load", "force": 1.0})
+    found = run(load | {"adhesion": {"work_of_adhesion": 0.0} | more}, tmp_path / "none", figures=False)
+    assert found.results == run(load, tmp_path / "without", figures=False).results
 
 
 @pytest.mark.parametrize("load", [0.1, 3.0, 77.7])
@@ -214,3 +220,17 @@ def test_a_large_preload_does_not_lose_the_pull_off(kind: str, times: float, tmp
     for name, value in (("adhesion_force", exact.pull_off_force()), ("zero_load_radius", exact.zero_load_radius())):
         assert found[name].value == pytest.approx(value, rel=1e-3)
         assert abs(found[name].value - value) <= found[name].uncertainty
+
+
+def test_dashpots_on_a_table_are_those_of_the_paraboloid_that_it_samples(tmp_path: Path) -> None:
+    table = {"kind": "table", "r": [float(r) for r in range(61)], "z": [0.5 * r * r / RADIUS for r in range(61)]}
+    more = {
+        "viscoelasticity": {"retardation_time": 0.3},
+        "experiment": {"kind": "history", "displacement": [[0.0, 0.0], [1.0, 1.0], [2.0, 0.2]]},
+    }
+    peaks = []
+    for name, profile in {"table": table, "formula": {"kind": "parabola", "radius": RADIUS}}.items():
+        tables = scene(**more)
+        tables["bodies"] |= {"profile": profile}
+        peaks.append(run(scene_from_dict(tables), tmp_path / name, figures=False).results["peak_force"])
+    assert abs(peaks[0].value - peaks[1].value) <= peaks[0].uncertainty

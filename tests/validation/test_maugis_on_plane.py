@@ -91,3 +91,14 @@ def test_what_a_range_excludes_is_refused_in_a_sentence() -> None:
         read_scene(scene)
     with pytest.raises(SceneError, match=r"adhesion\.range .* only of contacts at rest"):
         read_scene(tables(1.0, {"kind": "load", "force": 1.0}) | {"plate": {}, "damping": {"coefficient": 0.1}})
+
+
+def test_the_critical_state_of_a_cone_is_at_its_force_maximum(run_tables: RunTables) -> None:
+    """A neighbour 4e-4 wider has the same force but for 1e-7 of it, and another pressure at its edge."""
+    cone = tables(1.0, {"kind": "pull_off", "preload": 11.544759})
+    cone["bodies"] |= {"spacing": 0.8998386585599826, "bulk_stiffness": 0.8998386585599826}
+    cone["bodies"]["profile"] = {"kind": "cone", "slope": 6.111643282e-4}
+    cone["adhesion"] = {"work_of_adhesion": 7.287191e-7, "range": 4.97792e-3}
+    run = run_tables(cone)
+    at = list(run.curve["displacement"]).index(run.outcome.marked["critical"].displacement)
+    assert run.curve["contact_radius"][at] == pytest.approx(run.results.critical_radius.value, rel=1e-5)

@@ -177,3 +177,26 @@ def test_a_load_that_varies_with_the_way_is_exact_with_what_it_dissipates(run_ta
     assert run.friction["tangential_force"] == pytest.approx(forces, abs=EXACT * MU * 40.0)
     assert run.friction["dissipated_energy"] == pytest.approx(dissipated, abs=AREA * dissipated[-1])
     assert run.friction["normal_force"] == pytest.approx(loads, rel=EXACT)
+
+
+def test_the_force_on_a_cone_is_uncertain_by_its_kinks_wherever_the_apex_is(run_tables: RunTables) -> None:
+    """The edge of the zone that slips is a whole number of particles from that of the contact, but for 4e-5 of it.
+
+    Then the kinks of the sum leave as much on every lattice of that spacing; the exact force is ∫ s dx over the cone.
+    """
+    spacing, slope, mu, ratio = 0.11192030752899293, 4.4465671e-4, 0.83181060, 0.87156372
+    force, u = 1.32336143e-2, 1.64192748e-3
+    run = run_tables(
+        tables(
+            {"from": 0.0, "to": u, "steps": 3, "return": True},
+            {"spacing": spacing, "bulk_stiffness": spacing, "bulk_stiffness_tangential": ratio * spacing,
+             "profile": {"kind": "cone", "slope": slope}},
+            mu, normal_force=force,
+        )
+    )  # fmt: skip
+    a = math.sqrt(2.0 * force / (math.pi * slope))  # E* = 1; g(x) = π/2 slope |x|
+    unit = mu * 0.5 * math.pi * slope
+    forward, back = (a - ratio * u / (times * unit) for times in (1.0, 2.0))
+    exact = unit * ((a**2 - forward**2) - 2.0 * (a**2 - back**2))
+    found = run.results["tangential_force"]
+    assert abs(found.value - exact) <= found.uncertainty <= 0.01 * mu * force

@@ -156,7 +156,9 @@ def _along(contact: Cohesive, ends: tuple[float, float], closed: bool, parts: bo
         return exact
     low, high, found = min(ends), max(ends), marks(contact)
     if not parts:
-        found.pop("fixed_grips_displacement"), found.pop("work_of_separation")
+        found.pop("work_of_separation")
+    if not parts or contact.energy(last) == 0.0:  # a force that falls to 0 steadily
+        found.pop("fixed_grips_displacement")
     passed = {"adhesion_force": contact.critical, "critical_radius": contact.critical, "zero_load_radius": contact.free}
     for name, state in passed.items():
         if not low < state.displacement < high:

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from contact1d.analysis.theory.adhesion import LENNARD_JONES_STRESS, MaugisDugdale
+from contact1d.analysis.theory.adhesion import MaugisDugdale
 from contact1d.analysis.theory.indenters import Ellipsoid, FlatPunch, PowerLaw
 from contact1d.workflow.laws import law_of
 from contact1d.workflow.laws.law import Law
-from contact1d.workflow.model.cutoff import interaction_law
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.scene.tables import SPHERES
 from contact1d.workflow.units import UNKNOWN, Quantity, Scales
@@ -60,7 +59,7 @@ class Case:
 
         Where bodies adhere a force has two displacements, so that one under a given displacement tells nothing.
         """
-        if self.scene.adheres and self.scene.experiment.places():
+        if self.law.attracts(self.scene) and self.scene.experiment.places():
             return None
         return float(self.quantities["force"].value) if "force" in self.quantities else None
 
@@ -77,18 +76,13 @@ class Case:
     @property
     def work(self) -> float:
         """W [FU/LU]: given, or implied by the interaction at the radius that the run found; 0 without."""
-        if self.law.holds:
-            return self.scene.work_of_adhesion
         implied = self.quantities.get("work_of_adhesion")
-        return 0.0 if implied is None else float(implied.value)
+        return self.scene.work_of_adhesion if implied is None else float(implied.value)
 
     @property
     def range(self) -> float:
         """h₀ [LU]: given or assumed, or of Lennard-Jones surfaces with an interaction's force-free distance; else 0."""
-        if self.scene.adhesion is not None:
-            return self.scene.adhesion.range or (ASSUMED_RANGE / self.scales.length if self.scales.known else 0.0)
-        law = interaction_law(self.scene)
-        return 0.0 if law is None or law.attraction is None else law.force_free_distance() / LENNARD_JONES_STRESS
+        return self.law.range_of(self.scene, ASSUMED_RANGE / self.scales.length if self.scales.known else 0.0)
 
     @property
     def law(self) -> type[Law]:
@@ -98,7 +92,7 @@ class Case:
     @property
     def is_elastic(self) -> bool:
         """Whether springs under the profile are all there is: no attraction, no memory, no effect of other kinds."""
-        return self.scene.keeps_springs and "pressed" in self.law.beside and not self.scene.adheres
+        return self.scene.keeps_springs and "pressed" in self.law.beside and not self.law.attracts(self.scene)
 
     @property
     def sphere(self) -> tuple[float, float, float]:

@@ -156,9 +156,9 @@ def pressures_of(scene: Scene, outcome: Outcome) -> dict[str, BodyPressure]:
 
 def _pressure_share(scene: Scene, outcome: Outcome, state: str) -> float:
     """What uncertain numbers of the scene change the pressures of a state by, relatively."""
-    if not scene.keeps_springs and scene.is_stepped:
-        told = any(PRESSURE + state in move.changes for move in outcome.moves)
-        return float(in_squares(outcome.moves, PRESSURE + state * told))
+    names = {PRESSURE, PRESSURE + state} & {name for move in outcome.moves for name in move.changes}
+    if names and scene.is_stepped:
+        return float(in_squares(outcome.moves, max(names)))
     return sum(given / size.value for size, given in outcome.made(scene, _pressure_size).values())
 
 
@@ -190,19 +190,14 @@ def with_body(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressu
                 key: (replace(one, uncertainty=one.uncertainty - given[key] + left), given[key])
                 for key, one in pressure.results.items()
             }
-    if is_at_rest(scene):
+    # Springs in equilibrium, without an attraction: dF/dd is theirs.
+    if "pressed" in law_of(scene).beside and not (scene.interaction or scene.noise):
         for name in reported_state(outcome):
             if (pressure := pressures.get(name)) and pressure.stiffness:
                 of_pressure["contact_stiffness"] = (pressure.stiffness, share * pressure.stiffness.value)
     makers = (_of_the_contact, _adhesion_energy, _tabor)
     made = {name: one for make in makers for name, one in outcome.made(scene, make).items()}
     return _with(outcome, of_pressure | made)
-
-
-def is_at_rest(scene: Scene) -> bool:
-    """Whether springs on a plane are in equilibrium and have no attraction, so that dF/dd is theirs."""
-    law = law_of(scene)
-    return not (scene.interaction or scene.noise or scene.adheres or law.in_time)
 
 
 def reported_state(outcome: Outcome) -> list[str]:
@@ -226,16 +221,14 @@ def _of_the_contact(scene: Scene, found: Mapping[str, Quantity]) -> dict[str, Qu
 
 def _tabor(scene: Scene, found: Mapping[str, Quantity]) -> dict[str, Quantity]:
     """µ of a body with a radius of curvature, where the range of the attraction is given."""
-    mu = tabor(Case(scene, found)) if law_of(scene).has_range else None
+    mu = tabor(Case(scene, found)) if scene.work_of_adhesion else None
     return {} if mu is None else {"tabor_parameter": Quantity(mu, 0.0, NUMBER)}
 
 
 def _adhesion_energy(scene: Scene, found: Mapping[str, Quantity]) -> dict[str, Quantity]:
     """πa²W on a plane with adhesion; 2a w/s where an interaction holds the bodies."""
     a, line = first_of(found, "zero_load_radius", "contact_radius"), found.get("separation_energy")
-    law = law_of(scene)
-    if law.has_range:
-        return {}  # the cohesive zone has most of it
-    if a is not None and law.holds:
+    # Of an attraction with a range the cohesive zone has most of it.
+    if a is not None and scene.work_of_adhesion and not law_of(scene).range_of(scene, 0.0):
         return {"adhesion_energy": product(math.pi * scene.work_of_adhesion, ENERGY, (a, 2.0))}
     return {} if a is None or line is None else {"adhesion_energy": product(2.0, ENERGY, (a, 1.0), (line, 1.0))}

@@ -10,9 +10,9 @@ import numpy as np
 
 from contact1d.analysis.abel import FEWEST, LineLoad, line_load
 from contact1d.analysis.pressure import Array, Profile, ZonedProfile
-from contact1d.analysis.radius import ContactRadius, whole_cells
+from contact1d.analysis.radius import ContactRadius
 from contact1d.workflow.body.reading import stands_for_spheres
-from contact1d.workflow.laws import law_of
+from contact1d.workflow.laws.radius import RadiusRule
 from contact1d.workflow.scene import Scene, Shape
 from contact1d.workflow.scene.tables import WIDER_THAN_SPHERES
 
@@ -30,11 +30,13 @@ class Loaded:
     Attributes:
         scene: what ran.
         profile, radius: of the state.
+        rule: what its contact radius is.
     """
 
     scene: Scene
     profile: Profile
     radius: ContactRadius
+    rule: RadiusRule
 
     @cached_property
     def wider(self) -> float:
@@ -81,25 +83,16 @@ class Loaded:
         return self.layer * (bodies if shape is None else bodies.model_copy(update={"profile": shape})).height(x)
 
     @cached_property
-    def held(self) -> bool:
-        """Whether the edge leaves a particle a share of its cell, and only the particles show where it is."""
-        return law_of(self.scene).holds and self.scene.adheres and self.zone is None
-
-    @cached_property
     def edge(self) -> float | None:
         """Where the load of the contact ends [LU]; None where it fades out."""
-        if self.zone:
-            return self.zone.edge
-        return (
-            self.radius.value / self.wider if self.shape.has_edge or self.held or not self.scene.interaction else None
-        )
+        return None if self.scene.interaction and not self.shape.has_edge else self.radius.value / self.wider
 
     @cached_property
     def jump(self) -> float | None:
         """The load just inside the edge [FU/LU]; None where the particles show it: at the end of a body, and of JKR."""
         if self.zone:
             return self.zone.jump
-        return None if self.shape.has_edge or self.held else 0.0
+        return self.rule.jump
 
     @cached_property
     def load(self) -> Array:
@@ -107,7 +100,7 @@ class Loaded:
         if self.zone and self.is_elastic:
             edge = self.heights(np.asarray([self.zone.edge]))
             return np.where(np.abs(self.x) < self.zone.edge, self.zone.jump + edge - self.heights(self.x), 0.0)
-        return self.wider * (whole_cells(self.profile, self.radius) if self.held else self.profile.pressure)
+        return self.wider * self.rule.load(self.profile, self.radius)
 
     @cached_property
     def body(self) -> Callable[[Array], Array] | None:

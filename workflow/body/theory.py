@@ -29,7 +29,7 @@ from contact1d.analysis.theory.mindlin import (
 )
 from contact1d.analysis.theory.relaxing import Indented
 from contact1d.workflow.body.cases import Case, Values
-from contact1d.workflow.scene import Friction, History, Scene
+from contact1d.workflow.scene import Friction, Scene
 from contact1d.workflow.units import Quantity, Scales, scale_of
 
 SHOWN = 6
@@ -171,12 +171,7 @@ def _punch_pressure(case: Case, r: Array) -> Array:
 
 def _adheres(kind: str, body: str) -> Callable[[Case], str]:
     """Applies to a profile of that kind on a plane with an energy of adhesion."""
-
-    def applies(case: Case) -> str:
-        is_one = case.kind == kind and case.work > 0.0
-        return f"{body} that adheres, without a range" if is_one else ""
-
-    return applies
+    return lambda case: f"{body} that adheres, without a range" if case.kind == kind else ""
 
 
 def _marks(case: Case, contact: Contact) -> Values:
@@ -221,15 +216,11 @@ def tabor(case: Case) -> float | None:
 
 
 def _with_a_range(of_any: bool) -> Callable[[Case], str]:
-    """Applies to a paraboloid on a plane where JKR does not hold, and `of_any` µ where the scene gives the range."""
+    """Applies to a paraboloid on a plane where JKR does not hold, or `of_any` µ."""
 
     def applies(case: Case) -> str:
         mu = tabor(case)
-        if (
-            mu is None
-            or case.kind != "parabola"
-            or (of_tabor(mu) is Theory.JKR and not (of_any and case.law.has_range))
-        ):
+        if mu is None or case.kind != "parabola" or (of_tabor(mu) is Theory.JKR and not of_any):
             return ""
         return f"a paraboloid with a range; the Tabor parameter is {mu:.3g}, where {valid_theory(mu, 0.0).theory} holds"
 
@@ -308,15 +299,14 @@ MOMENTS = 200
 
 def indented(case: Case) -> Indented | None:
     """The history of a body that relaxes; None of anything else, or where it is pressed more than once."""
-    given, law = case.scene.experiment, case.scene.viscoelasticity
-    profile: Any = case.scene.bodies.profile
-    exponent = EXPONENTS.get(case.kind, getattr(profile, "exponent", None))
-    if not isinstance(given, History) or law is None or law.terms is None or exponent is None or not given.places():
+    given: Any = case.scene.experiment
+    exponent = EXPONENTS.get(case.kind) or getattr(case.scene.bodies.profile, "exponent", None)
+    terms, places = case.law.series(case.scene), given.places()
+    if not (terms and exponent and places):
         return None
-    force = case.body.force(case.body.radius_at(max(given.places())))
-    terms = tuple((term.share, term.time) for term in law.terms)
+    force = case.body.force(case.body.radius_at(max(places)))
     try:
-        return Indented(tuple(given.times), tuple(given.places()), force, exponent, terms)
+        return Indented(tuple(given.times), tuple(places), force, exponent, terms)
     except ValueError:
         return None
 
@@ -390,6 +380,7 @@ FORMS: Mapping[str, tuple[ClosedForm, ...]] = {
         ),
     ),
     "zone": (ClosedForm("Maugis and Dugdale", MAUGIS, _with_a_range(True), _maugis_values, has_range=True),),
+    "transition": (ClosedForm("Maugis and Dugdale", MAUGIS, _with_a_range(False), _maugis_values, has_range=True),),
     "dmt": (ClosedForm("DMT", DMT, _with_a_range(False), _dmt_values),),
     "interaction": (
         ClosedForm("JKR", JKR, _by_tabor(Theory.JKR), _jkr_values),

@@ -141,9 +141,9 @@ def body_pressures(
     rule, found = radius_rule(scene, scene.accuracy.tolerance), {}
     for name, profile in profiles.items():
         if (radius := rule.of(profile)) and radius.value > 0.0:
-            state = Loaded(scene, profile, radius)
+            state = Loaded(scene, profile, radius, rule)
             share = of_radius[name] if state.is_elastic and not scene.bodies.profile.has_edge else of_all
-            if scene.adheres:
+            if law_of(scene).attracts(scene):
                 share = max(share, SOLVED)
             if one := _pressure(state, share, given[name]):
                 found[name] = replace(one, doubt=one.doubt + of_all)

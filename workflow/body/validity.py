@@ -140,8 +140,8 @@ def beyond_jkr(sphere: MaugisDugdale, assumed: bool) -> str:
 
 def _tabor(case: Case) -> Iterator[Check]:
     sphere = case.with_range
-    if sphere is not None and case.law.holds:
-        message = "" if case.law.has_range else beyond_jkr(sphere, True)
+    if sphere is not None and case.scene.work_of_adhesion:
+        message = "" if case.law.range_of(case.scene, 0.0) else beyond_jkr(sphere, True)
         yield Check("tabor", "Tabor parameter", sphere.tabor, JKR_TABOR, not message, message)
 
 

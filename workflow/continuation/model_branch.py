@@ -178,8 +178,10 @@ class ModelBranch:
         found = np.unique(np.append(found, np.clip(beside, end, zero)))[::-1]
         found = found[found < zero]
         last = int(np.count_nonzero(found > place - 0.5 * step)) if place < zero else 0
-        if (near := found[max(last - NEAREST, 0) : last]).size:  # at its limit point a chain may have lost a part
-            last -= near.size - 1 - int(np.argmin(self.model.held(near)))
+        if (near := found[max(last - NEAREST, 0) : last]).size:
+            tensions = -self.model.held(near)  # a chain may lose a part at its limit point, the top that a law knows
+            if known is None or tensions[-1] < (1.0 - self.settings.tolerance) * tensions.max():
+                last -= near.size - 1 - int(np.argmax(tensions))
         self._add(found[:last])
         self._beyond = found[last:]
 

@@ -27,25 +27,19 @@ from contact1d.workflow.scene import Scene, Shape
 
 MARGIN = 1.25
 """Error over the change of the model with the lattice: it has no neighbour springs. Measured on both parities: 1.01."""
-PHASES = (0.25, 0.0)
-"""Positions of the apex between particles, over the spacing, that an even chain is compared with."""
-UNEVEN = (0.93, 0.86)
-"""Spacings over the own one that put a kink of the profile elsewhere between particles, on both sides alike."""
-MORE_PHASES = (0.375, 0.25, 0.125, 0.0)
-"""Such positions where friction makes several edges, the errors of which may cancel at two positions."""
-FINER = (0.5, 0.25)
-"""Spacings over the own one on which errors converge."""
 FOLLOWED = 0.5
 """Difference of the model from a motion, over the result, beyond which its lattice says nothing of that."""
 LEAST_MOVE = 0.05
 """Least relative change of an input that shows what a smaller one does, to first order: readers have errors."""
+FEWEST_BODIES = 2
+"""Bodies at least that show what the points of a profile leave open."""
 WAYS = (-1.0, 1.0)
 """Both ways."""
 
 
 PRESSURE = "ln p "
-"""Before a state's name, among the changes of a move: of the logarithm of p(0), so that it is relative; of the last
-state, or the deepest of a law without time, without a name."""
+"""Before a state's name, among the changes of a move: of the logarithm of p(0), so that it is relative; of the deepest
+state without a name."""
 Reader = Callable[[Trace], Mapping[str, Reading]]
 Values = dict[str, Any]
 """Numbers by name of a result; by name of a column of curve.csv one for each of its rows, (m,)."""
@@ -93,20 +87,6 @@ class Reduction:
         profile = self.scene.bodies.profile
         return bool(self.scene.shares or profile.deviations or profile.alternatives)
 
-    @property
-    def on_lattice(self) -> bool:
-        """Whether the positions of the particles are chosen by the program, and not part of the scene."""
-        bodies = self.scene.bodies
-        return bodies.particles == "auto" and bodies.own_count is None
-
-    @property
-    def converges(self) -> bool:
-        """Whether sums over particles come closer to the body's own steadily: where cells share the edge.
-
-        Whole particles touch or don't, and what they miss goes up and down with the spacing.
-        """
-        return self.model.shares_edges
-
     @cached_property
     def model(self) -> Particles:
         """The model of the chain that runs."""
@@ -137,8 +117,8 @@ class Reduction:
         if self.passed or self.scene.keeps_springs:
             return self.own
         whole = self._driven.trace(whole=True)
-        last = len(whole) - 1 if self.model.law.in_time else int(whole.displacement.argmax())
-        states = {"": last} | {name: i for i, names in self._driven.marks.items() for name in names}
+        states = {name: i for i, names in self._driven.marks.items() for name in names}
+        states[""] = int(whole.displacement.argmax())
         found = {PRESSURE + name: _on_axis(whole.profile(i)) for name, i in states.items()}
         return self.own | {name: math.log(one) for name, one in found.items() if one > 0.0}
 
@@ -153,14 +133,11 @@ class Reduction:
     @cached_property
     def _lattices(self) -> tuple[list[Particles], list[Particles]]:
         """The model with its particles elsewhere, and on finer spacings."""
-        if not (self.on_lattice or self.converges):
+        bodies = self.scene.bodies
+        is_chosen = bodies.particles == "auto" and bodies.own_count is None  # else positions are part of the scene
+        if not (is_chosen or self.model.shares_edges):
             return [], []
-        kinks = self.scene.bodies.profile.kinks
-        beside = [self.model.resized(factor) for factor in UNEVEN if kinks]
-        if not self.converges or kinks:
-            phases = MORE_PHASES if self.model.law.has_zones or kinks else PHASES
-            beside += [self.model.shifted(phase) for phase in phases]
-        return beside, [self.model.resized(factor) for factor in FINER if self.converges]
+        return self.model.lattices(bodies.profile.curvature_radius is None)
 
     @cached_property
     def lattice(self) -> Values:
@@ -216,11 +193,20 @@ class Reduction:
 
     @cached_property
     def inputs(self) -> Values:
-        """By name of a result, what the scene leaves open: independent changes in squares, and other bodies in sum."""
+        """By name of a result, what the scene leaves open: independent changes in squares, and other bodies in sum.
+
+        Raises:
+            SettingsError: most curves through the points of a profile are no contact, so that nothing tells the error.
+        """
         profile = self.scene.bodies.profile
         others = [model for shape in profile.alternatives if (model := self._of_shape(shape))]
         if len(others) < len(profile.alternatives):
             others += [model for shape in profile.coarser if (model := self._of_shape(shape))]
+        if len(others) < min(FEWEST_BODIES, len(profile.alternatives)):
+            raise SettingsError(
+                "the points of bodies.profile allow a corner at which the contact edge would jump, and too few other "
+                "curves through them are a contact to tell the uncertainty: give more points where the slope changes"
+            )
         each = [self._apart([other]) for other in others]
         return {name: sum(one[name] for one in each) + in_squares(self.moves, name) for name in self.own}
 

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.pressure import Profile, ZonedProfile
 from contact1d.analysis.radius import ContactRadius
-from contact1d.workflow.continuation.state import RadiusRule, State
+from contact1d.workflow.continuation.state import State
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import Followed, Path
+from contact1d.workflow.laws.radius import RadiusRule
 from contact1d.workflow.model.free import impact
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Impact, Scene
@@ -129,8 +130,9 @@ class Trace:
         return self._perturbed(found, state)
 
     def reach(self, state: int) -> float | None:
-        """How far an attraction with a range goes, c [LU]; None of others."""
-        if not self.model.law.has_range:
+        """How far an attraction goes beyond the contact, c [LU]; None where it ends with that."""
+        own = self.profile(state)
+        if not isinstance(own, ZonedProfile) or own.reach <= own.edge:
             return None
         return self._there(state, lambda i: float(getattr(self.profile(i), "reach", 0.0)))
 

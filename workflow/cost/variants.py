@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from contact1d.digits import EXACT, cleaned
 from contact1d.workflow.errors import SceneEdit
+from contact1d.workflow.laws import law_of
 from contact1d.workflow.runs.advised import in_si
 from contact1d.workflow.scene import Scene, SceneError
 from contact1d.workflow.scene.quantities import Place
@@ -55,7 +56,7 @@ SETTINGS = {
         (4.0, 2.0, 0.5, None), 0.5, lambda scene: scene.bodies.lower == "rigid_plane" and scene.method == "quasistatic"
     ),
     # Without attraction displacements are measured from the cutoff.
-    "interaction.cutoff": Setting((0.8, None), None, lambda scene: scene.adheres),
+    "interaction.cutoff": Setting((0.8, None), None, lambda scene: law_of(scene).attracts(scene)),
     "experiment.displacements.steps": Setting((0.25, 0.5, 2.0), 2.0),
     "experiment.steps": Setting((0.5, 2.0, None), 2.0),
     "damping.coefficient": Setting((0.5, 2.0, None), None, quasistatic),

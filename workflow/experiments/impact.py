@@ -55,9 +55,8 @@ class ImpactExperiment(Scripted[Impact]):
         energy, parted = 0.5 * mass * velocity**2, not trace.force[-FLIGHT:].any()
         back = float((d[-2] - d[-1]) / (time[-1] - time[-2])) / velocity if parted else 0.0
         deepest = _top(trace, d)
-        # The surface has not been touched before, so that a body that relaxes has the contact of its displacement.
-        own = settings.law.half_width(deepest, settings.law.rest) if settings.law.touched else 0.0
-        widest = own or _top(trace, np.asarray([trace.radius(i) or 0.0 for i in range(len(trace))]))
+        radii = np.asarray([trace.radius(i) or 0.0 for i in range(len(trace))])
+        widest = settings.law.untouched_radius(deepest) or _top(trace, radii)
         lossless = settings.law.is_lossless
         found = {
             "restitution": Reading(back, NUMBER, scale=None if back else 1.0),

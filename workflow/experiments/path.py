@@ -156,7 +156,7 @@ class PathExperiment(Scripted[Path]):
         errors = {"sampling": work.uncertainty}
         if closed:
             # Springs lose nothing, nor does a contact that is held all along, where particles neither snap nor buckle.
-            may_jump = settings.law.attracts and (settings.snaps or scene.horizontal or _is_unstable(trace))
+            may_jump = settings.law.attracts(scene) and (settings.snaps or scene.horizontal or _is_unstable(trace))
             known = not (self.is_statistical or may_jump)
             scale = work.whole if known else None
             return {"dissipated_energy": Reading(work.area, ENERGY, errors, scale=scale, prescribed=known)}
@@ -176,7 +176,7 @@ class PathExperiment(Scripted[Path]):
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
         """What the last unloading has, or without adhesion the deepest state; and the energy that is lost."""
-        found = _adhesion(trace, settings) if settings.law.attracts else _largest(trace)
+        found = _adhesion(trace, settings) if settings.law.attracts(scene) else _largest(trace)
         return found | self._lost(trace, scene, settings)
 
     def advice(self, scene: Scene) -> str:
@@ -185,7 +185,7 @@ class PathExperiment(Scripted[Path]):
 
     def _missing(self, results: Mapping[str, Result], case: Reduction, phases: Sequence[Phase]) -> dict[str, str]:
         """Warnings of results that the path does not reach."""
-        if not case.model.law.attracts:
+        if not case.model.law.attracts(case.scene):
             return {}
         warnings: dict[str, str] = {}
         if _passes_jump(case) and not any(name.startswith(LOSSES) for name in results):

@@ -21,7 +21,6 @@ from contact1d.workflow.continuation.trust import require_no_contradiction
 from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.experiments.detachment import planned_detachment, pull_off_thermal
 from contact1d.workflow.experiments.experiment import Scripted
-from contact1d.workflow.laws import law_of
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import History, Path
 from contact1d.workflow.model.settings import Settings
@@ -48,18 +47,18 @@ class PullOffExperiment(Scripted[PullOff]):
 
     def is_sampled(self, scene: Scene) -> bool:
         """With an edge that takes time."""
-        return law_of(scene).in_time
+        return self.given(scene).velocity is not None
 
     def script(self, branch: Driver, scene: Scene) -> None:
         """Compress, unload to F = 0, retract to the force maximum, separate; as many times as there are cycles."""
-        preload, model = self.given(scene).preload, branch.model
-        scale = max(preload, branch.scale)
-        if model.law.in_time:
-            branch.follow(_pulled(model, self.given(scene)))
+        given = self.given(scene)
+        if given.velocity:
+            branch.follow(_pulled(branch.model, given))
             return
-        for _ in range(self.given(scene).cycles or 1):
+        scale = max(given.preload, branch.scale)
+        for _ in range(given.cycles or 1):
             branch.begin("loading")
-            branch.reach(preload, scale)
+            branch.reach(given.preload, scale)
             branch.begin("unloading")
             branch.reach(0.0, min(branch.scale, scale) or scale)
             branch.mark("zero_load")

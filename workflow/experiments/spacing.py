@@ -18,8 +18,9 @@ from contact1d.workflow.continuation.budget import misread
 from contact1d.workflow.continuation.outcome import LATTICE, LOSSES
 from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.experiments import kind_of
+from contact1d.workflow.laws import law_of
 from contact1d.workflow.model.settings import settings_for
-from contact1d.workflow.scene import Impact, Path, PullOff, Scene
+from contact1d.workflow.scene import Impact, Scene
 
 FEWEST, MOST = 30, 5000
 """Particles in the contact radius: at FEWEST F_A and a₀ of JKR are within 3e-3; MOST keep 1e-6."""
@@ -141,7 +142,7 @@ def contact_radius(scene: Scene) -> float:
     """
     radii, displacements, forces = contact_curve(scene)
     load = scene.experiment.compression
-    if scene.adheres and isinstance(scene.experiment, Path | PullOff):
+    if law_of(scene).attracts(scene) and scene.experiment.finds_pull_off:
         load = 0.0
     values, wanted = forces, load or 0.0
     if isinstance(scene.experiment, Impact):  # where the body has given up its energy

@@ -193,7 +193,7 @@ class Drawn:
 
 def drawn(trace: Trace, scene: Scene) -> list[Drawn]:
     """What friction made of each state, from the one before it; at the first the load is just there."""
-    coefficient, spacing, stiffness = scene.the(Friction).coefficient, scene.bodies.spacing, scene.tangential_stiffness
+    coefficient, spacing, stiffness, _ = _springs(trace)
     rows: list[Drawn] = []
     dissipated, direction, before, limit = 0.0, 0, np.empty(0), np.empty(0)
     for i in range(len(trace)):
@@ -211,6 +211,12 @@ def drawn(trace: Trace, scene: Scene) -> list[Drawn]:
         position = float(trace.along[i])
         rows.append(Drawn(position, float(force.sum()), carried, dissipated, wrong, trace, i, scene, direction))
     return rows
+
+
+def _springs(trace: Trace) -> tuple[float, float, float, float]:
+    """μ, the spacing [LU], and the tangential and normal stiffness of a particle [FU/LU] of the chain of a trace."""
+    law = cast("SlidingSprings", trace.model).law
+    return law.coefficient, law.spacing, law.ratio * law.stiffness, law.stiffness
 
 
 def _energy(rows: Sequence[Drawn], lost: float, scene: Scene) -> Reading:
@@ -236,15 +242,15 @@ def _unseen_slip(rows: Sequence[Drawn], scene: Scene) -> tuple[float, float]:
     outermost particles, and one at most; its forces are below k_t u and μ f, and it slips by as much as the sliders
     are moved beyond what a rising load lets them carry, k_t |Δu| − μ k_n Δd. A body with an edge has none.
     """
-    stiffness, coefficient = scene.tangential_stiffness, scene.the(Friction).coefficient
+    coefficient, spacing, stiffness, normal = _springs(rows[0].trace)
     outer = [np.sort(row.trace.profile(row.state).pressure) for row in rows]
     # Both edges are alike: the next particle is the third.
     second, first = max(((p[p > 0.0][2], p[p > 0.0][0]) for p in outer if (p > 0.0).sum() > 2), default=(0.0, 0.0))
-    limit, rise = (scene.bodies.spacing * coefficient * float(one) for one in (second, second - first))
+    limit, rise = (spacing * coefficient * float(one) for one in (second, second - first))
     slipped = 0.0
     for before, after in pairwise(rows):
         deeper = after.trace.displacement[after.state] - before.trace.displacement[before.state]
-        moved = abs(after.position - before.position) - coefficient * scene.bulk_stiffness * deeper / stiffness
+        moved = abs(after.position - before.position) - coefficient * normal * deeper / stiffness
         slipped += max(0.0, float(moved)) if after.position != before.position or deeper < 0.0 else 0.0
     force = stiffness * max(abs(row.position) for row in rows)
     share = min(1.0, force / rise) if rise > 0.0 else 1.0

@@ -19,10 +19,11 @@ from contact1d.digits import apart
 from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.outcome import LATTICE, Outcome, Reading, Result
-from contact1d.workflow.continuation.state import RadiusRule, State, radius_rule
+from contact1d.workflow.continuation.state import State, radius_rule
 from contact1d.workflow.continuation.trust import UntrustedError, doubts, require_trust
 from contact1d.workflow.deck.steps import DisplaceInTime, Phase, Row, UnderLoad
 from contact1d.workflow.experiments.series import Series, begun, measured, recorded
+from contact1d.workflow.laws.radius import RadiusRule
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE
 

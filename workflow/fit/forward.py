@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from contact1d.workflow.laws import law_of
 from contact1d.workflow.laws.dugdale import Dugdale
 from contact1d.workflow.laws.jkr import elongation
 from contact1d.workflow.scene import Scene, Shape
@@ -217,10 +218,9 @@ class ContactModel:
 
     def applies(self, scene: Scene) -> bool:
         """Whether a scene has what it needs."""
-        adhesion = scene.adhesion
         known = {
             "W": scene.work_of_adhesion,
-            "h₀": adhesion and adhesion.range,
+            "h₀": law_of(scene).range_of(scene, 0.0),
             "R": scene.bodies.profile.curvature_radius,
         }
         return all(known[name] for name in self.needs)

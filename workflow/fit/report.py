@@ -22,6 +22,7 @@ from contact1d.workflow.fit.fit import Found
 from contact1d.workflow.fit.plan import STIFFNESS
 from contact1d.workflow.fit.solution import SOFTEST, Fitted
 from contact1d.workflow.fit.subject import OFFSET, POINT, modulus_of
+from contact1d.workflow.laws import law_of
 from contact1d.workflow.scene.problems import tables_as_toml
 from contact1d.workflow.units import Quantity, scale_of
 
@@ -137,12 +138,12 @@ def _modulus(one: Fitted) -> dict[str, Any]:
 
 def _tabor(one: Fitted) -> dict[str, Any] | None:
     """µ = (R W²/(E*² h₀³))^(1/3); None without adhesion or a radius."""
-    radius, adhesion = one.scene.bodies.profile.curvature_radius, one.scene.adhesion
-    if adhesion is None or radius is None:
+    scene, radius = one.scene, one.scene.bodies.profile.curvature_radius
+    if not scene.work_of_adhesion or radius is None:
         return None
-    reach = adhesion.range or ASSUMED_RANGE
-    value = MaugisDugdale(radius, modulus_of(one.scene), adhesion.work, reach).tabor
-    return {"value": value, "range": reach, "assumed": not adhesion.range}
+    given, reach = (law_of(scene).range_of(scene, assumed) for assumed in (0.0, ASSUMED_RANGE))
+    value = MaugisDugdale(radius, modulus_of(scene), scene.work_of_adhesion, reach).tabor
+    return {"value": value, "range": reach, "assumed": not given}
 
 
 def chart(found: Found) -> Chart:

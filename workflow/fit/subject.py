@@ -13,6 +13,7 @@ from contact1d.workflow.fit.curve import ForceCurve
 from contact1d.workflow.fit.forward import Body, Branch, ContactModel, kept
 from contact1d.workflow.fit.plan import STIFFNESS
 from contact1d.workflow.fit.search import Problem, Unknown
+from contact1d.workflow.laws import law_of
 from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
@@ -79,9 +80,9 @@ class Subject:
 
     def _branch(self, factors: Factors) -> Branch:
         scene = self._moved(factors)
-        reach = scene.adhesion.range if scene.adhesion else None
+        reach = law_of(scene).range_of(scene, 0.0)
         body = Body.of(scene.bodies.profile, self.curve.depth)
-        return self.model.branch(body, modulus_of(scene), scene.work_of_adhesion, reach or 0.0)
+        return self.model.branch(body, modulus_of(scene), scene.work_of_adhesion, reach)
 
     def parts(self, values: Sequence[float]) -> tuple[Branch, float, float, float]:
         """The contact's own curve; and k_c [FU/LU], contact point [LU] and offset of the force [FU]."""

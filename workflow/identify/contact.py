@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from contact1d.workflow.body.cases import ASSUMED_RANGE
+from contact1d.workflow.laws import law_of
 from contact1d.workflow.scene import Problem, Scene, SceneError, read_tables, scene_from_dict
 from contact1d.workflow.scene.measured import is_scan
 from contact1d.workflow.scene.problems import nearest, shown
@@ -93,13 +94,12 @@ class AskedContact:
     @property
     def work_of_adhesion(self) -> float:
         """The work of adhesion W = 2γ [J/m²]; 0: no attraction."""
-        return 0.0 if self.scene.adhesion is None or not _adheres(self.given) else self.scene.adhesion.work
+        return self.scene.work_of_adhesion
 
     @property
     def range(self) -> float:
         """The range h₀ of the attraction [m]."""
-        adhesion = self.scene.adhesion
-        return ASSUMED_RANGE if adhesion is None or adhesion.range is None else adhesion.range
+        return law_of(self.scene).range_of(self.scene, ASSUMED_RANGE)
 
     @property
     def load(self) -> float | None:
@@ -194,7 +194,7 @@ def _as_scene(data: Mapping[str, Any]) -> dict[str, Any]:
     if not unknown.keys() & given.keys():
         unknown = {"material.contact_modulus": 1.0}
     if "range" in data and not _adheres(data):
-        unknown["adhesion.work_of_adhesion"] = 1.0
+        unknown["adhesion.work_of_adhesion"] = 0.0
     tables: dict[str, Any] = {}
     set_values(tables, DEFAULTS | unknown | given)
     return tables

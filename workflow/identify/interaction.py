@@ -27,8 +27,7 @@ from contact1d.digits import apart
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.errors import Contact1dError, FolderError, RunError
 from contact1d.workflow.laws.law import Law
-from contact1d.workflow.laws.pairs import of_pairs
-from contact1d.workflow.model.cutoff import interaction_law
+from contact1d.workflow.laws.pairs import interaction_law, of_pairs
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.runs.finished import Run, load_run
 from contact1d.workflow.runs.scales import UNIT_FIXING_RESULTS, jkr_scales

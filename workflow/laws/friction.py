@@ -10,13 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.shear import Slip, slip
 from contact1d.workflow.laws.pairs import Independent, Springs, on_plane
+from contact1d.workflow.laws.particles import MORE_PHASES
 from contact1d.workflow.laws.path import Followed, Path
 from contact1d.workflow.laws.shape import Profile
 from contact1d.workflow.scene import Friction, Scene, Tangential
@@ -102,9 +103,8 @@ class Frictional(Independent):
         coefficient: μ.
     """
 
-    has_zones: ClassVar[bool] = True
-    beside: ClassVar[tuple[str, ...]] = ("pressed", "along")
-    exact: ClassVar[tuple[str, ...]] = beside
+    beside = ("pressed", "along")
+    exact = beside
 
     ratio: float = 1.0
     coefficient: float = 0.0
@@ -133,6 +133,8 @@ class SlidingSprings(Springs):
     """Springs with a slider each, on a rigid plane; a path is of displacements and positions along x."""
 
     law: Frictional
+
+    phases = MORE_PHASES
 
     @property
     def chain(self) -> Sliders:

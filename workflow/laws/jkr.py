@@ -28,10 +28,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.workflow.errors import SettingsError
-from contact1d.workflow.laws.law import FARTHEST_RATIO, Law, stopped_at
-from contact1d.workflow.laws.pairs import Springs, springs
+from contact1d.workflow.laws.law import FARTHEST_RATIO, SOFTEST_SHARE, Law, stopped_at
+from contact1d.workflow.laws.pairs import springs
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import Followed, Path
+from contact1d.workflow.laws.radius import Clinging, Held, RadiusRule
 from contact1d.workflow.laws.shape import Profile, beside_kinks
 from contact1d.workflow.scene import Adhesion, Scene
 
@@ -55,8 +56,6 @@ NEAR_AN_END = 0.1
 BENDS, WHOLE = 401, 1.0 - 1e-9
 """Values of κ that are tried for the cell of the limit point, and share from which on it is held as a whole. The rest
 of the share is an error of the force: at a kink between two cells all lattices have the same one, so none shows it."""
-SOFTEST = 0.998
-"""Tension over the largest one at which a contact counts as softest."""
 TOUCH = 1e-9
 """Distance over the spacing at which bodies touch: round-off of a displacement of 0."""
 
@@ -122,19 +121,29 @@ class Jkr(Law):
         known: the greatest position up to which it is known [LU].
     """
 
-    holds: ClassVar[bool] = True
-    is_lossless: ClassVar[bool] = False
-    file: ClassVar[str] = "adhesion.cells"
-    beside: ClassVar[tuple[str, ...]] = ("pressed", "adhesive", "zone", "dmt")
-    exact: ClassVar[tuple[str, ...]] = ("pressed", "adhesive")
+    is_lossless = False
+    rules: ClassVar[tuple[type[RadiusRule], ...]] = (Clinging, Held)
+    file = "adhesion.cells"
+    beside: ClassVar[tuple[str, ...]] = ("adhesive", "transition", "dmt")
+    exact: ClassVar[tuple[str, ...]] = ("adhesive",)
 
     work: float = field(kw_only=True)
     known: float = field(kw_only=True)
 
     @classmethod
     def applies(cls, scene: Scene) -> bool:
-        """Of [adhesion]."""
-        return scene.adhesion is not None
+        """Of [adhesion]; without W a contact is that of springs."""
+        return scene.work_of_adhesion > 0.0
+
+    @classmethod
+    def attracts(cls, scene: Scene) -> bool:
+        """Always."""
+        return True
+
+    @classmethod
+    def range_of(cls, scene: Scene, assumed: float) -> float:
+        """The assumed one."""
+        return assumed
 
     @classmethod
     def of(cls, scene: Scene, profile: Profile) -> Law:
@@ -169,17 +178,21 @@ class Jkr(Law):
         return jkr
 
     def particles(self, x: Array, deepest: float) -> Particles:
-        """See `Law`; springs alone where W = 0."""
-        return JkrCells(self, x, deepest) if self.attracts else Springs(self, x, deepest)
+        """See `Law`."""
+        return JkrCells(self, x, deepest)
 
     def extent(self, deepest: float, half: float) -> float:
         """See `Law`: all of a chain."""
-        return half if self.attracts else super().extent(deepest, half)
+        return half
 
     def columns(self, body: Profile, x: Array) -> Mapping[str, tuple[int, Array]]:
         """See `Law`."""
         cells = self.cells(x, body)
         return {"hold": (1, cells.hold), "width": (1, cells.width), "fall": (1, cells.fall), "bend": (0, cells.bend)}
+
+    def strained(self, displacement: float) -> float:
+        """See `Law`: a punch that adheres and carries nothing is not deep, and its springs hold it up to its limit."""
+        return max(displacement, -self.fixed_grips[1])
 
     @property
     def modulus(self) -> float:
@@ -197,10 +210,10 @@ class Jkr(Law):
             inner = np.geomspace(FIRST**level * self.known, self.known, level * PLACES)
             x = beside_kinks(np.append(0.0, inner), self.profile)
             least = int(np.argmin(opened(x)))
-            if self.work == 0.0 or x[least] > SEEN * inner[0]:
+            if x[least] > SEEN * inner[0]:
                 break
         near, at = x, least
-        for _ in range(ROUNDS if self.work else 0):
+        for _ in range(ROUNDS):
             near = np.linspace(near[max(at - 1, 0)], near[min(at + 1, near.size - 1)], LOOKS)
             at = int(np.argmin(opened(near)))
         x = np.unique(np.append(x, near[at]))
@@ -250,12 +263,9 @@ class Jkr(Law):
             )
 
     def cells(self, x: Array, body: Profile) -> Cells:
-        """The cells of particles at positions x, (n,) [LU], of `body`. Without adhesion they separate at touch."""
+        """The cells of particles at positions x, (n,) [LU], of `body`."""
         at, half = np.abs(x), 0.5 * self.spacing
         heights, narrowest = body.height(at), NARROWEST * self.spacing
-        if self.work == 0.0:
-            none = np.zeros_like(x)
-            return Cells(heights, none, none + narrowest, none, none)
         least = self.fixed_grips[0]
 
         def threshold(place: Array) -> Array:
@@ -279,7 +289,7 @@ class Jkr(Law):
                 fall[i] = (heights[i] - held) / (1.0 - share)
         return Cells(heights, heights - inner, width, fall, bend)
 
-    def energy(self, displacement: float, radius: float) -> float | None:
+    def energy(self, displacement: float, radius: float) -> float:
         """U(d, a) = E* ∫_0^a (d − g)² dx − πa²W [FU·LU], 0 of bodies apart; ∂U/∂a = 0 in equilibrium."""
         x = np.linspace(0.0, radius, PLACES)
         elastic = self.modulus * float(np.trapezoid((displacement - self.profile.height(x)) ** 2, x))
@@ -306,11 +316,6 @@ class Jkr(Law):
         top = least + int(np.argmin(force[least:]))
         return h[top:], force[top:]
 
-    @cached_property
-    def attracts(self) -> bool:
-        """Whether W > 0."""
-        return self.work > 0.0
-
     def pull_off_force(self) -> float:
         """F_A [FU]."""
         return max(0.0, -float(self._rising[1][0]))
@@ -321,9 +326,9 @@ class Jkr(Law):
         return float(np.interp(force, forces, places))
 
     def _stiffness_under(self, force: float) -> float:
-        """dF/dd [FU/LU] under a force [FU]; a tension above SOFTEST of the largest counts as that."""
+        """dF/dd [FU/LU] under a force [FU]; a tension above SOFTEST_SHARE of the largest counts as that."""
         places, forces = self._rising
-        return float(np.interp(max(force, -SOFTEST * self.pull_off_force()), forces, np.gradient(forces, places)))
+        return float(np.interp(max(force, -SOFTEST_SHARE * self.pull_off_force()), forces, np.gradient(forces, places)))
 
     def parted(self, share: float) -> float:
         """Displacement [LU] of pull-off under fixed grips, where the tensile force vanishes at once."""
@@ -339,11 +344,7 @@ class JkrCells(Particles):
     """The cells of a chain on a rigid plane, which adhere from touch to where fixed grips lose all of it at once."""
 
     law: Jkr
-
-    @property
-    def shares_edges(self) -> bool:
-        """Always."""
-        return True
+    shares_edges = True
 
     @cached_property
     def _cells(self) -> Cells:
@@ -388,7 +389,7 @@ class JkrCells(Particles):
         held = self._holds(path.displacement)
 
         def energy(displacement: float) -> float:
-            return self.law.energy(displacement, float(self.law.radii(np.asarray([displacement]))[0])) or 0.0
+            return self.law.energy(displacement, float(self.law.radii(np.asarray([displacement]))[0]))
 
         made, lost = (np.count_nonzero(np.diff(held.astype(int), prepend=0) == way) for way in (1, -1))
         end = energy(float(path.displacement[-1])) if held[-1] else 0.0

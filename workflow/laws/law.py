@@ -21,7 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.curve_marks import tops
-from contact1d.workflow.laws.shape import Profile
+from contact1d.workflow.laws.radius import Compressed, InTension, RadiusRule, ToTheEdge
+from contact1d.workflow.laws.shape import Profile, Tabulated
 from contact1d.workflow.scene import Impact, Scene
 
 if TYPE_CHECKING:
@@ -72,12 +73,9 @@ class Law(ABC):
 
     Attributes:
         in_time: whether forces depend on how fast a path is gone.
-        tells_edges: whether each load step on a rigid plane knows where the contact ends.
-        holds: whether a contact on a rigid plane adheres.
-        has_range: whether that attraction goes beyond the contact.
         is_lossless: whether a closed path loses nothing.
-        has_zones: whether the contact has edges inside of its own.
-        touched: whether a state depends on what has been touched before.
+        rules: what the contact radius is: of a body with an edge, of bodies that attract each other, of others.
+        table: what a profile that takes long is tabulated as.
         file: of the columns that the deck has of each particle; "" without.
         beside: families of closed forms (`body.theory`) that may be printed beside a run; of another law none is.
         exact: those of them that are the law's own, so that a run must agree with them.
@@ -93,12 +91,9 @@ class Law(ABC):
     """
 
     in_time: ClassVar[bool] = False
-    tells_edges: ClassVar[bool] = False
-    holds: ClassVar[bool] = False
-    has_range: ClassVar[bool] = False
     is_lossless: ClassVar[bool] = True
-    has_zones: ClassVar[bool] = False
-    touched: ClassVar[bool] = False
+    rules: ClassVar[tuple[type[RadiusRule], ...]] = (ToTheEdge, InTension, Compressed)
+    table: ClassVar[type[Tabulated]] = Tabulated
     file: ClassVar[str] = ""
     beside: ClassVar[tuple[str, ...]] = ()
     exact: ClassVar[tuple[str, ...]] = ()
@@ -135,6 +130,21 @@ class Law(ABC):
     def particles(self, x: Array, deepest: float) -> Particles:
         """Particles at rising positions [LU]; `deepest`: largest displacement that is expected [LU]."""
 
+    @classmethod
+    def attracts(cls, scene: Scene) -> bool:
+        """Whether the bodies of a scene hold each other."""
+        return bool(scene.interaction and scene.interaction.attraction)
+
+    @classmethod
+    def rule(cls, scene: Scene) -> type[RadiusRule]:
+        """What the contact radius of a scene is."""
+        return cls.rules[0 if scene.bodies.profile.has_edge else 1 if cls.attracts(scene) else 2]
+
+    @classmethod
+    def range_of(cls, scene: Scene, assumed: float) -> float:
+        """h₀ of an attraction [LU], `assumed` of one that has none by its law; 0 without an attraction."""
+        return 0.0
+
     def extent(self, deepest: float, half: float) -> float:
         """Half-width [LU] up to which particles count, of a chain's `half`, at a displacement [LU]."""
         return max(self.half_width(max(deepest, 0.0), self.felt), FEWEST * self.spacing)
@@ -153,6 +163,11 @@ class Law(ABC):
         return None
 
     @classmethod
+    def series(cls, scene: Scene) -> tuple[tuple[float, float], ...]:
+        """Shares of a modulus that relaxes in time, and their times [TU]."""
+        return ()
+
+    @classmethod
     def jumps(cls, scene: Scene) -> bool:
         """Whether the force jumps where the velocity does."""
         return False
@@ -169,10 +184,13 @@ class Law(ABC):
         """Force [FU] of an attraction beyond the edge of a contact, and the tension inside [FU/LU²] that it brings."""
         return 0.0, np.zeros_like
 
-    @cached_property
-    def attracts(self) -> bool:
-        """Whether the bodies hold each other."""
-        return bool(self.force.min() < 0.0)
+    def strained(self, displacement: float) -> float:
+        """Length [LU] by which springs are pressed or pulled at most, of a contact as deep as this [LU]."""
+        return displacement
+
+    def untouched_radius(self, displacement: float) -> float | None:
+        """Contact radius [LU] at the largest displacement [LU] of an untouched body; None: its particles tell it."""
+        return None
 
     def contact_force(self, displacement: float) -> float:
         """F(d) [FU], compression positive."""

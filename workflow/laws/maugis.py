@@ -12,7 +12,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from itertools import pairwise
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +21,7 @@ from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.laws.dugdale import DOUBLINGS, Dugdale, Zone, covered
 from contact1d.workflow.laws.jkr import Jkr
 from contact1d.workflow.laws.path import Path, legs
-from contact1d.workflow.laws.shape import Profile, beside_kinks
+from contact1d.workflow.laws.shape import Profile, Splined, beside_kinks
 from contact1d.workflow.laws.zoned import Zoned, ZonedCells
 from contact1d.workflow.scene import Adhesion, Scene
 
@@ -54,22 +53,29 @@ class Maugis(Zoned):
 
     Attributes:
         range: h₀ [LU].
+        table: the predictor's shape is that of the deck.
     """
 
-    has_range: ClassVar[bool] = True
-    exact: ClassVar[tuple[str, ...]] = ("zone",)
+    table = Splined
+    beside = ("adhesive", "zone", "dmt")
+    exact = ("zone",)
 
     range: float = field(kw_only=True)
 
     @classmethod
     def applies(cls, scene: Scene) -> bool:
         """Of an attraction with a range."""
-        return scene.adhesion is not None and bool(scene.adhesion.range and scene.adhesion.work)
+        return Jkr.applies(scene) and scene.the(Adhesion).range is not None
 
     @classmethod
     def from_jkr(cls, jkr: Jkr, scene: Scene, wanted: float, load: float) -> Maugis:
         """See `Jkr`."""
         return _with_range(jkr, scene.the(Adhesion).range or 0.0, scene.bodies.profile, wanted, load)
+
+    @classmethod
+    def range_of(cls, scene: Scene, assumed: float) -> float:
+        """The scene's."""
+        return scene.the(Adhesion).range or assumed
 
     @classmethod
     def drawn(cls, scene: Scene, edge: float, reach: float) -> tuple[float, Callable[[Array], Array]]:
@@ -155,14 +161,6 @@ class Maugis(Zoned):
         """The states at places of the curve; bodies apart feel nothing, at a displacement that is not known."""
         number, held = np.arange(self.curve.edge.size, dtype=np.float64), places != APART
         return Zone(*(np.where(held, np.interp(places, number, one), 0.0) for one in vars(self.curve).values()))
-
-    def place_of(self, edge: float, reach: float) -> float:
-        """The place of a state on the curve, by its a and c [LU]."""
-        if reach == 0.0:
-            return APART
-        column = self.curve.edge if edge > 0.0 else self.curve.reach[: BEFORE + 1]
-        start = BEFORE if edge > 0.0 else 0
-        return start + float(np.interp(edge or reach, column[start:], np.arange(column.size - start)))
 
     def solved(self, displacements: Array, places: Array) -> Zone:
         """The states at displacements [LU] near places of the curve, exactly."""
@@ -260,7 +258,7 @@ class Maugis(Zoned):
     def require_one_edge(self) -> None:
         """Nothing: where the edge would jump, the curve has a limit point."""
 
-    def energy(self, displacement: float, radius: float) -> float | None:
+    def energy(self, displacement: float, radius: float) -> float:
         """See `energy_of`, of a contact that is unloaded from the widest."""
         width = (float(self.profile.height(np.asarray([radius]))[0]) - displacement) / self.equations.ratio
         c = math.hypot(radius, width) if radius > 0.0 else float(self.reaches(np.asarray([displacement]))[0])

@@ -10,7 +10,8 @@ from typing import Any, ClassVar, Self, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.potentials import DoubleExponential
+from contact1d.analysis.theory.adhesion import LENNARD_JONES_STRESS
+from contact1d.potentials import DoubleExponential, Exponential
 from contact1d.workflow.laws.law import Law
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import Followed, Path, legs
@@ -35,6 +36,12 @@ class Independent(Law):
     def applies(cls, scene: Scene) -> bool:
         """Where no other does."""
         return True
+
+    @classmethod
+    def range_of(cls, scene: Scene, assumed: float) -> float:
+        """That of Lennard-Jones surfaces with the force-free distance of an interaction."""
+        law = interaction_law(scene)
+        return law.force_free_distance() / LENNARD_JONES_STRESS if law and law.attraction else 0.0
 
     @classmethod
     def of(cls, scene: Scene, profile: Profile) -> Self:
@@ -99,6 +106,15 @@ class Springs(Particles):
             return np.asarray(inner)
         assert estimate.outer is not None
         return np.where(joined, inner, np.interp(gaps, estimate.outer, estimate.force, right=0.0))
+
+
+def interaction_law(scene: Scene) -> DoubleExponential | None:
+    """The pair interaction of the scene, or None on a rigid plane."""
+    if scene.interaction is None:
+        return None
+    terms = scene.interaction
+    attraction = None if terms.attraction is None else Exponential(terms.attraction.amplitude, terms.attraction.range)
+    return DoubleExponential(Exponential(terms.repulsion.amplitude, terms.repulsion.range), attraction)
 
 
 def row_force(law: DoubleExponential, r: Array, spacing: float, cutoff: float) -> Array:

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.workflow.laws.law import Law
-from contact1d.workflow.laws.path import Followed, History, Path
+from contact1d.workflow.laws.path import Followed, History, Path, equilibria
 from contact1d.workflow.laws.shape import Profile as Undeformed
 from contact1d.workflow.laws.shape import places_within
 
@@ -36,6 +36,12 @@ SIDES, LOOKS = np.asarray([-0.5, -0.1, -0.01, -1e-4, 0.0, 1e-4, 0.01, 0.1, 0.5])
 """Looks for where a force is carried, each beside the secant's place by so much of the bracket, and most of them."""
 EXACT = 1e-13
 """Difference of the forces of a bracket over the larger one of the first, from which on it is straight."""
+PHASES, MORE_PHASES = (0.25, 0.0), (0.375, 0.25, 0.125, 0.0)
+"""Positions of the apex between particles, over the spacing, that an even chain is compared with; more where a contact
+has several edges, the errors of which may cancel at two positions."""
+UNEVEN, FINER = (0.93, 0.86), (0.5, 0.25)
+"""Spacings over the own one that put a kink of the profile elsewhere between particles, on both sides alike, and on
+which errors converge."""
 NEAREST = 1e-9
 """Distance from the limit point, over that to the largest displacement, from which positions are examined."""
 
@@ -58,6 +64,7 @@ class Particles(ABC):
 
     dense: ClassVar[int] = 8
     """Positions in one step of a path that show what its steps miss."""
+    phases: ClassVar[tuple[float, ...]] = PHASES
 
     @property
     def shape(self) -> Undeformed:
@@ -66,8 +73,23 @@ class Particles(ABC):
 
     @property
     def shares_edges(self) -> bool:
-        """Whether the cells at an edge of the contact have the part of its load that is inside of it."""
+        """Whether the cells at an edge of the contact have the part of its load that is inside of it.
+
+        Then sums over particles come closer to the body's own steadily. Whole particles touch or don't, and what they
+        miss goes up and down with the spacing.
+        """
         return False
+
+    def lattices(self, is_pointed: bool) -> tuple[list[Particles], list[Particles]]:
+        """The same with particles elsewhere, and on finer spacings, where errors converge.
+
+        Of a body that `is_pointed`, sums miss as much wherever its apex is, as those of a cone do.
+        """
+        kinks, finer = self.law.profile.kinks, FINER if self.shares_edges else ()
+        phases = MORE_PHASES if kinks else () if finer else self.phases
+        uneven = UNEVEN if kinks or is_pointed else ()
+        beside = [self.resized(factor) for factor in uneven] + [self.shifted(phase) for phase in phases]
+        return beside, [self.resized(factor) for factor in finer]
 
     def prescribed(self, path: Path) -> dict[str, Array]:
         """What load steps along a path that begins apart give a deck, by the names of its columns, (m,)."""
@@ -96,6 +118,13 @@ class Particles(ABC):
         Found without a force. None where this is not known.
         """
         return None
+
+    def checked(self, path: Path, finer: int) -> Path:
+        """The path along which the work of a run is compared with `energies`: from apart on, in dense equilibria.
+
+        `finer`: times as many. Where forces depend on time, the load steps themselves.
+        """
+        return equilibria(path, self.apart, self.jumps, self.law.spacing, finer)
 
     def refined(self, history: History) -> History:
         """With further moments where a contact needs them: beside its jumps."""
@@ -126,7 +155,7 @@ class Particles(ABC):
     @property
     def parted(self) -> float | None:
         """Displacement [LU] at which a contact that is unloaded is lost; None where the history decides that."""
-        return self.apart
+        return None if self.law.in_time else self.apart
 
     @property
     def limits(self) -> tuple[float, ...]:

@@ -7,7 +7,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 from functools import cached_property, partial
 from itertools import pairwise
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,8 +28,6 @@ SAME = 1e-9
 """Fall of d over its range that is one: others are round-off."""
 LOOKS_BETWEEN, EDGE_STEP = 20, 0.01
 """Looks for a receding edge between two moments of a history, and its way from one load step to the next, over all."""
-NEAREST = 1e-9
-"""Distance from the limit point, over that to the largest displacement, from which positions are examined."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,15 +41,15 @@ class Receding(Zoned):
         rate: v₀ and n.
     """
 
-    in_time: ClassVar[bool] = True
-    exact: ClassVar[tuple[str, ...]] = ()
+    in_time = True
+    exact = ()
 
     rate: Rate = field(kw_only=True)
 
     @classmethod
     def applies(cls, scene: Scene) -> bool:
         """Of an edge that takes its time."""
-        return scene.adhesion is not None and bool(scene.adhesion.rate and scene.adhesion.work)
+        return Jkr.applies(scene) and scene.the(Adhesion).rate is not None
 
     @classmethod
     def from_jkr(cls, jkr: Jkr, scene: Scene, wanted: float, load: float) -> Receding:
@@ -150,17 +147,12 @@ class RecedingCells(ZonedCells):
 
     law: Receding
 
-    dense: ClassVar[int] = 4
+    dense = 4
 
     @property
     def apart(self) -> float:
         """Where fixed grips would lose a contact that takes its time [LU]."""
         return self.law.fixed_grips[1]
-
-    @property
-    def parted(self) -> None:
-        """See `Particles.parted`."""
-        return
 
     def held(self, displacements: Array) -> Array:
         """F [FU] at rest."""
@@ -174,6 +166,10 @@ class RecedingCells(ZonedCells):
         none = np.zeros_like(edge)
         return Zone(edge, edge, path.displacement, self.law.equations.forces(edge, none, path.displacement))
 
+    def checked(self, path: Path, finer: int) -> Path:
+        """Return the path itself: its load steps have their times."""
+        return path
+
     def energies(self, path: Path) -> tuple[float, float]:
         """U(d, a) of JKR; ∫ (G − W) 2πa da where the edge recedes, and what U jumps by at touch and separation."""
         estimate, zone = self.law, self.zone(path)
@@ -182,7 +178,7 @@ class RecedingCells(ZonedCells):
         excess = estimate.modulus * opened**2 - 2.0 * math.pi * a * estimate.work
         fell = np.minimum(np.diff(a), 0.0) * (a[1:] > 0.0)
         lost = -float(np.sum(0.5 * (excess[1:] + excess[:-1]) * fell))
-        energies = [0.0, *(estimate.energy(float(d[i]), float(a[i])) or 0.0 for i in range(a.size))]
+        energies = [0.0, *(estimate.energy(float(d[i]), float(a[i])) for i in range(a.size))]
         jumps = np.flatnonzero(np.diff(a > 0.0, prepend=False))
         return energies[-1], lost + sum(energies[at] - energies[at + 1] for at in jumps.tolist())
 

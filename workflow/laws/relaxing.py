@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import ClassVar, Self
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from contact1d.workflow.laws.memory import Array, Edges, Memory, edges_of
 from contact1d.workflow.laws.pairs import Independent, on_plane
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import Followed, Path
+from contact1d.workflow.laws.radius import Given, InTension, ToTheEdge
 from contact1d.workflow.laws.shape import Profile
 from contact1d.workflow.scene import Scene, Viscoelasticity
 
@@ -43,13 +44,12 @@ class Relaxing(Independent):
         material: its springs, arms and dashpots.
     """
 
-    in_time: ClassVar[bool] = True
-    tells_edges: ClassVar[bool] = True
-    is_lossless: ClassVar[bool] = False
-    touched: ClassVar[bool] = True
-    file: ClassVar[str] = "retardation.cells"
-    beside: ClassVar[tuple[str, ...]] = ("relaxing",)
-    exact: ClassVar[tuple[str, ...]] = beside
+    in_time = True
+    is_lossless = False
+    rules = (ToTheEdge, InTension, Given)
+    file = "retardation.cells"
+    beside = ("relaxing",)
+    exact = beside
 
     material: Viscoelasticity = field(default_factory=Viscoelasticity)
 
@@ -65,6 +65,11 @@ class Relaxing(Independent):
         return found
 
     @classmethod
+    def series(cls, scene: Scene) -> tuple[tuple[float, float], ...]:
+        """See `Law`."""
+        return tuple((term.share, term.time) for term in scene.the(Viscoelasticity).terms or ())
+
+    @classmethod
     def soonest(cls, scene: Scene) -> float:
         """See `Law`."""
         return scene.the(Viscoelasticity).shortest_time
@@ -73,6 +78,10 @@ class Relaxing(Independent):
     def jumps(cls, scene: Scene) -> bool:
         """See `Law`; of dashpots it does."""
         return scene.the(Viscoelasticity).resists_jumps
+
+    def untouched_radius(self, displacement: float) -> float:
+        """See `Law`: that of the displacement."""
+        return self.half_width(displacement, self.rest)
 
     def creep(self, time: float) -> float:
         """See `Law`; 1 beside a dashpot, which lets nothing happen at once."""
@@ -106,7 +115,7 @@ class Relaxing(Independent):
         """See `Law`; of dashpots."""
         if not self.material.retardation_time:
             return {}
-        edges = edges_of(self.profile, x, self.spacing)
+        edges = edges_of(body, x, self.spacing)
         return {"width": (1, edges.widths), "rise": (1, edges.rises)}
 
 
@@ -116,7 +125,8 @@ class RelaxingSprings(Particles):
 
     law: Relaxing
 
-    dense: ClassVar[int] = 4
+    dense = 4
+    apart = 0.0
 
     @property
     def shares_edges(self) -> bool:
@@ -129,16 +139,6 @@ class RelaxingSprings(Particles):
         every = vars(edges_of(self.shape, self.x, self.law.spacing))
         found, own = np.unique(np.stack([*every.values()]), axis=1, return_inverse=True)
         return Edges(*found), own, np.bincount(own).astype(np.float64)
-
-    @property
-    def apart(self) -> float:
-        """Where a body that is untouched feels nothing [LU]."""
-        return 0.0
-
-    @property
-    def parted(self) -> None:
-        """See `Particles.parted`."""
-        return
 
     def held(self, displacements: Array) -> Array:
         """F [FU] of a body that has had no time."""
@@ -198,6 +198,10 @@ class RelaxingSprings(Particles):
             doubt += np.abs(0.5 * spacing * memory.width(margin, counts) - edge) + EDGE * spacing * (edge > 0.0)
         zone = (edge, edge, self._jumps(edge, displacement, velocities), doubt, self._layers(edge, spent, velocities))
         return Followed(self.x, each @ counts, lambda state: each[state][own], zone=zone)
+
+    def checked(self, path: Path, finer: int) -> Path:
+        """Return the path itself: its load steps have their times."""
+        return path
 
     def energies(self, path: Path) -> tuple[float, float]:
         """Of springs and arms, those included whose particles have left; what dashpots lose."""

@@ -8,7 +8,6 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +16,7 @@ from contact1d.workflow.laws.dugdale import Dugdale, Zone
 from contact1d.workflow.laws.jkr import Jkr
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import Followed
+from contact1d.workflow.laws.radius import Given
 from contact1d.workflow.laws.shape import Profile
 
 Array = NDArray[np.float64]
@@ -47,7 +47,7 @@ class Zoned(Jkr):
         surface: f, whose transform the profile is.
     """
 
-    tells_edges: ClassVar[bool] = True
+    rules = (Given, Given)
 
     surface: Profile = field(kw_only=True)
 
@@ -93,11 +93,7 @@ class ZonedCells(Particles):
     """The cells of a chain on a rigid plane, the edges of whose contact each load step gives."""
 
     law: Zoned
-
-    @property
-    def shares_edges(self) -> bool:
-        """Always."""
-        return True
+    shares_edges = True
 
     def _edges_of(self, zone: Zone) -> dict[str, Array]:
         """The columns of load steps: d, a, c and the mean of g(x) over the contact."""

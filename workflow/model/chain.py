@@ -140,7 +140,7 @@ def chain_length(scene: Scene, estimate: Law, largest: float, share: float) -> i
     if (own := scene.bodies.own_count) is not None:
         return own
     # Without attraction the contact ends where nothing is felt at all.
-    reach = felt_up_to(estimate, largest, share) if estimate.attracts else estimate.felt
+    reach = felt_up_to(estimate, largest, share) if estimate.attracts(scene) else estimate.felt
     half = CHAIN_MARGIN * estimate.half_width(max(largest, 0.0), reach)
     half = max(half, _edge(estimate, largest) - 0.5 * decay_length(scene) * math.log(share))
     wanted = 2 * (math.ceil(half / scene.bodies.own_spacing) + 2)

@@ -14,7 +14,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.potentials import DoubleExponential, Exponential
+from contact1d.potentials import DoubleExponential
 from contact1d.workflow.laws.law import Law
 from contact1d.workflow.model.chain import reaches_too_far
 from contact1d.workflow.scene import Interaction, Scene
@@ -64,15 +64,6 @@ def _row_forces(law: DoubleExponential, aside: Array, heights: Array) -> tuple[A
     distance = np.hypot(aside[None, :], heights[:, None])
     over = law.force(distance) / distance
     return (over * aside).sum(axis=1), over.sum(axis=1) * heights
-
-
-def interaction_law(scene: Scene) -> DoubleExponential | None:
-    """The pair interaction of the scene, or None on a rigid plane."""
-    if scene.interaction is None:
-        return None
-    terms = scene.interaction
-    attraction = None if terms.attraction is None else Exponential(terms.attraction.amplitude, terms.attraction.range)
-    return DoubleExponential(Exponential(terms.repulsion.amplitude, terms.repulsion.range), attraction)
 
 
 def cutoff_for(scene: Scene, law: DoubleExponential, share: float, tolerance: float) -> float:

@@ -19,9 +19,9 @@ from contact1d.potentials.table import FEWEST_POINTS, Table
 from contact1d.workflow.errors import SettingsError as SettingsError
 from contact1d.workflow.laws import law_of
 from contact1d.workflow.laws.law import Law, NotCarriedError, stopped_at
-from contact1d.workflow.laws.pairs import of_pairs
+from contact1d.workflow.laws.pairs import interaction_law, of_pairs
 from contact1d.workflow.laws.shape import Profile as Undeformed
-from contact1d.workflow.laws.shape import Splined, Tabulated, tabulated
+from contact1d.workflow.laws.shape import tabulated
 from contact1d.workflow.model.calibration import CALIBRATION, Calibration
 from contact1d.workflow.model.chain import (
     chains_of,
@@ -34,7 +34,7 @@ from contact1d.workflow.model.chain import (
     require_rows,
     require_travel,
 )
-from contact1d.workflow.model.cutoff import cutoff_for, interaction_law
+from contact1d.workflow.model.cutoff import cutoff_for
 from contact1d.workflow.model.dynamics import Motion, measured, motion_of, whole_steps
 from contact1d.workflow.model.forces import (
     CLOSEST_SHARE,
@@ -266,8 +266,7 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     else:
         largest = estimate.displacement_at(load * estimate.creep(scene.experiment.lasts or 0.0))
     chains = _chains(scene, estimate, forces, largest, calibration.chain * tolerance)
-    # A punch that adheres and carries nothing is not deep, and yet its springs hold it up to its limit.
-    scale = forces.scale_of(scene, max(largest, -estimate.parted(0.0)) if estimate.holds else largest)
+    scale = forces.scale_of(scene, estimate.strained(largest))
     require_digits(scene, chains.upper, forces.rest + largest, tolerance * scale)
     forces = replace(forces, scale=scale, residual=calibration.residual * tolerance * scale)
     forces = forces.with_table(scene, estimate, largest, calibration.table * tolerance * scale)
@@ -285,8 +284,8 @@ def _forces(scene: Scene, tolerance: float, calibration: Calibration) -> tuple[F
     """Springs, plane and interaction, without table and scales; the predictor of the contact that they make."""
     law, bodies, spring = interaction_law(scene), scene.bodies, scene.bulk_stiffness
     shape: Undeformed = bodies
-    if bodies.profile.slow:  # with a range the predictor's shape is that of the deck
-        shape = tabulated(bodies, bodies.spacing, Splined if law_of(scene).has_range else Tabulated)
+    if bodies.profile.slow:
+        shape = tabulated(bodies, bodies.spacing, law_of(scene).table)
     if law is None:
         plane = plane_stiffness_of(scene, tolerance)
         bond = spring if scene.stands else _beside_plane(spring, plane)

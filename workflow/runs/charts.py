@@ -23,6 +23,7 @@ from contact1d.workflow.body.reading import IMAGE, stands_for_spheres
 from contact1d.workflow.body.theory import applying, drawn_along, indented, sliding_contact
 from contact1d.workflow.body.traction import row_of
 from contact1d.workflow.continuation.state import radius_rule
+from contact1d.workflow.laws import law_of
 from contact1d.workflow.runs import inputs
 from contact1d.workflow.runs.report import COLUMN_UNITS
 from contact1d.workflow.scene import History
@@ -160,7 +161,8 @@ def _under_load(run: Run) -> Iterator[tuple[str, Chart]]:
     yield "force_displacement", path_chart(run, {name: curve[name] for name in CURVE_COLUMNS[:2]}, force=beside)
     radius = np.where(curve.contact_radius > 0.0, curve.contact_radius, nan)
     x, y = axis_of("contact_radius"), axis_of("force")
-    beside = [] if run.scene.adheres else figures.lines(*((name, a, force) for name, a, _, force in theory))
+    unique = not law_of(run.scene).attracts(run.scene)
+    beside = figures.lines(*((name, a, force) for name, a, _, force in theory if unique))
     width, height = 1.0, 1.0
     if scale and run.scene.bodies.profile.kind in SPHERES:
         height, width = scale

@@ -30,7 +30,6 @@ from contact1d.workflow.body.theory import theory
 from contact1d.workflow.body.traction import BodyPressure, BodyShear, body_shears
 from contact1d.workflow.body.validity import checks
 from contact1d.workflow.continuation.outcome import Outcome, Refinement
-from contact1d.workflow.continuation.state import Zoned
 from contact1d.workflow.errors import FolderError
 from contact1d.workflow.experiments import kind_of
 from contact1d.workflow.experiments.keeping import kept_states
@@ -263,8 +262,8 @@ def tables_of(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressu
         "branch": [kind_of(scene).branch(state.phase) for state in states],
         "contact_radius_uncertainty": uncertainty,
     }
-    if isinstance(states[-1].rule, Zoned):
-        curve["cohesive_radius"] = [getattr(state.profile, "reach", 0.0) for state in states]
+    lengths = [state.rule.lengths(state.profile) for state in states]
+    curve |= {name: [one[name] for one in lengths] for name in lengths[-1]}
     tables: dict[str, Mapping[str, Any]] = {
         "curve": curve
         | dict(outcome.columns)

@@ -387,11 +387,6 @@ class Tables(Table):
         return 2 if self.bodies.lower == "particles" else 1
 
     @property
-    def adheres(self) -> bool:
-        """Whether the bodies hold each other: by an attraction, or by an energy on a rigid plane."""
-        return bool(self.interaction and self.interaction.attraction) or self.work_of_adhesion > 0.0
-
-    @property
     def stands(self) -> bool:
         """Whether particles are fixed in the upper body, on a rigid plane that has their springs."""
         return self.bodies.lower == "rigid_plane" and not any(effect.needs_bonds for effect in self.present)
