@@ -39,7 +39,7 @@ class Profile:
         shapes = {array.shape for array in (self.x, self.z_lower, self.z_upper, self.pressure, self.shear)}
         if [len(shape) for shape in shapes] != [1]:
             raise ValueError(f"the arrays of a profile must be 1-D and equally long, got shapes {sorted(shapes)}")
-        if np.any(np.diff(self.x) < 0.0):
+        if (self.x[1:] < self.x[:-1]).any():
             raise ValueError("the arrays of a profile must be sorted by x")
 
 

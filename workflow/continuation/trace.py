@@ -268,9 +268,12 @@ def of_model(
     x = np.concatenate([followed.x[0] - beside[::-1], followed.x, followed.x[-1] + beside])
     none = np.zeros_like(x)
 
+    def of_all(forces: Array) -> Array:
+        return np.concatenate([none[:BESIDE], forces, none[:BESIDE]]) / spacing
+
     def profile(state: int) -> Profile:
-        pressure = np.pad(followed.force(state), BESIDE) / spacing
-        shear = none if followed.shear is None else np.pad(followed.shear(state), BESIDE) / spacing
+        pressure = of_all(followed.force(state))
+        shear = none if followed.shear is None else of_all(followed.shear(state))
         if followed.zone:
             return ZonedProfile(x, none, none, pressure, shear, *(float(one[state]) for one in followed.zone))
         return Profile(x, none, none, pressure, shear)
