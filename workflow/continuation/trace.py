@@ -95,9 +95,9 @@ class Trace:
         return len(self.displacement)
 
     @property
-    def lists(self) -> tuple[list[float], list[float]]:
+    def lists(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Displacements and forces, as arguments of the functions that read a curve."""
-        return self.displacement.tolist(), self.force.tolist()
+        return tuple(self.displacement.tolist()), tuple(self.force.tolist())
 
     @property
     def legs(self) -> list[Trace]:
