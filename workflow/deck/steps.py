@@ -43,8 +43,8 @@ class Row:
 
     def texts(self, to_deck: Callable[[float, str], float]) -> tuple[str, ...]:
         """Their values as LAMMPS text; `to_deck` converts a value with its unit to that of the deck."""
-        given = {field.name: getattr(self, field.name) for field in fields(self)}
-        return tuple(str(v) if isinstance(v, int) else number(to_deck(v, UNITS[name])) for name, v in given.items())
+        given = vars(self).items()
+        return tuple(str(v) if isinstance(v, int) else number(to_deck(v, UNITS[name])) for name, v in given)
 
 
 @dataclass(frozen=True)
