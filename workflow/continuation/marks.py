@@ -50,13 +50,10 @@ def unloading(branch: Trace, settings: Settings) -> dict[str, Reading]:
         found["adhesion_force"] = Reading(peak.smooth, FORCE, errors)
         if branch.radius(peak.index) is not None:
             found["critical_radius"] = _critical_radius(branch, peak, settings, sum(errors.values()))
-    if (zero := _zero_load(branch)) is not None:
-        found["zero_load_radius"] = zero
-        if (reach := _zero_load_reach(branch)) is not None:
-            found["cohesive_radius"] = reach
-    if "adhesion_force" in found and zero is not None:
-        found |= _separation(branch, peak)
-    return found
+    zero = _zero_load(branch)
+    if "adhesion_force" in found and zero:
+        zero |= _separation(branch, peak)
+    return found | zero
 
 
 def _separation(branch: Trace, peak: Peak) -> dict[str, Reading]:
@@ -130,39 +127,29 @@ def _critical_radius(branch: Trace, peak: Peak, settings: Settings, missed: floa
     return Reading(radius, LENGTH, errors)
 
 
-def _zero_load(branch: Trace) -> Reading | None:
-    """a where the force crosses 0, by a parabola; a straight line estimates its error.
+def _zero_load(branch: Trace) -> dict[str, Reading]:
+    """a where the force crosses 0, by a parabola, and how far an attraction with a range goes there, c.
 
-    None where it never does, or only as the contact is lost.
+    A straight line estimates the error. None where the force never crosses 0, or only as the contact is lost.
     """
     d, force = branch.lists
     try:
         index, place = crossing(d, force, 0.0)
     except ValueError:
-        return None
+        return {}
     after = min(index + 1, len(d) - 1)
     if branch.radius(after) is None:
-        return None
-    radii = [branch.radius_or_spot(i) for i in (after, index)]
-    line = float(np.interp(place, [d[after], d[index]], radii))
-    radius = radius_at(branch, _crossed(d, force, 0.0))
-    return Reading(radius, LENGTH, {"sampling": abs(radius - line)})
+        return {}
 
+    def there(length: Callable[[int], float]) -> Reading:
+        line = float(np.interp(place, [d[after], d[index]], [length(after), length(index)]))
+        value = _through_nearest(branch, _crossed(d, force, 0.0), length)
+        return Reading(value, LENGTH, {"sampling": abs(value - line)})
 
-def _zero_load_reach(branch: Trace) -> Reading | None:
-    """c where the force crosses 0, likewise; None where the attraction has no range."""
-    d, force = branch.lists
-    index, place = crossing(d, force, 0.0)
-    near = (min(index + 1, len(d) - 1), index)
-    if branch.reach(index) is None:
-        return None
-
-    def reach(state: int) -> float:
-        return branch.reach(state) or 0.0
-
-    line = float(np.interp(place, [d[i] for i in near], [reach(i) for i in near]))
-    value = _through_nearest(branch, _crossed(d, force, 0.0), reach)
-    return Reading(value, LENGTH, {"sampling": abs(value - line)})
+    found = {"zero_load_radius": there(branch.radius_or_spot)}
+    if branch.reach(index) is not None:
+        found["cohesive_radius"] = there(lambda state: branch.reach(state) or 0.0)
+    return found
 
 
 def early_loss(branch: Trace, peak: Peak, settings: Settings) -> float:
