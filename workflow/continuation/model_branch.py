@@ -237,7 +237,7 @@ class ModelBranch:
         self, positions: Array, along: Sequence[float] | Array | None = None, time: Sequence[float] | None = None
     ) -> None:
         none = np.zeros(len(positions))
-        columns = (np.asarray(none if one is None else one, dtype=np.float64) for one in (along, time))
+        columns = (none if one is None else np.asarray(one) for one in (along, time))
         self._add_path([self._phase] * none.size, Path(positions, *columns))
 
     def _add_path(self, phases: Sequence[str], path: Path) -> None:

@@ -43,8 +43,7 @@ class Row:
 
     def texts(self, to_deck: Callable[[float, str], float]) -> tuple[str, ...]:
         """Their values as LAMMPS text; `to_deck` converts a value with its unit to that of the deck."""
-        given = vars(self).items()
-        return tuple(str(v) if isinstance(v, int) else number(to_deck(v, UNITS[name])) for name, v in given)
+        return tuple(str(v) if isinstance(v, int) else number(to_deck(v, UNITS[key])) for key, v in vars(self).items())
 
 
 @dataclass(frozen=True)
