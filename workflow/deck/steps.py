@@ -43,10 +43,9 @@ class Row:
 
     def texts(self, to_deck: Callable[[float, str], float]) -> tuple[str, ...]:
         """Return the values as LAMMPS text; `to_deck` converts a value with its unit to that of the deck."""
-        given = {field.name: getattr(self, field.name) for field in fields(self)}
         return tuple(
             str(value) if isinstance(value, int) else number(to_deck(value, UNITS[name]))
-            for name, value in given.items()
+            for name, value in vars(self).items()
         )
 
 
