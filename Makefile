@@ -16,7 +16,7 @@ $(LOCKED): FORCE
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help run test lint docs mutants validation clean FORCE
+.PHONY: help run test lint lowest docs mutants validation clean FORCE
 
 help: ## show this list
 	@echo 'make [TARGET] [NAME=value ...]'
@@ -38,6 +38,16 @@ lint: $(READY) ## check style, types and the direction of imports
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
+lowest: $(READY) ## test what reads scenes and writes decks with the lowest versions that pyproject.toml allows, in .lowest
+	@test -x .lowest/bin/python || $(BIN)/python -m venv .lowest
+	@$(BIN)/python -c 'import re, tomllib; project = tomllib.load(open("pyproject.toml", "rb"))["project"]; \
+		wanted = [*project["dependencies"], *project["optional-dependencies"]["test"][:3], "click>=8.1.8"]; \
+		print(*(re.sub(">=([0-9.]+).*", r"==\1", one) for one in wanted), sep="\n")' > .lowest/versions.txt
+	@.lowest/bin/python -m pip install -qq --disable-pip-version-check -r .lowest/versions.txt
+	@.lowest/bin/python -m pip install -qq --disable-pip-version-check --no-deps -e .
+	@OPENBLAS_NUM_THREADS=1 .lowest/bin/python -m pytest -q -n auto tests/unit/test_scene*.py tests/unit/test_fit.py \
+		tests/unit/test_quantities.py tests/unit/test_wrong_inputs.py tests/unit/test_states.py tests/decks
+
 docs: $(READY) ## build the site in site/
 	@$(BIN)/python -m pip install -qq --disable-pip-version-check -e '.[docs]'
 	@$(BIN)/python -m mkdocs build --strict --quiet
@@ -52,7 +62,7 @@ validation: $(READY) ## the paper's statements anew, then VALIDATION.md and its 
 	@$(BIN)/python -m validation pages
 
 clean: ## remove .venv and the caches; runs/ stays
-	rm -rf $(VENV) dist .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
+	rm -rf $(VENV) .lowest dist .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
 	find workflow analysis potentials lammps_inputs validation tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(LOCKED): requirements.lock
@@ -68,6 +78,6 @@ $(LOCKED): requirements.lock
 	@pwd -P > $@
 
 $(READY): $(LOCKED) pyproject.toml
-	@$(BIN)/python -m pip install -qq --disable-pip-version-check --no-deps --no-build-isolation -e .
+	@$(BIN)/python -m pip install -qq --disable-pip-version-check --no-deps -e .
 	@$(BIN)/python -m compileall -q src workflow analysis potentials  # nor does the first command wait for it
 	@touch $@
