@@ -118,7 +118,8 @@ class Loaded:
 
         def load_of(chosen: Array) -> LineLoad:
             """Return the line load through chosen particles."""
-            return line_load(self.x[chosen], load[chosen], self.edge, self.jump, apex, self.body, self.shape.kinks)
+            kinks = *self.shape.kinks, self.shape.reach
+            return line_load(self.x[chosen], load[chosen], self.edge, self.jump, apex, self.body, kinks)
 
         return through(self.x.size, stride, load_of, first)
 
