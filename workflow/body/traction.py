@@ -36,18 +36,10 @@ from contact1d.workflow.laws import law_of
 from contact1d.workflow.scene import Scene, Shape
 from contact1d.workflow.units import LINE_PRESSURE, MEAN_PRESSURE, Quantity
 
-MOST = 1000
-"""Particles on a side that are used, and radii that p is given at; of more, every second, third …"""
-ANGLES, ZONED, PIECES = 12, 40, 5
-"""Positions of Gauss's at which p(r) is added up to a force, between kinks, and where an attraction with a range acts
-beyond the contact, on a small part of it: 3e-7 of the force for µ = 400. And pieces of a body whose shape is a table or
-whose springs are not elastic: a corner of its history is a kink of the line load."""
-ROUND_OFF = 2e-12
-"""Error of a pressure over the stiffness of the layer: of positions beside the depth of the wall that carries them."""
 INSIDE = 1.0 - 1e-9
-"""Of the edge, up to which p is given: round-off."""
+"""Largest radius of p over the edge, where p is singular; the difference is round-off."""
 STEP = 1e-6
-"""Of the edge, over which a slope is a difference there."""
+"""Step over the edge of a difference quotient there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,43 +126,48 @@ def body_pressures(
     return pressures
 
 
-def _pressure(state: Loaded, share: float, given: float) -> BodyPressure | None:
+def _pressure(state: Loaded, share: float, given: float, most: int = 1000) -> BodyPressure | None:
     """Return p(r) of a state; None where too few particles touch, or they are not symmetric.
 
     Args:
         state: the line load of the state.
         share: relative error of the results, which changes p by `_moves`.
         given: relative error of p by the uncertain numbers of the scene.
+        most: particles on a side that are used, and radii of p; of more, every second, third …
     """
     scene, x, zone = state.scene, state.x, state.zone
-    own = -(-(x.size - x.size // 2) // MOST)
-    levels = [one for stride in (1, 2, 4) if (one := state.through(state.load, own * stride))]
-    if not levels:
+    stride = -(-(x.size - x.size // 2) // most)
+    lines = [line for coarseness in (1, 2, 4) if (line := state.through(state.load, coarseness * stride))]
+    if not lines:
         return None
-    fine, side, (ring, pulled) = levels[0], x[x.size // 2 :][::own], _drawn(scene, zone)
+    fine, side, (ring, pulled) = lines[0], x[x.size // 2 :][::stride], _drawn(scene, zone)
     inside = side[(side > 0.0) & (side < fine.edge * INSIDE)]
     r = inside if fine.has_apex else np.append(0.0, inside)
-    node, area = _nodes(state, fine.edge, ZONED if ring else ANGLES)
-    where = np.append(r, node)
-    p, *coarser = (one.pressure(where) - pulled(where) for one in levels)
-    forces = area * p[r.size :]
-    p, *coarser = (one[: r.size] for one in (p, *coarser))
+    # An attraction with a range acts on a small part of the contact: 40 nodes leave 3e-7 of the force at µ = 400.
+    node, area = _nodes(state, fine.edge, 40 if ring else 12)
+    radii = np.append(r, node)
+    pressures = [line.pressure(radii) - pulled(radii) for line in lines]
+    forces = area * pressures[0][r.size :]
+    levels = [pressure[: r.size] for pressure in pressures]
+    p = levels[0]
     # Where g is flat up to an edge that lies between two particles, p is that of a punch, ∝ 1/a.
     at_most = _moves(fine, fine.body or state.heights, r, -1.0 if state.is_elastic else 1.0) if state.is_alone else 0.0
     moves = np.maximum(np.abs(p), at_most)
-    if zone:  # the attraction's edge goes with that of the contact
+    if zone:  # the edge of the attraction moves with that of the contact
         moves += np.abs(_drawn(scene, zone, STEP)[1](r) - pulled(r)) / STEP
     spread = state.radius.uncertainty / state.radius.value * moves
-    spread = _between(state, own, spread, [p, *coarser], lambda line: line.pressure(r) - pulled(r))
-    by_shape = _by_shape(state, own, r, p, pulled)
+    spread = _between(state, stride, spread, levels, lambda line: line.pressure(r) - pulled(r))
+    by_shape = _by_shape(state, stride, r, p, pulled)
     within = np.count_nonzero(side < state.radius.value / state.wider)
-    told = [one for i, one in enumerate((p, *coarser)) if within >= FEWEST * 2**i]
-    error = spread + share * moves + given * np.abs(p) + ROUND_OFF * state.layer
+    resolved = [level for i, level in enumerate(levels) if within >= FEWEST * 2**i]
+    # 2e-12 of the layer: round-off of positions, compared with the depth of the wall that carries them.
+    error = spread + share * moves + given * np.abs(p) + 2e-12 * state.layer
     if zone:  # a layer acts as a jump, but for the particle that is in it
         error += zone.layer / (np.pi * np.sqrt(fine.edge**2 - r**2)) * (r > fine.edge - scene.bodies.spacing)
+    largest = _largest(state, fine, r, resolved, lambda r: fine.pressure(r) - pulled(r))
     results = {
-        name: replace(one, uncertainty=one.uncertainty or float(error[place] + by_shape(read)))
-        for name, (one, place, read) in _largest(state, fine, r, told, lambda r: fine.pressure(r) - pulled(r)).items()
+        name: replace(quantity, uncertainty=quantity.uncertainty or float(error[index] + by_shape(read)))
+        for name, (quantity, index, read) in largest.items()
     }
     force, size = float(forces.sum()) + ring, float(np.abs(forces).sum()) - ring
     edge, stiffness = state.radius.value / state.wider, _stiffness(state, share)
@@ -297,12 +294,20 @@ def _is_bounded(state: Loaded, fine: LineLoad, top: int, noise: float) -> bool:
 
 
 def _nodes(state: Loaded, edge: float, angles: int) -> tuple[Array, Array]:
-    """Radii r = a sin θ [LU] at which p(r) is added up over the contact, between kinks, and the area of each [LU²]."""
+    """Return radii r = a sin θ [LU] for the quadrature of p(r) over the contact, and the area of each [LU²].
+
+    Args:
+        state: the line load of the state.
+        edge: the radius a of the contact [LU].
+        angles: Gauss nodes in each part between two kinks; a body whose shape is a table or whose springs are not
+            elastic is also divided in five, since a corner of its history is a kink of the line load.
+    """
     node, weight = gauss(angles)
     share = 0.5 * (node + 1.0)
     kinks = [kink / edge for kink in state.shape.kinks if kink < edge]
     if state.shape.slow or not state.is_elastic:
-        kinks += [piece / PIECES for piece in range(1, PIECES)]
+        parts = 5
+        kinks += [part / parts for part in range(1, parts)]
     ends = np.arcsin(sorted({0.0, *kinks, 1.0}))
     width = np.diff(ends)[:, None]
     angle = (ends[:-1, None] + width * share * share * (3.0 - 2.0 * share)).ravel()  # dense at both ends of a piece
