@@ -61,10 +61,10 @@ def first_of(results: Mapping[str, Quantity], *names: str) -> Quantity | None:
 def with_implied(scene: Scene, settings: Settings, outcome: Outcome) -> Outcome:
     """Return the outcome of a run with the results that its interaction implies."""
     quantities = implied(scene, settings, outcome.quantities)
-    return _with(outcome, {name: (quantity, 0.0) for name, quantity in quantities.items()})
+    return _with_results(outcome, {name: (quantity, 0.0) for name, quantity in quantities.items()})
 
 
-def _with(outcome: Outcome, made: Made) -> Outcome:
+def _with_results(outcome: Outcome, made: Made) -> Outcome:
     """Return the outcome with further results; the uncertainty of W is that of the model, of others of the input.
 
     A pressure that may be 0, as under a punch without load, has the scale of the largest force over a².
@@ -193,9 +193,9 @@ def with_body(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressu
         for name in reported_state(outcome):
             if (pressure := pressures.get(name)) and pressure.stiffness:
                 of_pressure["contact_stiffness"] = (pressure.stiffness, share * pressure.stiffness.value)
-    makers = (_of_the_contact, _adhesion_energy, _tabor)
+    makers = (_contact_results, _adhesion_energy, _tabor)
     made = {name: quantity for make in makers for name, quantity in outcome.made(scene, make).items()}
-    return _with(outcome, of_pressure | made)
+    return _with_results(outcome, of_pressure | made)
 
 
 def reported_state(outcome: Outcome) -> list[str]:
@@ -203,7 +203,7 @@ def reported_state(outcome: Outcome) -> list[str]:
     return [name for name in REPORTED if name in outcome.profiles][:1]
 
 
-def _of_the_contact(scene: Scene, results: Mapping[str, Quantity]) -> dict[str, Quantity]:
+def _contact_results(scene: Scene, results: Mapping[str, Quantity]) -> dict[str, Quantity]:
     """Return F/πa² where the experiment has none, and dF/dd = 2E*a of elastic bodies (others: `BodyPressure`)."""
     force = first_of(results, "force", "largest_force")
     radius = first_of(results, "contact_radius", "largest_radius")

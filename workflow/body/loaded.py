@@ -18,7 +18,7 @@ from contact1d.workflow.scene.tables import WIDER_THAN_SPHERES
 
 
 @dataclass(frozen=True, eq=False)
-class Loaded:
+class LoadedState:
     """The line load of a state; for the paper's spheres half as wide as that of the image.
 
     Attributes:
@@ -33,7 +33,7 @@ class Loaded:
     rule: RadiusRule
 
     @cached_property
-    def wider(self) -> float:
+    def image_ratio(self) -> float:
         """Width of the image over that of the body."""
         return WIDER_THAN_SPHERES if stands_for_spheres(self.scene) else 1.0
 
@@ -52,19 +52,19 @@ class Loaded:
         return any(kink < self.radius.value for kink in shape.kinks)
 
     @property
-    def is_alone(self) -> bool:
+    def is_uncoupled(self) -> bool:
         """Whether particles on a plane are uncoupled, so that their load is a function of the body's height."""
         return self.scene.bodies.lower == "rigid_plane" and self.scene.neighbours is None
 
     @property
     def is_elastic(self) -> bool:
         """Whether the particles are uncoupled linear springs, so that their load is linear in the body's height."""
-        return self.is_alone and self.scene.keeps_springs
+        return self.is_uncoupled and self.scene.keeps_springs
 
     @cached_property
     def x(self) -> Array:
         """Positions of the particles along the body [LU], (n,)."""
-        return self.profile.x / self.wider
+        return self.profile.x / self.image_ratio
 
     @property
     def layer(self) -> float:
@@ -79,7 +79,7 @@ class Loaded:
     @cached_property
     def edge(self) -> float | None:
         """Half-width of the line load [LU]; None where the load decays without an edge."""
-        return None if self.scene.interaction and not self.shape.has_edge else self.radius.value / self.wider
+        return None if self.scene.interaction and not self.shape.has_edge else self.radius.value / self.image_ratio
 
     @cached_property
     def jump(self) -> float | None:
@@ -94,12 +94,12 @@ class Loaded:
         if self.zone and self.is_elastic:
             edge = self.heights(np.asarray([self.zone.edge]))
             return np.where(np.abs(self.x) < self.zone.edge, self.zone.jump + edge - self.heights(self.x), 0.0)
-        return self.wider * self.rule.load(self.profile, self.radius)
+        return self.image_ratio * self.rule.load(self.profile, self.radius)
 
     @cached_property
     def body(self) -> Callable[[Array], Array] | None:
         """κ h(x) [FU/LU], κ = −dq/dh at the axis; None where the shape is uncertain, or springs are coupled."""
-        if not self.is_alone or self.shape.has_edge or self.shape.alternatives or self.shape.deviations:
+        if not self.is_uncoupled or self.shape.has_edge or self.shape.alternatives or self.shape.deviations:
             return None
         if self.is_elastic:
             return self.heights

@@ -65,13 +65,13 @@ def _radius(taken: Taken) -> tuple[float, float]:
 
 def in_words(taken: Taken) -> str:
     """Return the evaluation of a scan as a sentence, lengths in LU."""
-    removed = [f"apex at {_with(*taken.centre)}", f"offset {taken.offset[0]:.4g} LU"]
+    removed = [f"apex at {_length_text(*taken.centre)}", f"offset {taken.offset[0]:.4g} LU"]
     if taken.tilt[1] > 0.0:
         angle, spread = (math.degrees(math.atan(slope)) for slope in taken.tilt)
         removed.append(f"tilt {angle:.3g} ± {spread:.1g}°")
     curve = f"a smooth curve with {taken.knots.size} knots" if taken.shape == "smooth" else f"a {taken.shape}"
     if taken.shape in CURVED:
-        curve += f", R = {_with(*_radius(taken))}"
+        curve += f", R = {_length_text(*_radius(taken))}"
     correlated = taken.correlation > 0.5 * taken.pitch  # else the noise is white
     noise = f"noise {taken.noise:.3g} LU"
     noise += f", correlation length {taken.correlation:.2g} LU" if correlated else ", not correlated"
@@ -84,7 +84,7 @@ def in_words(taken: Taken) -> str:
     )
 
 
-def _with(value: float, uncertainty: float) -> str:
+def _length_text(value: float, uncertainty: float) -> str:
     """Return a length [LU] with its uncertainty as text, if it has one."""
     spread = f" ± {uncertainty:.2g} LU" if uncertainty else ""
     digits = max(3, 2 + math.floor(math.log10(abs(value) / uncertainty))) if value and uncertainty else 4

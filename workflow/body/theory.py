@@ -56,7 +56,7 @@ class ClosedForm:
 
 def applying(case: Case) -> list[ClosedForm]:
     """Return the closed forms that hold for a case."""
-    return _of(case, case.law.beside)
+    return _applying(case, case.law.beside)
 
 
 def exact(case: Case) -> list[ClosedForm]:
@@ -64,10 +64,10 @@ def exact(case: Case) -> list[ClosedForm]:
     scene = case.scene
     by_mdr = scene.bodies.lower == "rigid_plane" and scene.bodies.reduction == "mdr"
     known = by_mdr and scene.is_modelled and scene.is_stepped
-    return _of(case, case.law.exact) if known else []
+    return _applying(case, case.law.exact) if known else []
 
 
-def _of(case: Case, families: Sequence[str]) -> list[ClosedForm]:
+def _applying(case: Case, families: Sequence[str]) -> list[ClosedForm]:
     """Return the closed forms of the families that hold for a case."""
     return [form for family in families for form in FORMS[family] if form.applies(case)]
 
@@ -113,7 +113,7 @@ def in_words(results: Mapping[str, Any], name: str) -> Iterator[str]:
 # Without adhesion. Under a given F: d, a, F/πa², p(0), dF/dd = 2E*a; at a given d: F, a and the pressures.
 
 
-def _pressed(kind: str, body: str) -> Callable[[Case], str]:
+def _without_adhesion(kind: str, body: str) -> Callable[[Case], str]:
     """Return the condition: an elastic contact of a kind of profile without adhesion, kept by the reduction."""
 
     def applies(case: Case) -> str:
@@ -138,7 +138,7 @@ def _contact(case: Case, a: float, d: float, force: float) -> Values:
     return values
 
 
-def _pressed_values(case: Case) -> Values:
+def _elastic_values(case: Case) -> Values:
     """Return the predictions of a body without adhesion, the finite pressures among them."""
     body, a = case.body, case.contact_radius
     pressures = {"central_pressure": body.central_pressure(a), "peak_pressure": body.peak_pressure(a)}
@@ -170,7 +170,7 @@ def _punch_pressure(case: Case, r: Array) -> Array:
 # Adhesive: F_A, the radii there and at F = 0, and d, F and a of a load or of the largest displacement of a path.
 
 
-def _adheres(kind: str, body: str) -> Callable[[Case], str]:
+def _adhesive(kind: str, body: str) -> Callable[[Case], str]:
     """Return the condition: a kind of profile on a plane with a work of adhesion."""
     return lambda case: f"{body} that adheres, without a range" if case.kind == kind else ""
 
@@ -340,49 +340,56 @@ FORMS: Mapping[str, tuple[ClosedForm, ...]] = {
         ClosedForm(
             "Hertz",
             "H. Hertz 1882; K. L. Johnson, Contact Mechanics, 1985, section 4.2",
-            _pressed("parabola", "a paraboloid"),
-            _pressed_values,
+            _without_adhesion("parabola", "a paraboloid"),
+            _elastic_values,
             _pressure,
         ),
-        ClosedForm("Sneddon, cone", SNEDDON, _pressed("cone", "a cone"), _pressed_values, _pressure),
+        ClosedForm("Sneddon, cone", SNEDDON, _without_adhesion("cone", "a cone"), _elastic_values, _pressure),
         ClosedForm(
-            "Sneddon, flat punch", SNEDDON, _pressed("flat_punch", "a flat punch"), _punch_values, _punch_pressure
+            "Sneddon, flat punch",
+            SNEDDON,
+            _without_adhesion("flat_punch", "a flat punch"),
+            _punch_values,
+            _punch_pressure,
         ),
-        ClosedForm("Sneddon, sphere", SNEDDON, _pressed("circle", "a whole sphere"), _pressed_values),
+        ClosedForm("Sneddon, sphere", SNEDDON, _without_adhesion("circle", "a whole sphere"), _elastic_values),
         ClosedForm(
             "Sneddon, ellipsoid",
             f"{SNEDDON}: his sphere, flattened",
-            _pressed("ellipsoid", "a whole ellipsoid"),
-            _pressed_values,
+            _without_adhesion("ellipsoid", "a whole ellipsoid"),
+            _elastic_values,
         ),
         ClosedForm(
-            "Galin, power", f"L. A. Galin 1953; {SNEDDON}", _pressed("power", "a power of the radius"), _pressed_values
+            "Galin, power",
+            f"L. A. Galin 1953; {SNEDDON}",
+            _without_adhesion("power", "a power of the radius"),
+            _elastic_values,
         ),
     ),
     "adhesive": (
-        ClosedForm("JKR", JKR, _adheres("parabola", "a paraboloid"), _adhesive_values, _pressure),
+        ClosedForm("JKR", JKR, _adhesive("parabola", "a paraboloid"), _adhesive_values, _pressure),
         ClosedForm(
             "Maugis and Barquins, cone",
             "D. Maugis, M. Barquins, J. Phys. Lett. 42 (1981) L95",
-            _adheres("cone", "a cone"),
+            _adhesive("cone", "a cone"),
             _adhesive_values,
         ),
         ClosedForm(
             "Popov and Heß, power",
             "V. L. Popov, M. Heß, Method of Dimensionality Reduction, 2015, section 4.4",
-            _adheres("power", "a power of the radius"),
+            _adhesive("power", "a power of the radius"),
             _adhesive_values,
         ),
         ClosedForm(
             "JKR, whole sphere",
             "D. Maugis, Langmuir 11 (1995) 679",
-            _adheres("circle", "a whole sphere"),
+            _adhesive("circle", "a whole sphere"),
             _adhesive_values,
         ),
         ClosedForm(
             "Kendall, flat punch",
             "K. Kendall, J. Phys. D 4 (1971) 1186",
-            _adheres("flat_punch", "a flat punch"),
+            _adhesive("flat_punch", "a flat punch"),
             _adhesive_punch_values,
         ),
     ),

@@ -29,7 +29,7 @@ from contact1d.analysis.curve_marks import vertex
 from contact1d.analysis.polynomial import gauss
 from contact1d.analysis.pressure import Array, Profile, ZonedProfile
 from contact1d.analysis.shear import kinks_of, shear_load
-from contact1d.workflow.body.loaded import Loaded, has_apex, through
+from contact1d.workflow.body.loaded import LoadedState, has_apex, through
 from contact1d.workflow.body.reading import stands_for_spheres
 from contact1d.workflow.continuation.state import radius_rule
 from contact1d.workflow.laws import law_of
@@ -117,7 +117,7 @@ def body_pressures(
     rule, pressures = radius_rule(scene, scene.accuracy.tolerance), {}
     for name, profile in profiles.items():
         if (radius := rule.of(profile)) and radius.value > 0.0:
-            state = Loaded(scene, profile, radius, rule)
+            state = LoadedState(scene, profile, radius, rule)
             share = of_radius[name] if state.is_elastic and not scene.bodies.profile.has_edge else of_all
             if law_of(scene).attracts(scene):
                 share = max(share, 5e-6)  # the error of the equations for an adhesive edge
@@ -126,12 +126,12 @@ def body_pressures(
     return pressures
 
 
-def _pressure(state: Loaded, share: float, given: float, most: int = 1000) -> BodyPressure | None:
+def _pressure(state: LoadedState, share: float, given: float, most: int = 1000) -> BodyPressure | None:
     """Return p(r) of a state; None where too few particles touch, or they are not symmetric.
 
     Args:
         state: the line load of the state.
-        share: relative error of the results, which changes p by `_moves`.
+        share: relative error of the results, which changes p by `_edge_sensitivity`.
         given: relative error of p by the uncertain numbers of the scene.
         most: particles on a side that are used, and radii of p; of more, every second, third …
     """
@@ -140,43 +140,45 @@ def _pressure(state: Loaded, share: float, given: float, most: int = 1000) -> Bo
     lines = [line for coarseness in (1, 2, 4) if (line := state.through(state.load, coarseness * stride))]
     if not lines:
         return None
-    fine, side, (ring, pulled) = lines[0], x[x.size // 2 :][::stride], _drawn(scene, zone)
+    fine, side, (ring, attraction) = lines[0], x[x.size // 2 :][::stride], _attraction(scene, zone)
     inside = side[(side > 0.0) & (side < fine.edge * INSIDE)]
     r = inside if fine.has_apex else np.append(0.0, inside)
     # An attraction with a range acts on a small part of the contact: 40 nodes leave 3e-7 of the force at µ = 400.
     node, area = _nodes(state, fine.edge, 40 if ring else 12)
     radii = np.append(r, node)
-    pressures = [line.pressure(radii) - pulled(radii) for line in lines]
+    pressures = [line.pressure(radii) - attraction(radii) for line in lines]
     forces = area * pressures[0][r.size :]
     levels = [pressure[: r.size] for pressure in pressures]
     p = levels[0]
     # Where g is flat up to an edge that lies between two particles, p is that of a punch, ∝ 1/a.
-    at_most = _moves(fine, fine.body or state.heights, r, -1.0 if state.is_elastic else 1.0) if state.is_alone else 0.0
-    moves = np.maximum(np.abs(p), at_most)
+    sensitivity = np.abs(p)
+    if state.is_uncoupled:
+        sign = -1.0 if state.is_elastic else 1.0
+        sensitivity = np.maximum(sensitivity, _edge_sensitivity(fine, fine.body or state.heights, r, sign))
     if zone:  # the edge of the attraction moves with that of the contact
-        moves += np.abs(_drawn(scene, zone, STEP)[1](r) - pulled(r)) / STEP
-    spread = state.radius.uncertainty / state.radius.value * moves
-    spread = _between(state, stride, spread, levels, lambda line: line.pressure(r) - pulled(r))
-    by_shape = _by_shape(state, stride, r, p, pulled)
-    within = np.count_nonzero(side < state.radius.value / state.wider)
+        sensitivity += np.abs(_attraction(scene, zone, STEP)[1](r) - attraction(r)) / STEP
+    spread = state.radius.uncertainty / state.radius.value * sensitivity
+    spread = _with_discretisation(state, stride, spread, levels, lambda line: line.pressure(r) - attraction(r))
+    shape_error = _shape_error(state, stride, r, p, attraction)
+    within = np.count_nonzero(side < state.radius.value / state.image_ratio)
     resolved = [level for i, level in enumerate(levels) if within >= FEWEST * 2**i]
     # 2e-12 of the layer: round-off of positions, compared with the depth of the wall that carries them.
-    error = spread + share * moves + given * np.abs(p) + 2e-12 * state.layer
+    error = spread + share * sensitivity + given * np.abs(p) + 2e-12 * state.layer
     if zone:  # a layer acts as a jump, but for the particle that is in it
         error += zone.layer / (np.pi * np.sqrt(fine.edge**2 - r**2)) * (r > fine.edge - scene.bodies.spacing)
-    largest = _largest(state, fine, r, resolved, lambda r: fine.pressure(r) - pulled(r))
+    largest = _bounded_pressures(state, fine, r, resolved, lambda r: fine.pressure(r) - attraction(r))
     results = {
-        name: replace(quantity, uncertainty=quantity.uncertainty or float(error[index] + by_shape(read)))
+        name: replace(quantity, uncertainty=quantity.uncertainty or float(error[index] + shape_error(read)))
         for name, (quantity, index, read) in largest.items()
     }
     force, size = float(forces.sum()) + ring, float(np.abs(forces).sum()) - ring
-    edge, stiffness = state.radius.value / state.wider, _stiffness(state, share)
-    doubt = _added_up(state) / (size or 1.0)
-    return BodyPressure(r, p, error + by_shape(np.asarray), doubt, edge, results, force, size, stiffness)
+    edge, stiffness = state.radius.value / state.image_ratio, _stiffness(state, share)
+    doubt = _sum_error(state) / (size or 1.0)
+    return BodyPressure(r, p, error + shape_error(np.asarray), doubt, edge, results, force, size, stiffness)
 
 
-def _between(
-    state: Loaded, stride: int, spread: Array, levels: Sequence[Array], pressure: Callable[[LineLoad], Array]
+def _with_discretisation(
+    state: LoadedState, stride: int, spread: Array, levels: Sequence[Array], pressure: Callable[[LineLoad], Array]
 ) -> Array:
     """Return the error of p with the discretisation error, (n,), by the differences between levels of particles.
 
@@ -187,8 +189,8 @@ def _between(
     p, *coarser = levels
     known = not coarser and state.body is not None
     if not known:
-        spread = spread + _spread(p, *coarser)
-    if state.is_elastic or not state.is_alone:
+        spread = spread + _level_difference(p, *coarser)
+    if state.is_elastic or not state.is_uncoupled:
         return spread
     if known:
         inside = np.count_nonzero(state.x[state.x.size // 2 :: stride] < (state.edge or math.inf))
@@ -199,21 +201,21 @@ def _between(
     return np.asarray(2.5 * sliding_window_view(np.pad(spread, width // 2, "edge"), width).max(axis=1))
 
 
-def _added_up(state: Loaded) -> float:
+def _sum_error(state: LoadedState) -> float:
     """Return the largest error [FU] of the sum for ∫ q dx: Δ²/12 of each change of slope (Euler, Maclaurin)."""
     if state.jump != 0.0:
         return 0.0
     bends = np.abs(np.convolve(state.load, (1.0, -2.0, 1.0)))
-    return float(bends.sum()) * state.scene.bodies.spacing / state.wider / 12.0
+    return float(bends.sum()) * state.scene.bodies.spacing / state.image_ratio / 12.0
 
 
-def _stiffness(state: Loaded, share: float) -> Quantity | None:
+def _stiffness(state: LoadedState, share: float) -> Quantity | None:
     """Return dF/dd = −∫ (dq/dh) dx [FU/LU] of springs whose forces are functions of d − h; 2E*a of linear ones.
 
     Between two particles the slope is that of a straight line; `share` is the relative error of the results.
     """
     edge = state.edge
-    if not state.is_alone or edge is None or state.jump != 0.0 or state.shape.has_edge:
+    if not state.is_uncoupled or edge is None or state.jump != 0.0 or state.shape.has_edge:
         return None
     sides = []
     for stride in (1, 2):
@@ -228,8 +230,8 @@ def _stiffness(state: Loaded, share: float) -> Quantity | None:
     return Quantity(fine, abs(fine - coarse) + share * fine, LINE_PRESSURE)
 
 
-def _by_shape(
-    state: Loaded, stride: int, r: Array, p: Array, pulled: Callable[[Array], Array]
+def _shape_error(
+    state: LoadedState, stride: int, r: Array, p: Array, attraction: Callable[[Array], Array]
 ) -> Callable[[Callable[[Array], Any]], Any]:
     """Return a function: the change of a reading of p(r) for the possible shapes, independent ones added in squares."""
     shape, x = state.shape, state.x if state.edge is None else np.clip(state.x, -state.edge, state.edge)
@@ -238,7 +240,7 @@ def _by_shape(
         """Return p(r) of other shapes under the same displacement."""
         changes = [state.heights(x) - state.heights(x, alternative) for alternative in shapes]
         lines = [state.through(state.load + change - change[0], stride) for change in changes]
-        return [line.pressure(r) - pulled(r) for line in lines if line]
+        return [line.pressure(r) - attraction(r) for line in lines if line]
 
     coarser, deviations = pressures_of(shape.coarser), [pressures_of(pair) for pair in shape.deviations]
 
@@ -252,8 +254,8 @@ def _by_shape(
     return change
 
 
-def _largest(
-    state: Loaded, fine: LineLoad, r: Array, levels: Sequence[Array], pressure: Callable[[Array], Array]
+def _bounded_pressures(
+    state: LoadedState, fine: LineLoad, r: Array, levels: Sequence[Array], pressure: Callable[[Array], Array]
 ) -> dict[str, tuple[Quantity, int, Callable[[Array], Any]]]:
     """Return p(0) and the largest pressure where bounded, each with its index in r and the reader of its error.
 
@@ -282,7 +284,7 @@ def _largest(
     return results
 
 
-def _is_bounded(state: Loaded, fine: LineLoad, top: int, noise: float) -> bool:
+def _is_bounded(state: LoadedState, fine: LineLoad, top: int, noise: float) -> bool:
     """Whether the largest pressure is bounded: a jump at the edge is a pole, a kink inside a logarithmic singularity.
 
     A jump that the law gives counts however small it is, one that the particles show if it exceeds their errors.
@@ -293,7 +295,7 @@ def _is_bounded(state: Loaded, fine: LineLoad, top: int, noise: float) -> bool:
     return (top == 0 and state.jump is None) or fine.at_edge <= pole
 
 
-def _nodes(state: Loaded, edge: float, angles: int) -> tuple[Array, Array]:
+def _nodes(state: LoadedState, edge: float, angles: int) -> tuple[Array, Array]:
     """Return radii r = a sin θ [LU] for the quadrature of p(r) over the contact, and the area of each [LU²].
 
     Args:
@@ -316,18 +318,18 @@ def _nodes(state: Loaded, edge: float, angles: int) -> tuple[Array, Array]:
     return r, 2.0 * np.pi * r * edge * np.cos(angle) * step
 
 
-def _drawn(scene: Scene, zone: ZonedProfile | None, wider: float = 0.0) -> tuple[float, Callable[[Array], Array]]:
+def _attraction(scene: Scene, zone: ZonedProfile | None, growth: float = 0.0) -> tuple[float, Callable[[Array], Array]]:
     """Return force [FU] and pressure of the attraction beyond the contact, as `Law.drawn` does; 0 without a zone.
 
-    Edge and reach are larger by a share `wider`.
+    Edge and reach are larger by a share `growth`.
     """
     if zone is None:
         return 0.0, np.zeros_like
     edge, reach = zone.edge, zone.reach
-    return law_of(scene).drawn(scene, edge + wider * edge, reach + wider * edge)
+    return law_of(scene).drawn(scene, edge + growth * edge, reach + growth * edge)
 
 
-def _moves(load: LineLoad, body: Callable[[Array], Array], r: Array, sign: float) -> Array:
+def _edge_sensitivity(load: LineLoad, body: Callable[[Array], Array], r: Array, sign: float) -> Array:
     """Return |a ∂p/∂a| [FU/LU²] under springs on a plane at most, without the J/2a of a growing jump, (n,).
 
     The sign of the jump's part is −1 where both parts are known to have the same edge, else 1.
@@ -349,7 +351,7 @@ def _converges(levels: Sequence[float], noise: float, ratio: float = 0.45) -> bo
     return change <= noise * abs(first) or change < ratio * abs(first - fourth)
 
 
-def _spread(values: Array, *coarser: Array) -> Array:
+def _level_difference(values: Array, *coarser: Array) -> Array:
     """Return |fine − coarse| and a quarter of the next difference; the value itself where there is no coarser one.
 
     The first difference may be small by accident where a kink lies between particles; a quarter of the next one is as
@@ -404,4 +406,4 @@ def _shear(scene: Scene, profile: Profile, edge: float, kinks: Sequence[float], 
         return None
     r = np.unique(np.concatenate([np.linspace(0.0, edge, 100), kinks]))[levels[0].has_apex :]
     shears = [level.pressure(r) for level in levels]
-    return BodyShear(r, shears[0], _spread(*shears), edge, stick)
+    return BodyShear(r, shears[0], _level_difference(*shears), edge, stick)

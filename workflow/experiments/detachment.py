@@ -27,8 +27,8 @@ from contact1d.workflow.deck.steps import DrawnOff, Phase, Row, UnderLoad
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import LOG
-from contact1d.workflow.experiments.series import Series, begun, measured, recorded
-from contact1d.workflow.experiments.thermal import SETTLING_LOOKS, run_in, sample_columns
+from contact1d.workflow.experiments.series import Series, begin_phase, measured, recorded
+from contact1d.workflow.experiments.thermal import RUN_IN_SAMPLES, run_in, sample_columns
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Noise, PullOff, Scene
 from contact1d.workflow.units import FORCE
@@ -68,8 +68,8 @@ class Ramp:
         steps, time: timesteps and duration [TU] of a load step.
         rise: increment of the tension [FU].
         largest: pull-off force of the predictor [FU].
-        barrier, gone: displacements beyond which the tension is less than F_A, and next to 0 [LU].
-        surely: energy that no thermal fluctuation gives to the plate [FU·LU].
+        barrier, separated: displacements beyond which the tension is less than F_A, and next to 0 [LU].
+        escape_energy: energy that no thermal fluctuation gives to the plate [FU·LU].
         spring: stiffness [FU/LU]; 0 where a load pulls.
         slack: displacement at which the spring is slack at the start [LU].
     """
@@ -79,8 +79,8 @@ class Ramp:
     rise: float
     largest: float
     barrier: float
-    gone: float
-    surely: float
+    separated: float
+    escape_energy: float
     spring: float
     slack: float
 
@@ -99,26 +99,26 @@ class Ramp:
         return math.ceil((tension - self.tension(0.0, self.barrier)) / self.rise)
 
     @property
-    def needed(self) -> float:
+    def escape_work(self) -> float:
         """Work [FU·LU] of the load after which a plate cannot come back: more than fluctuations and attraction do.
 
         The attraction does F_A (d_A − d_0) at most, d_0 the position beyond which there is none.
         """
-        return self.largest * (self.barrier - self.gone) + self.surely
+        return self.largest * (self.barrier - self.separated) + self.escape_energy
 
     @property
     def most(self) -> int:
         """Number of load steps after which the bodies must have separated."""
-        far = self.spring * (self.barrier - self.gone) + math.sqrt(2.0 * self.spring * self.needed)
+        far = self.spring * (self.barrier - self.separated) + math.sqrt(2.0 * self.spring * self.escape_work)
         return self.until(MOST_TENSION * self.largest + 2.0 * far)
 
-    def is_over(self, number: int, displacement: float) -> bool:
+    def has_separated(self, number: int, displacement: float) -> bool:
         """Whether a plate at a displacement [LU] cannot return: there is no attraction, and the load is tensile."""
         mean = 0.5 * (self.tension(number, self.barrier) + self.tension(number, displacement))
-        return displacement < self.gone and mean * (self.barrier - displacement) > self.needed
+        return displacement < self.separated and mean * (self.barrier - displacement) > self.escape_work
 
 
-def ramp_of(scene: Scene, settings: Settings, experiment: PullOff, increments: int = 400) -> Ramp:
+def load_ramp(scene: Scene, settings: Settings, experiment: PullOff, increments: int = 400) -> Ramp:
     """Return the load ramp of a pull-off under noise.
 
     It has `increments` load steps up to the predicted pull-off force, or fewer, so that each has 10 timesteps.
@@ -128,21 +128,21 @@ def ramp_of(scene: Scene, settings: Settings, experiment: PullOff, increments: i
     rate = experiment.loading_rate or spring * (experiment.velocity or 0.0)
     largest = estimate.pull_off_force()
     steps = max(10, round(largest / increments / rate / step))
-    surely = 50.0 * scene.temperature  # a fluctuation of 50 k_BT has a probability of e⁻⁵⁰
-    barrier, gone = estimate.parted(0.99), estimate.parted(0.01)  # where 99 % and 1 % of the force maximum are left
+    escape_energy = 50.0 * scene.temperature  # a fluctuation of 50 k_BT has a probability of e⁻⁵⁰
+    barrier, separated = estimate.parted(0.99), estimate.parted(0.01)  # with 99 % and 1 % of the force maximum
     slack = estimate.displacement_at(0.0)
-    return Ramp(steps, steps * step, rate * steps * step, largest, barrier, gone, surely, spring, slack)
+    return Ramp(steps, steps * step, rate * steps * step, largest, barrier, separated, escape_energy, spring, slack)
 
 
 def planned_detachment(scene: Scene, settings: Settings, experiment: PullOff) -> tuple[Phase, Phase, Phase]:
     """Return the planned phases of a pull, up to 1.1 times the predicted pull-off force."""
-    ramp = ramp_of(scene, settings, experiment)
+    ramp = load_ramp(scene, settings, experiment)
     rows = tuple(ramp.row(number) for number in range(1, ramp.until(1.1 * ramp.largest) + 1))
     before = run_in("loading", settings, experiment.preload), run_in("settling", settings, 0.0)
     return *before, Phase("pulling", rows, state=True)
 
 
-def pulls(context: RunContext, experiment: PullOff) -> list[Detachment]:
+def run_pulls(context: RunContext, experiment: PullOff) -> list[Detachment]:
     """Run the pulls with the scene's seed and the seeds after it, `context.workers` of them at a time.
 
     The files of the run folder belong to the pull with the scene's seed, and only its states are kept.
@@ -192,19 +192,19 @@ def _seeded_pull(context: RunContext, experiment: PullOff, number: int, stop: th
 def _pull(context: RunContext, experiment: PullOff, stop: threading.Event) -> Detachment:
     """Run one pull in the context's folder until the bodies separate or `stop` is set."""
     scene, settings = context.deck.scene, context.deck.settings
-    ramp = ramp_of(scene, settings, experiment)
+    ramp = load_ramp(scene, settings, experiment)
     *before, pulling = planned_detachment(scene, settings, experiment)
     with context.contact() as contact:
-        states = [state for phase in before for state in contact.rows(begun(contact, phase), trusted=False)]
+        states = [state for phase in before for state in contact.rows(begin_phase(contact, phase), trusted=False)]
         require_trust(scene, settings, states[-1])
-        if min(state.displacement for state in states) < ramp.gone:
+        if min(state.displacement for state in states) < ramp.separated:
             raise UntrustedError(
                 "thermal fluctuations separate the bodies before the load decreases: use a lower noise.temperature, "
                 "or a stronger interaction.attraction"
             )
         contact.begin(pulling.name, expected_steps=ramp.most * ramp.steps)
         settled, done = len(states), 0
-        while not ramp.is_over(done, states[-1].displacement):
+        while not ramp.has_separated(done, states[-1].displacement):
             if stop.is_set():
                 raise UntrustedError("another repeat failed")
             if done == ramp.most:
@@ -231,7 +231,7 @@ def pull_off_thermal(context: RunContext, experiment: PullOff) -> Outcome:
         UntrustedError: the bodies do not separate, or a state is not trusted (`require_trust`).
     """
     scene, settings = context.deck.scene, context.deck.settings
-    detachments, ramp = pulls(context, experiment), ramp_of(scene, settings, experiment)
+    detachments, ramp = run_pulls(context, experiment), load_ramp(scene, settings, experiment)
     seeds = scene.the(Noise).seed + np.arange(float(len(detachments)))
     series = Series({"seed": seeds} | recorded(detachments, ("force", "time")))
 
@@ -247,7 +247,7 @@ def pull_off_thermal(context: RunContext, experiment: PullOff) -> Outcome:
 
     first = detachments[0]
     states = first.states
-    loads = [experiment.preload] * SETTLING_LOOKS + [0.0] * SETTLING_LOOKS
+    loads = [experiment.preload] * RUN_IN_SAMPLES + [0.0] * RUN_IN_SAMPLES
     loads += [-ramp.tension(number, state.displacement) for number, state in enumerate(states[len(loads) :], 1)]
     tables = {DETACHMENTS: series.table(), SAMPLE_TABLE: sample_columns(states, loads, settings)}
     warnings = doubts(scene, settings, states) | _lagging(settings, ramp, experiment)

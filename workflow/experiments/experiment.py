@@ -150,7 +150,7 @@ class Scripted(Experiment[K]):
     def _driven(self, context: RunContext, case: Reduction) -> tuple[ContactBranch, Trace]:
         """Run the script on a new contact; return its driver and its trace."""
         scene = context.deck.scene
-        with branch_of(context, lambda: case.lattice) as branch:
+        with driver_of(context, lambda: case.lattice) as branch:
             self.script(branch, scene)
             branch.finish()
         return branch, branch.trace()
@@ -172,7 +172,7 @@ class Scripted(Experiment[K]):
         return Reduction(scene, settings, script, read, self.reduction)
 
 
-def branch_of(context: RunContext, meanwhile: Callable[[], object]) -> Branch | LoadBranch | PlannedBranch:
+def driver_of(context: RunContext, meanwhile: Callable[[], object]) -> Branch | LoadBranch | PlannedBranch:
     """Return a new driver: load control in time, planned on a rigid plane with a known law, else a search."""
     scene = context.deck.scene
     if scene.method == "dynamic" and scene.experiment.compression is not None:

@@ -18,7 +18,7 @@ from contact1d.workflow.continuation.reduction import MARGIN
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
 from contact1d.workflow.laws import law_of
-from contact1d.workflow.laws.path import History as Moments
+from contact1d.workflow.laws.path import History as LoadHistory
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import History, Scene
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, MEAN_PRESSURE, TIME
@@ -35,7 +35,7 @@ class HistoryExperiment(Scripted[History]):
 
     def script(self, branch: Driver, scene: Scene) -> None:
         """Follow the load steps of all legs; the end of each leg is reported."""
-        branch.follow(branch.model.refined(_moments(scene)))
+        branch.follow(branch.model.refined(_load_steps(scene)))
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
         """Return the results of the last state, the peaks, and from first to last contact energy and time."""
@@ -43,7 +43,9 @@ class HistoryExperiment(Scripted[History]):
         d, force = trace.displacement, trace.force
         results = {
             "peak_force": Reading(float(force.max()), FORCE, prescribed=by_force),
-            "peak_displacement": Reading(float(d.max()), LENGTH, {"sampling": _above(trace)}, prescribed=not by_force),
+            "peak_displacement": Reading(
+                float(d.max()), LENGTH, {"sampling": _peak_error(trace)}, prescribed=not by_force
+            ),
             "displacement": Reading(float(d[last]), LENGTH, prescribed=not by_force, scale=float(np.abs(d).max())),
             "force": Reading(float(force[last]), FORCE, prescribed=by_force, scale=float(np.abs(force).max())),
         }
@@ -59,7 +61,7 @@ class HistoryExperiment(Scripted[History]):
             if not touches(trace)[0]:
                 whole = _work(d, force) if law_of(scene).is_lossless else None
                 results["dissipated_energy"] = Reading(float(np.trapezoid(force, d)), ENERGY, scale=whole)
-            results["contact_time"] = lost(trace, _touched(trace, by_force))
+            results["contact_time"] = contact_time(trace, _first_contact(trace, by_force))
             if radius := touches(trace)[last - 1] and trace.radius(last - 1):  # not yet apart?
                 results["contact_radius"] = Reading(0.0, LENGTH, {"sampling": radius})
         return results if law_of(scene).jumps(scene) else results | _slopes(trace)
@@ -80,7 +82,7 @@ class HistoryExperiment(Scripted[History]):
         elif missing:
             words = "the history begins in contact, and what that took is not known, so there is no dissipated_energy"
         warnings = {"no_energy": words} if words else {}
-        if law_of(scene).jumps(scene) and any(name.startswith("unloading") for name in _moments(scene).phases):
+        if law_of(scene).jumps(scene) and any(name.startswith("unloading") for name in _load_steps(scene).phases):
             warnings["no_slope"] = (
                 "the force of a dashpot jumps where the unloading begins, so there is neither an unloading_stiffness "
                 "nor a creep_corrected_stiffness"
@@ -93,7 +95,7 @@ class HistoryExperiment(Scripted[History]):
         return f"Use more experiment.steps, or {FINER_SPACING}"
 
 
-def _moments(scene: Scene) -> Moments:
+def _load_steps(scene: Scene) -> LoadHistory:
     """Return the load steps of the legs, dense behind each corner where the body relaxes."""
     given = scene.experiment
     assert isinstance(given, History)
@@ -114,7 +116,7 @@ def _moments(scene: Scene) -> Moments:
         wanted.append(start + (end - start) * parts)
     phases = _numbered([names[0], *names])
     marks = {name: f"after_{name}" for name in phases} | {phases[-1]: "final"}
-    return Moments(phases, np.concatenate(times), np.concatenate(wanted), bool(given.force), marks)
+    return LoadHistory(phases, np.concatenate(times), np.concatenate(wanted), bool(given.force), marks)
 
 
 def _numbered(names: list[str]) -> tuple[str, ...]:
@@ -127,7 +129,7 @@ def _numbered(names: list[str]) -> tuple[str, ...]:
     return tuple(numbered)
 
 
-def _above(trace: Trace) -> float:
+def _peak_error(trace: Trace) -> float:
     """Return how far [LU] the peak of a parabola within a phase lies above the largest displacement of all states."""
     d, top = trace.displacement, int(trace.displacement.argmax())
     if len(set(trace.phase[max(top - 1, 0) : top + 2])) > 1 or not 0 < top < len(trace) - 1:
@@ -148,7 +150,7 @@ def _slopes(trace: Trace) -> dict[str, Reading]:
         return {}
     corner, time, d = first - 1, trace.time, trace.displacement
     near = range(corner - count + 1, corner + count)
-    force = dict(zip(near, _whole(trace, corner, near), strict=True))
+    force = dict(zip(near, _forces_with_edges(trace, corner, near), strict=True))
     rates = []
     for side in (near[:count], near[count - 1 :]):
         times = np.asarray([time[i] - time[corner] for i in side])
@@ -165,7 +167,7 @@ def _rate(value: float, error: float = 1e-4) -> Reading:
     return Reading(value, LINE_PRESSURE, {"sampling": error * abs(value)})
 
 
-def _whole(trace: Trace, corner: int, states: Sequence[int]) -> list[float]:
+def _forces_with_edges(trace: Trace, corner: int, states: Sequence[int]) -> list[float]:
     """Return the forces [FU] of states with the part of the contact that the whole number of particles misses.
 
     A sum over particles misses E* g′(a) y² at the edge, y the distance from the last cell to the edge. Behind the
@@ -201,7 +203,7 @@ def touches(trace: Trace, round_off: float = 1e-9) -> NDArray[np.bool_]:
     return np.abs(trace.force) > round_off * float(np.abs(trace.force).max())
 
 
-def _touched(trace: Trace, by_force: bool) -> float:
+def _first_contact(trace: Trace, by_force: bool) -> float:
     """Return the time of the first contact [TU]: at d = 0, or with the first force that is given."""
     first = int(np.argmax(touches(trace)))
     apart = np.flatnonzero(trace.force[:first] <= 0.0 if by_force else trace.displacement[: first + 1] <= 0.0)
@@ -213,7 +215,7 @@ def _touched(trace: Trace, by_force: bool) -> float:
     return float(np.interp(0.0, trace.displacement[near], trace.time[near]))
 
 
-def lost(trace: Trace, touched: float = 0.0) -> Reading:
+def contact_time(trace: Trace, touched: float = 0.0) -> Reading:
     """Return the time [TU] from first contact to the final separation.
 
     The bodies separate at the displacement of the model's separation, or as the pressure on the axis falls to 0, which
@@ -231,14 +233,14 @@ def lost(trace: Trace, touched: float = 0.0) -> Reading:
     elif trace.force[last] < 0.0:
         part = doubt = 0.5
     elif trace.phase[last + 1] == trace.phase[last]:  # else at a corner, where dashpots push no more
-        ends = [fallen(trace, last, count) for count in (3, 5)]
+        ends = [end_of_pressure(trace, last, count) for count in (3, 5)]
         part, coarser = (min(max((moment - time) / (end - time), 0.0), 2.0) for moment in ends)
         doubt = abs(part - coarser)
     duration = time + part * (end - time) - touched
     return Reading(duration, TIME, {"sampling": MARGIN * doubt * (end - time) + round_off * duration})
 
 
-def fallen(trace: Trace, last: int, count: int) -> float:
+def end_of_pressure(trace: Trace, last: int, count: int) -> float:
     """Return the time [TU] at which the pressure on the axis falls to 0, on a line through two states.
 
     They are the last two of the phase with `count` particles in contact on a side, where the pressure is extrapolated

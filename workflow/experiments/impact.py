@@ -17,7 +17,7 @@ from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.deck.steps import Fly, Launch, Phase
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
-from contact1d.workflow.experiments.history import lost
+from contact1d.workflow.experiments.history import contact_time
 from contact1d.workflow.laws.path import Path
 from contact1d.workflow.model.free import FLIGHT, impact, stretch
 from contact1d.workflow.model.reduced import reduced
@@ -50,18 +50,18 @@ class ImpactExperiment(Scripted[Impact]):
         d, time = trace.displacement, trace.time
         energy, parted = 0.5 * mass * velocity**2, not trace.force[-FLIGHT:].any()
         back = float((d[-2] - d[-1]) / (time[-1] - time[-2])) / velocity if parted else 0.0
-        deepest = _top(trace, d)
+        deepest = _peak(trace, d)
         radii = np.asarray([trace.radius(i) or 0.0 for i in range(len(trace))])
-        widest = settings.law.untouched_radius(deepest) or _top(trace, radii)
+        widest = settings.law.untouched_radius(deepest) or _peak(trace, radii)
         lossless = settings.law.is_lossless
         results = {
             "restitution": Reading(back, NUMBER, scale=None if back else 1.0),
             "dissipated_energy": Reading(energy * (1.0 - back**2), ENERGY, scale=energy if lossless else None),
-            "peak_force": Reading(_top(trace, trace.force), FORCE),
+            "peak_force": Reading(_peak(trace, trace.force), FORCE),
             "peak_displacement": Reading(deepest, LENGTH),
             "peak_contact_radius": Reading(widest, LENGTH),
         }
-        return results | ({"contact_time": lost(trace)} if parted else {})
+        return results | ({"contact_time": contact_time(trace)} if parted else {})
 
     def energy(self, case: Reduction, states: Sequence[State], results: Mapping[str, Result]) -> dict[str, Agreement]:
         """Return the check of the lost kinetic energy against what the contact stores and dissipates along the path.
@@ -109,7 +109,7 @@ class ImpactExperiment(Scripted[Impact]):
         return f"Use {FINER_SPACING}"
 
 
-def _top(trace: Trace, column: Array, near: int = 2) -> float:
+def _peak(trace: Trace, column: Array, near: int = 2) -> float:
     """Return the maximum of a column by a polynomial through `near` states on both sides; it may be at first touch."""
     first = int(np.flatnonzero(trace.force)[0])
     time, column = trace.time[first:], column[first:]

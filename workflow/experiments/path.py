@@ -67,7 +67,7 @@ class PathExperiment(Scripted[Path]):
         repeated = self._in_half_steps(context, case.model)
         repeats = {source: [repeat.chosen(seen) for repeat in traces] for source, traces in repeated.items()}
         results = budgeted(case, trace, shown, sampled=not self.is_statistical, repeated=repeats)
-        warnings = self._missing(results, case, phases) | doubts(scene, settings, reported)
+        warnings = self._missing_results(results, case, phases) | doubts(scene, settings, reported)
         warnings |= _buckling(trace, repeats, settings)
         rows = of_rows(curve_errors(case, whole, errors.common, repeated), asked)
         checks = plan.checks(case, states) if plan else {}
@@ -90,7 +90,7 @@ class PathExperiment(Scripted[Path]):
         """Return the load steps at positions; in time each lasts 14 times the slowest decay of a particle."""
         if scene.method == "quasistatic":
             return displacements([position for position, _ in positions])
-        steps = math.ceil(14.0 * _decay(scene, settings) / settings.motion.time_step)
+        steps = math.ceil(14.0 * _relaxation_time(scene, settings) / settings.motion.time_step)
         return tuple(DisplaceInTime(float(position), steps) for position, _ in positions)
 
     def force_errors(
@@ -142,10 +142,10 @@ class PathExperiment(Scripted[Path]):
                     branch.begin(phase)
                     branch.visit(positions)
 
-    def _lost(self, trace: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
+    def _losses(self, trace: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
         """Return the dissipated energy of a closed path, of an open one that of its instabilities, ∫F dd − ΔE."""
         closed = self.closes(trace, settings)
-        gained = 0.0 if closed else _gained(trace, settings)
+        gained = 0.0 if closed else _energy_change(trace, settings)
         if gained is None or (work := work_of(*trace.lists)) is None:
             return {}
         errors = {"sampling": work.uncertainty}
@@ -171,14 +171,16 @@ class PathExperiment(Scripted[Path]):
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
         """Return the marks of the last unloading, or without adhesion the deepest state; and the dissipated energy."""
-        marks = _adhesion(trace, settings) if settings.law.attracts(scene) else _largest(trace)
-        return marks | self._lost(trace, scene, settings)
+        marks = _adhesion(trace, settings) if settings.law.attracts(scene) else _deepest(trace)
+        return marks | self._losses(trace, scene, settings)
 
     def advice(self, scene: Scene) -> str:
         """Return the advice to refine the displacements of the scene, or the lattice."""
         return f"Use more steps in experiment.displacements; for a radius or a force in curve.csv also {FINER_SPACING}"
 
-    def _missing(self, results: Mapping[str, Result], case: Reduction, phases: Sequence[Phase]) -> dict[str, str]:
+    def _missing_results(
+        self, results: Mapping[str, Result], case: Reduction, phases: Sequence[Phase]
+    ) -> dict[str, str]:
         """Return warnings of results that the path does not reach."""
         if not case.model.law.attracts(case.scene):
             return {}
@@ -225,7 +227,7 @@ class ThermalPath(PathExperiment):
 
     def rows(self, scene: Scene, settings: Settings, positions: Positions) -> tuple[Row, ...]:
         """Return the load steps of equilibration and samples at each position."""
-        return thermal_rows(settings, _decay(scene, settings), positions)
+        return thermal_rows(settings, _relaxation_time(scene, settings), positions)
 
     def force_errors(
         self, scene: Scene, settings: Settings, states: Sequence[State], marked: Sequence[State]
@@ -272,7 +274,7 @@ def _means(settings: Settings, states: Sequence[State]) -> dict[str, tuple[float
     }
 
 
-def _largest(trace: Trace) -> dict[str, Reading]:
+def _deepest(trace: Trace) -> dict[str, Reading]:
     """Return force and radius at the largest displacement, the results without adhesion."""
     deepest = int(np.argmax(trace.displacement))
     results = {"largest_force": Reading(float(trace.force[deepest]), FORCE)}
@@ -303,7 +305,7 @@ def _is_unstable(trace: Trace) -> bool:
     return any(before != after for before, after in pairwise(held))
 
 
-def _gained(trace: Trace, settings: Settings) -> float | None:
+def _energy_change(trace: Trace, settings: Settings) -> float | None:
     """Return the energy [FU·LU] of the last state less that of the first; None where no contact forms or separates."""
     ends = ((float(trace.displacement[i]), trace.radius(i) or 0.0) for i in (0, len(trace) - 1))
     first, last = (settings.law.energy(*end) for end in ends)
@@ -355,7 +357,7 @@ def positions_of(scene: Scene, settings: Settings) -> list[tuple[float, bool]]:
     before = min(before, goals[0][0])
     positions = [(before, False)] if before not in (0.0, goals[0][0]) else []
     for goal, is_asked in goals:
-        longest = settings.increments.longest_move if goal > before else _longest_drop(settings)
+        longest = settings.increments.longest_move if goal > before else _longest_unloading(settings)
         moves = max(1, math.ceil(abs(goal - before) / longest - 1e-9))  # round-off adds no move
         positions += [(before + (goal - before) * i / moves, False) for i in range(1, moves)]
         positions.append((goal, is_asked))
@@ -363,7 +365,7 @@ def positions_of(scene: Scene, settings: Settings) -> list[tuple[float, bool]]:
     return positions
 
 
-def _longest_drop(settings: Settings) -> float:
+def _longest_unloading(settings: Settings) -> float:
     """Return the longest move [LU] of separating bodies without premature detachment of particles; inf if none snaps.
 
     A move h puts a joined pair h further apart before it relaxes. The pair detaches where that is beyond the unstable
@@ -376,7 +378,7 @@ def _longest_drop(settings: Settings) -> float:
     return min(settings.increments.longest_move, math.sqrt(8.0 * settings.tolerance) * settings.forces.range)
 
 
-def _decay(scene: Scene, settings: Settings) -> float:
+def _relaxation_time(scene: Scene, settings: Settings) -> float:
     """Return the relaxation time [TU] of a particle on its bulk spring: 2m/γ, overdamped γ/k."""
     mass, stiffness = scene.bodies.mass, scene.bulk_stiffness
     return max(2.0 * mass / settings.motion.damping, settings.motion.damping / stiffness)

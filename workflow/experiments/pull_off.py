@@ -42,7 +42,7 @@ class PullOffExperiment(Scripted[PullOff]):
         """Compress, unload to F = 0, retract to the force maximum, separate; as many times as there are cycles."""
         given = self.given(scene)
         if given.velocity:
-            branch.follow(_pulled(branch.model, given))
+            branch.follow(_history_at_velocity(branch.model, given))
             return
         scale = max(given.preload, branch.scale)
         for _ in range(given.cycles or 1):
@@ -104,7 +104,7 @@ class PullOffExperiment(Scripted[PullOff]):
         return super().advice(scene) + since
 
 
-def _pulled(model: Particles, given: PullOff) -> History:
+def _history_at_velocity(model: Particles, given: PullOff) -> History:
     """Return the history to the preload and back at the velocity, its edge receding by equal distances."""
     assert given.velocity is not None
     deepest = model.displacement_at(given.preload)
@@ -155,11 +155,11 @@ def _unloadings(trace: Trace) -> list[Trace]:
 def _marks(falling: Trace, scene: Scene, settings: Settings, preload: float) -> dict[str, Reading]:
     """Return F_A, a_cr and a₀ of one unloading, under load control or under displacement control."""
     if falling.search.bracket:
-        return _under_load(falling, scene, settings, preload)
-    return _held(falling.falling(), settings)
+        return _marks_by_load(falling, scene, settings, preload)
+    return _marks_by_displacement(falling.falling(), settings)
 
 
-def _held(falling: Trace, settings: Settings) -> dict[str, Reading]:
+def _marks_by_displacement(falling: Trace, settings: Settings) -> dict[str, Reading]:
     """Return the marks of an unloading under displacement control, which begins at F = 0 without a preload."""
     held = falling.force[: int(falling.force.argmin()) + 1]  # separated bodies have no load either
     marks, least = unloading(falling, settings), int(np.argmin(np.abs(held)))
@@ -168,7 +168,7 @@ def _held(falling: Trace, settings: Settings) -> dict[str, Reading]:
     return marks
 
 
-def _under_load(rested: Trace, scene: Scene, settings: Settings, preload: float) -> dict[str, Reading]:
+def _marks_by_load(rested: Trace, scene: Scene, settings: Settings, preload: float) -> dict[str, Reading]:
     """Return F_A in the middle of the bracket, a₀, and a_cr, which load control never reaches, by extrapolation."""
     assert rested.search.bracket is not None
     best, broken = rested.search.bracket
@@ -183,7 +183,7 @@ def _under_load(rested: Trace, scene: Scene, settings: Settings, preload: float)
         beyond = abs(zero - radius) * math.sqrt(2.0 * sum(errors.values()) / tension)
         critical = Reading(radius, LENGTH, {"instability": scene.bodies.spacing + beyond})
     else:
-        critical = _extrapolated(rested)
+        critical = _critical_radius(rested)
     at_zero = {}
     if settings.is_toothed:  # beyond the force maximum the plate would not have come back
         swung = overshoot(settings, scene.bodies.mass, preload, 0.0) * preload
@@ -195,7 +195,7 @@ def _under_load(rested: Trace, scene: Scene, settings: Settings, preload: float)
     }
 
 
-def _extrapolated(rested: Trace) -> Reading:
+def _critical_radius(rested: Trace) -> Reading:
     """Return the radius [LU] at the force maximum of a cubic through the last four states, with its sampling error.
 
     The radius is a parabola through the last three states, the error the change with a parabola for the force.

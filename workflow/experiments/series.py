@@ -119,7 +119,7 @@ def measured(
     return results
 
 
-def begun(contact: Contact, phase: Phase) -> Sequence[Row]:
+def begin_phase(contact: Contact, phase: Phase) -> Sequence[Row]:
     """Begin a phase on a contact and return its load steps."""
     contact.begin(phase.name, phase.begin, sum(getattr(row, "steps", 0) for row in phase.rows))
     return phase.rows

@@ -29,7 +29,7 @@ from contact1d.workflow.continuation.trust import (
 from contact1d.workflow.deck.steps import Phase, UnderLoad, numbered
 from contact1d.workflow.experiments.experiment import Experiment
 from contact1d.workflow.experiments.motion import Motion, motion_of
-from contact1d.workflow.experiments.series import begun
+from contact1d.workflow.experiments.series import begin_phase
 from contact1d.workflow.experiments.thermal import run_in
 from contact1d.workflow.model.dynamics import MOST_ROWS, MOVING_TOLERANCE
 from contact1d.workflow.model.motion import contact_half_width, too_fast
@@ -63,9 +63,9 @@ class SlideExperiment(Experiment[Slide]):
             states = [self.loaded(contact, load)]
             try:
                 for leg in legs:
-                    for row in begun(contact, leg):
+                    for row in begin_phase(contact, leg):
                         state = contact.row(row, trusted=False)
-                        _require_above(scene, settings, state)
+                        _require_contact(scene, settings, state)
                         require_trust(scene, settings, state)
                         states.append(state)
                 contact.write_state()
@@ -111,7 +111,7 @@ class SlideExperiment(Experiment[Slide]):
             raise PartedError(
                 f"the contact does not sustain {force:.4g} FU: the bodies separate", "use a smaller tension"
             )
-        state = _settled_along(contact, force, scale, held.last)
+        state = _settled_along_x(contact, force, scale, held.last)
         for row in phase.rows[1:]:  # with the drag of the scene again
             state = contact.row(row, trusted=False)
         return state
@@ -138,7 +138,7 @@ class ThermalSlide(SlideExperiment):
     def loaded(self, contact: Contact, force: float) -> State:
         """Run in under the normal force [FU] and return the last state."""
         phase = self.loading(contact.scene, contact.settings, force)
-        return contact.rows(begun(contact, phase), trusted=False)[-1]
+        return contact.rows(begin_phase(contact, phase), trusted=False)[-1]
 
 
 def outcome_of(motion: Motion, states: list[State], phases: tuple[Phase, ...]) -> Outcome:
@@ -147,11 +147,11 @@ def outcome_of(motion: Motion, states: list[State], phases: tuple[Phase, ...]) -
         "slips": {name: tuple(getattr(slip, name) for slip in motion.slips) for name in ("time", "place", "size")},
         "friction": motion.series.chosen(slice(1, None)).table(),
     }
-    warnings = doubts(motion.scene, motion.settings, tuple(states)) | _doubts(motion)
+    warnings = doubts(motion.scene, motion.settings, tuple(states)) | _warnings(motion)
     return Outcome(motion.results, tuple(states), {"final": states[-1]}, phases, warnings, tables=tables)
 
 
-def _doubts(motion: Motion) -> dict[str, str]:
+def _warnings(motion: Motion) -> dict[str, str]:
     """Return the warnings of a slide: too fast, too short, too much drag, or an energy balance that does not close."""
     settings, top, work = motion.settings, motion.largest[FORCE], motion.results["cantilever_work"]
     fastest, warnings = max(abs(leg.velocity) for leg in settings.motion.drive), {}
@@ -183,7 +183,7 @@ def _loading_settings(settings: Settings) -> Settings:
     return replace(settings, motion=replace(settings.motion, damping=settings.motion.calm_damping))
 
 
-def _settled_along(contact: Contact, force: float, scale: float, state: State) -> State:
+def _settled_along_x(contact: Contact, force: float, scale: float, state: State) -> State:
     """Continue from a state until the plate is at rest along x as well, and return the state there."""
     scene, settings = contact.scene, _loading_settings(contact.settings)
     steps = max(1, round(settings.motion.settle_time / settings.motion.time_step))
@@ -202,7 +202,7 @@ def _settled_along(contact: Contact, force: float, scale: float, state: State) -
     )
 
 
-def _require_above(scene: Scene, settings: Settings, state: State) -> None:
+def _require_contact(scene: Scene, settings: Settings, state: State) -> None:
     """Refuse a plate that has left the lower body, along it or off it.
 
     Raises:

@@ -38,10 +38,10 @@ def with_spacing(scene: Scene) -> Scene:
     if scene.bodies.given_spacing != "auto":
         return scene
     radius = contact_radius(scene)
-    chosen, error = fine_enough(partial(_spaced, scene, radius))
+    chosen, error = spaced_within_tolerance(partial(_spaced, scene, radius))
     tolerance = scene.accuracy.tolerance
     if tolerance < error < math.inf:  # the run reports the radius that has an infinite error
-        larger = "" if error > 0.9 * LARGEST else f"use an accuracy.tolerance of {_up(error)}, or "
+        larger = "" if error > 0.9 * LARGEST else f"use an accuracy.tolerance of {_rounded_up(error)}, or "
         digits = digits_apart(error, tolerance, 2)
         raise SettingsError(
             f"a tolerance of {tolerance:g} is not reached by {MOST} particles in the contact radius of "
@@ -52,7 +52,9 @@ def with_spacing(scene: Scene) -> Scene:
     return chosen
 
 
-def fine_enough(scene_of: Callable[[int], Scene], share: float = 0.9, fewest: int = 30) -> tuple[Scene, float]:
+def spaced_within_tolerance(
+    scene_of: Callable[[int], Scene], share: float = 0.9, fewest: int = 30
+) -> tuple[Scene, float]:
     """Return the scene whose discretisation error is below a share of its tolerance, and that error, relative.
 
     Args:
@@ -158,7 +160,7 @@ def contact_radius(scene: Scene) -> float:
     return float(np.interp(wanted, values[near], radii[near]))
 
 
-def _up(tolerance: float) -> str:
+def _rounded_up(tolerance: float) -> str:
     """Return a tolerance about 10 % larger, rounded up to two significant digits."""
     step = 10.0 ** (math.floor(math.log10(tolerance)) - 1)
     return f"{math.ceil(1.1 * tolerance / step) * step:.2g}"

@@ -60,7 +60,7 @@ class TangentialExperiment(Scripted[Tangential]):
         with context.contact(meanwhile=lambda: case.lattice) as contact:
             states = plan.measured(contact)
             phases = contact.phases
-        asked = [is_asked for _, is_asked in passed(scene, _chain(scene, settings), settings)]
+        asked = [is_asked for _, is_asked in load_steps(scene, _chain(scene, settings), settings)]
         trace = of_states(states, reduced(scene, settings))
         rows = slid_states(trace, scene)
         _require_history(trace, rows)
@@ -89,7 +89,7 @@ class TangentialExperiment(Scripted[Tangential]):
     def script(self, branch: Driver, scene: Scene) -> None:
         """Visit the stops of the model's particles, without those that change nothing."""
         model = cast("SlidingSprings", branch.model)
-        for name, stretch in stretches(passed(scene, model.chain, branch.settings, sparse=True)):
+        for name, stretch in stretches(load_steps(scene, model.chain, branch.settings, sparse=True)):
             branch.begin(name)
             branch.visit(*zip(*(stop for stop, _ in stretch), strict=True))
 
@@ -101,7 +101,7 @@ class TangentialExperiment(Scripted[Tangential]):
         rows, round_off = slid_states(trace, scene), 1e-13
         last = rows[-1]
         strongest = max(row.carried for row in rows)
-        error = round_off * len(rows) * strongest + _moved_too_far(scene, settings)
+        error = round_off * len(rows) * strongest + _contact_error(scene, settings)
         lost, force = error * scene.experiment.way, float(trace.force[last.state])
         is_unseen = last.dissipated <= lost
         unseen = _unseen_slip(rows, scene)[0] if is_unseen else 0.0
@@ -133,7 +133,7 @@ class TangentialExperiment(Scripted[Tangential]):
 
     def _plan(self, deck: Deck, model: Particles) -> Plan:
         """Return the plan: the load in one step, then a phase for each stretch to the right ("forward") or left."""
-        parts = stretches(passed(deck.scene, _chain(deck.scene, deck.settings), deck.settings))
+        parts = stretches(load_steps(deck.scene, _chain(deck.scene, deck.settings), deck.settings))
         names = [name for name, stretch in parts for _ in stretch]
         ends = np.cumsum([len(stretch) for _, stretch in parts]) - 1
         depths, along = zip(*(stop for _, stretch in parts for stop, _ in stretch), strict=True)
@@ -285,7 +285,7 @@ def _chain(scene: Scene, settings: Settings) -> Sliders:
     return sliders_of(scene, places(settings.chains.upper, scene.bodies.spacing))
 
 
-def passed(scene: Scene, chain: Sliders, settings: Settings, sparse: bool = False) -> list[tuple[Stop, bool]]:
+def load_steps(scene: Scene, chain: Sliders, settings: Settings, sparse: bool = False) -> list[tuple[Stop, bool]]:
     """Return displacement and position [LU] of every load step in order, each with whether the scene asks for it.
 
     With `sparse`, stops are left out at which the direction does not change.
@@ -293,7 +293,7 @@ def passed(scene: Scene, chain: Sliders, settings: Settings, sparse: bool = Fals
     assert isinstance(scene.experiment, Tangential)
     asked = stops(scene.experiment, chain)
     first, *later = without_rests(asked) if sparse else asked
-    steps, most = [(first, False)], _most(settings)
+    steps, most = [(first, False)], _most_between(settings)
     before = first
     for stop in later:
         touches = chain.touches(before[0], stop[0])
@@ -323,10 +323,10 @@ def stretches(steps: Sequence[tuple[Stop, bool]]) -> list[tuple[str, list[tuple[
     return parts
 
 
-def _moved_too_far(scene: Scene, settings: Settings) -> float:
+def _contact_error(scene: Scene, settings: Settings) -> float:
     """Return the error [FU] of tangential forces by particles that come into contact between two load steps."""
     assert isinstance(scene.experiment, Tangential)
-    chain, most, error = _chain(scene, settings), _most(settings), 0.0
+    chain, most, error = _chain(scene, settings), _most_between(settings), 0.0
     for before, stop in pairwise(stops(scene.experiment, chain)):
         touches = len(chain.touches(before[0], stop[0]))
         if touches > most:
@@ -334,7 +334,7 @@ def _moved_too_far(scene: Scene, settings: Settings) -> float:
     return error
 
 
-def _most(settings: Settings) -> int:
+def _most_between(settings: Settings) -> int:
     """Return how many load steps lie between two of the scene at most.
 
     A particle that comes into contact between two of these moves along from the first, an error of one in so many.

@@ -22,12 +22,12 @@ from contact1d.workflow.continuation.outcome import LATTICE, Outcome, Reading, R
 from contact1d.workflow.continuation.state import State, radius_rule
 from contact1d.workflow.continuation.trust import UntrustedError, doubts, require_trust
 from contact1d.workflow.deck.steps import DisplaceInTime, Phase, Row, UnderLoad
-from contact1d.workflow.experiments.series import Series, begun, measured, recorded
+from contact1d.workflow.experiments.series import Series, begin_phase, measured, recorded
 from contact1d.workflow.laws.radius import RadiusRule
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE
 
-SETTLING_LOOKS = 40
+RUN_IN_SAMPLES = 40
 """Samples of the run-in, in which a thermal contact forgets its start: ten settling times (`chunk_steps`)."""
 BLOCKS = 20
 """Blocks whose means give the standard error: each is long compared with the settling time."""
@@ -44,7 +44,7 @@ def chunk_steps(settings: Settings) -> int:
 
 def run_in(name: str, settings: Settings, load: float) -> Phase:
     """Return the phase in which a contact under a load [FU] forgets its start."""
-    return Phase(name, (UnderLoad(load, chunk_steps(settings)),) * SETTLING_LOOKS)
+    return Phase(name, (UnderLoad(load, chunk_steps(settings)),) * RUN_IN_SAMPLES)
 
 
 def planned_samples(settings: Settings, load: float) -> tuple[Phase, Phase]:
@@ -104,10 +104,10 @@ def thermal_load(context: RunContext, load: float, most_samples: int = 2_000) ->
     settling, sampling = planned_samples(settings, load)
     samples: list[State] = []
     with context.contact() as contact:
-        settled = _looks(contact, begun(contact, settling))
-        rows, error = begun(contact, sampling), math.inf
+        settled = _sampled_states(contact, begin_phase(contact, settling))
+        rows, error = begin_phase(contact, sampling), math.inf
         while error > goal and len(samples) < most_samples:
-            samples += _looks(contact, rows)
+            samples += _sampled_states(contact, rows)
             blocks = blocks_of(samples)
             error = standard_error(blocks["displacement"])
         contact.write_state()
@@ -128,7 +128,7 @@ def thermal_load(context: RunContext, load: float, most_samples: int = 2_000) ->
     return Outcome(results, states, {"final": mean_state(samples)}, phases, warnings, tables=table)
 
 
-def _looks(contact: Contact, rows: Sequence[Row]) -> list[State]:
+def _sampled_states(contact: Contact, rows: Sequence[Row]) -> list[State]:
     """Return the states of load steps; refuse one in which the bodies are separated.
 
     Raises:
@@ -190,19 +190,19 @@ def thermal_rows(
     # Samples are half a time constant apart at least.
     look = max(chunk_steps(settings), math.ceil(0.5 * decay / settings.motion.time_step))
     return tuple(
-        DisplaceInTime(float(position), look) for position, asked in positions for _ in range(_looks_at(asked))
+        DisplaceInTime(float(position), look) for position, asked in positions for _ in range(_steps_at(asked))
     )
 
 
 def averaged(states: Sequence[State], positions: Sequence[tuple[float, bool]]) -> list[State]:
     """Return one state for each position of a path: the mean of its samples, of an intermediate one the last state."""
-    ends = np.cumsum([_looks_at(asked) for _, asked in positions]).tolist()
+    ends = np.cumsum([_steps_at(asked) for _, asked in positions]).tolist()
     return [
         mean_state(states[end - SAMPLES : end]) if asked else states[end - 1]
         for end, (_, asked) in zip(ends, positions, strict=True)
     ]
 
 
-def _looks_at(asked: bool) -> int:
+def _steps_at(asked: bool) -> int:
     """Return the number of load steps at a position."""
-    return SETTLING_LOOKS + asked * SAMPLES
+    return RUN_IN_SAMPLES + asked * SAMPLES
