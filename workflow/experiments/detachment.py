@@ -62,7 +62,7 @@ class Detachment:
 class Ramp:
     """The load ramp: a staircase, of which each load step adds an increment to the load.
 
-    With a spring the increment is that of its force on a plate at rest: its far end goes on by rise/spring.
+    With a spring the increment is that of its force on a plate at rest: its far end moves by rise/spring.
 
     Attributes:
         steps, time: timesteps and duration [TU] of a load step.

@@ -38,7 +38,7 @@ class HistoryExperiment(Scripted[History]):
         branch.follow(branch.model.refined(_load_steps(scene)))
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """Return the results of the last state, the peaks, and from first to last contact energy and time."""
+        """Return the last state, the peaks, the dissipated energy, the time of contact and the unloading stiffness."""
         by_force, last = self.given(scene).force is not None, len(trace) - 1
         d, force = trace.displacement, trace.force
         results = {
@@ -80,7 +80,9 @@ class HistoryExperiment(Scripted[History]):
         if len(missing) > 1:
             words = "the bodies touch at the end, or never, so there is neither a contact_time nor a dissipated_energy"
         elif missing:
-            words = "the history begins in contact, and what that took is not known, so there is no dissipated_energy"
+            words = (
+                "the history begins in contact, and the work up to there is unknown, so there is no dissipated_energy"
+            )
         warnings = {"no_energy": words} if words else {}
         if law_of(scene).jumps(scene) and any(name.startswith("unloading") for name in _load_steps(scene).phases):
             warnings["no_slope"] = (

@@ -1,4 +1,4 @@
-"""Impact: a body hits the rigid plane with a velocity; how fast it leaves, how long it touches, how hard it presses."""
+"""Impact: a body hits the rigid plane with a velocity; its restitution, time of contact, peaks and lost energy."""
 
 from __future__ import annotations
 

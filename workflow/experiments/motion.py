@@ -218,7 +218,8 @@ def motion_of(scene: Scene, settings: Settings, load: float, states: Sequence[St
     plate, depth, normal, pull = recorded(states, names).values()
     drag, c, mass = settings.chains.upper * moving.damping, moving.plate_damping, moving.plate_mass
     inertia_of_particle, inertia_of_plate = inertia(scene, settings)
-    speeds = _read(states, "vcm(plate,x)") ** 2 + _read(states, "vcm(plate,z)") ** 2
+    plate_velocity = _read(states, "vcm(plate,x)")
+    speeds = plate_velocity**2 + _read(states, "vcm(plate,z)") ** 2
     pulled = _integrals(states, rows, 1, pull)
     kinetic = _integrals(states, rows, 2, _read(states, "cantilever_kinetic"))
     squares = 2.0 / inertia_of_plate * _integrals(states, rows, 3, 0.5 * inertia_of_plate * speeds)
@@ -226,9 +227,7 @@ def motion_of(scene: Scene, settings: Settings, load: float, states: Sequence[St
     if heat := [name for name in HEAT if name in states[-1].motion]:
         lost = np.asarray([sum(state.motion[name] for name in heat) for state in states[1:]])
     driven, moved, carried = _summed(velocity * span), plate - plate[0], _read(states, "xcm(upper,x)")
-    momentum = settings.chains.upper * bodies.mass * _read(states, "vcm(upper,x)") + mass * _read(
-        states, "vcm(plate,x)"
-    )
+    momentum = settings.chains.upper * bodies.mass * _read(states, "vcm(upper,x)") + mass * plate_velocity
     dragged = drag * (driven - carried) + c * (driven - moved) - momentum
     energy = _read(states, "c_measuring_energy")
     energy = energy + bodies.mass / inertia_of_particle * _read(states, "cantilever_kinetic") + 0.5 * mass * speeds

@@ -56,7 +56,7 @@ class PathExperiment(Scripted[Path]):
             phases = contact.phases
         asked = np.asarray([is_asked for _, is_asked in positions])
         reported = tuple(compress(states, asked))
-        # Where pairs snap, all rows show the jumps; else the same positions there and back show what a curve loses.
+        # Where pairs snap, all load steps show the jumps; else equal positions there and back show the energy loss.
         seen = np.flatnonzero(np.logical_or.accumulate(asked) if settings.law.snaps else asked)
         ends = {"deepest": max(reported, key=lambda state: state.displacement), "final": reported[-1]}
         most_tensile = min((states[i] for i in seen), key=lambda state: state.force)
@@ -187,7 +187,7 @@ class PathExperiment(Scripted[Path]):
         warnings: dict[str, str] = {}
         if _passes_jump(case) and not any(name.startswith(LOSSES) for name in results):
             warnings["no_energy"] = (
-                "the path has too few load steps to tell what is lost at snap-in or separation, so there is neither a "
+                "the path has too few load steps for the energy lost at snap-in or separation, so there is neither a "
                 "dissipated_energy nor an instability_energy: use more steps in experiment.displacements"
             )
         marks = {"adhesion_force", "zero_load_radius"}
