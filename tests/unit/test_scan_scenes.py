@@ -59,7 +59,7 @@ def test_the_command_line_prints_it(file: Path, tmp_path: Path) -> None:
     profile = f"bodies.profile={{ kind = 'table', file = '{file}', {FIT} }}"
     done = CliRunner().invoke(app, ["run", STEEL_ON_GLASS, "--out", str(tmp_path / "run"), "--set", profile])
     assert done.exit_code == 0, done.output
-    assert "taken: a fitted parabola, R = " in done.stdout
+    assert "fitted: a parabola, R = " in done.stdout
 
 
 def test_more_noise_is_a_larger_part_of_the_uncertainty(tmp_path: Path) -> None:

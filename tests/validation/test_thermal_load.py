@@ -18,7 +18,7 @@ import pytest
 from numpy.typing import NDArray
 
 from contact1d import Run, read_scene, run
-from contact1d.workflow.experiments.thermal import SETTLING_LOOKS
+from contact1d.workflow.experiments.thermal import RUN_IN_SAMPLES
 from tests.scenes import LAW
 from tests.validation.test_shipped_scenes import SCENES, THERMAL_PLACES, model_of
 from validation.references.boltzmann_pairs import BoltzmannPairs
@@ -57,7 +57,7 @@ def to_first_order(temperature: float, width: float) -> tuple[float, float]:
 
 def swings(finished: Run, deviation: float) -> None:
     """The variance of d in time is that of the reference, and not 0, within the sample's own errors."""
-    d = np.asarray(finished.curve.displacement)[SETTLING_LOOKS:]
+    d = np.asarray(finished.curve.displacement)[RUN_IN_SAMPLES:]
     squares = [float(np.mean((block - d.mean()) ** 2)) for block in np.array_split(d, BLOCKS)]
     error = float(np.std(squares, ddof=1)) / math.sqrt(BLOCKS)
     assert abs(float(np.var(d)) - deviation**2) <= SIGMAS * error

@@ -1,4 +1,4 @@
-"""What a closed form is asked of a run: its case."""
+"""The case of a finished run: the quantities from which a closed form makes its predictions."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ from contact1d.workflow.units import UNKNOWN, Quantity, Scales
 
 Values = dict[str, float]
 ASSUMED_RANGE = 0.3e-9
-"""h₀ [m] of an adhesion whose scene has none: a distance between atoms, and that of most solids."""
+"""Range h₀ [m] of an adhesion whose scene has none: an interatomic distance, typical of solids."""
 
 
 @dataclass(frozen=True)
 class Case:
-    """A finished run, as a closed form sees it; all in model units.
+    """Body, load and results of a finished run, in model units.
 
     Attributes:
-        scene: what ran.
-        quantities: what it found, of the body, by name.
-        scales: LU and FU, by which a range is assumed where the scene has none.
+        scene: the scene of the run.
+        quantities: its results, of the body, by name.
+        scales: LU and FU in SI, for the range that is assumed where the scene has none.
     """
 
     scene: Scene
@@ -50,14 +50,14 @@ class Case:
 
     @property
     def kind(self) -> str:
-        """Of the profile."""
+        """The kind of the profile, as a scene has it."""
         return self.scene.bodies.profile.kind
 
     @property
     def force(self) -> float | None:
-        """F [FU] of the state that is reported, where the scene gives it; else None.
+        """F [FU] of the reported state, where the scene gives it; else None.
 
-        Where bodies adhere a force has two displacements, so that one under a given displacement tells nothing.
+        With adhesion a force has two displacements, so that F at a given displacement determines no state.
         """
         if self.law.attracts(self.scene) and self.scene.experiment.places():
             return None
@@ -65,17 +65,17 @@ class Case:
 
     @property
     def displacement(self) -> float | None:
-        """d [LU] of the state that is reported, where the scene gives it: of a path the deepest, of a slip the last."""
-        places = self.scene.experiment.places()
-        if not places or self.force is not None:
+        """d [LU] of the reported state, where the scene gives it: of a path the largest, of `tangential` the last."""
+        displacements = self.scene.experiment.places()
+        if not displacements or self.force is not None:
             return None
         if "displacement" in self.quantities:
             return float(self.quantities["displacement"].value)
-        return places[-1] if self.scene.experiment.goes_along else max(places)
+        return displacements[-1] if self.scene.experiment.goes_along else max(displacements)
 
     @property
     def work(self) -> float:
-        """W [FU/LU]: given, or implied by the interaction at the radius that the run found; 0 without."""
+        """W [FU/LU]: given, or implied by the interaction at the resulting radius; 0 without adhesion."""
         implied = self.quantities.get("work_of_adhesion")
         return self.scene.work_of_adhesion if implied is None else float(implied.value)
 
@@ -86,17 +86,17 @@ class Case:
 
     @property
     def law(self) -> type[Law]:
-        """Of the scene."""
+        """The contact law of the scene."""
         return law_of(self.scene)
 
     @property
     def is_elastic(self) -> bool:
-        """Whether springs under the profile are all there is: no attraction, no memory, no effect of other kinds."""
+        """Whether the contact has linear springs alone: no attraction, no memory, no other effects."""
         return self.scene.keeps_springs and "pressed" in self.law.beside and not self.law.attracts(self.scene)
 
     @property
     def sphere(self) -> tuple[float, float, float]:
-        """R, E* and W of a sphere."""
+        """R [LU], E* [FU/LU²] and W [FU/LU] of a sphere."""
         assert self.radius is not None
         return self.radius, self.contact_modulus, self.work
 
@@ -111,19 +111,21 @@ class Case:
     def body(self) -> PowerLaw | Ellipsoid:
         """The contact of a cone, a power, an ellipsoid or a sphere, with W where it adheres, without a range."""
         profile: Any = self.scene.bodies.profile
-        e = self.contact_modulus
         if self.kind == "cone":
-            return PowerLaw(profile.rise, 1.0, e, self.work)
+            return PowerLaw(profile.rise, 1.0, self.contact_modulus, self.work)
         if self.kind == "power":
-            return PowerLaw(profile.height_there / profile.radius**profile.exponent, profile.exponent, e, self.work)
+            factor = profile.height_there / profile.radius**profile.exponent
+            return PowerLaw(factor, profile.exponent, self.contact_modulus, self.work)
         if self.kind == "ellipsoid":
-            return Ellipsoid(profile.radius, profile.half_axis, e, self.work)
-        radius, *rest = self.sphere
-        return Ellipsoid(radius, radius, *rest) if self.kind == "circle" else PowerLaw.sphere(radius, *rest)
+            return Ellipsoid(profile.radius, profile.half_axis, self.contact_modulus, self.work)
+        radius, modulus, work = self.sphere
+        if self.kind == "circle":
+            return Ellipsoid(radius, radius, modulus, work)
+        return PowerLaw.sphere(radius, modulus, work)
 
     @cached_property
     def contact_radius(self) -> float:
-        """a [LU] of the reported state by its force or displacement, of none at F = 0; 0 where the bodies are apart."""
+        """a [LU] of the reported state by its force or displacement, without one at F = 0; 0 of separated bodies."""
         try:
             if self.displacement is not None:
                 return self.body.radius_at(self.displacement)

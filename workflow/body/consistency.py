@@ -1,8 +1,8 @@
-"""Whether the body's results contradict the run: ∫ p dA beside the force, an exact closed form beside the results."""
+"""Whether the body's results contradict the run: ∫ p dA against the force, results against an exact closed form."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -13,53 +13,62 @@ from contact1d.workflow.continuation.outcome import Agreement, Outcome
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import Quantity
 
-PRESSURE, OPEN_PRESSURE = 1e-4, 1e-3
-"""Difference of ∫ p dA from the force over ∫ |p| dA, by springs under a formula, and under a table or a scan."""
-CLOSED_FORM, DOUBT = 1e-4, 3.0
-"""Difference from an exact closed form, relative, beside so many uncertainties."""
-FEWEST, WIDEST = 10.0, 0.9
-"""Contact radii over the spacing from which on closed forms are compared, and up to which over the half-width."""
-
 
 def pressure(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressure]) -> dict[str, Agreement]:
-    """∫ p dA of each reported state beside the force, which is as uncertain as the forces of the run.
+    """Return the check of ∫ p dA against the force, of the reported state that differs most; none for an interaction.
 
-    Under a given force the displacement is, which moves ∫ p dA. Nothing of particles that interact.
+    The force has the uncertainty of the forces of the run; under a given force the displacement has one, which changes
+    ∫ p dA.
     """
     if scene.interaction is not None:
         return {}
-    found, shape = [], scene.bodies.profile
+    agreements, shape = [], scene.bodies.profile
     rows = {name: sum(outcome.rows.get(name, {}).values()) for name in ("force", "displacement")}
-    least = OPEN_PRESSURE if shape.alternatives or shape.deviations or shape.slow else PRESSURE
-    for name, one in pressures.items():
-        state = outcome.marked[name]
-        at = next((i for i, other in enumerate(outcome.states) if other is state), None)
-        known, moved = (
-            0.0 if at is None else float(np.broadcast_to(row, len(outcome.states))[at]) for row in rows.values()
+    # Relative to ∫ |p| dA, for a profile given by a table or a scan and for one given by a formula.
+    least = 1e-3 if shape.alternatives or shape.deviations or shape.slow else 1e-4
+    for name, body in pressures.items():
+        marked = outcome.marked[name]
+        index = next((i for i, state in enumerate(outcome.states) if state is marked), None)
+        force_error, displacement_error = (
+            0.0 if index is None else float(np.broadcast_to(row, len(outcome.states))[index]) for row in rows.values()
         )
-        known += moved * (one.stiffness.value if one.stiffness else 0.0)
-        force, size = state.force, float(np.trapezoid(np.abs(one.pressure) * one.r, one.r))
-        stated = float(np.trapezoid(one.uncertainty * one.r, one.r)) / size if size else 0.0
-        words = f"the pressure of the state {name!r} adds up to {one.force:.8g} FU, and its force is {force:.8g} FU"
-        allowed = max(least, stated + one.doubt + known / (one.size or 1.0))
-        found.append(Agreement(abs(one.force - force) / (one.size or 1.0), allowed, words))
-    return {"pressure": max(found, key=lambda one: one.difference / one.allowed)} if found else {}
+        force_error += displacement_error * (body.stiffness.value if body.stiffness else 0.0)
+        force, size = marked.force, float(np.trapezoid(np.abs(body.pressure) * body.r, body.r))
+        stated = float(np.trapezoid(body.uncertainty * body.r, body.r)) / size if size else 0.0
+        words = f"the pressure of the state {name!r} adds up to {body.force:.8g} FU, and its force is {force:.8g} FU"
+        allowed = max(least, stated + body.doubt + force_error / (body.size or 1.0))
+        agreements.append(Agreement(abs(body.force - force) / (body.size or 1.0), allowed, words))
+    return _worst("pressure", agreements)
 
 
 def closed_form(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Agreement]:
-    """The results beside each closed form that is exact for the run; `quantities`: as if its inputs were exact."""
-    radius = max((one.value for name, one in quantities.items() if name.endswith("radius")), default=0.0)
+    """Return the check of the results against the closed forms that are exact for the run, of the largest difference.
+
+    Closed forms hold for a contact radius between 10 spacings and 90 % of the half-width of the body.
+
+    Args:
+        scene: the scene of the run.
+        quantities: the results as if the inputs were exact.
+    """
+    radius = max((quantity.value for name, quantity in quantities.items() if name.endswith("radius")), default=0.0)
     bodies, reach = scene.bodies, scene.bodies.profile.reach
     if bodies.particles != "auto" and bodies.own_count is None:  # the chain itself is the body
         return {}
-    if radius < FEWEST * scene.bodies.spacing or (radius > WIDEST * reach and not scene.bodies.profile.has_edge):
+    if radius < 10.0 * scene.bodies.spacing or (radius > 0.9 * reach and not scene.bodies.profile.has_edge):
         return {}
-    case, found = Case(scene, quantities), []
+    case, agreements = Case(scene, quantities), []
     for form in exact(case):
         for name, value in form.values(case).items():
             if name in quantities and value:
                 ours = quantities[name]
-                allowed = CLOSED_FORM + DOUBT * ours.uncertainty / abs(value)
+                allowed = 1e-4 + 3.0 * ours.uncertainty / abs(value)
                 words = f"{name} is {ours.value:.8g} {ours.unit}, and {value:.8g} {ours.unit} by {form.name}"
-                found.append(Agreement(abs(ours.value / value - 1.0), allowed, words))
-    return {"closed_form": max(found, key=lambda one: one.difference / one.allowed)} if found else {}
+                agreements.append(Agreement(abs(ours.value / value - 1.0), allowed, words))
+    return _worst("closed_form", agreements)
+
+
+def _worst(name: str, agreements: Sequence[Agreement]) -> dict[str, Agreement]:
+    """Return, by a name, the agreement whose difference is largest relative to the allowed one; none of none."""
+    if not agreements:
+        return {}
+    return {name: max(agreements, key=lambda agreement: agreement.difference / agreement.allowed)}

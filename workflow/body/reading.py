@@ -1,9 +1,9 @@
-"""Which body the results of a run describe: with the paper's reduction a length of the image is not that of the body.
+"""The body that the results of a run describe: with the paper's reduction a length of the image is not the body's.
 
-The reduction of Geike and Popov represents two equal spheres R. Their force and displacement are the run's; their
-contact radius is half of the image's half-width, and their mean pressure F/πa² four times that of the image. Where
-that reduction is the scene's own choice against the default, what the run calls
-`contact_radius` is reported as `image_contact_radius`, and `contact_radius` is that of the two spheres.
+The reduction of Geike and Popov represents two equal spheres R. Their force and displacement are those of the run;
+their contact radius is half of the image's half-width, and their mean pressure F/πa² four times that of the image.
+Where a scene chooses that reduction against the default, the half-width is reported as `image_contact_radius`, and
+`contact_radius` is that of the two spheres.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from contact1d.workflow.scene.tables import ALIKE, SPHERES, WIDER_THAN_SPHERES, 
 from contact1d.workflow.units import Quantity
 
 IMAGE = "image_"
-"""Before the name of a length that is the image's and not the body's."""
+"""Prefix of the name of a length that is the image's and not the body's."""
 
 
 def _is_image(scene: Scene) -> bool:
-    """Whether lengths of the run are those of an image alone. Units that came from F_A and a₀ make a₀ the body's."""
+    """Whether lengths of the run are those of the image; units that follow from F_A and a₀ make a₀ the body's."""
     bodies = scene.bodies
     by_run = scene.material is not None and scene.material.surface_energy is not None
     by_default = default_reduction(scene.material is not None, bodies.lower, bodies.profile.kind)
@@ -32,7 +32,7 @@ def stands_for_spheres(scene: Scene) -> bool:
 
 
 def of_the_body(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Quantity]:
-    """The quantities of a run, by names that state the body they belong to."""
+    """Return the quantities of a run, by names that state the body to which they belong."""
     if not _is_image(scene):
         return dict(quantities)
     named: dict[str, Quantity] = {}
@@ -51,7 +51,7 @@ def of_the_body(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Q
 
 
 def doubt_of_the_image(scene: Scene) -> dict[str, str]:
-    """The warning `reduction`: the body for which the results hold, and the factors for another one."""
+    """Return the warning `reduction`: the body for which the results hold, and the factors for another one."""
     if not _is_image(scene):
         return {}
     kind = scene.bodies.profile.kind
@@ -72,7 +72,7 @@ def doubt_of_the_image(scene: Scene) -> dict[str, str]:
 
 
 def product(factor: float, unit: str, *powers: tuple[Quantity, float]) -> Quantity:
-    """`factor` times the product of quantities, each to its power; their uncertainties add up."""
+    """Return `factor` times the product of quantities, each to its power; their uncertainties add up."""
     value, spread = factor, 0.0
     for quantity, power in powers:
         part = quantity.value**power

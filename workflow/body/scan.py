@@ -1,4 +1,4 @@
-"""What was taken of a scan, for people and for scripts: what was removed, the noise, and the curve."""
+"""The evaluation of a scan, as a sentence and for results.json: what was removed, the noise, the fitted curve."""
 
 from __future__ import annotations
 
@@ -12,23 +12,21 @@ from contact1d.analysis.scan import ASPERITY, Taken
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import LENGTH, Scales
 
-NOWHERE = 0.5
-"""Correlation length over the pitch of the points below which noise counts as white."""
-
 
 def scan_entry(scene: Scene, scales: Scales) -> dict[str, Any]:
-    """What results.json has under `scan`, lengths in SI where the units are known; nothing where there is no scan."""
+    """Return the entry `scan` of results.json, lengths in SI where the units are known; nothing without a scan."""
     taken = scene.bodies.profile.taken
     if taken is None:
         return {}
 
     def length(value: float, uncertainty: float = 0.0) -> Mapping[str, object]:
+        """Return value, uncertainty and unit of a length [LU]."""
         if scales.known:
             return scales.in_si(value, uncertainty, LENGTH)
         return {"value": value, "uncertainty": uncertainty, "unit": LENGTH}
 
-    angle, spread = (math.degrees(math.atan(one)) for one in taken.tilt)
-    found = {
+    angle, spread = (math.degrees(math.atan(slope)) for slope in taken.tilt)
+    entry = {
         "text": scales.in_words(in_words(taken)),
         "shape": taken.shape,
         "points": taken.x.size,
@@ -40,54 +38,54 @@ def scan_entry(scene: Scene, scales: Scales) -> dict[str, Any]:
         "patches": taken.patches,
     }
     if taken.shape in CURVED:
-        found["radius"] = length(*_radius(taken))
-    return {"scan": found}
+        entry["radius"] = length(*_radius(taken))
+    return {"scan": entry}
 
 
 def misfit(scene: Scene) -> dict[str, str]:
-    """The warning that a scan is not the shape that was fitted to it."""
+    """Return the warning `scan_fit` where a scan is not the shape that was fitted to it."""
     taken = scene.bodies.profile.taken
     if taken is None or not taken.missed:
         return {}
     return {
-        "scan_fit": f"the scan is no {taken.shape} within its noise: the fit misses {taken.missed:.3g} LU in the mean, "
-        'which no uncertainty has; use smooth = "auto" in place of fit'
+        "scan_fit": f"the scan is no {taken.shape} within its noise: the fit misses {taken.missed:.3g} LU (RMS) beyond "
+        'the noise, which no uncertainty includes; use smooth = "auto" in place of fit'
     }
 
 
 CURVED = ("parabola", "circle")
-"""Fitted shapes that are known by their radius."""
+"""Fitted shapes whose parameter is a radius."""
 
 
 def _radius(taken: Taken) -> tuple[float, float]:
-    """R and its uncertainty: θ is 1/R."""
+    """Return R and its uncertainty [LU], from the parameter 1/R."""
     curvature = float(taken.parameters[0])
     return 1.0 / curvature, 0.5 * float(abs(np.diff(taken.deviations[1, :, 0])[0])) / curvature**2
 
 
 def in_words(taken: Taken) -> str:
-    """The same as a sentence, lengths in LU."""
-    removed = [f"apex at {_with(*taken.centre)}", f"offset {taken.offset[0]:.4g} LU"]
+    """Return the evaluation of a scan as a sentence, lengths in LU."""
+    removed = [f"apex at {_length_text(*taken.centre)}", f"offset {taken.offset[0]:.4g} LU"]
     if taken.tilt[1] > 0.0:
-        angle, spread = (math.degrees(math.atan(one)) for one in taken.tilt)
+        angle, spread = (math.degrees(math.atan(slope)) for slope in taken.tilt)
         removed.append(f"tilt {angle:.3g} ± {spread:.1g}°")
-    curve = f"a smooth curve with {taken.knots.size} knots" if taken.shape == "smooth" else f"a fitted {taken.shape}"
+    curve = f"a smooth curve with {taken.knots.size} knots" if taken.shape == "smooth" else f"a {taken.shape}"
     if taken.shape in CURVED:
-        curve += f", R = {_with(*_radius(taken))}"
-    correlated = taken.correlation > NOWHERE * taken.pitch
+        curve += f", R = {_length_text(*_radius(taken))}"
+    correlated = taken.correlation > 0.5 * taken.pitch  # else the noise is white
     noise = f"noise {taken.noise:.3g} LU"
     noise += f", correlation length {taken.correlation:.2g} LU" if correlated else ", not correlated"
     count = f"{taken.patches} patches" if taken.patches > 1 else "one patch"
     height = f"{ASPERITY * taken.noise:.3g} LU above its lowest point"
     sides = "both sides" if taken.both_sides else "one side"
     return (
-        f"{taken.x.size} points on {sides} of the apex; removed: {', '.join(removed)}; taken: {curve}; {noise}; a "
+        f"{taken.x.size} points on {sides} of the apex; removed: {', '.join(removed)}; fitted: {curve}; {noise}; a "
         f"plane {height} would touch the measured surface in {count}"
     )
 
 
-def _with(value: float, uncertainty: float) -> str:
-    """A length with its uncertainty, if it has one."""
+def _length_text(value: float, uncertainty: float) -> str:
+    """Return a length [LU] with its uncertainty as text, if it has one."""
     spread = f" ± {uncertainty:.2g} LU" if uncertainty else ""
     digits = max(3, 2 + math.floor(math.log10(abs(value) / uncertainty))) if value and uncertainty else 4
     return f"{value:.{digits}g} LU{spread}"

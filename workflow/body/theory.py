@@ -1,8 +1,8 @@
 """The closed forms to compare a run with: one table, each with its conditions and its predictions of results.
 
-Pressed without adhesion: Hertz, Sneddon, Galin. Adhesive on a plane: JKR and its extensions to other profiles, Maugis
-and Dugdale with a range, and with DMT where the Tabor parameter is below that of JKR. A sphere with an interaction:
-JKR, Maugis and Dugdale or DMT by the Tabor parameter. Tangential displacement with friction: Cattaneo and Mindlin.
+Without adhesion: Hertz, Sneddon, Galin. Adhesive on a plane: JKR and its extensions to other profiles, Maugis and
+Dugdale with a range, and with DMT where the Tabor parameter is below that of JKR. A sphere with an interaction: JKR,
+Maugis and Dugdale or DMT by the Tabor parameter. Tangential displacement with friction: Cattaneo and Mindlin.
 
 results.json has them as `theory`: a list of {"name", "source", "applies", "values"}, and "tabor" where the values
 depend on it; of each result in `values` the closed form's "value" and "unit", with known units "si", and "deviation",
@@ -32,22 +32,17 @@ from contact1d.workflow.body.cases import Case, Values
 from contact1d.workflow.scene import Friction, Scene
 from contact1d.workflow.units import Quantity, Scales, scale_of
 
-SHOWN = 6
-"""Decimals of a deviation in percent: below that it is round-off."""
-SAME_LOAD = 1e-12
-"""Relative: up to that loads are one; round-off."""
-
 
 @dataclass(frozen=True)
 class ClosedForm:
-    """One theory.
+    """A theory with its conditions and its predictions of results.
 
     Attributes:
-        name: what it is called: "Hertz".
-        source: where it is written down.
-        applies: why it holds for a case of its family, in a few words; "" where it does not.
-        values: its predictions, by the names of results, in their model units, to compare the run with.
-        pressure: p(r) [FU/LU²] at r [LU] in the reported state, if it predicts that.
+        name: its usual name: "Hertz".
+        source: its publication.
+        applies: returns why it holds for a case of its family, in a few words; "" where it does not.
+        values: returns its predictions, by the names of results, in their model units.
+        pressure: returns p(r) [FU/LU²] at r [LU] in the reported state; None where it predicts no pressure.
         has_range: whether the predictions depend on the Tabor parameter.
     """
 
@@ -60,29 +55,31 @@ class ClosedForm:
 
 
 def applying(case: Case) -> list[ClosedForm]:
-    """The closed forms that hold for a case."""
-    return _of(case, case.law.beside)
+    """Return the closed forms that hold for a case."""
+    return _applying(case, case.law.beside)
 
 
 def exact(case: Case) -> list[ClosedForm]:
-    """Those that are the law of its springs: of a chain on a plane by the method of dimensionality reduction."""
+    """Return the closed forms that are exact for a case: for springs on a plane by the MDR."""
     scene = case.scene
     by_mdr = scene.bodies.lower == "rigid_plane" and scene.bodies.reduction == "mdr"
     known = by_mdr and scene.is_modelled and scene.is_stepped
-    return _of(case, case.law.exact) if known else []
+    return _applying(case, case.law.exact) if known else []
 
 
-def _of(case: Case, families: Sequence[str]) -> list[ClosedForm]:
+def _applying(case: Case, families: Sequence[str]) -> list[ClosedForm]:
+    """Return the closed forms of the families that hold for a case."""
     return [form for family in families for form in FORMS[family] if form.applies(case)]
 
 
 def theory(scene: Scene, quantities: Mapping[str, Quantity], scales: Scales) -> list[dict[str, Any]]:
-    """What results.json has as `theory`; `quantities` of the body, `scales` of the run."""
+    """Return the entry `theory` of results.json, from the quantities of the body and the scales of the run."""
     case = Case(scene, quantities, scales)
     return [_entry(form, case, scales) for form in applying(case)]
 
 
 def _entry(form: ClosedForm, case: Case, scales: Scales) -> dict[str, Any]:
+    """Return the entry of a closed form in results.json, with the deviations of the run."""
     values: dict[str, Any] = {}
     for name, value in form.values(case).items():
         if name not in case.quantities:
@@ -98,48 +95,51 @@ def _entry(form: ClosedForm, case: Case, scales: Scales) -> dict[str, Any]:
 
 
 def in_words(results: Mapping[str, Any], name: str) -> Iterator[str]:
-    """The prediction of each closed form for a result, with the deviation: `Hertz 110.37 µm (+0.001 %)`."""
+    """Yield the prediction of each closed form for a result, with the deviation: `Hertz 110.37 µm (+0.001 %)`."""
 
     def named(form: Mapping[str, Any]) -> str:
+        """Return the name of a closed form, with the Tabor parameter if it depends on it."""
         return f"{form['name']} (μ = {form['tabor']:.3g})" if "tabor" in form else str(form["name"])
 
     for form in results.get("theory", ()):
-        if said := form["values"].get(name):
-            entry = said.get("si", said)
-            factor, unit = scale_of(entry["value"], entry["unit"]) if "si" in said else (1.0, said["unit"])
-            off = "" if said["deviation"] is None else f" ({round(100.0 * said['deviation'], SHOWN) + 0.0:+.2g} %)"
+        if prediction := form["values"].get(name):
+            entry, deviation = prediction.get("si", prediction), prediction["deviation"]
+            factor, unit = scale_of(entry["value"], entry["unit"]) if "si" in prediction else (1.0, prediction["unit"])
+            # Smaller deviations are round-off, and + 0.0 makes no −0 of them.
+            off = "" if deviation is None else f" ({round(100.0 * deviation, 6) + 0.0:+.2g} %)"
             yield f"{named(form)} {entry['value'] * factor:.5g} {unit}{off}"
 
 
-# Pressed without adhesion. Under a given F: d, a, F/πa², p(0), dF/dd = 2E*a; at a given d: F, a and the pressures.
+# Without adhesion. Under a given F: d, a, F/πa², p(0), dF/dd = 2E*a; at a given d: F, a and the pressures.
 
 
-def _pressed(kind: str, body: str) -> Callable[[Case], str]:
-    """Applies to a profile of that kind, pressed and nothing else, whose reduction keeps it."""
+def _without_adhesion(kind: str, body: str) -> Callable[[Case], str]:
+    """Return the condition: an elastic contact of a kind of profile without adhesion, kept by the reduction."""
 
     def applies(case: Case) -> str:
-        stands = case.scene.bodies.reduction == "mdr" or (case.radius is not None and case.scene.interaction is None)
+        """Return the body and its load in words; "" where the closed form does not hold."""
+        kept = case.scene.bodies.reduction == "mdr" or (case.radius is not None and case.scene.interaction is None)
         pressed = case.force is not None or case.displacement is not None
-        is_one = case.kind == kind and stands and pressed and case.is_elastic
-        return f"{body}, pressed without adhesion" if is_one else ""
+        holds = case.kind == kind and kept and pressed and case.is_elastic
+        return f"{body}, pressed without adhesion" if holds else ""
 
     return applies
 
 
 def _contact(case: Case, a: float, d: float, force: float) -> Values:
-    """What is known of a contact with a [LU], d [LU], F [FU]; what the scene gives is no prediction."""
-    said = {
+    """Return the predictions of a contact with a [LU], d [LU], F [FU], without F or d where the scene gives it."""
+    values = {
         "displacement": d, "force": force, "contact_radius": a, "largest_force": force, "largest_radius": a,
         "contact_stiffness": 2.0 * case.contact_modulus * a,
     }  # fmt: skip
-    del said["force" if case.force is not None else "displacement"]
+    del values["force" if case.force is not None else "displacement"]
     if a > 0.0:
-        said["mean_pressure"] = force / (math.pi * a**2)
-    return said
+        values["mean_pressure"] = force / (math.pi * a**2)
+    return values
 
 
-def _pressed_values(case: Case) -> Values:
-    """Pressures that have a bound and a closed form are among them."""
+def _elastic_values(case: Case) -> Values:
+    """Return the predictions of a body without adhesion, the finite pressures among them."""
     body, a = case.body, case.contact_radius
     pressures = {"central_pressure": body.central_pressure(a), "peak_pressure": body.peak_pressure(a)}
     bounded = {name: pressure for name, pressure in pressures.items() if math.isfinite(pressure)}
@@ -147,78 +147,82 @@ def _pressed_values(case: Case) -> Values:
 
 
 def _pressure(case: Case, r: Array) -> Array:
-    """Of a paraboloid or a cone."""
+    """Return p(r) [FU/LU²] of a paraboloid or a cone, (n,)."""
     body = case.body
     assert isinstance(body, PowerLaw)
     return body.pressure(r, case.contact_radius)
 
 
 def _punch_values(case: Case) -> Values:
-    """p(0) = E*d/πa; at the edge the pressure has no bound, and a is given."""
+    """Return the predictions of a flat punch, p(0) = E*d/πa among them; the pressure at the edge is singular."""
     punch, d = case.punch
-    said = _contact(case, punch.radius, d, punch.stiffness * d)
-    del said["contact_radius"], said["largest_radius"]
-    return said | {"central_pressure": float(punch.pressure(0.0, d))}
+    values = _contact(case, punch.radius, d, punch.stiffness * d)
+    del values["contact_radius"], values["largest_radius"]
+    return values | {"central_pressure": float(punch.pressure(0.0, d))}
 
 
 def _punch_pressure(case: Case, r: Array) -> Array:
+    """Return p(r) [FU/LU²] of a flat punch, (n,)."""
     punch, d = case.punch
     return punch.pressure(r, d)
 
 
-# Adhesive: F_A, the radii there and at F = 0, and of a load or the deepest place of a path d, F and a.
+# Adhesive: F_A, the radii there and at F = 0, and d, F and a of a load or of the largest displacement of a path.
 
 
-def _adheres(kind: str, body: str) -> Callable[[Case], str]:
-    """Applies to a profile of that kind on a plane with an energy of adhesion."""
+def _adhesive(kind: str, body: str) -> Callable[[Case], str]:
+    """Return the condition: a kind of profile on a plane with a work of adhesion."""
     return lambda case: f"{body} that adheres, without a range" if case.kind == kind else ""
 
 
 def _marks(case: Case, contact: Contact) -> Values:
-    """F_A, a_cr, a₀, and of a load that holds a and d."""
-    said = {
+    """Return F_A, a_cr, a₀, and a and d under a load that the contact sustains."""
+    values = {
         "adhesion_force": contact.pull_off_force(), "critical_radius": contact.critical_radius(),
         "zero_load_radius": contact.zero_load_radius(),
     }  # fmt: skip
-    if case.force is not None and case.force >= -said["adhesion_force"]:
+    if case.force is not None and case.force >= -values["adhesion_force"]:
         a = contact.contact_radius(case.force)
-        said |= {"contact_radius": a, "displacement": contact.displacement(a)}
-    return said
+        values |= {"contact_radius": a, "displacement": contact.displacement(a)}
+    return values
 
 
 def _jkr_values(case: Case) -> Values:
+    """Return the predictions of JKR for a sphere with an interaction."""
     return _marks(case, case.body)
 
 
 def _adhesive_values(case: Case) -> Values:
-    body, said = case.body, _marks(case, case.body)
-    said["fixed_grips_displacement"] = body.displacement(body.fixed_grips_radius())
-    reported = case.contact_radius if "displacement" in case.quantities else said["zero_load_radius"]
-    a = said.get("contact_radius", reported if case.force is None else 0.0)
-    said["adhesion_energy"] = math.pi * a**2 * case.work
+    """Return the predictions of JKR and its extensions for a body on a plane."""
+    body, values = case.body, _marks(case, case.body)
+    values["fixed_grips_displacement"] = body.displacement(body.fixed_grips_radius())
+    reported = case.contact_radius if "displacement" in case.quantities else values["zero_load_radius"]
+    a = values.get("contact_radius", reported if case.force is None else 0.0)
+    values["adhesion_energy"] = math.pi * a**2 * case.work
     if case.kind == "parabola" and case.contact_radius > 0.0:
-        said["central_pressure"] = said["peak_pressure"] = body.central_pressure(case.contact_radius)
+        values["central_pressure"] = values["peak_pressure"] = body.central_pressure(case.contact_radius)
     if case.force is not None and a > 0.0:
-        said["mean_pressure"] = case.force / (math.pi * a**2)
-    return said
+        values["mean_pressure"] = case.force / (math.pi * a**2)
+    return values
 
 
 def _adhesive_punch_values(case: Case) -> Values:
-    """F_A = √(8πE*Wa³); before that F = 2E*ad."""
+    """Return F_A = √(8πE*Wa³) of a flat punch, and d = F/2E*a under a given force."""
     punch, d = case.punch
-    said = {"adhesion_force": punch.pull_off_force()}
-    return said if case.force is None else said | {"displacement": d}
+    values = {"adhesion_force": punch.pull_off_force()}
+    return values if case.force is None else values | {"displacement": d}
 
 
 def tabor(case: Case) -> float | None:
-    """µ = (R W²/E*² h₀³)^{1/3} of a sphere with a range; None for anything else."""
+    """Return the Tabor parameter µ = (R W²/E*² h₀³)^{1/3} of a sphere with a range; None for anything else."""
     return None if case.with_range is None else case.with_range.tabor
 
 
 def _with_a_range(of_any: bool) -> Callable[[Case], str]:
-    """Applies to a paraboloid on a plane where JKR does not hold, or `of_any` µ."""
+    """Return the condition: a paraboloid with a range on a plane, where JKR does not hold or `of_any` µ."""
 
     def applies(case: Case) -> str:
+        """Return the Tabor parameter and its theory in words; "" where the closed form does not hold."""
         mu = tabor(case)
         if mu is None or case.kind != "parabola" or (of_tabor(mu) is Theory.JKR and not of_any):
             return ""
@@ -228,9 +232,10 @@ def _with_a_range(of_any: bool) -> Callable[[Case], str]:
 
 
 def _by_tabor(theory: Theory) -> Callable[[Case], str]:
-    """Applies to a paraboloid that was transformed, so that E* and R are its own, held by an interaction alone."""
+    """Return the condition: a paraboloid with the MDR, so that E* and R are the body's, and an interaction alone."""
 
     def applies(case: Case) -> str:
+        """Return the Tabor parameter in words; "" where the closed form does not hold."""
         scene, mu = case.scene, tabor(case)
         sphere = case.kind == "parabola" and scene.bodies.reduction == "mdr"
         if mu is None or not sphere or scene.neighbours or scene.noise or of_tabor(mu) is not theory:
@@ -241,34 +246,37 @@ def _by_tabor(theory: Theory) -> Callable[[Case], str]:
 
 
 def _maugis_values(case: Case) -> Values:
-    said = _marks(case, MaugisDugdale(*case.sphere, case.range))
-    if case.scene.interaction:  # its displacement is counted from another place
-        said.pop("displacement", None)
-    return said
+    """Return the predictions of Maugis and Dugdale for a sphere with a range."""
+    values = _marks(case, MaugisDugdale(*case.sphere, case.range))
+    if case.scene.interaction:  # its displacement has another origin
+        values.pop("displacement", None)
+    return values
 
 
 def _dmt_values(case: Case) -> Values:
-    said = _marks(case, Dmt(*case.sphere))
-    del said["critical_radius"]
-    return said
+    """Return the predictions of DMT for a sphere, without a critical radius."""
+    values = _marks(case, Dmt(*case.sphere))
+    del values["critical_radius"]
+    return values
 
 
-# Drawn along: of a sphere under one load N, F_x and c on any path there and back, and a; at a displacement N as well.
-# Of closed cycles what one dissipates.
+# Tangential: of a sphere under a constant load N, F_x, c and a on any path; at a constant displacement N as well.
+# Of closed cycles the energy that one dissipates.
 
 
 def drawn_along(case: Case) -> str:
-    """Applies where there are a sphere, a contact and one load."""
+    """Return the condition of Cattaneo and Mindlin in words: a sphere under a constant load; "" where it fails."""
     experiment: Any = case.scene.experiment
     if not experiment.goes_along or case.kind != "parabola" or case.scene.the(Friction).coefficient == 0.0:
         return ""
-    given = experiment.normal_forces() or experiment.places()
-    one = case.radius is not None and min(given) > 0.0 and max(given) - min(given) <= SAME_LOAD * max(given)
-    return "a paraboloid under one load, displaced tangentially with friction" if one else ""
+    loads = experiment.normal_forces() or experiment.places()
+    # Loads that differ by round-off are equal.
+    is_constant = case.radius is not None and min(loads) > 0.0 and max(loads) - min(loads) <= 1e-12 * max(loads)
+    return "a paraboloid under one load, displaced tangentially with friction" if is_constant else ""
 
 
 def sliding_contact(case: Case) -> tuple[float, float, float, float]:
-    """N [FU], μ, u* [LU] and a [LU] where `drawn_along` applies."""
+    """Return N [FU], μ, u* [LU] and a [LU] of a case that meets `drawn_along`."""
     experiment: Any = case.scene.experiment
     scene, body, loads = case.scene, case.body, experiment.normal_forces()
     edge = body.contact_radius(loads[0]) if loads else body.radius_at(experiment.places()[0])
@@ -277,51 +285,50 @@ def sliding_contact(case: Case) -> tuple[float, float, float, float]:
 
 
 def _mindlin_values(case: Case) -> Values:
-    """Of cycles one dissipates the same as any other; N is no prediction where it is given."""
+    """Return the predictions of Cattaneo and Mindlin at the end of the path and of a cycle; N unless it is given."""
     experiment: Any = case.scene.experiment
     *contact, edge = sliding_contact(case)
-    places = experiment.along()
-    said = {
-        "tangential_force": mindlin_path(places, *contact)[-1],
+    positions = experiment.along()
+    values = {
+        "tangential_force": mindlin_path(positions, *contact)[-1],
         "contact_radius": edge,
-        "stick_radius": mindlin_stick_path(places, edge, contact[-1])[-1],
+        "stick_radius": mindlin_stick_path(positions, edge, contact[-1])[-1],
         "dissipated_energy_per_cycle": mindlin_cycle_energy(experiment.way, *contact),
     }
-    return said if experiment.normal_forces() else said | {"normal_force": contact[0]}
+    return values if experiment.normal_forces() else values | {"normal_force": contact[0]}
 
 
-# Of a body that relaxes, pressed once by a given displacement: F over time, and when the contact is lost.
-
-EXPONENTS = {"parabola": 2.0, "cone": 1.0}
-MOMENTS = 200
-"""At which the largest force is looked for, beside the corners."""
+# Viscoelastic, indented once by a given displacement: F over time, and the time of the separation.
 
 
 def indented(case: Case) -> Indented | None:
-    """The history of a body that relaxes; None of anything else, or where it is pressed more than once."""
+    """Return the indentation of a viscoelastic body; None of other cases, or with more than one indentation."""
     given: Any = case.scene.experiment
-    exponent = EXPONENTS.get(case.kind) or getattr(case.scene.bodies.profile, "exponent", None)
-    terms, places = case.law.series(case.scene), given.places()
-    if not (terms and exponent and places):
+    exponents = {"parabola": 2.0, "cone": 1.0}
+    exponent = exponents.get(case.kind) or getattr(case.scene.bodies.profile, "exponent", None)
+    terms, displacements = case.law.series(case.scene), given.places()
+    if not (terms and exponent and displacements):
         return None
-    force = case.body.force(case.body.radius_at(max(places)))
+    force = case.body.force(case.body.radius_at(max(displacements)))
     try:
-        return Indented(tuple(given.times), tuple(places), force, exponent, terms)
+        return Indented(tuple(given.times), tuple(displacements), force, exponent, terms)
     except ValueError:
         return None
 
 
 def _relaxes(case: Case) -> str:
+    """Return the condition of Ting in words; "" where it fails."""
     return "a body that relaxes, pressed once by a given displacement" if indented(case) else ""
 
 
 def _ting_values(case: Case) -> Values:
+    """Return the predictions of Ting: the force, its maximum at 200 times and the corners, and the time of contact."""
     history = indented(case)
     assert history is not None
-    ends, lost = history.times, history.lost(history.times[-1])
-    forces = history.forces([*np.linspace(ends[0], ends[-1], MOMENTS), *ends])
-    said = {"peak_force": float(forces.max()), "force": float(forces[-1])}
-    return said if lost is None else said | {"contact_time": lost - history.touched}
+    corners, separated = history.times, history.lost(history.times[-1])
+    forces = history.forces([*np.linspace(corners[0], corners[-1], 200), *corners])
+    values = {"peak_force": float(forces.max()), "force": float(forces[-1])}
+    return values if separated is None else values | {"contact_time": separated - history.touched}
 
 
 SNEDDON = "I. N. Sneddon, Int. J. Engng Sci. 3 (1965) 47"
@@ -333,49 +340,56 @@ FORMS: Mapping[str, tuple[ClosedForm, ...]] = {
         ClosedForm(
             "Hertz",
             "H. Hertz 1882; K. L. Johnson, Contact Mechanics, 1985, section 4.2",
-            _pressed("parabola", "a paraboloid"),
-            _pressed_values,
+            _without_adhesion("parabola", "a paraboloid"),
+            _elastic_values,
             _pressure,
         ),
-        ClosedForm("Sneddon, cone", SNEDDON, _pressed("cone", "a cone"), _pressed_values, _pressure),
+        ClosedForm("Sneddon, cone", SNEDDON, _without_adhesion("cone", "a cone"), _elastic_values, _pressure),
         ClosedForm(
-            "Sneddon, flat punch", SNEDDON, _pressed("flat_punch", "a flat punch"), _punch_values, _punch_pressure
+            "Sneddon, flat punch",
+            SNEDDON,
+            _without_adhesion("flat_punch", "a flat punch"),
+            _punch_values,
+            _punch_pressure,
         ),
-        ClosedForm("Sneddon, sphere", SNEDDON, _pressed("circle", "a whole sphere"), _pressed_values),
+        ClosedForm("Sneddon, sphere", SNEDDON, _without_adhesion("circle", "a whole sphere"), _elastic_values),
         ClosedForm(
             "Sneddon, ellipsoid",
             f"{SNEDDON}: his sphere, flattened",
-            _pressed("ellipsoid", "a whole ellipsoid"),
-            _pressed_values,
+            _without_adhesion("ellipsoid", "a whole ellipsoid"),
+            _elastic_values,
         ),
         ClosedForm(
-            "Galin, power", f"L. A. Galin 1953; {SNEDDON}", _pressed("power", "a power of the radius"), _pressed_values
+            "Galin, power",
+            f"L. A. Galin 1953; {SNEDDON}",
+            _without_adhesion("power", "a power of the radius"),
+            _elastic_values,
         ),
     ),
     "adhesive": (
-        ClosedForm("JKR", JKR, _adheres("parabola", "a paraboloid"), _adhesive_values, _pressure),
+        ClosedForm("JKR", JKR, _adhesive("parabola", "a paraboloid"), _adhesive_values, _pressure),
         ClosedForm(
             "Maugis and Barquins, cone",
             "D. Maugis, M. Barquins, J. Phys. Lett. 42 (1981) L95",
-            _adheres("cone", "a cone"),
+            _adhesive("cone", "a cone"),
             _adhesive_values,
         ),
         ClosedForm(
             "Popov and Heß, power",
             "V. L. Popov, M. Heß, Method of Dimensionality Reduction, 2015, section 4.4",
-            _adheres("power", "a power of the radius"),
+            _adhesive("power", "a power of the radius"),
             _adhesive_values,
         ),
         ClosedForm(
             "JKR, whole sphere",
             "D. Maugis, Langmuir 11 (1995) 679",
-            _adheres("circle", "a whole sphere"),
+            _adhesive("circle", "a whole sphere"),
             _adhesive_values,
         ),
         ClosedForm(
             "Kendall, flat punch",
             "K. Kendall, J. Phys. D 4 (1971) 1186",
-            _adheres("flat_punch", "a flat punch"),
+            _adhesive("flat_punch", "a flat punch"),
             _adhesive_punch_values,
         ),
     ),
@@ -404,4 +418,4 @@ FORMS: Mapping[str, tuple[ClosedForm, ...]] = {
         ),
     ),
 }
-"""By family what a run may be compared with; each closed form has its own conditions."""
+"""Closed forms by family; each has its own conditions."""

@@ -1,14 +1,14 @@
 """Pressure p(r) and shear traction q(r) under the body of three dimensions, from the line loads of a run.
 
 Each is the inverse Abel transform of its line load (`analysis.abel`, `analysis.shear`). Its error is the difference
-from what every second particle alone gives, the edge's, and where points leave the shape open, the difference from
-curves through fewer of them. Whether a pressure has a bound is decided by convergence: from every, every second and
-every fourth particle; where the differences do not shrink there is no number. Where the contact is too narrow for that,
-a largest pressure off the axis is none.
+from the transform of every second particle, the error of the edge, and for a measured profile the difference from
+curves through fewer points. Whether a pressure is bounded is decided by its convergence over every, every second and
+every fourth particle; where the differences do not decrease there is no result. Where the contact is too narrow for
+that, a largest pressure off the axis is not reported.
 
-The line load ends at an edge by a jump that the law of the contact gives: 0 of springs that are pressed or relax, what
-dashpots push where a contact grows, E* (d − g(a)) of an edge that is held. Under elastic springs E* per length on a
-plane, of a shape g and with a jump J ∝ √a,
+The line load ends at an edge by a jump that the law of the contact gives: 0 of elastic or relaxing springs without
+adhesion, the force of dashpots where a contact grows, E* (d − g(a)) of an adhesive edge. Under elastic springs E* per
+length on a plane, of a shape g and with a jump J ∝ √a,
 
     p(r) = (1/π) [E* ∫_r^a g′(x)/√(x² − r²) dx + J/s],   ∂p/∂a = (1/πs) [E* g′(a) + J (1/2a − a/s²)],   s² = a² − r²
 """
@@ -29,57 +29,33 @@ from contact1d.analysis.curve_marks import vertex
 from contact1d.analysis.polynomial import gauss
 from contact1d.analysis.pressure import Array, Profile, ZonedProfile
 from contact1d.analysis.shear import kinks_of, shear_load
-from contact1d.workflow.body.loaded import Loaded, has_apex, through
+from contact1d.workflow.body.loaded import LoadedState, has_apex, through
 from contact1d.workflow.body.reading import stands_for_spheres
 from contact1d.workflow.continuation.state import radius_rule
 from contact1d.workflow.laws import law_of
 from contact1d.workflow.scene import Scene, Shape
 from contact1d.workflow.units import LINE_PRESSURE, MEAN_PRESSURE, Quantity
 
-MOST = 1000
-"""Particles on a side that are used, and radii that p is given at; of more, every second, third …"""
-RADII = 100
-"""Evenly from 0 to the contact radius, at which q is given, and at its kinks besides."""
-ANGLES, ZONED, PIECES = 12, 40, 5
-"""Positions of Gauss's at which p(r) is added up to a force, between kinks, and where an attraction with a range acts
-beyond the contact, on a small part of it: 3e-7 of the force for µ = 400. And pieces of a body whose shape is a table or
-whose springs are not elastic: a corner of its history is a kink of the line load."""
-BETWEEN = 21
-"""Radii between two particles at which the largest pressure is searched, the vertex of the parabola through three."""
-ROUND_OFF = 2e-12
-"""Error of a pressure over the stiffness of the layer: of positions beside the depth of the wall that carries them."""
-SOLVED = 5e-6
-"""Relative error at least of the edge of a contact that adheres: equations give it."""
 INSIDE = 1.0 - 1e-9
-"""Of the edge, up to which p is given: round-off."""
+"""Largest radius of p over the edge, where p is singular; the difference is round-off."""
 STEP = 1e-6
-"""Of the edge, over which a slope is a difference there."""
-SHRINKS = 0.45
-"""|p₁ − p₂|/|p₁ − p₄| below which differences shrink: 1/(1 + 2ᵖ) of an order p, ½ of a logarithm, more of a pole."""
-NOISE = 0.1
-"""Of the tolerance: differences that are smaller, relative to the pressure, are those of the minimiser."""
-BESIDE, OPEN = 7, 2.5
-"""Where the shape of a load is not known: radii whose largest error is that of the one between them, and how many of
-these it may be; measured beside rings that touch again, between whose particles a slope jumps."""
-NEXT = 0.25
-"""Of the difference of the second from the fourth particles, added to that of the first, which may be small by accident
-where a kink lies between particles: as much again of the second order."""
+"""Step over the edge of a difference quotient there."""
 
 
 @dataclass(frozen=True, eq=False)
 class BodyPressure:
-    """p(r) of one state; arrays (n,).
+    """Pressure p(r) of one state; arrays (n,).
 
     Attributes:
-        r: from 0 (under an apex, where p has no bound, from the first particle) to the last particle inside [LU].
-        pressure: compression positive [FU/LU²].
-        uncertainty: of it [FU/LU²].
-        doubt: of the force of the state, relative.
-        contact_radius: of the body [LU]; where bodies attract, tension reaches beyond it.
-        results: `central_pressure`, p(0), and `peak_pressure`, the largest one [FU/LU²]; without one that has no bound,
-            as at a cone's tip, a punch's edge or a rim; with an infinite uncertainty where that is open.
+        r: radii from 0, under an apex with a singular p from the first particle, to the last particle inside [LU].
+        pressure: p at r, compression positive [FU/LU²].
+        uncertainty: uncertainty of p [FU/LU²].
+        doubt: relative uncertainty of the force of the state.
+        contact_radius: contact radius of the body [LU]; with an attraction tension reaches beyond it.
+        results: `central_pressure`, p(0), and `peak_pressure`, the maximum [FU/LU²]; none that is singular, as at a
+            cone's tip, a punch's edge or a rim; with an infinite uncertainty where it is open whether it is bounded.
         force, size: ∫ p dA and ∫ |p| dA of the body [FU], a ring of attraction beyond the contact radius included.
-        stiffness: dF/dd [FU/LU] of particles that are alone, whatever their springs; None of others.
+        stiffness: dF/dd [FU/LU] of uncoupled particles, whatever their springs; None of others.
     """
 
     r: Array
@@ -95,12 +71,12 @@ class BodyPressure:
 
 @dataclass(frozen=True, eq=False)
 class BodyShear:
-    """q(r) of one state; arrays (n,).
+    """Shear traction q(r) of one state; arrays (n,).
 
     Attributes:
-        r: from 0, where q of an apex that slips has no bound and is left out, to the contact radius [LU].
-        shear: with which the plane resists a move to the right [FU/LU²].
-        uncertainty: of it [FU/LU²].
+        r: radii from 0, without the singular q of a slipping apex, to the contact radius [LU].
+        shear: q with which the plane resists a move to the right [FU/LU²].
+        uncertainty: uncertainty of q [FU/LU²].
         edge: the contact radius [LU].
         stick: the stick radius [LU].
     """
@@ -113,11 +89,11 @@ class BodyShear:
 
 
 def is_of_a_body(scene: Scene) -> bool:
-    """Whether the line load of a run is that of a body of three dimensions, and known without noise."""
+    """Whether the line load of a run is that of an axisymmetric body, in equilibrium without noise."""
     bodies = scene.bodies
-    stands = bodies.reduction == "mdr" or stands_for_spheres(scene)
-    one_body = bodies.profile.kind != "flat" and bodies.lower in ("particles", "rigid_plane")
-    return stands and one_body and scene.noise is None and not scene.experiment.motion_is_result
+    represents_body = bodies.reduction == "mdr" or stands_for_spheres(scene)
+    is_round = bodies.profile.kind != "flat" and bodies.lower in ("particles", "rigid_plane")
+    return represents_body and is_round and scene.noise is None and not scene.experiment.motion_is_result
 
 
 def body_pressures(
@@ -127,106 +103,119 @@ def body_pressures(
     of_all: float,
     given: Mapping[str, float],
 ) -> dict[str, BodyPressure]:
-    """p(r) of the reported states in which the bodies touch over a width; none where there is no body for them.
+    """Return p(r) of the reported states with a contact radius; none where the run represents no body.
 
     Args:
-        scene: what ran.
-        profiles: of the reported states.
+        scene: the scene of the run.
+        profiles: the profiles of the reported states.
         of_radius: relative uncertainty of each contact radius, of which pressures under elastic springs are functions.
-        of_all: the sum of those of all results, for the pressure under others.
-        given: of pressures of each state, by the numbers of the scene that are uncertain.
+        of_all: sum of the relative uncertainties of all results, for the pressure under other springs.
+        given: relative uncertainty of the pressures of each state by the uncertain numbers of the scene.
     """
     if not is_of_a_body(scene):
         return {}
-    rule, found = radius_rule(scene, scene.accuracy.tolerance), {}
+    rule, pressures = radius_rule(scene, scene.accuracy.tolerance), {}
     for name, profile in profiles.items():
         if (radius := rule.of(profile)) and radius.value > 0.0:
-            state = Loaded(scene, profile, radius, rule)
+            state = LoadedState(scene, profile, radius, rule)
             share = of_radius[name] if state.is_elastic and not scene.bodies.profile.has_edge else of_all
             if law_of(scene).attracts(scene):
-                share = max(share, SOLVED)
-            if one := _pressure(state, share, given[name]):
-                found[name] = replace(one, doubt=one.doubt + of_all)
-    return found
+                share = max(share, 5e-6)  # the error of the equations for an adhesive edge
+            if pressure := _pressure(state, share, given[name]):
+                pressures[name] = replace(pressure, doubt=pressure.doubt + of_all)
+    return pressures
 
 
-def _pressure(state: Loaded, share: float, given: float) -> BodyPressure | None:
-    """p(r) of a state; None where too few particles carry it, or they are not alike on both sides.
+def _pressure(state: LoadedState, share: float, given: float, most: int = 1000) -> BodyPressure | None:
+    """Return p(r) of a state; None where too few particles touch, or they are not symmetric.
 
-    `share`: by how much results are off, relative to `_moves`; `given`: relative to p.
+    Args:
+        state: the line load of the state.
+        share: relative error of the results, which changes p by `_edge_sensitivity`.
+        given: relative error of p by the uncertain numbers of the scene.
+        most: particles on a side that are used, and radii of p; of more, every second, third …
     """
     scene, x, zone = state.scene, state.x, state.zone
-    own = -(-(x.size - x.size // 2) // MOST)
-    levels = [one for stride in (1, 2, 4) if (one := state.through(state.load, own * stride))]
-    if not levels:
+    stride = -(-(x.size - x.size // 2) // most)
+    lines = [line for coarseness in (1, 2, 4) if (line := state.through(state.load, coarseness * stride))]
+    if not lines:
         return None
-    fine, side, (ring, pulled) = levels[0], x[x.size // 2 :][::own], _drawn(scene, zone)
+    fine, side, (ring, attraction) = lines[0], x[x.size // 2 :][::stride], _attraction(scene, zone)
     inside = side[(side > 0.0) & (side < fine.edge * INSIDE)]
     r = inside if fine.has_apex else np.append(0.0, inside)
-    node, area = _nodes(state, fine.edge, ZONED if ring else ANGLES)
-    where = np.append(r, node)
-    p, *coarser = (one.pressure(where) - pulled(where) for one in levels)
-    forces = area * p[r.size :]
-    p, *coarser = (one[: r.size] for one in (p, *coarser))
+    # An attraction with a range acts on a small part of the contact: 40 nodes leave 3e-7 of the force at µ = 400.
+    node, area = _nodes(state, fine.edge, 40 if ring else 12)
+    radii = np.append(r, node)
+    pressures = [line.pressure(radii) - attraction(radii) for line in lines]
+    forces = area * pressures[0][r.size :]
+    levels = [pressure[: r.size] for pressure in pressures]
+    p = levels[0]
     # Where g is flat up to an edge that lies between two particles, p is that of a punch, ∝ 1/a.
-    at_most = _moves(fine, fine.body or state.heights, r, -1.0 if state.is_elastic else 1.0) if state.is_alone else 0.0
-    moves = np.maximum(np.abs(p), at_most)
-    if zone:  # the attraction's edge goes with that of the contact
-        moves += np.abs(_drawn(scene, zone, STEP)[1](r) - pulled(r)) / STEP
-    spread = state.radius.uncertainty / state.radius.value * moves
-    spread = _between(state, own, spread, [p, *coarser], lambda line: line.pressure(r) - pulled(r))
-    by_shape = _by_shape(state, own, r, p, pulled)
-    within = np.count_nonzero(side < state.radius.value / state.wider)
-    told = [one for i, one in enumerate((p, *coarser)) if within >= FEWEST * 2**i]
-    error = spread + share * moves + given * np.abs(p) + ROUND_OFF * state.layer
+    sensitivity = np.abs(p)
+    if state.is_uncoupled:
+        sign = -1.0 if state.is_elastic else 1.0
+        sensitivity = np.maximum(sensitivity, _edge_sensitivity(fine, fine.body or state.heights, r, sign))
+    if zone:  # the edge of the attraction moves with that of the contact
+        sensitivity += np.abs(_attraction(scene, zone, STEP)[1](r) - attraction(r)) / STEP
+    spread = state.radius.uncertainty / state.radius.value * sensitivity
+    spread = _with_discretisation(state, stride, spread, levels, lambda line: line.pressure(r) - attraction(r))
+    shape_error = _shape_error(state, stride, r, p, attraction)
+    within = np.count_nonzero(side < state.radius.value / state.image_ratio)
+    resolved = [level for i, level in enumerate(levels) if within >= FEWEST * 2**i]
+    # 2e-12 of the layer: round-off of positions, compared with the depth of the wall that carries them.
+    error = spread + share * sensitivity + given * np.abs(p) + 2e-12 * state.layer
     if zone:  # a layer acts as a jump, but for the particle that is in it
         error += zone.layer / (np.pi * np.sqrt(fine.edge**2 - r**2)) * (r > fine.edge - scene.bodies.spacing)
+    largest = _bounded_pressures(state, fine, r, resolved, lambda r: fine.pressure(r) - attraction(r))
     results = {
-        name: replace(one, uncertainty=one.uncertainty or float(error[place] + by_shape(read)))
-        for name, (one, place, read) in _largest(state, fine, r, told, lambda r: fine.pressure(r) - pulled(r)).items()
+        name: replace(quantity, uncertainty=quantity.uncertainty or float(error[index] + shape_error(read)))
+        for name, (quantity, index, read) in largest.items()
     }
     force, size = float(forces.sum()) + ring, float(np.abs(forces).sum()) - ring
-    edge, stiffness = state.radius.value / state.wider, _stiffness(state, share)
-    doubt = _added_up(state) / (size or 1.0)
-    return BodyPressure(r, p, error + by_shape(np.asarray), doubt, edge, results, force, size, stiffness)
+    edge, stiffness = state.radius.value / state.image_ratio, _stiffness(state, share)
+    doubt = _sum_error(state) / (size or 1.0)
+    return BodyPressure(r, p, error + shape_error(np.asarray), doubt, edge, results, force, size, stiffness)
 
 
-def _between(
-    state: Loaded, stride: int, spread: Array, levels: Sequence[Array], pressure: Callable[[LineLoad], Array]
+def _with_discretisation(
+    state: LoadedState, stride: int, spread: Array, levels: Sequence[Array], pressure: Callable[[LineLoad], Array]
 ) -> Array:
-    """The error of p, (n,), with what lies between particles, by levels of them.
+    """Return the error of p with the discretisation error, (n,), by the differences between levels of particles.
 
-    Of a known shape nothing does: where they are too few to show it, its edge alone is open.
+    A known shape has none: where the particles are too few to show it, its edge alone is uncertain. Where the shape is
+    not known, the error is 2.5 times the largest one at seven radii around; measured with rings that come into contact
+    again, between whose particles a slope jumps.
     """
     p, *coarser = levels
     known = not coarser and state.body is not None
     if not known:
-        spread = spread + _spread(p, *coarser)
-    if state.is_elastic or not state.is_alone:
+        spread = spread + _level_difference(p, *coarser)
+    if state.is_elastic or not state.is_uncoupled:
         return spread
     if known:
         inside = np.count_nonzero(state.x[state.x.size // 2 :: stride] < (state.edge or math.inf))
         spread = spread + np.abs(p) / (2.0 * inside) ** 2
-    if other := state.through(state.load, 2 * stride, stride):  # one difference may be 0 by chance
-        spread = np.maximum(spread, np.abs(pressure(other) - p))
-    return np.asarray(OPEN * sliding_window_view(np.pad(spread, BESIDE // 2, "edge"), BESIDE).max(axis=1))
+    if rest := state.through(state.load, 2 * stride, stride):  # a single difference may be 0 by chance
+        spread = np.maximum(spread, np.abs(pressure(rest) - p))
+    width = 7
+    return np.asarray(2.5 * sliding_window_view(np.pad(spread, width // 2, "edge"), width).max(axis=1))
 
 
-def _added_up(state: Loaded) -> float:
-    """Most by which the sum of the particles is off ∫ q dx [FU]: Δ²/12 of each change of slope (Euler, Maclaurin)."""
+def _sum_error(state: LoadedState) -> float:
+    """Return the largest error [FU] of the sum for ∫ q dx: Δ²/12 of each change of slope (Euler, Maclaurin)."""
     if state.jump != 0.0:
         return 0.0
     bends = np.abs(np.convolve(state.load, (1.0, -2.0, 1.0)))
-    return float(bends.sum()) * state.scene.bodies.spacing / state.wider / 12.0
+    return float(bends.sum()) * state.scene.bodies.spacing / state.image_ratio / 12.0
 
 
-def _stiffness(state: Loaded, share: float) -> Quantity | None:
-    """dF/dd = −∫ (dq/dh) dx of springs whose forces are functions of d − h, which is 2E*a of linear ones.
+def _stiffness(state: LoadedState, share: float) -> Quantity | None:
+    """Return dF/dd = −∫ (dq/dh) dx [FU/LU] of springs whose forces are functions of d − h; 2E*a of linear ones.
 
-    Between two particles the slope is that of the straight line; `share`: what the results are off, relatively.
+    Between two particles the slope is that of a straight line; `share` is the relative error of the results.
     """
     edge = state.edge
-    if not state.is_alone or edge is None or state.jump != 0.0 or state.shape.has_edge:
+    if not state.is_uncoupled or edge is None or state.jump != 0.0 or state.shape.has_edge:
         return None
     sides = []
     for stride in (1, 2):
@@ -241,63 +230,64 @@ def _stiffness(state: Loaded, share: float) -> Quantity | None:
     return Quantity(fine, abs(fine - coarse) + share * fine, LINE_PRESSURE)
 
 
-def _by_shape(
-    state: Loaded, stride: int, r: Array, p: Array, pulled: Callable[[Array], Array]
+def _shape_error(
+    state: LoadedState, stride: int, r: Array, p: Array, attraction: Callable[[Array], Array]
 ) -> Callable[[Callable[[Array], Any]], Any]:
-    """What the bodies that this one may be change of what is read off p(r), the independent ones in squares."""
-    shape, at = state.shape, state.x if state.edge is None else np.clip(state.x, -state.edge, state.edge)
+    """Return a function: the change of a reading of p(r) for the possible shapes, independent ones added in squares."""
+    shape, x = state.shape, state.x if state.edge is None else np.clip(state.x, -state.edge, state.edge)
 
-    def on(bodies: Sequence[Shape]) -> list[Array]:
-        """p(r) of other bodies under as much."""
-        less = [state.heights(at) - state.heights(at, one) for one in bodies]
-        return [
-            one.pressure(r) - pulled(r) for line in less if (one := state.through(state.load + line - line[0], stride))
-        ]
+    def pressures_of(shapes: Sequence[Shape]) -> list[Array]:
+        """Return p(r) of other shapes under the same displacement."""
+        changes = [state.heights(x) - state.heights(x, alternative) for alternative in shapes]
+        lines = [state.through(state.load + change - change[0], stride) for change in changes]
+        return [line.pressure(r) - attraction(r) for line in lines if line]
 
-    others, ways = on(shape.coarser), [on(both) for both in shape.deviations]
+    coarser, deviations = pressures_of(shape.coarser), [pressures_of(pair) for pair in shape.deviations]
 
     def change(read: Callable[[Array], Any]) -> Any:
-        each = [[abs(read(one) - read(p)) for one in both] for both in ways if both]
-        return sum(abs(read(one) - read(p)) for one in others) + np.sqrt(
-            sum(np.max(both, axis=0) ** 2 for both in each)
+        """Return the change of a reading: of coarser shapes the sum, of independent pairs the root of the squares."""
+        independent = [[abs(read(varied) - read(p)) for varied in pair] for pair in deviations if pair]
+        return sum(abs(read(varied) - read(p)) for varied in coarser) + np.sqrt(
+            sum(np.max(pair, axis=0) ** 2 for pair in independent)
         )
 
     return change
 
 
-def _largest(
-    state: Loaded, fine: LineLoad, r: Array, levels: Sequence[Array], pressure: Callable[[Array], Array]
+def _bounded_pressures(
+    state: LoadedState, fine: LineLoad, r: Array, levels: Sequence[Array], pressure: Callable[[Array], Array]
 ) -> dict[str, tuple[Quantity, int, Callable[[Array], Any]]]:
-    """p(0) and the largest pressure where they have a bound, each with the radius and the reader of its error.
+    """Return p(0) and the largest pressure where bounded, each with its index in r and the reader of its error.
 
-    An uncertainty is 0 where it is to be found so, infinite where nothing shows that there is a bound.
+    An uncertainty of 0 is determined later by these; it is infinite where nothing shows that the pressure is bounded.
     """
     scene, shape, p = state.scene, state.shape, levels[0] if levels else pressure(r)
-    noise, top, unsure = NOISE * scene.accuracy.tolerance, int(p.argmax()), bool(shape.alternatives or shape.deviations)
+    # Smaller differences, relative to the pressure, are those of the minimiser.
+    noise, top, unsure = 0.1 * scene.accuracy.tolerance, int(p.argmax()), bool(shape.alternatives or shape.deviations)
     smooth = p[top] > 0.0 and (top == 0 or len(levels) == 3) and _is_bounded(state, fine, top, noise * p[top])
     peak = p[top]
-    if smooth and top:  # on the axis it is one by symmetry
-        near = np.linspace(r[top - 1], r[min(top + 1, r.size - 1)], BETWEEN)
+    if smooth and top:  # on the axis it is a maximum by symmetry
+        near = np.linspace(r[top - 1], r[min(top + 1, r.size - 1)], 21)
         p_near = pressure(near)
         highest = int(p_near.argmax())
-        peak = vertex(near, p_near, highest, 1)[1] if 0 < highest < BETWEEN - 1 else p_near[highest]
+        peak = vertex(near, p_near, highest, 1)[1] if 0 < highest < near.size - 1 else p_near[highest]
     hidden = any(map(state.has_kinks, shape.alternatives))
-    found: dict[str, tuple[Quantity, int, Callable[[Array], Any]]] = {}
-    for name, place, read, value, is_open, may_have in (
+    results: dict[str, tuple[Quantity, int, Callable[[Array], Any]]] = {}
+    for name, index, read, value, is_open, may_have in (
         ("central_pressure", 0, itemgetter(0), p[0], False, True),
         ("peak_pressure", top, np.max, peak, hidden, smooth),
     ):
-        known = _converges([read(one) for one in levels], noise)
+        known = _converges([read(level) for level in levels], noise)
         if may_have and not fine.has_apex and (known or unsure):
             off = 0.0 if known and not is_open else np.inf
-            found[name] = Quantity(float(value), off, MEAN_PRESSURE), place, read
-    return found
+            results[name] = Quantity(float(value), off, MEAN_PRESSURE), index, read
+    return results
 
 
-def _is_bounded(state: Loaded, fine: LineLoad, top: int, noise: float) -> bool:
-    """Whether the largest pressure of the particles is one: a jump at the edge is a pole, a kink inside a logarithm.
+def _is_bounded(state: LoadedState, fine: LineLoad, top: int, noise: float) -> bool:
+    """Whether the largest pressure is bounded: a jump at the edge is a pole, a kink inside a logarithmic singularity.
 
-    A jump that the law tells is one, however small; particles show no better than their errors.
+    A jump that the law gives counts however small it is, one that the particles show if it exceeds their errors.
     """
     if state.shape.has_edge or state.has_kinks(state.shape):
         return False
@@ -305,13 +295,21 @@ def _is_bounded(state: Loaded, fine: LineLoad, top: int, noise: float) -> bool:
     return (top == 0 and state.jump is None) or fine.at_edge <= pole
 
 
-def _nodes(state: Loaded, edge: float, angles: int) -> tuple[Array, Array]:
-    """Radii r = a sin θ [LU] at which p(r) is added up over the contact, between kinks, and the area of each [LU²]."""
+def _nodes(state: LoadedState, edge: float, angles: int) -> tuple[Array, Array]:
+    """Return radii r = a sin θ [LU] for the quadrature of p(r) over the contact, and the area of each [LU²].
+
+    Args:
+        state: the line load of the state.
+        edge: the radius a of the contact [LU].
+        angles: Gauss nodes in each part between two kinks; a body whose shape is a table or whose springs are not
+            elastic is also divided in five, since a corner of its history is a kink of the line load.
+    """
     node, weight = gauss(angles)
     share = 0.5 * (node + 1.0)
     kinks = [kink / edge for kink in state.shape.kinks if kink < edge]
     if state.shape.slow or not state.is_elastic:
-        kinks += [piece / PIECES for piece in range(1, PIECES)]
+        parts = 5
+        kinks += [part / parts for part in range(1, parts)]
     ends = np.arcsin(sorted({0.0, *kinks, 1.0}))
     width = np.diff(ends)[:, None]
     angle = (ends[:-1, None] + width * share * share * (3.0 - 2.0 * share)).ravel()  # dense at both ends of a piece
@@ -320,80 +318,92 @@ def _nodes(state: Loaded, edge: float, angles: int) -> tuple[Array, Array]:
     return r, 2.0 * np.pi * r * edge * np.cos(angle) * step
 
 
-def _drawn(scene: Scene, zone: ZonedProfile | None, wider: float = 0.0) -> tuple[float, Callable[[Array], Array]]:
-    """See `Law.drawn`; `wider`: relative, by how much a is larger, and c with it."""
+def _attraction(scene: Scene, zone: ZonedProfile | None, growth: float = 0.0) -> tuple[float, Callable[[Array], Array]]:
+    """Return force [FU] and pressure of the attraction beyond the contact, as `Law.drawn` does; 0 without a zone.
+
+    Edge and reach are larger by a share `growth`.
+    """
     if zone is None:
         return 0.0, np.zeros_like
     edge, reach = zone.edge, zone.reach
-    return law_of(scene).drawn(scene, edge + wider * edge, reach + wider * edge)
+    return law_of(scene).drawn(scene, edge + growth * edge, reach + growth * edge)
 
 
-def _moves(load: LineLoad, body: Callable[[Array], Array], r: Array, way: float) -> Array:
-    """|a ∂p/∂a| under springs on a plane at most, without the J/2a of a jump that grows [FU/LU²].
+def _edge_sensitivity(load: LineLoad, body: Callable[[Array], Array], r: Array, sign: float) -> Array:
+    """Return |a ∂p/∂a| [FU/LU²] under springs on a plane at most, without the J/2a of a growing jump, (n,).
 
-    `way`: −1 where both parts are known to be of that edge, else 1.
+    The sign of the jump's part is −1 where both parts are known to have the same edge, else 1.
     """
     square = (load.edge - r) * (load.edge + r)
     rise = np.diff(body(load.edge * np.asarray([1.0, 1.0 + STEP]))) / STEP
-    return (rise + way * load.at_edge * load.edge**2 / square) / (np.pi * np.sqrt(square))
+    return (rise + sign * load.at_edge * load.edge**2 / square) / (np.pi * np.sqrt(square))
 
 
-def _converges(levels: Sequence[float], noise: float) -> bool:
-    """Whether a value through every, every second and every fourth particle converges; fewer levels do not suffice."""
+def _converges(levels: Sequence[float], noise: float, ratio: float = 0.45) -> bool:
+    """Whether a value through every, every second and every fourth particle converges; fewer levels cannot show it.
+
+    |p₁ − p₂|/|p₁ − p₄| is 1/(1 + 2ᵖ) for an order of convergence p, ½ for a logarithm, and more for a pole.
+    """
     if len(levels) < 3:
         return True
     first, second, fourth = levels
     change = abs(first - second)
-    return change <= noise * abs(first) or change < SHRINKS * abs(first - fourth)
+    return change <= noise * abs(first) or change < ratio * abs(first - fourth)
 
 
-def _spread(values: Array, *coarser: Array) -> Array:
-    """|fine − coarse|, and a part of the next difference; the value itself where there is no coarser one."""
+def _level_difference(values: Array, *coarser: Array) -> Array:
+    """Return |fine − coarse| and a quarter of the next difference; the value itself where there is no coarser one.
+
+    The first difference may be small by accident where a kink lies between particles; a quarter of the next one is as
+    large at an order of convergence of 2.
+    """
     levels = (values, *(coarser or (0.0,)))
-    spread = sum(share * np.abs(one - next) for share, one, next in zip((1.0, NEXT), levels, levels[1:], strict=False))
+    pairs = zip((1.0, 0.25), levels, levels[1:], strict=False)
+    spread = sum(share * np.abs(fine - coarse) for share, fine, coarse in pairs)
     return np.where(np.isfinite(spread), spread, np.abs(values))
 
 
 def body_shears(
     scene: Scene, profiles: Mapping[str, Profile], columns: Mapping[str, Array], contact_radii: Array
 ) -> dict[str, BodyShear]:
-    """q(r) of the reported states in which the bodies touch over a width; none where there is no body for them.
+    """Return q(r) of the reported states with a contact radius; none where the run represents no body.
 
-    A flat punch has none: its own singular end has as much shear as pressure.
+    A flat punch has none: the shear at its edge is as singular as the pressure.
 
     Args:
-        scene: what ran.
-        profiles: of the reported states, "final" or the farthest one.
-        columns: of curve.csv, as in `Run.friction`.
-        contact_radii: a of each row [LU], NaN where the bodies do not touch.
+        scene: the scene of the run.
+        profiles: profiles of the reported states, "final" or the farthest one.
+        columns: columns of curve.csv, as in `Run.friction`.
+        contact_radii: a of each load step [LU], NaN where the bodies do not touch.
     """
     if not scene.experiment.goes_along or scene.bodies.reduction != "mdr" or scene.bodies.profile.has_edge:
         return {}
     sticks, edges = columns["stick_radius"], np.nan_to_num(contact_radii)
     kinks = kinks_of(sticks.tolist(), edges.tolist())
     return {
-        name: one
+        name: shear
         for name, profile in profiles.items()
         if edges[row := row_of(name, columns)] > 0.0
-        and (one := _shear(scene, profile, float(edges[row]), kinks[row], float(sticks[row])))
+        and (shear := _shear(scene, profile, float(edges[row]), kinks[row], float(sticks[row])))
     }
 
 
 def row_of(state: str, columns: Mapping[str, Array]) -> int:
-    """Which load step a reported state is: the last one, or the first of those farthest along x."""
-    places = columns["tangential_displacement"]
-    return len(places) - 1 if state == "final" else int(np.argmax(np.abs(places)))
+    """Return the number of the load step of a reported state: the last one, or the first of those farthest along x."""
+    positions = columns["tangential_displacement"]
+    return len(positions) - 1 if state == "final" else int(np.argmax(np.abs(positions)))
 
 
 def _shear(scene: Scene, profile: Profile, edge: float, kinks: Sequence[float], stick: float) -> BodyShear | None:
-    """q(r) of a state; None where too few particles touch."""
+    """Return q(r) of a state, at 100 radii and the kinks; None where too few particles touch."""
 
     def load(chosen: Array) -> LineLoad:
+        """Return the line shear through chosen particles."""
         return shear_load(profile.x[chosen], -profile.shear[chosen], edge, kinks, has_apex(scene))
 
-    levels = [one for stride in (1, 2) if (one := through(profile.x.size, stride, load))]
+    levels = [level for stride in (1, 2) if (level := through(profile.x.size, stride, load))]
     if not levels:
         return None
-    r = np.unique(np.concatenate([np.linspace(0.0, edge, RADII), kinks]))[levels[0].has_apex :]
-    shears = [one.pressure(r) for one in levels]
-    return BodyShear(r, shears[0], _spread(*shears), edge, stick)
+    r = np.unique(np.concatenate([np.linspace(0.0, edge, 100), kinks]))[levels[0].has_apex :]
+    shears = [level.pressure(r) for level in levels]
+    return BodyShear(r, shears[0], _level_difference(*shears), edge, stick)

@@ -3,8 +3,8 @@
 Slope of the profile at the contact edge: the half-space theory is for small slopes (K. L. Johnson, Contact Mechanics,
 1985, section 4.1), and a paraboloid is a ball for a << R only. Tabor parameter: JKR has no range of the attraction
 (D. Maugis, 1992). Pressure: a ball yields where p(0) exceeds 1.60 Y (Johnson, section 6.1; ν = 0.3), a cone and a punch
-at once. Contact radius over the half-width of the body. Of every run the widest state is checked, and the
-pressure where the force is largest.
+at once. Contact radius over the half-width of the body: the half-space is much wider than the contact. The checks are
+for the widest state of a run, that of the pressure for the state of the largest force.
 """
 
 from __future__ import annotations
@@ -28,15 +28,9 @@ from contact1d.workflow.scene import Scene
 from contact1d.workflow.scene.tables import WIDER_THAN_SPHERES
 from contact1d.workflow.units import MEAN_PRESSURE, Quantity, Scales, prefixed
 
-SLOPE, HALF_WIDTH = 0.1, 0.5
-"""Conventions: largest slope at the contact edge, and contact radius over half-width of a body, without a warning."""
-YIELD = 1.6
-"""Pressure on the axis over the yield strength at which a ball begins to yield below the surface."""
-STEP = 1e-6
-"""Relative, for the slope of a profile."""
 RADII = ("contact_radius", "largest_radius", "zero_load_radius", "critical_radius", "peak_contact_radius")
 SINGULAR = ("cone", "flat_punch")
-"""Profiles under which a pressure has no bound."""
+"""Profiles with a singular pressure."""
 PRESSURES = ("central_pressure", "peak_pressure")
 
 
@@ -45,11 +39,11 @@ class Check:
     """A quantity of the contact and its limit.
 
     Attributes:
-        name: of the warning.
-        quantity: what the number is: "p(0)/Y".
-        value, limit: the number, and up to where the theory holds, or from where on for the Tabor parameter.
-        holds: whether it does.
-        message: what is wrong otherwise, with the size of the error where it is known.
+        name: name of the warning.
+        quantity: symbol of the quantity, as "p(0)/Y".
+        value, limit: its value, and the largest one for which the theory holds; for the Tabor parameter the smallest.
+        holds: whether the theory holds.
+        message: the warning, with the size of the error where it is known.
     """
 
     name: str
@@ -60,43 +54,44 @@ class Check:
     message: str
 
     def entry(self) -> dict[str, Any]:
-        """What results.json has of it; a number without bound is null."""
+        """Return the entry of the check in results.json; an infinite value is null."""
         value = self.value if math.isfinite(self.value) else None
         return {"name": self.name, "quantity": self.quantity, "value": value, "limit": self.limit, "holds": self.holds}
 
 
-def checks(scene: Scene, outcome: Outcome, found: Mapping[str, Quantity], scales: Scales) -> list[Check]:
-    """The checks that a run allows, of its largest state; `found`: its results, of the body."""
+def checks(scene: Scene, outcome: Outcome, quantities: Mapping[str, Quantity], scales: Scales) -> list[Check]:
+    """Return the checks of a run at its widest state; `quantities` are its results, of the body."""
     if not is_of_a_body(scene):
         return []
     wider = WIDER_THAN_SPHERES if stands_for_spheres(scene) else 1.0
     radii = [state.radius.value / wider for state in outcome.states if state.radius]
-    radius = max([*radii, *(found[name].value for name in RADII if name in found)], default=0.0)
+    radius = max([*radii, *(quantities[name].value for name in RADII if name in quantities)], default=0.0)
     if radius <= 0.0:
         return []
-    case = Case(scene, found, scales)
+    case = Case(scene, quantities, scales)
     return [*_slope(case, radius), *_half_width(case, radius), *_tabor(case), *_yield(case, outcome)]
 
 
-def _slope(case: Case, radius: float) -> Iterator[Check]:
+def _slope(case: Case, radius: float, limit: float = 0.1) -> Iterator[Check]:
+    """Yield the check of the slope at the contact edge; the limit is a convention."""
     profile = case.scene.bodies.profile.steepest
     if profile.has_edge:  # it is plane at the edge
         return
-    around = np.asarray([1.0 - STEP, 1.0]) * min(radius, profile.reach)
+    around = np.asarray([1.0 - 1e-6, 1.0]) * min(radius, profile.reach)
     low, high = profile.height(around)
     slope = float((high - low) / np.diff(around)[0])
-    message, holds = "", slope <= SLOPE
+    message, holds = "", slope <= limit
     if not holds:
-        found, limit = apart(slope, SLOPE)
+        value, most = apart(slope, limit)
         message = (
-            f"the slope of the profile at the contact edge is {found}, and the theory of the elastic half-space is "
-            f"for slopes below {limit}{_beside_a_ball(case, radius)}"
+            f"the slope of the profile at the contact edge is {value}, and the theory of the elastic half-space is "
+            f"for slopes below {most}{_difference_of_ball(case, radius)}"
         )
-    yield Check("slope", "f'(a)", slope, SLOPE, holds, message)
+    yield Check("slope", "f'(a)", slope, limit, holds, message)
 
 
-def _beside_a_ball(case: Case, radius: float) -> str:
-    """What a ball has instead of a paraboloid under the force of this contact radius."""
+def _difference_of_ball(case: Case, radius: float) -> str:
+    """Return in words how the contact radius of a ball differs from a paraboloid's under the same force."""
     profile = case.scene.bodies.profile
     if profile.kind != "parabola" or profile.counter_radius is not None:  # two balls are no profile here
         return ""
@@ -109,43 +104,46 @@ def _beside_a_ball(case: Case, radius: float) -> str:
     )
 
 
-def _half_width(case: Case, radius: float) -> Iterator[Check]:
+def _half_width(case: Case, radius: float, limit: float = 0.5) -> Iterator[Check]:
+    """Yield the check of the contact radius over the half-width of the body; the limit is a convention."""
     profile = case.scene.bodies.profile
     width = profile.reach if math.isfinite(profile.reach) else profile.curvature_radius  # of a paraboloid its ball's
     if width is None or profile.has_edge:
         return
     share = radius / width
-    found, limit = apart(share, HALF_WIDTH)
+    value, most = apart(share, limit)
     message = (
-        f"the contact radius is {found} of the half-width of the body, and the theory of the elastic half-space is "
-        f"for bodies much wider than the contact, here less than {limit}"
+        f"the contact radius is {value} of the half-width of the body, and the theory of the elastic half-space is "
+        f"for bodies much wider than the contact, here less than {most}"
     )
-    yield Check("body_size", "a/half-width", share, HALF_WIDTH, share <= HALF_WIDTH, message)
+    yield Check("body_size", "a/half-width", share, limit, share <= limit, message)
 
 
 def beyond_jkr(sphere: MaugisDugdale, assumed: bool) -> str:
-    """What JKR misses of a sphere whose attraction has a range, given or `assumed`; "" where JKR holds."""
-    held = of_tabor(sphere.tabor)
-    if held is Theory.JKR:
+    """Return a message with the error of JKR for a sphere with a range, given or `assumed`; "" where JKR holds."""
+    valid = of_tabor(sphere.tabor)
+    if valid is Theory.JKR:
         return ""
     error = sphere.theories[Theory.JKR].pull_off_force() / sphere.pull_off_force() - 1.0
-    found, limit = apart(sphere.tabor, JKR_TABOR, 2)
+    value, limit = apart(sphere.tabor, JKR_TABOR, 2)
     where = f" with an assumed range of the attraction of {prefixed(ASSUMED_RANGE, 'm')}" if assumed else ""
     return (
-        f"the Tabor parameter is {found}{where}, where {held} holds, and JKR above {limit}: the "
+        f"the Tabor parameter is {value}{where}, where {valid} holds, and JKR above {limit}: the "
         f"results are JKR's, whose pull-off force is {abs(error):.1%} {'larger' if error > 0.0 else 'smaller'} than "
         f"that of Maugis and Dugdale{': give adhesion.range' * assumed}"
     )
 
 
 def _tabor(case: Case) -> Iterator[Check]:
+    """Yield the check of the Tabor parameter of an adhesive sphere with a range."""
     sphere = case.with_range
     if sphere is not None and case.scene.work_of_adhesion:
         message = "" if case.law.range_of(case.scene, 0.0) else beyond_jkr(sphere, True)
         yield Check("tabor", "Tabor parameter", sphere.tabor, JKR_TABOR, not message, message)
 
 
-def _yield(case: Case, outcome: Outcome) -> Iterator[Check]:
+def _yield(case: Case, outcome: Outcome, limit: float = 1.6) -> Iterator[Check]:
+    """Yield the check of the largest pressure over the yield strength; a ball yields below the surface at `limit`."""
     material, scales = case.scene.material, case.scales
     bodies = () if material is None else material.elastic.values()
     strength = min((body.yield_strength or math.inf for body in bodies), default=math.inf)
@@ -153,17 +151,17 @@ def _yield(case: Case, outcome: Outcome) -> Iterator[Check]:
         return
     largest = {"largest": max(outcome.states, key=lambda state: state.force)}
     deepest = pressures_of(case.scene, replace(outcome, marked=largest)).get("largest")
-    found = [deepest.results, case.quantities] if deepest else [case.quantities]
-    pressures = [results[name].value for results in found for name in PRESSURES if name in results]
+    sources = [deepest.results, case.quantities] if deepest else [case.quantities]
+    pressures = [results[name].value for results in sources for name in PRESSURES if name in results]
     if case.radius is not None and "preload" in case.quantities:
         pressures.append(case.body.central_pressure(case.body.contact_radius(case.quantities["preload"].value)))
     pressure = max(pressures, default=0.0) * scales.factor(MEAN_PRESSURE)
-    share, digits = pressure / strength, digits_apart(pressure, YIELD * strength, 4)
+    share, digits = pressure / strength, digits_apart(pressure, limit * strength, 4)
     reached = f"the largest pressure is {prefixed(pressure, 'Pa', digits)}"
     if case.kind in SINGULAR:
         share, reached = math.inf, "a tip or an edge yields at once"
     message = (
-        f"{reached}, and a smooth elastic ball yields from {YIELD:g} times the yield strength on, "
-        f"{prefixed(YIELD * strength, 'Pa', digits)} (Poisson's ratio near 0.3): pressures are those of an elastic body"
+        f"{reached}, and a smooth elastic ball yields from {limit:g} times the yield strength on, "
+        f"{prefixed(limit * strength, 'Pa', digits)} (Poisson's ratio near 0.3): pressures are those of an elastic body"
     )
-    yield Check("yield", "largest pressure/Y", share, YIELD, share <= YIELD, message)
+    yield Check("yield", "largest pressure/Y", share, limit, share <= limit, message)

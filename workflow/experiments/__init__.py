@@ -1,4 +1,4 @@
-"""Experiments: each a script over the continuation and a reader of what it leaves."""
+"""Experiments: each a script over the continuation and a reader of the resulting trace."""
 
 from typing import Any
 
@@ -10,7 +10,7 @@ from contact1d.workflow.experiments.experiment import Experiment, in_smaller_ste
 from contact1d.workflow.experiments.history import HistoryExperiment
 from contact1d.workflow.experiments.hold import HoldExperiment
 from contact1d.workflow.experiments.impact import ImpactExperiment
-from contact1d.workflow.experiments.keeping import kept_way, planned_way
+from contact1d.workflow.experiments.keeping import with_output, with_planned_output
 from contact1d.workflow.experiments.load import LoadExperiment, ThermalLoad
 from contact1d.workflow.experiments.path import PathExperiment, ThermalPath
 from contact1d.workflow.experiments.pull_off import PullOffExperiment, ThermalPullOff
@@ -31,29 +31,29 @@ KINDS: dict[str, Experiment[Any]] = {
     "slide": SlideExperiment(),
     "tangential": TangentialExperiment(),
 }
-"""By the word that a scene has for it."""
+"""Experiments by the `kind` of a scene."""
 THERMAL: dict[str, Experiment[Any]] = {
     "load": ThermalLoad(),
     "path": ThermalPath(),
     "pull_off": ThermalPullOff(),
     "slide": ThermalSlide(),
 }
-"""Those that are others under noise."""
+"""Experiments under noise, by the `kind` of a scene, where they differ."""
 
 
 def kind_of(scene: Scene) -> Experiment[Any]:
-    """The scene's experiment."""
+    """Return the experiment that a scene names, under noise the one with averages."""
     kinds = KINDS | THERMAL if scene.noise else KINDS
     return kinds[scene.experiment.kind]
 
 
 def planned(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-    """A schedule without a search."""
-    return planned_way(scene, kind_of(scene).planned(scene, settings))
+    """Return the schedule of a deck that is written without a run."""
+    return with_planned_output(scene, kind_of(scene).planned(scene, settings))
 
 
 def perform(context: RunContext) -> Outcome:
-    """Run the experiment that the scene names, with its method.
+    """Run the experiment that the scene names, with its method, and return its outcome.
 
     Raises:
         UntrustedError: the result can't be trusted.
@@ -62,4 +62,4 @@ def perform(context: RunContext) -> Outcome:
     scene = context.deck.scene
     if slow := slowness(scene, context.deck.settings):
         context.progress.note(slow)
-    return kept_way(context, in_smaller_steps(kind_of(scene).run)(context))
+    return with_output(context, in_smaller_steps(kind_of(scene).run)(context))

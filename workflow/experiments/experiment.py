@@ -26,17 +26,8 @@ from contact1d.workflow.model.settings import Settings, slower
 from contact1d.workflow.scene import Kind, Scene
 from contact1d.workflow.units import ENERGY
 
-VAGUE = 0.1
-"""What the energies of a run may leave open in its check of the energy at most."""
 FINER_SPACING = "a smaller bodies.spacing at the same stiffness and energy per length"
-"""What every radius gains from."""
-RETRY_SHARES = (1 / 4, 1 / 16)
-"""Parts of the increments that are tried where bodies went through each other: a body that moves by much of its
-particles' distance from the opposite ones, or by which their force changes much, lets the minimiser put one beyond.
-Where pairs snap together a minimiser moves particles by more than their distance whatever the increment: a relaxation
-then goes downhill in short moves. In time it is a load applied at once that drives a plate past its equilibrium, and
-what a snap sets free that drives a particle through its opposite: loads then come in such parts, with drag."""
-
+"""Advice that makes the uncertainty of every radius smaller."""
 
 K = TypeVar("K", bound=Kind)
 
@@ -45,8 +36,8 @@ class Experiment(ABC, Generic[K]):
     """One kind of experiment; K is its table in a scene.
 
     Attributes:
-        main_results: names of the results that an error is judged by, as far as a scene has them.
-        branches: phases whose branch of the curve has another name than they.
+        main_results: names of the results whose uncertainty must meet the tolerance, as far as a scene has them.
+        branches: names of the branches of the curve, by the phases that are named otherwise.
         is_statistical: whether results are means, the errors of which follow from their scatter.
         curve_is_result: whether the forces of curve.csv are results that the tolerance holds for.
     """
@@ -57,12 +48,12 @@ class Experiment(ABC, Generic[K]):
     branches: ClassVar[Mapping[str, str]] = {}
 
     def given(self, scene: Scene) -> K:
-        """What a scene says of it."""
+        """Return the experiment's table in a scene."""
         return cast("K", scene.experiment)
 
     @abstractmethod
     def run(self, context: RunContext) -> Outcome:
-        """Run it.
+        """Run the experiment in a context and return its outcome.
 
         Raises:
             UntrustedError: the result can't be trusted.
@@ -71,14 +62,14 @@ class Experiment(ABC, Generic[K]):
 
     @abstractmethod
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """The schedule of a deck that is written and not run: known for a path, expected where a run would search."""
+        """Return the schedule of a deck that is written and not run: of a path exact, of a search the expected one."""
 
     def reduction(self, scene: Scene, settings: Settings) -> Reduction | None:
-        """The experiment on the reduced model of a scene; None where it has no states at rest."""
+        """Return the experiment on the reduced model of a scene; None where it has no states at rest."""
         return None
 
     def advice(self, scene: Scene) -> str:
-        """What makes the uncertainty of a result smaller."""
+        """Return what makes the uncertainty of a result smaller, as a sentence."""
         if scene.method == "dynamic":
             return 'Use method = "quasistatic"'
         if not scene.interaction:
@@ -86,7 +77,7 @@ class Experiment(ABC, Generic[K]):
         return f'Use "auto" for interaction.cutoff and bodies.particles; for a radius also {FINER_SPACING}'
 
     def branch(self, phase: str) -> str:
-        """The branch name of a phase in curve.csv."""
+        """Return the branch name of a phase in curve.csv."""
         name = phase.partition("_")[0]
         return self.branches.get(name, name)
 
@@ -95,38 +86,38 @@ class Scripted(Experiment[K]):
     """A script over a branch, and a reader of the resulting trace."""
 
     def is_sampled(self, scene: Scene) -> bool:
-        """Whether the load steps are known beforehand, so that what lies between them is an error."""
+        """Whether the load steps are known beforehand, so that results have a sampling error."""
         return False
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """What the script does on the reduced model; on a rigid plane these are the load steps that run."""
+        """Return the phases of the script on the reduced model; on a rigid plane these are the load steps that run."""
         if scene.method == "dynamic":
             return self.expected(scene, settings)
         case = self.reduction(scene, settings)
         return Plan.of(Deck(scene, settings), case.driven(case.model)).phases
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """The schedule of a motion, as far as it is known."""
+        """Return the phases of a motion, as far as they are known before the run."""
         raise NotImplementedError
 
     @abstractmethod
     def script(self, branch: Driver, scene: Scene) -> None:
-        """Move a contact, as often to and fro as it takes: each turn begins a leg of the trace."""
+        """Load and unload the contact of a driver; each turn of the loading begins a leg of the trace."""
 
     @abstractmethod
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """Results of the states that the script has passed."""
+        """Return the results of the states of a trace, by name."""
 
     def tables(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Mapping[str, tuple[float, ...]]]:
-        """Columns of further files, by the names of these."""
+        """Return the columns of further files, by the names of the files."""
         return {}
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """What the experiment adds to its outcome, or refuses of it."""
+        """Return the outcome with the warnings and columns of the experiment, or refuse it."""
         return outcome
 
     def run(self, context: RunContext) -> Outcome:
-        """Run the script on LAMMPS; the reader's results with their error budget."""
+        """Run the script on LAMMPS and return the reader's results with their error budget."""
         scene, settings = context.deck.scene, context.deck.settings
         case = self.reduction(scene, settings)
         branch, trace = self._driven(context, case)
@@ -138,8 +129,9 @@ class Scripted(Experiment[K]):
         warnings = doubts(scene, settings, tuple(branch.states))
         tables = self.tables(trace, scene, settings)
         states, moves = tuple(branch.states), case.moves
-        doubt = max((one.share for one in results.values() if one.unit == ENERGY and one.size), default=0.0)
-        checks = branch.checks(case, min(doubt, VAGUE)) | consistency.asked(scene, self.asked(trace, scene), states)
+        energies = (result for result in results.values() if result.unit == ENERGY and result.size)
+        doubt = min(max((energy.share for energy in energies), default=0.0), 0.1)  # more would check nothing
+        checks = branch.checks(case, doubt) | consistency.asked(scene, self.asked(trace, scene), states)
         checks |= self.energy(case, states, results)
         rows = curve_errors(case, trace, errors.common, slower)
         outcome = Outcome(
@@ -148,40 +140,40 @@ class Scripted(Experiment[K]):
         return self.finish(outcome, scene, settings)
 
     def asked(self, trace: Trace, scene: Scene) -> Sequence[tuple[float, float]]:
-        """Forces [FU] that the scene asks for, each with that of the state that has it."""
+        """Return pairs of a force that the scene prescribes and the force of its state [FU]."""
         return ()
 
     def energy(self, case: Reduction, states: Sequence[State], results: Mapping[str, Result]) -> dict[str, Agreement]:
-        """The check of the energy of a motion; that of load steps on a plane needs no more than these."""
+        """Return the check of the energy of a motion; load steps on a plane are checked by their driver."""
         return {}
 
     def _driven(self, context: RunContext, case: Reduction) -> tuple[ContactBranch, Trace]:
-        """The script on a new contact, and its trace."""
+        """Run the script on a new contact; return its driver and its trace."""
         scene = context.deck.scene
-        with branch_of(context, lambda: case.lattice) as branch:
+        with driver_of(context, lambda: case.lattice) as branch:
             self.script(branch, scene)
             branch.finish()
         return branch, branch.trace()
 
     def _slower(self, context: RunContext, case: Reduction, trace: Trace) -> dict[str, list[Trace]]:
-        """A motion once more in longer timesteps, and slower where inertia or drag is the program's choice."""
+        """Return traces of a motion in longer timesteps, and slower where the program chose inertia or drag."""
         if context.deck.scene.method != "dynamic" or not trace.time.any():
             return {}
-        found = []
+        traces = []
         for scene, settings in slower(context.deck.scene, context.deck.settings):
-            with context.aside(Deck(scene, settings)) as other:
-                found.append(self._driven(other, case)[1])
-        return {"time": found}
+            with context.aside(Deck(scene, settings)) as repeat:
+                traces.append(self._driven(repeat, case)[1])
+        return {"time": traces}
 
     @lru_cache(maxsize=1)  # noqa: B019  # what chose the spacing has worked out the lattices of the run
     def reduction(self, scene: Scene, settings: Settings) -> Reduction:
-        """Script and reader on the reduced model of a scene."""
+        """Return script and reader on the reduced model of a scene."""
         script, read = partial(self.script, scene=scene), partial(self.read, scene=scene, settings=settings)
         return Reduction(scene, settings, script, read, self.reduction)
 
 
-def branch_of(context: RunContext, meanwhile: Callable[[], object]) -> Branch | LoadBranch | PlannedBranch:
-    """A new contact: under load control in time, planned on a rigid plane of a law that is known, else searched for."""
+def driver_of(context: RunContext, meanwhile: Callable[[], object]) -> Branch | LoadBranch | PlannedBranch:
+    """Return a new driver: load control in time, planned on a rigid plane with a known law, else a search."""
     scene = context.deck.scene
     if scene.method == "dynamic" and scene.experiment.compression is not None:
         return LoadBranch(context, meanwhile)
@@ -190,16 +182,27 @@ def branch_of(context: RunContext, meanwhile: Callable[[], object]) -> Branch | 
     return (ReplayedBranch if context.deck.settings.snaps else Branch)(context, meanwhile)
 
 
-def in_smaller_steps(run: Callable[[RunContext], Outcome]) -> Callable[[RunContext], Outcome]:
-    """The same run, which restarts in smaller steps where the bodies went through each other.
+def in_smaller_steps(
+    run: Callable[[RunContext], Outcome], shares: Sequence[float] = (1 / 4, 1 / 16)
+) -> Callable[[RunContext], Outcome]:
+    """Return a function that runs an experiment, and restarts it in smaller steps if bodies pass through each other.
 
-    The context's deck is then the one with these steps: it is what in.lammps must hold.
+    A body that moves by much of its particles' distance from the opposite ones, or by which their force changes much,
+    lets the minimiser put one beyond. Where pairs snap together a minimiser moves particles by more than their distance
+    whatever the increment: a relaxation then goes downhill in short moves. In time it is a load applied at once that
+    drives a plate past its equilibrium, and the energy of a snap that drives a particle through its opposite: loads
+    then come in such parts, with drag.
+
+    Args:
+        run: the experiment; the deck of its context is then the one with the smaller steps, as in.lammps needs it.
+        shares: the smaller increments over those of the settings, in the order in which they are tried.
 
     Raises:
-        ThroughError: they do so in the smallest steps, too, so that it is the load and not the path.
+        ThroughError: they do so in the smallest steps, too, so that the load is the cause and not the path.
     """
 
     def tried(context: RunContext) -> Outcome:
+        """Run the experiment, once more over the full range where the force has a second maximum."""
         try:
             return run(context)
         except SecondMaximumError:
@@ -208,6 +211,7 @@ def in_smaller_steps(run: Callable[[RunContext], Outcome]) -> Callable[[RunConte
             return run(context)
 
     def searched(context: RunContext) -> Outcome:
+        """Run the experiment in ever smaller steps until no body passes through the other."""
         deck = context.deck
         try:
             return tried(context)
@@ -216,7 +220,7 @@ def in_smaller_steps(run: Callable[[RunContext], Outcome]) -> Callable[[RunConte
             if deck.scene.noise or deck.scene.experiment.motion_is_result or not context.retries:
                 raise
             latest = error
-        for part in RETRY_SHARES:
+        for part in shares:
             context.progress.note(f"the bodies went through each other: restarting with steps scaled by {part:g}")
             context.deck = Deck(deck.scene, deck.settings.in_smaller_steps(part))
             try:
@@ -224,7 +228,7 @@ def in_smaller_steps(run: Callable[[RunContext], Outcome]) -> Callable[[RunConte
             except ThroughError as error:
                 latest = error
         context.deck = deck
-        smaller = f"Steps {1 / RETRY_SHARES[-1]:g} times smaller did not help"
+        smaller = f"Steps {1 / shares[-1]:g} times smaller did not help"
         raise ThroughError(f"{latest.message}. {smaller}", latest.advice, latest.changes)
 
     return searched

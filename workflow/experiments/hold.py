@@ -22,30 +22,30 @@ class HoldExperiment(Scripted[Hold]):
     main_results = ("displacement", "force", "contact_radius")
 
     def script(self, branch: Driver, scene: Scene) -> None:
-        """Hold."""
+        """Hold displacement or force for the duration."""
         held = self.given(scene)
         branch.begin("holding")
         branch.hold(held.duration, held.displacement, held.force)
         branch.mark("final")
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """The last state, and its distance from the first one that was held."""
+        """Return the results of the last state, and the change of the free variable since the first one."""
         trace, by_force = trace.phases("holding"), self.given(scene).force is not None
         last = len(trace) - 1
         free, unit = (trace.displacement, LENGTH) if by_force else (trace.force, FORCE)
         force = float(trace.force[last])
-        found = {
+        results = {
             "displacement": Reading(float(trace.displacement[last]), LENGTH, prescribed=not by_force),
             "force": Reading(force, FORCE),
             "relaxation": Reading(float(abs(free[last] - free[0])), unit, scale=float(abs(free).max())),
         }
         if radius := trace.radius(last):
-            found["contact_radius"] = Reading(radius, LENGTH)
-            found["mean_pressure"] = Reading(force / (math.pi * radius**2), MEAN_PRESSURE)
-        return found
+            results["contact_radius"] = Reading(radius, LENGTH)
+            results["mean_pressure"] = Reading(force / (math.pi * radius**2), MEAN_PRESSURE)
+        return results
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """The load steps that run."""
+        """Return the phase of the load steps that run."""
         held = self.given(scene)
         rows: list[Row] = []
         for steps in settings.steps_of(held.duration):
@@ -56,5 +56,6 @@ class HoldExperiment(Scripted[Hold]):
         return (Phase("holding", tuple(rows), state=True),)
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """The time of each state, from when LAMMPS began."""
-        return replace(outcome, columns={"time": tuple(one.step * settings.motion.time_step for one in outcome.states)})
+        """Add the time of each state [TU] since the start of the LAMMPS run."""
+        times = tuple(state.step * settings.motion.time_step for state in outcome.states)
+        return replace(outcome, columns={"time": times})

@@ -1,4 +1,4 @@
-"""Impact: a body hits the rigid plane with a velocity; how fast it leaves, how long it touches, how hard it presses."""
+"""Impact: a body hits the rigid plane with a velocity; its restitution, time of contact, peaks and lost energy."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.deck.steps import Fly, Launch, Phase
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
-from contact1d.workflow.experiments.history import lost
+from contact1d.workflow.experiments.history import contact_time
 from contact1d.workflow.laws.path import Path
 from contact1d.workflow.model.free import FLIGHT, impact, stretch
 from contact1d.workflow.model.reduced import reduced
@@ -26,10 +26,6 @@ from contact1d.workflow.scene import Impact, Plate, Scene
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH, NUMBER
 
 Array = NDArray[np.float64]
-FINER = 4
-"""Positions for each state of the path along which the contact's energy is followed."""
-NEAR = 2
-"""States on both sides of a maximum that its polynomial goes through."""
 
 
 class ImpactExperiment(Scripted[Impact]):
@@ -39,38 +35,38 @@ class ImpactExperiment(Scripted[Impact]):
     branches = {"touching": "impact"}  # noqa: RUF012
 
     def is_sampled(self, scene: Scene) -> bool:
-        """Always: states are read at equal times."""
+        """Whether results have a sampling error: they always do, since states are read at equal times."""
         return True
 
     def script(self, branch: Driver, scene: Scene) -> None:
-        """Hit."""
+        """Let the body hit the plane with its velocity and fly on."""
         branch.fly(self.given(scene).velocity)
         branch.mark("final")
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """A body that comes down again sticks: its restitution is 0, and all of its energy is lost in the end."""
+        """Return restitution, energy and peaks; a body that does not separate sticks and loses all of its energy."""
         velocity, mass = self.given(scene).velocity, scene.the(Plate).mass
         assert mass != "auto"
         d, time = trace.displacement, trace.time
         energy, parted = 0.5 * mass * velocity**2, not trace.force[-FLIGHT:].any()
         back = float((d[-2] - d[-1]) / (time[-1] - time[-2])) / velocity if parted else 0.0
-        deepest = _top(trace, d)
+        deepest = _peak(trace, d)
         radii = np.asarray([trace.radius(i) or 0.0 for i in range(len(trace))])
-        widest = settings.law.untouched_radius(deepest) or _top(trace, radii)
+        widest = settings.law.untouched_radius(deepest) or _peak(trace, radii)
         lossless = settings.law.is_lossless
-        found = {
+        results = {
             "restitution": Reading(back, NUMBER, scale=None if back else 1.0),
             "dissipated_energy": Reading(energy * (1.0 - back**2), ENERGY, scale=energy if lossless else None),
-            "peak_force": Reading(_top(trace, trace.force), FORCE),
+            "peak_force": Reading(_peak(trace, trace.force), FORCE),
             "peak_displacement": Reading(deepest, LENGTH),
             "peak_contact_radius": Reading(widest, LENGTH),
         }
-        return found | ({"contact_time": lost(trace)} if parted else {})
+        return results | ({"contact_time": contact_time(trace)} if parted else {})
 
     def energy(self, case: Reduction, states: Sequence[State], results: Mapping[str, Result]) -> dict[str, Agreement]:
-        """The kinetic energy that is gone, beside what the contact stores and loses along the path of the body.
+        """Return the check of the lost kinetic energy against what the contact stores and dissipates along the path.
 
-        Between two states it is the cubic of their displacements and velocities.
+        Between two states the path is the cubic of their displacements and velocities, with three points in between.
         """
         velocity, mass = self.given(case.scene).velocity, case.scene.the(Plate).mass
         assert mass != "auto"
@@ -85,22 +81,23 @@ class ImpactExperiment(Scripted[Impact]):
             [0.0, *(state.displacement for state in states)],
             [velocity, *(state.plate_velocity for state in states)],
         )
-        dense = np.interp(np.arange(0.0, len(time) - 1 + 1e-9, 1.0 / FINER), np.arange(len(time)), time)
+        dense = np.interp(np.arange(0.0, len(time) - 1 + 1e-9, 0.25), np.arange(len(time)), time)
         path = Path(moved(dense), np.zeros_like(dense), dense, moved(dense, 1))
-        first, left = (0.5 * mass * one**2 for one in (velocity, states[-1].plate_velocity))
+        first, left = (0.5 * mass * speed**2 for speed in (velocity, states[-1].plate_velocity))
         peak = results["peak_force"]  # a body that sticks has lost all, whatever its forces
         doubt = max(results["dissipated_energy"].uncertainty / first, peak.uncertainty / peak.value)
         return consistency.energy(case, consistency.Work(path, kinetic=(first, first - left)), doubt)
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """The time of each state."""
+        """Add the time of each state [TU], and a warning where the body sticks."""
         if "contact_time" not in outcome.results:
             words = "the body sticks: it comes down again without having parted, so there is no contact_time"
             outcome = replace(outcome, warnings={**outcome.warnings, "sticks": words})
-        return replace(outcome, columns={"time": tuple(one.step * settings.motion.time_step for one in outcome.states)})
+        times = tuple(state.step * settings.motion.time_step for state in outcome.states)
+        return replace(outcome, columns={"time": times})
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """The load steps that are expected to run."""
+        """Return the phases that are expected to run, as long as the impact of the reduced model."""
         velocity = self.given(scene).velocity
         steps = stretch(settings, velocity)
         count = impact(scene, settings, reduced(scene, settings), velocity).time.size
@@ -108,18 +105,18 @@ class ImpactExperiment(Scripted[Impact]):
         return first, Phase("impact", (Fly(steps),) * (count - 2), state=True)
 
     def advice(self, scene: Scene) -> str:
-        """The lattice limits it."""
+        """Return the advice to refine the lattice, the largest source of the uncertainty."""
         return f"Use {FINER_SPACING}"
 
 
-def _top(trace: Trace, column: Array) -> float:
-    """The largest value of a column, by a polynomial through the states about it: it may lie where the bodies touch."""
+def _peak(trace: Trace, column: Array, near: int = 2) -> float:
+    """Return the maximum of a column by a polynomial through `near` states on both sides; it may be at first touch."""
     first = int(np.flatnonzero(trace.force)[0])
     time, column = trace.time[first:], column[first:]
-    at = min(max(int(column.argmax()), NEAR), column.size - 1 - NEAR)
-    near = slice(at - NEAR, at + NEAR + 1)
-    width = float(time[at + NEAR] - time[at])
-    loss = through((time[near] - time[at]) / width, -column[near])
+    middle = min(max(int(column.argmax()), near), column.size - 1 - near)
+    around = slice(middle - near, middle + near + 1)
+    width = float(time[middle + near] - time[middle])
+    loss = through((time[around] - time[middle]) / width, -column[around])
     top, _ = lowest_minimum(loss, -1.0, 1.0)
-    ends = [value(loss, -float(time[at]) / width)] if at == NEAR else []
-    return float(max(column.max(), *(-one for one in ends), 0.0 if np.isnan(top) else -value(loss, top)))
+    ends = [-value(loss, -float(time[middle]) / width)] if middle == near else []
+    return float(max(column.max(), *ends, 0.0 if np.isnan(top) else -value(loss, top)))

@@ -1,4 +1,4 @@
-"""The states of a whole way that `[output] states` keeps: those that are wanted of all that a run has written."""
+"""The states that `[output] states` keeps of all that a run has written."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from contact1d.workflow.deck.steps import Phase, chosen, keeping, leave_out, mar
 from contact1d.workflow.scene import Scene
 
 
-def planned_way(scene: Scene, phases: tuple[Phase, ...]) -> tuple[Phase, ...]:
-    """A planned schedule in which the states of `[output]`, among its load steps, are written."""
+def with_planned_output(scene: Scene, phases: tuple[Phase, ...]) -> tuple[Phase, ...]:
+    """Return a planned schedule that writes the states of `[output]` among its load steps."""
     if scene.output is None:
         return phases
     rows = range(sum(len(phase.rows) for phase in phases))
     return keeping(phases, chosen(rows, scene.output.states, marked_rows(phases)))
 
 
-def kept_way(context: RunContext, outcome: Outcome) -> Outcome:
-    """The outcome whose schedule writes the states of `[output]`, among the measured ones."""
+def with_output(context: RunContext, outcome: Outcome) -> Outcome:
+    """Return the outcome with a schedule that writes the states of `[output]` among the measured ones."""
     scene = context.deck.scene
     if scene.output is None:
         return outcome
@@ -31,7 +31,7 @@ def kept_way(context: RunContext, outcome: Outcome) -> Outcome:
 
 
 def kept_states(scene: Scene, outcome: Outcome) -> Sequence[int] | None:
-    """Which states of the outcome are written; None without `[output]`."""
+    """Return the indices of the states of the outcome that are written; None without `[output]`."""
     if scene.output is None:
         return None
     kept = [keep for phase in outcome.phases for keep in phase.kept or (True,) * len(phase.rows)]

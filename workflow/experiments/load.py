@@ -29,7 +29,7 @@ class LoadExperiment(Scripted[Load]):
     main_results: ClassVar[tuple[str, ...]] = ("displacement", "force", "contact_radius")
 
     def run(self, context: RunContext) -> Outcome:
-        """In time with a warning where a tension is only just held, or not."""
+        """Run the script; in time add a warning where a tension is the pull-off force within the tolerance."""
         scene, settings = context.deck.scene, context.deck.settings
         load = self.given(scene).force
         surely = scene.method != "dynamic" or LoadBranch(context).holds_more(load)
@@ -56,38 +56,38 @@ class LoadExperiment(Scripted[Load]):
         branch.mark("final")
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """Results at the last state."""
+        """Return the results of the last state."""
         force, last = self.given(scene).force, len(trace) - 1
         carried = float(trace.force[last])
         missed, is_free = abs(carried - force), force == 0.0
-        found = {
+        results = {
             "displacement": Reading(float(trace.displacement[last]), LENGTH),
             "force": Reading(carried, FORCE, {"solver": missed}, prescribed=is_free),
         }
         if trace.radius(last):
             radius = trace.radius_or_spot(last)
-            found["contact_radius"] = Reading(radius, LENGTH)
+            results["contact_radius"] = Reading(radius, LENGTH)
             if (reach := trace.reach(last)) is not None:
-                found["cohesive_radius"] = Reading(reach, LENGTH)
+                results["cohesive_radius"] = Reading(reach, LENGTH)
             if radius > 0.0:
                 area = math.pi * radius**2
                 errors = {"solver": missed / area}
-                found["mean_pressure"] = Reading(carried / area, MEAN_PRESSURE, errors, prescribed=is_free)
-        return found
+                results["mean_pressure"] = Reading(carried / area, MEAN_PRESSURE, errors, prescribed=is_free)
+        return results
 
     def asked(self, trace: Trace, scene: Scene) -> Sequence[tuple[float, float]]:
-        """The load, of the state that comes nearest to it."""
+        """Return the load and the force nearest to it of all states [FU]."""
         force = self.given(scene).force
         return [(force, float(trace.force[np.argmin(np.abs(trace.force - force))]))]
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """The load, held."""
+        """Return the phase in which the load is held."""
         force = self.given(scene).force
         scale = max(abs(force), settings.forces.scale)
         return (held_phase("loading", scene, settings, (force,), scale, state=True),)
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """A warning where nothing touches."""
+        """Add a warning where the contact has no width."""
         if "contact_radius" in outcome.results:
             return outcome
         missing = {"no_radius": "the contact has no width, so there is no contact radius"}
@@ -95,16 +95,16 @@ class LoadExperiment(Scripted[Load]):
 
 
 class ThermalLoad(LoadExperiment):
-    """The same under noise, as averages over samples."""
+    """d, F, a and F/(πa²) under a force and noise, as averages over samples."""
 
     is_statistical = True
     main_results = ("displacement", "contact_radius")
 
     def run(self, context: RunContext) -> Outcome:
-        """Sample until the mean displacement is known."""
+        """Sample until the standard error of the mean displacement meets the tolerance."""
         scene = context.deck.scene
         return self.finish(thermal_load(context, self.given(scene).force), scene, context.deck.settings)
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """The run-in and the first samples."""
+        """Return the phases of the run-in and of the first samples."""
         return planned_samples(settings, self.given(scene).force)

@@ -27,17 +27,6 @@ from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import PullOff, Scene
 from contact1d.workflow.units import FORCE, LENGTH
 
-TENSIONS = 12
-"""Of a planned pull under load control, where a run would search."""
-RATED_STEPS = 120
-"""Load steps of a pull whose edge recedes at a finite speed."""
-NEAR_ZERO = 3
-"""Load steps on both sides of F = 0 that tell when it is."""
-LOADING_STEPS = 24
-"""Load steps up to a preload at a velocity."""
-LARGEST_TENSION = 1.2
-"""The last of these tensions over the expected pull-off force."""
-
 
 class PullOffExperiment(Scripted[PullOff]):
     """F_A, a_cr and a₀ after a preload."""
@@ -46,14 +35,14 @@ class PullOffExperiment(Scripted[PullOff]):
     branches = {"pulling": "unloading", "separating": "unloading", "critical": "unloading"}  # noqa: RUF012
 
     def is_sampled(self, scene: Scene) -> bool:
-        """With an edge that takes time."""
+        """Whether results have a sampling error: they do at a velocity, with load steps that are known beforehand."""
         return self.given(scene).velocity is not None
 
     def script(self, branch: Driver, scene: Scene) -> None:
         """Compress, unload to F = 0, retract to the force maximum, separate; as many times as there are cycles."""
         given = self.given(scene)
         if given.velocity:
-            branch.follow(_pulled(branch.model, given))
+            branch.follow(_history_at_velocity(branch.model, given))
             return
         scale = max(given.preload, branch.scale)
         for _ in range(given.cycles or 1):
@@ -69,31 +58,31 @@ class PullOffExperiment(Scripted[PullOff]):
             branch.open()
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """The marks of the last unloading; of several cycles the force maximum of the first one, too."""
+        """Return the marks of the last unloading; of several cycles the force maximum of the first one, too."""
         preload = float(trace.phases("loading").force[-1])
         given = Reading(preload, FORCE, {"solver": abs(preload - self.given(scene).preload)}, prescribed=True)
-        falls = _unloadings(trace)
-        found = _marks(falls[-1], scene, settings, preload) | {"preload": given}
-        if len(falls) > 1:
-            found["adhesion_force_first"] = _marks(falls[0], scene, settings, preload)["adhesion_force"]
-        return found
+        unloadings = _unloadings(trace)
+        results = _marks(unloadings[-1], scene, settings, preload) | {"preload": given}
+        if len(unloadings) > 1:
+            results["adhesion_force_first"] = _marks(unloadings[0], scene, settings, preload)["adhesion_force"]
+        return results
 
     def asked(self, trace: Trace, scene: Scene) -> Sequence[tuple[float, float]]:
-        """The preload, of each cycle."""
+        """Return pairs of the prescribed preload and the force [FU] reached, one for each cycle."""
         return [(self.given(scene).preload, float(leg.force[-1])) for leg in trace.phases("loading").legs]
 
     def tables(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Mapping[str, tuple[float, ...]]]:
-        """cycles: the force maximum of each."""
-        falls, preload = _unloadings(trace), self.given(scene).preload
-        if len(falls) == 1:
+        """Return the columns of cycles.csv, the force maximum of each cycle; none of a single cycle."""
+        unloadings, preload = _unloadings(trace), self.given(scene).preload
+        if len(unloadings) == 1:
             return {}
-        forces = tuple(_marks(one, scene, settings, preload)["adhesion_force"].value for one in falls)
-        return {"cycles": {"cycle": tuple(map(float, range(1, len(falls) + 1))), "adhesion_force": forces}}
+        forces = tuple(_marks(leg, scene, settings, preload)["adhesion_force"].value for leg in unloadings)
+        return {"cycles": {"cycle": tuple(map(float, range(1, len(unloadings) + 1))), "adhesion_force": forces}}
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """Preload, no load, and tensions up to more than is expected."""
+        """Return phases at the preload, at F = 0, and at 12 tensions up to 1.2 times the expected pull-off force."""
         preload, tension = self.given(scene).preload, settings.law.pull_off_force()
-        tensions = [float(-t) for t in np.linspace(0.0, LARGEST_TENSION * tension, TENSIONS + 1)[1:]]
+        tensions = [float(-t) for t in np.linspace(0.0, 1.2 * tension, 12 + 1)[1:]]
         return (
             held_phase("loading", scene, settings, (preload,), max(preload, tension)),
             held_phase("unloading", scene, settings, (0.0,), max(preload, tension), state=True),
@@ -101,41 +90,40 @@ class PullOffExperiment(Scripted[PullOff]):
         )
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """Refuse results that contradict the curve of the run; of cycles the number of each state."""
-        found = outcome.results["adhesion_force"]
-        require_no_contradiction(settings, found.value, found.uncertainty - found.given, outcome.states)
+        """Refuse results that contradict the curve of the run; of several cycles add the cycle of each state."""
+        force = outcome.results["adhesion_force"]
+        require_no_contradiction(settings, force.value, force.uncertainty - force.given, outcome.states)
         if self.given(scene).cycles is None:
             return outcome
         numbers = tuple(float(state.phase.partition("_")[2] or 1) for state in outcome.states)
         return replace(outcome, columns={**outcome.columns, "cycle": numbers})
 
     def advice(self, scene: Scene) -> str:
-        """With the limitation of load control in time."""
+        """Return the advice, under load control in time with the limitation of that method."""
         since = ", since load control never reaches the pull-off itself" if scene.method == "dynamic" else ""
         return super().advice(scene) + since
 
 
-def _pulled(model: Particles, given: PullOff) -> History:
-    """Down to the preload and back at the velocity, with load steps at equal ways of the edge."""
+def _history_at_velocity(model: Particles, given: PullOff) -> History:
+    """Return the history to the preload and back at the velocity, its edge receding by equal distances."""
     assert given.velocity is not None
     deepest = model.displacement_at(given.preload)
-    down = np.linspace(0.0, 1.0, LOADING_STEPS + 1)
-
-    velocity = given.velocity
+    velocity, down = given.velocity, np.linspace(0.0, 1.0, 25)
 
     def pull(back: NDArray[np.float64]) -> tuple[NDArray[np.float64], Path]:
-        """F [FU] at times after the preload [TU], and the whole path."""
+        """Return F [FU] at times after the preload [TU], and the whole path."""
         time = np.append(deepest / velocity * (down - 1.0), back)
-        places = np.append(deepest * down, deepest - velocity * back)
-        path = Path(places, np.zeros_like(places), time)
+        displacements = np.append(deepest * down, deepest - velocity * back)
+        path = Path(displacements, np.zeros_like(displacements), time)
         return model.follow(path).total[down.size :], path
 
-    back = model.moments(deepest, given.velocity, RATED_STEPS)[1:]
+    back = model.moments(deepest, given.velocity, 120)[1:]
     force, _ = pull(back)
-    first = max(NEAR_ZERO, int(np.argmax(force < 0.0)))
-    near = slice(first - NEAR_ZERO, first + NEAR_ZERO)  # a load step at F = 0, by t(F)
-    zero_time = float(np.polynomial.Polynomial.fit(force[near], back[near], 2 * NEAR_ZERO - 1)(0.0))
-    back = np.unique(np.append(back, [0.5 * zero_time, zero_time]))  # one is pressed whatever the preload
+    sides = 3  # load steps on both sides of F = 0, whose time is interpolated by t(F)
+    first = max(sides, int(np.argmax(force < 0.0)))
+    near = slice(first - sides, first + sides)
+    zero_time = float(np.polynomial.Polynomial.fit(force[near], back[near], 2 * sides - 1)(0.0))
+    back = np.unique(np.append(back, [0.5 * zero_time, zero_time]))  # a compressed state, whatever the preload
     force, path = pull(back)
     top = int(np.argmin(force))
     zero = int(np.argmin(np.abs(force[: top + 1])))
@@ -151,55 +139,53 @@ class ThermalPullOff(PullOffExperiment):
     is_statistical = True
 
     def run(self, context: RunContext) -> Outcome:
-        """Pull."""
+        """Run the pulls of all seeds and return their detachment forces."""
         return pull_off_thermal(context, self.given(context.deck.scene))
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """Up to a tension that the predictor does not hold."""
+        """Return the planned phases, up to a tension above the predicted pull-off force."""
         return planned_detachment(scene, settings, self.given(scene))
 
 
 def _unloadings(trace: Trace) -> list[Trace]:
-    """The legs of falling displacement."""
+    """Return the legs of falling displacement, one for each cycle."""
     return [leg for leg in trace.phases("unloading", "pulling", "separating", "critical").legs if len(leg)]
 
 
 def _marks(falling: Trace, scene: Scene, settings: Settings, preload: float) -> dict[str, Reading]:
-    """Of one unloading, under load or under displacement control."""
+    """Return F_A, a_cr and a₀ of one unloading, under load control or under displacement control."""
     if falling.search.bracket:
-        return _under_load(falling, scene, settings, preload)
-    return _held(falling.falling(), settings)
+        return _marks_by_load(falling, scene, settings, preload)
+    return _marks_by_displacement(falling.falling(), settings)
 
 
-def _held(falling: Trace, settings: Settings) -> dict[str, Reading]:
-    """The marks of an unloading under displacement control, which begins at F = 0 where there was no preload."""
-    held = falling.force[: int(falling.force.argmin()) + 1]  # what is apart has no load either
-    found, least = unloading(falling, settings), int(np.argmin(np.abs(held)))
-    return (
-        found
-        if "zero_load_radius" in found
-        else found | {"zero_load_radius": Reading(falling.radius_or_spot(least), LENGTH)}
-    )
+def _marks_by_displacement(falling: Trace, settings: Settings) -> dict[str, Reading]:
+    """Return the marks of an unloading under displacement control, which begins at F = 0 without a preload."""
+    held = falling.force[: int(falling.force.argmin()) + 1]  # separated bodies have no load either
+    marks, least = unloading(falling, settings), int(np.argmin(np.abs(held)))
+    if "zero_load_radius" not in marks:
+        marks["zero_load_radius"] = Reading(falling.radius_or_spot(least), LENGTH)
+    return marks
 
 
-def _under_load(rested: Trace, scene: Scene, settings: Settings, preload: float) -> dict[str, Reading]:
-    """F_A in the middle of the bracket; a_cr, which load control never sees, extrapolated over the displacement."""
+def _marks_by_load(rested: Trace, scene: Scene, settings: Settings, preload: float) -> dict[str, Reading]:
+    """Return F_A in the middle of the bracket, a₀, and a_cr, which load control never reaches, by extrapolation."""
     assert rested.search.bracket is not None
     best, broken = rested.search.bracket
     tension = 0.5 * (best + broken)
     errors = {"sampling": 0.5 * (broken - best)} | dict(rested.search.doubt)
     zero, last = rested.radius_or_spot(0), len(rested) - 1
     if settings.is_toothed:
-        # A tooth has no smooth top to go on to. The pull-off may be at the next one, with one particle less at each
-        # edge, and further off where tension is left to it: the tops lie near F = F_A (1 − y²),
+        # No smooth maximum can be extrapolated. The pull-off may be at the next maximum, with one particle less at each
+        # edge, and further off where the bracket of F_A allows it: the maxima lie near F = F_A (1 − y²),
         # y = (a − a_cr)/(a₀ − a_cr).
         radius = rested.radius_or_spot(last)
         beyond = abs(zero - radius) * math.sqrt(2.0 * sum(errors.values()) / tension)
         critical = Reading(radius, LENGTH, {"instability": scene.bodies.spacing + beyond})
     else:
-        critical = _extrapolated(rested)
+        critical = _critical_radius(rested)
     at_zero = {}
-    if settings.is_toothed:  # beyond the largest tension the plate would not have come back
+    if settings.is_toothed:  # beyond the force maximum the plate would not have come back
         swung = overshoot(settings, scene.bodies.mass, preload, 0.0) * preload
         at_zero["instability"] = abs(critical.value - zero) * min(swung / tension, 1.0)
     return {
@@ -209,21 +195,21 @@ def _under_load(rested: Trace, scene: Scene, settings: Settings, preload: float)
     }
 
 
-def _extrapolated(rested: Trace) -> Reading:
-    """The radius as a parabola through the last three states, where a cubic through four has its force maximum.
+def _critical_radius(rested: Trace) -> Reading:
+    """Return the radius [LU] at the force maximum of a cubic through the last four states, with its sampling error.
 
-    A parabola through three estimates the error of both.
+    The radius is a parabola through the last three states, the error the change with a parabola for the force.
     """
     count = min(FEWEST_HELD, len(rested))
-    at = np.arange(len(rested) - count, len(rested))
-    d, force = rested.displacement[at], rested.force[at]
+    chosen = np.arange(len(rested) - count, len(rested))
+    d, force = rested.displacement[chosen], rested.force[chosen]
     tops = (
         [top_of(d[-few:], force[-few:]) for few in (FEWEST_HELD, FEWEST_HELD - 1)] if count == FEWEST_HELD else [None]
     )
-    last = rested.radius_or_spot(int(at[-1]))
-    if any(top is None for top in tops) or any(rested.radius(int(i)) is None for i in at[1:]):
+    last = rested.radius_or_spot(int(chosen[-1]))
+    if any(top is None for top in tops) or any(rested.radius(int(i)) is None for i in chosen[1:]):
         return Reading(last, LENGTH, {"sampling": last})
-    places, radii = d[1:], np.asarray([rested.radius_or_spot(int(i)) for i in at[1:]])
-    width = float(np.ptp(places))
-    value, other = (float(through((places - top[0]) / width, radii)[0]) for top in tops if top is not None)
-    return Reading(value, LENGTH, {"sampling": SPREAD * abs(value - other)})
+    d, radii = d[1:], np.asarray([rested.radius_or_spot(int(i)) for i in chosen[1:]])
+    width = float(np.ptp(d))
+    radius, coarser = (float(through((d - top[0]) / width, radii)[0]) for top in tops if top is not None)
+    return Reading(radius, LENGTH, {"sampling": SPREAD * abs(radius - coarser)})

@@ -1,13 +1,13 @@
-"""A series: what is recorded over time, its means, and the results of one reader with their errors.
+"""A series: records over time, their means, and the results of a reader with their errors.
 
 A reader makes results of blocks, each a mean over a time that is long against the memory of the motion: a whole period
 where a drive repeats itself, a pull where each has a seed of its own. Their errors are found by perturbing it:
 
-    statistics   the reader without one block after the other, as the jackknife has it: n θ − (n − 1) θ₋ᵢ scatters as
-                 the blocks of a mean do, whatever is made of means
-    sampling     the reader on what every second record says
+    statistics   the reader without one block after the other, a jackknife: n θ − (n − 1) θ₋ᵢ scatters as the blocks of
+                 a mean do, whatever function of means θ is
+    sampling     the reader on every second record
 
-What a reader determines by itself stays as it is.
+Errors that the reader determines by itself are kept.
 """
 
 from __future__ import annotations
@@ -26,8 +26,6 @@ from contact1d.workflow.deck.steps import Phase, Row
 
 Array = NDArray[np.float64]
 Reader = Callable[["Series"], Mapping[str, Reading]]
-MISSING = Reading(0.0, "")
-"""A result that other blocks do not have may be 0."""
 
 
 @dataclass(frozen=True)
@@ -35,8 +33,8 @@ class Series:
     """Records in order, or means over blocks of them.
 
     Attributes:
-        columns: what was recorded, by name, (n,), of a profile (n, particles); "time" [TU] where they have one.
-        integrals: over the time, of what is known between the records as well, by name, (n,).
+        columns: recorded quantities by name, (n,), of a profile (n, particles); "time" [TU] where they have one.
+        integrals: integrals over time, of quantities that are known between the records as well, by name, (n,).
         smooth: whether columns are the rates of change of integrals of the same name.
     """
 
@@ -45,76 +43,83 @@ class Series:
     smooth: bool = False
 
     def __getitem__(self, name: str) -> Array:
-        """A column."""
+        """Return the recorded column of a name."""
         return self.columns[name]
 
     def __len__(self) -> int:
-        """How many records."""
+        """Return the number of records."""
         return len(next(iter(self.columns.values())))
 
     def mean(self, name: str) -> Any:
-        """Of a column: a number, of a profile an array (particles,)."""
+        """Return the mean of a column: a number, of a profile an array (particles,)."""
         return self.columns[name].mean(axis=0)
 
     def table(self) -> dict[str, tuple[float, ...]]:
-        """The columns as a file has them."""
+        """Return the columns as a file has them, by name."""
         return {name: tuple(values.tolist()) for name, values in self.columns.items()}
 
     def chosen(self, records: Any) -> Series:
-        """The records of these numbers: a slice or an array."""
-        columns, integrals = ({n: one[records] for n, one in each.items()} for each in (self.columns, self.integrals))
+        """Return the series of the records with given indices, a slice or an array."""
+        columns = {name: values[records] for name, values in self.columns.items()}
+        integrals = {name: values[records] for name, values in self.integrals.items()}
         return Series(columns, integrals, self.smooth)
 
     def every_second(self) -> Series:
-        """Every second record, the first and the last one among them."""
+        """Return the series of every second record, the first and the last one among them."""
         return self.chosen(np.union1d(0, np.arange(len(self))[::-2]))
 
     def parts(self, count: int) -> Series:
-        """Means over so many parts."""
+        """Return the means over a number of parts of about equal length."""
         split = {name: np.array_split(values, count) for name, values in self.columns.items()}
-        return Series({name: np.asarray([one.mean(axis=0) for one in parts]) for name, parts in split.items()})
+        return Series({name: np.asarray([part.mean(axis=0) for part in parts]) for name, parts in split.items()})
 
     def periods(self, length: float) -> Series:
-        """Means of what is integrated over whole periods [TU]; see `block_means`."""
+        """Return the means of quantities with integrals over whole periods of a length [TU] (`block_means`)."""
         rates = self.columns if self.smooth else {}
-        means = {n: block_means(self["time"], one, length, rates.get(n)) for n, one in self.integrals.items()}
-        return Series(means)
+        return Series(
+            {
+                name: block_means(self["time"], integral, length, rates.get(name))
+                for name, integral in self.integrals.items()
+            }
+        )
 
 
 def recorded(records: Sequence[object], names: Iterable[str]) -> dict[str, Array]:
-    """Columns of a series: attributes of what was recorded."""
-    return {name: np.asarray([getattr(one, name) for one in records]) for name in names}
+    """Return columns of a series by name, attributes of the records, (n,)."""
+    return {name: np.asarray([getattr(record, name) for record in records]) for name in names}
 
 
 def measured(
     blocks: Series,
     read: Reader,
     error: Callable[[Array], float] = standard_error,
-    others: Mapping[str, Series] | None = None,
+    repeats: Mapping[str, Series] | None = None,
 ) -> dict[str, Result]:
-    """The results with their errors.
+    """Return the results of a reader with their errors; a result that perturbed blocks do not have counts as 0.
 
     Args:
         blocks: nearly independent of each other.
         read: the reader.
-        error: of the mean of blocks (n,).
-        others: by the source of the error that they show, the blocks by other records.
+        error: a function of n values that returns the error of their mean.
+        repeats: blocks of other records, by the source of the error that they show.
     """
     readings, count = read(blocks), len(blocks)
-    every = np.arange(count)
-    left_out = [read(blocks.chosen(every != one)) for one in every] if count > 1 else [readings]
-    again = {source: read(other) for source, other in (others or {}).items()}
-    found = {}
-    for name, one in readings.items():
-        rest = np.asarray([other.get(name, MISSING).value for other in left_out])
-        errors = {"statistics": error(count * one.value - (count - 1) * rest)}
-        errors |= {source: abs(other.get(name, MISSING).value - one.value) for source, other in again.items()}
-        errors |= one.errors
-        found[name] = Result(one.value, one.unit, errors, one.scale, one.prescribed, one.errors.get(LATTICE, 0.0))
-    return found
+    numbers, missing = np.arange(count), Reading(0.0, "")
+    jackknife = [read(blocks.chosen(numbers != number)) for number in numbers] if count > 1 else [readings]
+    repeated = {source: read(series) for source, series in (repeats or {}).items()}
+    results = {}
+    for name, reading in readings.items():
+        value = reading.value
+        left_out = np.asarray([replicate.get(name, missing).value for replicate in jackknife])
+        errors = {"statistics": error(count * value - (count - 1) * left_out)}
+        errors |= {source: abs(repeat.get(name, missing).value - value) for source, repeat in repeated.items()}
+        errors |= reading.errors
+        lattice = reading.errors.get(LATTICE, 0.0)
+        results[name] = Result(value, reading.unit, errors, reading.scale, reading.prescribed, lattice)
+    return results
 
 
-def begun(contact: Contact, phase: Phase) -> Sequence[Row]:
-    """The load steps of a phase, which begins."""
+def begin_phase(contact: Contact, phase: Phase) -> Sequence[Row]:
+    """Begin a phase on a contact and return its load steps."""
     contact.begin(phase.name, phase.begin, sum(getattr(row, "steps", 0) for row in phase.rows))
     return phase.rows

@@ -1,9 +1,9 @@
 """Slide: a normal force, and a cantilever that pulls the plate along x (Fig. 9 of the paper).
 
-It starts from rest under the normal force. A plate with little drag swings as it is loaded, past its equilibrium and
-through the other body: so the particles have a drag of their own on the path, critical for the contact, and at rest
-that of the scene again. It counts as at rest where it is along both directions, the friction equal to the pull of
-the cantilever.
+The slide starts from rest under the normal force. A plate with little drag would swing past its equilibrium while it is
+loaded, and through the other body: during the loading the particles have a drag that is critical for the contact, and
+at rest that of the scene again. The plate is at rest where it is so along both directions, with the friction equal to
+the pull of the cantilever.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from contact1d.workflow.continuation.trust import (
 from contact1d.workflow.deck.steps import Phase, UnderLoad, numbered
 from contact1d.workflow.experiments.experiment import Experiment
 from contact1d.workflow.experiments.motion import Motion, motion_of
-from contact1d.workflow.experiments.series import begun
+from contact1d.workflow.experiments.series import begin_phase
 from contact1d.workflow.experiments.thermal import run_in
 from contact1d.workflow.model.dynamics import MOST_ROWS, MOVING_TOLERANCE
 from contact1d.workflow.model.motion import contact_half_width, too_fast
@@ -38,15 +38,13 @@ from contact1d.workflow.scene import Scene, Slide
 from contact1d.workflow.units import FORCE
 
 LONGER = "use a longer experiment.distance or a stiffer cantilever"
-"""What makes a steady slide of one that is none yet."""
-CLOSED = 5e-3
-"""Residual of the energy balance, over its largest term, from which on it is reported."""
+"""Advice for a slide that is not yet steady."""
 
 
 class SlideExperiment(Experiment[Slide]):
     """Static and mean friction: the force of the lower body on the upper one against +x.
 
-    Where the run ends early, or slides steadily nowhere, what it has is left in `context.left`.
+    Where the run ends early, or the sliding is never steady, `context.left` has the outcome up to there.
     """
 
     main_results = ("mean_friction", "static_friction")
@@ -56,7 +54,8 @@ class SlideExperiment(Experiment[Slide]):
         """Load, then drive leg by leg.
 
         Raises:
-            UntrustedError: see `loaded` and `require_trust`; the plate runs off the lower body, parts, or never slides.
+            UntrustedError: the plate is not loaded (`loaded`), a state is not trusted (`require_trust`), the plate runs
+                off the lower body, separates, or never slides.
         """
         scene, settings = context.deck.scene, context.deck.settings
         load, legs = self.given(scene).normal_force, self.planned(scene, settings)[1:]
@@ -64,9 +63,9 @@ class SlideExperiment(Experiment[Slide]):
             states = [self.loaded(contact, load)]
             try:
                 for leg in legs:
-                    for row in begun(contact, leg):
+                    for row in begin_phase(contact, leg):
                         state = contact.row(row, trusted=False)
-                        _require_above(scene, settings, state)
+                        _require_contact(scene, settings, state)
                         require_trust(scene, settings, state)
                         states.append(state)
                 contact.write_state()
@@ -80,7 +79,7 @@ class SlideExperiment(Experiment[Slide]):
         return outcome
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """The schedule, without the relaxation under the normal force."""
+        """Return the schedule, without the relaxation under the normal force."""
         load, phases = self.given(scene).normal_force, list[Phase]()
         for leg in settings.motion.drive:
             name = numbered("sliding", [phase.name for phase in phases])
@@ -90,101 +89,103 @@ class SlideExperiment(Experiment[Slide]):
         return self.loading(scene, settings, load), *phases
 
     def loading(self, scene: Scene, settings: Settings, force: float) -> Phase:
-        """The planned application of the normal force [FU]."""
+        """Return the phase in which the normal force [FU] is applied, as it is planned."""
         scale = abs(force) or settings.forces.scale
-        rows = [hold_row(scene, _calm(settings), force, scale, Start.KEPT)]
+        rows = [hold_row(scene, _loading_settings(settings), force, scale, Start.KEPT)]
         if settings.motion.calm_damping != settings.motion.damping:
             rows.append(hold_row(scene, settings, force, scale, Start.HERE))
         return Phase("loading", tuple(rows))
 
     def loaded(self, contact: Contact, force: float) -> State:
-        """At rest under the normal force [FU].
+        """Apply the normal force [FU] and return the state at rest.
 
         Raises:
             PartedError: the bodies separate under it.
-            UntrustedError: see `hold`; or the plate oscillates on along x.
+            UntrustedError: the plate does not come to rest (`hold`), or oscillates on along x.
         """
         phase = self.loading(contact.scene, contact.settings, force)
         scale = abs(force) or contact.settings.forces.scale
         contact.begin(phase.name)
-        held = hold(contact, force, scale, settings=_calm(contact.settings))
+        held = hold(contact, force, scale, settings=_loading_settings(contact.settings))
         if not held.held:
             raise PartedError(
                 f"the contact does not sustain {force:.4g} FU: the bodies separate", "use a smaller tension"
             )
-        state = _settled_along(contact, force, scale, held.last)
+        state = _settled_along_x(contact, force, scale, held.last)
         for row in phase.rows[1:]:  # with the drag of the scene again
             state = contact.row(row, trusted=False)
         return state
 
     def advice(self, scene: Scene) -> str:
-        """The uncertainty of a mean depends on the averaging length."""
-        way = "experiment.distance" if self.given(scene).path is None else "last leg of experiment.path that moves"
+        """Return the advice to average over a longer distance."""
+        leg = "experiment.distance" if self.given(scene).path is None else "last leg of experiment.path that moves"
         return (
-            f"Use a longer {way}, with more whole periods of the spacing; this does not improve static_friction, whose "
+            f"Use a longer {leg}, with more whole periods of the spacing; this does not improve static_friction, whose "
             f"uncertainty is the change between two of {MOST_ROWS} points in a spacing"
         )
 
 
 class ThermalSlide(SlideExperiment):
-    """The same under noise: it begins when the contact has forgotten its start, and its heat baths are measured."""
+    """A slide under noise: it begins when the contact has forgotten its start, and its heat baths are measured."""
 
     is_statistical = True
     start = ("steps/drive", TOLD)
 
     def loading(self, scene: Scene, settings: Settings, force: float) -> Phase:
-        """The run-in."""
+        """Return the phase of the run-in under the normal force [FU]."""
         return run_in("loading", settings, force)
 
     def loaded(self, contact: Contact, force: float) -> State:
-        """The last state of the run-in."""
+        """Run in under the normal force [FU] and return the last state."""
         phase = self.loading(contact.scene, contact.settings, force)
-        return contact.rows(begun(contact, phase), trusted=False)[-1]
+        return contact.rows(begin_phase(contact, phase), trusted=False)[-1]
 
 
 def outcome_of(motion: Motion, states: list[State], phases: tuple[Phase, ...]) -> Outcome:
-    """The result of a finished slide, or of the part before a failure."""
+    """Return the outcome of a finished slide, or of the part before a failure."""
     tables = {
         "slips": {name: tuple(getattr(slip, name) for slip in motion.slips) for name in ("time", "place", "size")},
         "friction": motion.series.chosen(slice(1, None)).table(),
     }
-    warnings = doubts(motion.scene, motion.settings, tuple(states)) | _doubts(motion)
+    warnings = doubts(motion.scene, motion.settings, tuple(states)) | _warnings(motion)
     return Outcome(motion.results, tuple(states), {"final": states[-1]}, phases, warnings, tables=tables)
 
 
-def _doubts(motion: Motion) -> dict[str, str]:
+def _warnings(motion: Motion) -> dict[str, str]:
+    """Return the warnings of a slide: too fast, too short, too much drag, or an energy balance that does not close."""
     settings, top, work = motion.settings, motion.largest[FORCE], motion.results["cantilever_work"]
-    fastest, found = max(abs(leg.velocity) for leg in settings.motion.drive), {}
+    fastest, warnings = max(abs(leg.velocity) for leg in settings.motion.drive), {}
     if fast := too_fast(motion.scene):
-        found["fast"] = fast
+        warnings["fast"] = fast
     if fastest and "mean_friction" not in motion.results:
-        found["unsteady"] = (
+        warnings["unsteady"] = (
             "the last leg on which the drive moves has too few whole periods of the spacing for a mean friction: make "
             f"it longer than {FEWEST_PERIODS} spacings"
         )
     if (drag := settings.drag() * fastest) > top:
         dragged, most = apart(drag, top)
-        found["drag"] = (
+        warnings["drag"] = (
             f"the viscous drag at the drive's velocity, {dragged} FU, exceeds the friction of the contact, "
             f"at most {most} FU, and suppresses slips of the plate. Use "
             "a lower cantilever.velocity, or less [damping] and [plate] damping"
         )
-    if work.share > CLOSED:
-        found["energy"] = (
+    if work.share > 5e-3:
+        warnings["energy"] = (
             f"the residual of the energy balance is {work.uncertainty:.2g} FU·LU, {work.share:.1g} "
             "of its largest term: use an [accuracy] tolerance below "
             f"{MOVING_TOLERANCE:g}, which shortens the timesteps"
         )
-    return found
+    return warnings
 
 
-def _calm(settings: Settings) -> Settings:
+def _loading_settings(settings: Settings) -> Settings:
+    """Return the settings with the drag of the loading, which is critical for the contact."""
     return replace(settings, motion=replace(settings.motion, damping=settings.motion.calm_damping))
 
 
-def _settled_along(contact: Contact, force: float, scale: float, state: State) -> State:
-    """The state when the plate is at rest along x as well."""
-    scene, settings = contact.scene, _calm(contact.settings)
+def _settled_along_x(contact: Contact, force: float, scale: float, state: State) -> State:
+    """Continue from a state until the plate is at rest along x as well, and return the state there."""
+    scene, settings = contact.scene, _loading_settings(contact.settings)
     steps = max(1, round(settings.motion.settle_time / settings.motion.time_step))
     row = replace(hold_row(scene, settings, force, scale, Start.HERE), rest=0.0, steps=steps)
     near, drag = at_rest(settings, scale), settings.drag()
@@ -201,11 +202,11 @@ def _settled_along(contact: Contact, force: float, scale: float, state: State) -
     )
 
 
-def _require_above(scene: Scene, settings: Settings, state: State) -> None:
+def _require_contact(scene: Scene, settings: Settings, state: State) -> None:
     """Refuse a plate that has left the lower body, along it or off it.
 
     Raises:
-        OffEndError, PartedError: where it is, with a suggested fix.
+        OffEndError, PartedError: the plate has left it; the message has its position and a suggested fix.
     """
     if state.smallest_distance > settings.forces.cutoff:
         raise PartedError(
@@ -215,11 +216,11 @@ def _require_above(scene: Scene, settings: Settings, state: State) -> None:
     if scene.bodies.periodic:
         return
     end = 0.5 * settings.chains.lower * scene.bodies.spacing
-    place = abs(state.plate_x + (scene.bodies.upper_offset or 0.0))
+    position = abs(state.plate_x + (scene.bodies.upper_offset or 0.0))
     half = contact_half_width(scene, settings)
-    if place + half > end + scene.bodies.spacing:
+    if position + half > end + scene.bodies.spacing:
         raise OffEndError(
-            f"the plate slid off the lower body: at {place:.4g} LU from the middle its half-width is {half:.4g} LU, "
+            f"the plate slid off the lower body: at {position:.4g} LU from the middle its half-width is {half:.4g} LU, "
             f"and the lower body ends at {end:.4g} LU",
             "use more bodies.particles, a shorter distance, or more [damping]",
         )

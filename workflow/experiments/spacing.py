@@ -1,6 +1,6 @@
 """The automatic spacing of a contact on the plane: so small that the discretisation error meets the tolerance.
 
-The discretisation error follows before a run from the reduced model (`continuation.budget`). It falls with the
+The discretisation error is estimated before a run on the reduced model (`continuation.budget`). It falls with the
 square of the spacing.
 """
 
@@ -22,68 +22,63 @@ from contact1d.workflow.laws import law_of
 from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import Impact, Scene
 
-FEWEST, MOST = 30, 5000
-"""Particles in the contact radius: at FEWEST F_A and a₀ of JKR are within 3e-3; MOST keep 1e-6."""
-LEFT = 0.9
-"""Part of the tolerance that the lattice may use up."""
-MOST_TRIES = 8
-APPEARING = 16.0
-"""What an excess without bound counts: that of a radius which is 0 at one place of the contact's centre only."""
+MOST = 5000
+"""Particles in the contact radius at most; they keep a tolerance of 1e-6."""
 LARGEST = 0.1
-"""The largest tolerance that there is."""
+"""The largest tolerance that a scene may have."""
 RADII = ("contact_radius", "stick_radius", "zero_load_radius", "critical_radius", "largest_radius")
-SQUARED = 2.0
-"""Error of a square over that of its root: areas and mean pressures follow from radii."""
-SHORTEST, LONGEST, PLACES = 1e-12, 1e12, 12000
-"""Radii [LU] among which that of a contact is sought, in geometric progression, and how many."""
-INSIDE = 0.999999
-"""Largest of them over the half-width of a body that ends: the transform of a circle has no bound there."""
 
 
 def with_spacing(scene: Scene) -> Scene:
-    """The scene with a number for its `bodies.spacing`; as it is where it has one.
+    """Return the scene with a number for `bodies.spacing`, unchanged where it has one.
 
     Raises:
-        SettingsError: nothing touches, or the tolerance needs more than MOST particles in the contact radius.
+        SettingsError: the bodies do not touch, or the tolerance needs more than MOST particles in the contact radius.
     """
     if scene.bodies.given_spacing != "auto":
         return scene
     radius = contact_radius(scene)
-    chosen, left = fine_enough(partial(_spaced, scene, radius))
+    chosen, error = spaced_within_tolerance(partial(_spaced, scene, radius))
     tolerance = scene.accuracy.tolerance
-    if tolerance < left < math.inf:  # without bound the run says what appears
-        larger = "" if left > 0.9 * LARGEST else f"use an accuracy.tolerance of {_up(left)}, or "
-        digits = digits_apart(left, tolerance, 2)
+    if tolerance < error < math.inf:  # the run reports the radius that has an infinite error
+        larger = "" if error > 0.9 * LARGEST else f"use an accuracy.tolerance of {_rounded_up(error)}, or "
+        digits = digits_apart(error, tolerance, 2)
         raise SettingsError(
             f"a tolerance of {tolerance:g} is not reached by {MOST} particles in the contact radius of "
             f'{radius:.4g} LU, the limit of bodies.spacing = "auto": '
-            f"their discretisation error is {left:.{digits - 1}e}. "
+            f"their discretisation error is {error:.{digits - 1}e}. "
             f"{larger[:1].upper()}{larger[1:]}{'give' if larger else 'Give'} bodies.spacing"
         )
     return chosen
 
 
-def fine_enough(scene_of: Callable[[int], Scene]) -> tuple[Scene, float]:
-    """The scene with so many particles in the contact radius that its lattice leaves LEFT of its tolerance, or MOST.
+def spaced_within_tolerance(
+    scene_of: Callable[[int], Scene], share: float = 0.9, fewest: int = 30
+) -> tuple[Scene, float]:
+    """Return the scene whose discretisation error is below a share of its tolerance, and that error, relative.
 
-    And what it leaves.
+    Args:
+        scene_of: returns the scene with a number of particles in the contact radius, which is MOST at most.
+        share: of the tolerance.
+        fewest: particles in the contact radius; with 30, F_A and a₀ of JKR are within 3e-3.
     """
-    count = FEWEST
-    for _ in range(MOST_TRIES):
+    count = fewest
+    for _ in range(8):
         scene = scene_of(count)
-        left = left_by_lattice(scene)
-        over = left / (LEFT * scene.accuracy.tolerance)
-        if over <= 1.0 or count == MOST:
+        error = lattice_error(scene)
+        excess = error / (share * scene.accuracy.tolerance)
+        if excess <= 1.0 or count == MOST:
             break
-        count = min(MOST, math.ceil(count * math.sqrt(over if over < math.inf else APPEARING)) + 1)
-    return scene, left
+        # An infinite error is of a radius that is 0 only where the apex has one position between particles.
+        count = min(MOST, math.ceil(count * math.sqrt(excess if excess < math.inf else 16.0)) + 1)
+    return scene, error
 
 
-def left_by_lattice(scene: Scene) -> float:
-    """The largest relative discretisation error of a result, or of a curve over its largest force.
+def lattice_error(scene: Scene) -> float:
+    """Return the largest relative discretisation error of a result, or of a curve over its largest force.
 
-    0 where no contact can be predicted: the run reports it. A result that is 0 has no share; a radius that is 0 here
-    and not elsewhere has one without bound.
+    It is 0 where no contact can be predicted: the run reports it. A result of 0 has no relative error; a radius that is
+    0 here and not on another lattice has an infinite one.
     """
     try:
         settings = settings_for(scene)
@@ -92,40 +87,42 @@ def left_by_lattice(scene: Scene) -> float:
     case = kind_of(scene).reduction(scene, settings)
     if case is None:
         return 0.0
-    left, appear = [0.0], False
-    others = [case.read(trace) for trace in misread(case.path)]
-    for name, one in case.readings.items():
-        read = max((abs(other[name].value - one.value) for other in others if name in other), default=0.0)
-        error = case.lattice.get(name, 0.0) + read + one.errors.get(LATTICE, 0.0)
-        size = abs(one.value) if one.scale is None else one.scale
-        if (one.prescribed and name not in RADII) or (name.startswith(LOSSES) and error > LARGEST * size):
-            continue  # a loss so small that no spacing shows it is not reported, and others are not to wait for it
-        if size:
-            left.append((SQUARED if name in RADII else 1.0) * error / size)
-        appear |= bool(error) and not size and name in RADII
+    errors, is_unbounded = [0.0], False
+    misreadings = [case.read(trace) for trace in misread(case.path)]
+    for name, reading in case.readings.items():
+        changes = [abs(misreading[name].value - reading.value) for misreading in misreadings if name in misreading]
+        error = case.lattice.get(name, 0.0) + max(changes, default=0.0) + reading.errors.get(LATTICE, 0.0)
+        size = abs(reading.value) if reading.scale is None else reading.scale
+        if (reading.prescribed and name not in RADII) or (name.startswith(LOSSES) and error > LARGEST * size):
+            continue  # a loss too small for any spacing is not reported, and must not refine the spacing of the rest
+        if size:  # areas and mean pressures go with the square of a radius
+            errors.append((2.0 if name in RADII else 1.0) * error / size)
+        is_unbounded |= bool(error) and not size and name in RADII
     if kind_of(scene).curve_is_result and (largest := float(np.abs(case.path.force).max())):
         rows = case.along(case.trace(case.model, whole=True)).lattice
-        left.append(float(np.max(rows.get("force", 0.0))) / largest)
-    return math.inf if appear else max(left)
+        errors.append(float(np.max(rows.get("force", 0.0))) / largest)
+    return math.inf if is_unbounded else max(errors)
 
 
 def _spaced(scene: Scene, radius: float, count: int) -> Scene:
-    """The scene with so many particles in a contact radius [LU]: a whole number, as a punch needs."""
+    """Return the scene with a whole number of particles in a contact radius [LU], as a punch needs."""
     return scene.model_copy(update={"bodies": scene.bodies.model_copy(update={"given_spacing": radius / count})})
 
 
 def contact_curve(scene: Scene) -> tuple[Array, Array, Array]:
-    """Radii a [LU] of contacts of the body on the plane, rising, their displacements d [LU] and forces F [FU].
+    """Return radii a [LU] of contacts of the body on the plane, rising, with displacements d [LU] and forces F [FU].
 
         d = g(a) − √(2πaW/E*),    F = 2E* [a d − ∫₀ᵃ g dx],    of a flat punch its one radius
 
-    (V. L. Popov, M. Heß, Method of Dimensionality Reduction, 2015, sections 3.1 and 4.4), E* that of the layer.
+    (V. L. Popov, M. Heß, Method of Dimensionality Reduction, 2015, sections 3.1 and 4.4), E* that of the layer. The
+    radii are a geometric progression from 1e-12 LU to 1e12 LU, or to just inside the end of a body.
     """
     bodies, modulus = scene.bodies, _spaced(scene, 1.0, 1).bulk_stiffness
     work, reach = scene.work_of_adhesion, bodies.profile.reach
-    radii = (
-        np.asarray([reach]) if bodies.profile.has_edge else np.geomspace(SHORTEST, min(LONGEST, INSIDE * reach), PLACES)
-    )
+    # The transform of a circle has no bound at the end of the body.
+    radii = np.geomspace(1e-12, min(1e12, 0.999999 * reach), 12000)
+    if bodies.profile.has_edge:
+        radii = np.asarray([reach])
     with np.errstate(over="ignore"):
         heights = bodies.height(radii)
     radii, heights = radii[np.isfinite(heights)], heights[np.isfinite(heights)]
@@ -135,17 +132,17 @@ def contact_curve(scene: Scene) -> tuple[Array, Array, Array]:
 
 
 def contact_radius(scene: Scene) -> float:
-    """The contact radius [LU] that particles are counted in: under the load, or at F = 0 where it is drawn off.
+    """Return the contact radius [LU] in which particles are counted: under the load, at F = 0 for a pull-off.
 
     Raises:
-        SettingsError: nothing touches.
+        SettingsError: the bodies do not touch.
     """
     radii, displacements, forces = contact_curve(scene)
     load = scene.experiment.compression
     if law_of(scene).attracts(scene) and scene.experiment.finds_pull_off:
         load = 0.0
     values, wanted = forces, load or 0.0
-    if isinstance(scene.experiment, Impact):  # where the body has given up its energy
+    if isinstance(scene.experiment, Impact):  # where the body has lost its kinetic energy
         assert scene.plate
         assert scene.plate.mass != "auto"
         work = np.cumsum(0.5 * (forces[1:] + forces[:-1]) * np.diff(displacements))
@@ -153,17 +150,17 @@ def contact_radius(scene: Scene) -> float:
     elif load is None:
         values, wanted = displacements, max(scene.experiment.places())
     lower = np.flatnonzero(values < wanted)
-    at = int(lower[-1]) if lower.size else int(np.argmin(values))
-    if at == 0 and radii.size > 1:
+    index = int(lower[-1]) if lower.size else int(np.argmin(values))
+    if index == 0 and radii.size > 1:
         raise SettingsError(
             "nothing touches in this experiment, so that there is no contact to choose a spacing for: give "
             "bodies.spacing, or a displacement above 0"
         )
-    near = slice(at, at + 2)  # of what is beyond either end the run says why
+    near = slice(index, index + 2)  # the run reports a load beyond either end
     return float(np.interp(wanted, values[near], radii[near]))
 
 
-def _up(tolerance: float) -> str:
-    """Two figures of a tolerance that is no smaller."""
+def _rounded_up(tolerance: float) -> str:
+    """Return a tolerance about 10 % larger, rounded up to two significant digits."""
     step = 10.0 ** (math.floor(math.log10(tolerance)) - 1)
     return f"{math.ceil(1.1 * tolerance / step) * step:.2g}"

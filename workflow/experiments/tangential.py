@@ -1,8 +1,8 @@
-"""Tangential: friction on a rigid plane, F_x over the displacement u along x, the zone that sticks, what is lost.
+"""Tangential: friction on a rigid plane, F_x over the displacement u along x, the stick zone, the dissipated energy.
 
-A row is one step of each particle's spring and slider, which is exact while a particle is touched all the way.
-Between two rows of the scene displacement and position change together, along a straight line; where a particle
-begins or ends to touch there is a row of its own.
+A load step is one step of each particle's spring and slider, which is exact while the particle stays in contact.
+Between two load steps of the scene displacement and position change together, along a straight line, with a further
+load step wherever a particle comes into contact or leaves it.
 """
 
 from __future__ import annotations
@@ -40,20 +40,12 @@ from contact1d.workflow.units import ENERGY, FORCE, LENGTH
 
 Array = NDArray[np.float64]
 PRESSING, FORWARD, BACKWARD = "pressing", "forward", "backward"
-MOST_TOUCHES = 1.0
-"""Rows between two of the scene, per 1/tolerance; a particle between two of them is moved from the first."""
-ROUND_OFF = 1e-13
-"""Error of tangential forces over the largest of a path, for each row: a history is a sum over all of them."""
-STUCK, NOTHING = 3.0, 1e-5
-"""Spacings that may slip at both edges together where no particle does, and a loss over all work that is none."""
-AS_PREDICTED = 1e-8
-"""How far a particle's tangential force may be from what spring and slider make of the row before, over its limit."""
 
 
 class TangentialExperiment(Scripted[Tangential]):
-    """F_N, F_x, a, c and the dissipated energy Σ ∫ |s_i| dδ_i of the last row; a particle has slipped by δ_i.
+    """F_N, F_x, a, c and the dissipated energy Σ ∫ |s_i| dδ_i of the last load step, δ_i the slip of a particle.
 
-    Of cycles also what the last one dissipates, ∮ F_x du where it is closed.
+    With cycles also the dissipated energy of the last one, ∮ F_x du where it is closed.
     """
 
     main_results = (
@@ -61,16 +53,16 @@ class TangentialExperiment(Scripted[Tangential]):
     )  # fmt: skip
 
     def run(self, context: RunContext) -> Outcome:
-        """Run the schedule; the forces must be those of the history of each particle."""
+        """Run the schedule; refuse forces that are not those of the history of each particle."""
         scene, settings = context.deck.scene, context.deck.settings
         case = self.reduction(scene, settings)
         plan = self._plan(context.deck, case.model)
         with context.contact(meanwhile=lambda: case.lattice) as contact:
             states = plan.measured(contact)
             phases = contact.phases
-        asked = [one for _, one in passed(scene, _chain(scene, settings), settings)]
+        asked = [is_asked for _, is_asked in load_steps(scene, _chain(scene, settings), settings)]
         trace = of_states(states, reduced(scene, settings))
-        rows = drawn(trace, scene)
+        rows = slid_states(trace, scene)
         _require_history(trace, rows)
         reported, kept = list(compress(states, asked)), list(compress(rows, asked))
         errors = force_errors(scene, settings, states, (states[-1],))
@@ -95,35 +87,38 @@ class TangentialExperiment(Scripted[Tangential]):
         )
 
     def script(self, branch: Driver, scene: Scene) -> None:
-        """The stops of the model's particles, those that change nothing left out."""
+        """Visit the stops of the model's particles, without those that change nothing."""
         model = cast("SlidingSprings", branch.model)
-        for name, stretch in stretches(passed(scene, model.chain, branch.settings, sparse=True)):
+        for name, stretch in stretches(load_steps(scene, model.chain, branch.settings, sparse=True)):
             branch.begin(name)
             branch.visit(*zip(*(stop for stop, _ in stretch), strict=True))
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """What the last row has; forces are compared with Σ |s_i|, the energy with the work of that."""
-        rows = drawn(trace, scene)
+        """Return the results of the last state, on the scales of Σ |s_i| and its work.
+
+        The round-off of tangential forces adds up along the history, by 1e-13 of the largest one in each load step.
+        """
+        rows, round_off = slid_states(trace, scene), 1e-13
         last = rows[-1]
         strongest = max(row.carried for row in rows)
-        error = ROUND_OFF * len(rows) * strongest + _moved_too_far(scene, settings)
+        error = round_off * len(rows) * strongest + _contact_error(scene, settings)
         lost, force = error * scene.experiment.way, float(trace.force[last.state])
         is_unseen = last.dissipated <= lost
         unseen = _unseen_slip(rows, scene)[0] if is_unseen else 0.0
         radius = trace.radius(last.state) or 0.0
         slid = [(trace.radius(row.state) or 0.0) - row.stick.value for row in rows]
-        found = {
+        results = {
             "normal_force": Reading(
-                force, FORCE, {"solver": ROUND_OFF * abs(force)}, prescribed=scene.experiment.compression is not None
+                force, FORCE, {"solver": round_off * abs(force)}, prescribed=scene.experiment.compression is not None
             ),
-            # One that is not 0 is compared with itself.
+            # A force that is not 0 is its own scale.
             "tangential_force": Reading(
                 last.force, FORCE, {"solver": error, LATTICE: unseen},
                 scale=strongest if abs(last.force) <= error + unseen else None,
             ),
             "contact_radius": Reading(radius, LENGTH, prescribed=radius == 0.0),
-            # Of a contact that slips as far as its particles show, another lattice may have one that sticks. An annulus
-            # that has slipped between the outermost particles leaves no trace when the body goes back.
+            # Where all particles slip, one may stick on another lattice. An annulus that has slipped between the
+            # outermost particles leaves no trace when the body moves back.
             "stick_radius": Reading(
                 last.stick.value + trace.shift_of(last.state) * last.stick.uncertainty, LENGTH,
                 {LATTICE: (max(slid) - slid[-1]) * is_unseen},
@@ -133,12 +128,12 @@ class TangentialExperiment(Scripted[Tangential]):
         }  # fmt: skip
         if self.given(scene).cycles:
             start = max(i for i, row in enumerate(rows[1:]) if row.direction < rows[i].direction)  # of the last cycle
-            found["dissipated_energy_per_cycle"] = _energy(rows[start:], 4.0 * lost, scene)  # its path is 4 u_m
-        return found
+            results["dissipated_energy_per_cycle"] = _energy(rows[start:], 4.0 * lost, scene)  # its path is 4 u_m
+        return results
 
     def _plan(self, deck: Deck, model: Particles) -> Plan:
-        """The load comes on in one row, then a phase for each stretch to the right ("forward") or to the left."""
-        parts = stretches(passed(deck.scene, _chain(deck.scene, deck.settings), deck.settings))
+        """Return the plan: the load in one step, then a phase for each stretch to the right ("forward") or left."""
+        parts = stretches(load_steps(deck.scene, _chain(deck.scene, deck.settings), deck.settings))
         names = [name for name, stretch in parts for _ in stretch]
         ends = np.cumsum([len(stretch) for _, stretch in parts]) - 1
         depths, along = zip(*(stop for _, stretch in parts for stop, _ in stretch), strict=True)
@@ -147,27 +142,27 @@ class TangentialExperiment(Scripted[Tangential]):
         return Plan(deck, model, path, names, marks)
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """The load steps that run."""
+        """Return the phases of the load steps that run."""
         return self._plan(Deck(scene, settings), reduced(scene, settings)).phases
 
     def advice(self, scene: Scene) -> str:
-        """A row is exact, so that the lattice alone is left."""
+        """Return the advice to refine the lattice: the load steps are exact."""
         return f"Use {FINER_SPACING}"
 
 
 @dataclass(frozen=True)
-class Drawn:
-    """What friction made of one state.
+class SlidState:
+    """The friction of one state.
 
     Attributes:
-        position: of the plate along x [LU].
-        force: with which the body resists a move to the right [FU].
-        carried: Σ |s_i|, of all particles whichever way they push [FU].
+        position: position of the plate along x [LU].
+        force: tangential force with which the body resists a move to the right [FU].
+        carried: Σ |s_i| over all particles [FU].
         dissipated: energy since the start [FU·LU].
-        wrong: how far a particle's force is from what its spring and slider make of the row before [FU].
-        trace, state: where it was read.
+        wrong: largest difference of a particle's force from that of its spring and slider after the state before [FU].
+        trace, state: the trace and the number of the state in it.
         scene: with the coefficient of friction.
-        direction: of the last move.
+        direction: sign of the last move along x; 0 before the first one.
     """
 
     position: float
@@ -182,7 +177,7 @@ class Drawn:
 
     @cached_property
     def stick(self) -> ContactRadius:
-        """Half-width of the zone that sticks; a flat punch sticks or slips as a whole."""
+        """Half-width c of the stick zone [LU]; a flat punch sticks or slips as a whole."""
         profile, coefficient = self.trace.profile(self.state), self.scene.the(Friction).coefficient
         if self.scene.bodies.own_count is None:
             return stick_radius(profile, coefficient, self.direction)
@@ -191,10 +186,10 @@ class Drawn:
         return edge if sticks and edge is not None else ContactRadius(0.0, 0.0, 0.0, 0.0, reaches_end=False)
 
 
-def drawn(trace: Trace, scene: Scene) -> list[Drawn]:
-    """What friction made of each state, from the one before it; at the first the load is just there."""
+def slid_states(trace: Trace, scene: Scene) -> list[SlidState]:
+    """Return the friction of each state of a trace; the first one is under the normal load alone."""
     coefficient, spacing, stiffness, _ = _springs(trace)
-    rows: list[Drawn] = []
+    rows: list[SlidState] = []
     dissipated, direction, before, limit = 0.0, 0, np.empty(0), np.empty(0)
     for i in range(len(trace)):
         profile = trace.profile(i)
@@ -209,44 +204,46 @@ def drawn(trace: Trace, scene: Scene) -> list[Drawn]:
         before, limit = force, next_limit
         carried = float(np.abs(force).sum())
         position = float(trace.along[i])
-        rows.append(Drawn(position, float(force.sum()), carried, dissipated, wrong, trace, i, scene, direction))
+        rows.append(SlidState(position, float(force.sum()), carried, dissipated, wrong, trace, i, scene, direction))
     return rows
 
 
 def _springs(trace: Trace) -> tuple[float, float, float, float]:
-    """μ, the spacing [LU], and the tangential and normal stiffness of a particle [FU/LU] of the chain of a trace."""
+    """Return μ, the spacing [LU], and the tangential and normal stiffness of a particle [FU/LU] of a trace."""
     law = cast("SlidingSprings", trace.model).law
     return law.coefficient, law.spacing, law.ratio * law.stiffness, law.stiffness
 
 
-def _energy(rows: Sequence[Drawn], lost: float, scene: Scene) -> Reading:
-    """What is dissipated from the first of the rows to the last; `lost`: error of tangential forces [FU·LU].
+def _energy(rows: Sequence[SlidState], error: float, scene: Scene) -> Reading:
+    """Return the energy [FU·LU] dissipated from the first state to the last, with the error of tangential forces.
 
-    Where no particle slips, less is lost than `_unseen_slip`; that is 0 of a body with an edge, which sticks or slips
-    as a whole.
+    Where no particle slips, `_unseen_slip` dissipates at most force times distance; that counts as 0 below 1e-5 of the
+    work, and is 0 of a body with an edge, which sticks or slips as a whole.
     """
     dissipated = rows[-1].dissipated - rows[0].dissipated
-    if abs(dissipated) > lost:
-        return Reading(dissipated, ENERGY, {"solver": lost})
+    if abs(dissipated) > error:
+        return Reading(dissipated, ENERGY, {"solver": error})
     work = sum(0.5 * (a.carried + b.carried) * abs(b.position - a.position) for a, b in pairwise(rows))
-    force, way = _unseen_slip(rows, scene)
-    most = force * way
-    known = most <= NOTHING * work
-    return Reading(dissipated, ENERGY, {"solver": lost, LATTICE: most}, scale=work if known else None, prescribed=known)
+    force, distance = _unseen_slip(rows, scene)
+    most = force * distance
+    known = most <= 1e-5 * work
+    errors = {"solver": error, LATTICE: most}
+    return Reading(dissipated, ENERGY, errors, scale=work if known else None, prescribed=known)
 
 
-def _unseen_slip(rows: Sequence[Drawn], scene: Scene) -> tuple[float, float]:
-    """Force [FU] and distance [LU] of the slip between the outermost particles, at most, where none of these slips.
+def _unseen_slip(rows: Sequence[SlidState], scene: Scene) -> tuple[float, float]:
+    """Return force [FU] and distance [LU] at most of the slip between the outermost particles, where none slips.
 
     The annulus that slips is as wide as k_t u/(μ Δf) spacings, with Δf the difference of the normal forces of the two
-    outermost particles, and one at most; its forces are below k_t u and μ f, and it slips by as much as the sliders
-    are moved beyond what a rising load lets them carry, k_t |Δu| − μ k_n Δd. A body with an edge has none.
+    outermost particles, and one at most, or three at both edges together; its forces are below k_t u and μ f, and it
+    slips by as much as the sliders are moved beyond what a rising load lets them carry, k_t |Δu| − μ k_n Δd. A body
+    with an edge has no such slip.
     """
     coefficient, spacing, stiffness, normal = _springs(rows[0].trace)
     outer = [np.sort(row.trace.profile(row.state).pressure) for row in rows]
     # Both edges are alike: the next particle is the third.
     second, first = max(((p[p > 0.0][2], p[p > 0.0][0]) for p in outer if (p > 0.0).sum() > 2), default=(0.0, 0.0))
-    limit, rise = (spacing * coefficient * float(one) for one in (second, second - first))
+    limit, rise = (spacing * coefficient * float(pressure) for pressure in (second, second - first))
     slipped = 0.0
     for before, after in pairwise(rows):
         deeper = after.trace.displacement[after.state] - before.trace.displacement[before.state]
@@ -254,15 +251,15 @@ def _unseen_slip(rows: Sequence[Drawn], scene: Scene) -> tuple[float, float]:
         slipped += max(0.0, float(moved)) if after.position != before.position or deeper < 0.0 else 0.0
     force = stiffness * max(abs(row.position) for row in rows)
     share = min(1.0, force / rise) if rise > 0.0 else 1.0
-    return STUCK * share * min(force, limit) * (scene.bodies.own_count is None), slipped
+    return 3.0 * share * min(force, limit) * (scene.bodies.own_count is None), slipped
 
 
-def _require_history(trace: Trace, rows: Sequence[Drawn]) -> None:
-    """Refuse forces that are not the history's."""
+def _require_history(trace: Trace, rows: Sequence[SlidState], tolerance: float = 1e-8) -> None:
+    """Refuse tangential forces off those of springs and sliders by more than a share of the largest friction force."""
     coefficient, spacing = rows[0].scene.the(Friction).coefficient, rows[0].scene.bodies.spacing
     limit = max(coefficient * spacing * float(trace.profile(i).pressure.max()) for i in range(len(trace)))
     for row in rows:
-        if row.wrong > AS_PREDICTED * limit:
+        if row.wrong > tolerance * limit:
             raise UntrustedError(
                 f"the tangential force of a particle differs by {row.wrong:.2g} FU from that of its spring and slider "
                 f"after the previous load step, at displacement {trace.displacement[row.state]:.4g} LU and tangential "
@@ -271,8 +268,8 @@ def _require_history(trace: Trace, rows: Sequence[Drawn]) -> None:
             )
 
 
-def _columns(rows: Sequence[Drawn]) -> dict[str, tuple[float, ...]]:
-    """What curve.csv has beside the columns of every curve."""
+def _columns(rows: Sequence[SlidState]) -> dict[str, tuple[float, ...]]:
+    """Return the additional columns of curve.csv, by name."""
     return {
         "tangential_displacement": tuple(row.position for row in rows),
         "tangential_force": tuple(row.force for row in rows),
@@ -284,52 +281,52 @@ def _columns(rows: Sequence[Drawn]) -> dict[str, tuple[float, ...]]:
 
 
 def _chain(scene: Scene, settings: Settings) -> Sliders:
-    """The sliders of the chain that runs."""
+    """Return the sliders of the chain that runs."""
     return sliders_of(scene, places(settings.chains.upper, scene.bodies.spacing))
 
 
-def passed(scene: Scene, chain: Sliders, settings: Settings, sparse: bool = False) -> list[tuple[Stop, bool]]:
-    """Displacement and position [LU] of every row in order, and whether the scene asks for it.
+def load_steps(scene: Scene, chain: Sliders, settings: Settings, sparse: bool = False) -> list[tuple[Stop, bool]]:
+    """Return displacement and position [LU] of every load step in order, each with whether the scene asks for it.
 
-    `sparse`: without those from which it goes straight on.
+    With `sparse`, stops are left out at which the direction does not change.
     """
     assert isinstance(scene.experiment, Tangential)
     asked = stops(scene.experiment, chain)
-    first, *others = without_rests(asked) if sparse else asked
-    found, most = [(first, False)], _most(settings)
+    first, *later = without_rests(asked) if sparse else asked
+    steps, most = [(first, False)], _most_between(settings)
     before = first
-    for stop in others:
+    for stop in later:
         touches = chain.touches(before[0], stop[0])
         if len(touches) > most:
             touches = [touches[i] for i in np.linspace(0, len(touches) - 1, most).round().astype(int)]
         if stop[1] != before[1]:
             slope = (stop[1] - before[1]) / (stop[0] - before[0]) if touches else 0.0
-            found += [((depth, before[1] + slope * (depth - before[0])), False) for depth in touches]
-        found.append((stop, True))
+            steps += [((depth, before[1] + slope * (depth - before[0])), False) for depth in touches]
+        steps.append((stop, True))
         before = stop
-    return found
+    return steps
 
 
-def stretches(way: Sequence[tuple[Stop, bool]]) -> list[tuple[str, list[tuple[Stop, bool]]]]:
-    """Rows by stretches of one direction, the load first."""
-    moves = [after[1] - before[1] for (before, _), (after, _) in pairwise(way)]
+def stretches(steps: Sequence[tuple[Stop, bool]]) -> list[tuple[str, list[tuple[Stop, bool]]]]:
+    """Return the load steps by stretches of one direction with their names, the normal load first."""
+    moves = [after[1] - before[1] for (before, _), (after, _) in pairwise(steps)]
     direction = BACKWARD if next((move for move in moves if move), 1.0) < 0.0 else FORWARD
-    found = [(PRESSING, [way[0]])]
+    parts = [(PRESSING, [steps[0]])]
     counts: dict[str, int] = {}
-    for row, moved in zip(way[1:], moves, strict=True):
+    for step, moved in zip(steps[1:], moves, strict=True):
         if moved:
             direction = FORWARD if moved > 0.0 else BACKWARD
-        if found[-1][0].partition("_")[0] != direction:
+        if parts[-1][0].partition("_")[0] != direction:
             counts[direction] = counts.get(direction, 0) + 1
-            found.append((direction if counts[direction] == 1 else f"{direction}_{counts[direction]}", []))
-        found[-1][1].append(row)
-    return found
+            parts.append((direction if counts[direction] == 1 else f"{direction}_{counts[direction]}", []))
+        parts[-1][1].append(step)
+    return parts
 
 
-def _moved_too_far(scene: Scene, settings: Settings) -> float:
-    """By how much [FU] tangential forces may be off: of particles that begin to touch between two load steps."""
+def _contact_error(scene: Scene, settings: Settings) -> float:
+    """Return the error [FU] of tangential forces by particles that come into contact between two load steps."""
     assert isinstance(scene.experiment, Tangential)
-    chain, most, error = _chain(scene, settings), _most(settings), 0.0
+    chain, most, error = _chain(scene, settings), _most_between(settings), 0.0
     for before, stop in pairwise(stops(scene.experiment, chain)):
         touches = len(chain.touches(before[0], stop[0]))
         if touches > most:
@@ -337,5 +334,9 @@ def _moved_too_far(scene: Scene, settings: Settings) -> float:
     return error
 
 
-def _most(settings: Settings) -> int:
-    return max(1, round(MOST_TOUCHES / settings.tolerance))
+def _most_between(settings: Settings) -> int:
+    """Return how many load steps lie between two of the scene at most.
+
+    A particle that comes into contact between two of these moves along from the first, an error of one in so many.
+    """
+    return max(1, round(1.0 / settings.tolerance))

@@ -1,6 +1,6 @@
 """Contacts under noise: averages over a motion, with the standard error of a correlated series.
 
-⟨F⟩(d) = A′(d), A the free energy of the particles at the displacement d
+⟨F⟩(d) = A′(d), A the free energy of the particles at the displacement d.
 """
 
 from __future__ import annotations
@@ -22,100 +22,92 @@ from contact1d.workflow.continuation.outcome import LATTICE, Outcome, Reading, R
 from contact1d.workflow.continuation.state import State, radius_rule
 from contact1d.workflow.continuation.trust import UntrustedError, doubts, require_trust
 from contact1d.workflow.deck.steps import DisplaceInTime, Phase, Row, UnderLoad
-from contact1d.workflow.experiments.series import Series, begun, measured, recorded
+from contact1d.workflow.experiments.series import Series, begin_phase, measured, recorded
 from contact1d.workflow.laws.radius import RadiusRule
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE
 
-CHUNK = 0.25
-"""Time between two samples of a thermal contact over the settling time."""
-FEWEST_STEPS = 20
-SETTLING_LOOKS = 40
-"""Looks (of a quarter of a settling time each) that a thermal contact has to forget its start: its run-in."""
+RUN_IN_SAMPLES = 40
+"""Samples of the run-in, in which a thermal contact forgets its start: ten settling times (`chunk_steps`)."""
 BLOCKS = 20
-"""Blocks whose means give the standard error: each is long against the settling time."""
+"""Blocks whose means give the standard error: each is long compared with the settling time."""
 SAMPLES = 200
-"""Samples of a position, and of a load before its statistics are judged, and again until they are good enough."""
-MOST_SAMPLES = 2_000
-BALANCE = 5.0
-"""Standard errors by which the mean force may miss the load."""
-APART = 0.5
-"""Time between two samples of a position over that of a particle's slowest decay, at least."""
+"""Samples at a position; samples of a load between two looks at its standard error."""
 CERTAIN = 2.0
-"""Standard errors of a mean that are its uncertainty: the largest of many means is one that chance made large."""
+"""Uncertainty of a mean over its standard error: the largest of many means is large by chance."""
 
 
 def chunk_steps(settings: Settings) -> int:
-    """Timesteps between two samples of a thermal contact."""
-    return max(FEWEST_STEPS, math.ceil(CHUNK * settings.motion.settle_time / settings.motion.time_step))
+    """Return the timesteps between two samples of a thermal contact: a quarter of the settling time, 20 at least."""
+    return max(20, math.ceil(0.25 * settings.motion.settle_time / settings.motion.time_step))
 
 
 def run_in(name: str, settings: Settings, load: float) -> Phase:
-    """The phase in which a contact under a load [FU] forgets its start."""
-    return Phase(name, (UnderLoad(load, chunk_steps(settings)),) * SETTLING_LOOKS)
+    """Return the phase in which a contact under a load [FU] forgets its start."""
+    return Phase(name, (UnderLoad(load, chunk_steps(settings)),) * RUN_IN_SAMPLES)
 
 
 def planned_samples(settings: Settings, load: float) -> tuple[Phase, Phase]:
-    """The planned schedule of a load under noise."""
+    """Return the planned phases of a load [FU] under noise."""
     samples = (UnderLoad(load, chunk_steps(settings)),) * SAMPLES
     return run_in("settling", settings, load), Phase("sampling", samples, state=True)
 
 
 def blocks_of(samples: Sequence[State]) -> Series:
-    """Means over BLOCKS parts of the samples."""
-    profiles = recorded([one.profile for one in samples], PROFILE_COLUMNS)
+    """Return the means over BLOCKS parts of the samples."""
+    profiles = recorded([sample.profile for sample in samples], PROFILE_COLUMNS)
     return Series(recorded(samples, ("displacement", "force", "carried")) | profiles).parts(BLOCKS)
 
 
 def mean_profile(blocks: Series) -> Profile:
-    """The average over time, particle by particle."""
+    """Return the profile averaged over time, particle by particle."""
     return Profile(*map(blocks.mean, PROFILE_COLUMNS))
 
 
 def mean_state(samples: Sequence[State]) -> State:
-    """The mean of samples in the place of one state. Its `residual` is CERTAIN standard errors of the force over N."""
+    """Return the mean of samples as a state whose `residual` is CERTAIN standard errors of the force over N."""
     blocks = blocks_of(samples)
     return replace(
         samples[-1],
         force=float(blocks.mean("force")),
         displacement=float(blocks.mean("displacement")),
         profile=mean_profile(blocks),
-        smallest_distance=min(one.smallest_distance for one in samples),
-        depth=max(one.depth for one in samples),
+        smallest_distance=min(sample.smallest_distance for sample in samples),
+        depth=max(sample.depth for sample in samples),
         residual=CERTAIN * standard_error(blocks["force"]) / len(blocks.mean("x")),
     )
 
 
 def sample_columns(states: Sequence[State], loads: Sequence[float], settings: Settings) -> dict[str, tuple[float, ...]]:
-    """The columns of samples.csv: time [TU], load and force [FU], displacement and contact radius [LU] of each state.
+    """Return the columns of samples.csv: time [TU], load, force [FU], displacement, contact radius [LU] of each state.
 
     Args:
         states: in order.
-        loads: under which each was measured [FU].
+        loads: load under which each was measured [FU].
         settings: with the length of a timestep.
     """
-    found = recorded(states, ("step", "displacement", "force"))
+    measurements = recorded(states, ("step", "displacement", "force"))
     radii = [math.nan if state.radius is None else state.radius.value for state in states]
-    time = found.pop("step") * settings.motion.time_step
-    columns = {"time": time, "load": np.asarray(loads), **found, "contact_radius": np.asarray(radii)}
+    time = measurements.pop("step") * settings.motion.time_step
+    columns = {"time": time, "load": np.asarray(loads), **measurements, "contact_radius": np.asarray(radii)}
     return Series(columns).table()
 
 
-def thermal_load(context: RunContext, load: float) -> Outcome:
-    """d, F, a and F/(πa²) of a load [FU] under noise, as means.
+def thermal_load(context: RunContext, load: float, most_samples: int = 2_000) -> Outcome:
+    """Return d, F, a and F/(πa²) under a load [FU] and noise, as means.
 
     Raises:
-        UntrustedError: the bodies separate, or the mean force misses the load; see `require_trust`.
+        UntrustedError: the bodies separate, the mean force misses the load, or a state fails `require_trust`.
     """
     scene, settings = context.deck.scene, context.deck.settings
     goal = settings.tolerance * max(settings.forces.rest, abs(settings.largest_displacement))
     settling, sampling = planned_samples(settings, load)
     samples: list[State] = []
     with context.contact() as contact:
-        settled = _looks(contact, begun(contact, settling))
-        rows, error = begun(contact, sampling), math.inf
-        while error > goal and len(samples) < MOST_SAMPLES:
-            samples += _looks(contact, rows)
+        settled = _sampled_states(contact, begin_phase(contact, settling))
+        rows, error = begin_phase(contact, sampling), math.inf
+        while error > goal and len(samples) < most_samples:
+            samples += _sampled_states(contact, rows)
             blocks = blocks_of(samples)
             error = standard_error(blocks["displacement"])
         contact.write_state()
@@ -127,18 +119,22 @@ def thermal_load(context: RunContext, load: float) -> Outcome:
     require_balance(results["force"], load)
     warnings = doubts(scene, settings, tuple(samples))
     if error > goal:
-        found, wanted = apart(error, goal, 2)
+        reached, wanted = apart(error, goal, 2)
         warnings["statistics"] = (
-            f"standard error of the displacement {found} LU after {MOST_SAMPLES} samples, above {wanted} LU"
+            f"standard error of the displacement {reached} LU after {most_samples} samples, above {wanted} LU"
         )
     states = (*settled, *samples)
     table = {SAMPLE_TABLE: sample_columns(states, [load] * len(states), settings)}
     return Outcome(results, states, {"final": mean_state(samples)}, phases, warnings, tables=table)
 
 
-def _looks(contact: Contact, rows: Sequence[Row]) -> list[State]:
-    """The states of load steps, in which the bodies still reach each other."""
-    found = []
+def _sampled_states(contact: Contact, rows: Sequence[Row]) -> list[State]:
+    """Return the states of load steps; refuse one in which the bodies are separated.
+
+    Raises:
+        UntrustedError: no particle is within the cutoff of the other body.
+    """
+    states = []
     for row in rows:
         state = contact.row(row, trusted=False)
         if 0.0 < contact.settings.forces.cutoff < state.smallest_distance:  # 0 on a plane
@@ -146,35 +142,35 @@ def _looks(contact: Contact, rows: Sequence[Row]) -> list[State]:
                 "the bodies separated under the load and the noise: use a more compressive experiment.force or a lower "
                 "noise.temperature"
             )
-        found.append(state)
-    return found
+        states.append(state)
+    return states
 
 
 def read(blocks: Series, rule: RadiusRule) -> dict[str, Reading]:
-    """Means of displacement and force, and what is read off the mean profile."""
-    found = {
+    """Return means of displacement and force, and contact radius and pressure of the mean profile."""
+    results = {
         "displacement": Reading(float(blocks.mean("displacement")), LENGTH),
         "force": Reading(float(blocks.mean("carried")), FORCE),
     }
     profile = mean_profile(blocks)
     if (radius := rule.of(profile)) is None:
-        return found
+        return results
     pressure = mean_pressure(profile, rule.bodies.spacing, radius.value)
     between = 2.0 * radius.uncertainty / radius.value * abs(pressure)
-    return found | {
+    return results | {
         "contact_radius": Reading(radius.value, LENGTH, {LATTICE: radius.uncertainty}),
         "mean_pressure": Reading(pressure, MEAN_PRESSURE, {LATTICE: between}),
     }
 
 
-def require_balance(force: Result, load: float) -> None:
-    """Refuse a mean force that misses its load [FU] by more than its scatter.
+def require_balance(force: Result, load: float, most: float = 5.0) -> None:
+    """Refuse a mean force that misses its load [FU] by more than `most` standard errors.
 
     Raises:
-        UntrustedError: by how many standard errors it does.
+        UntrustedError: the message has the difference in standard errors.
     """
     off = abs(force.value - load)
-    if off > BALANCE * force.uncertainty:
+    if off > most * force.uncertainty:
         raise UntrustedError(
             f"not in equilibrium: the mean force {force.value:.4g} FU differs from the load {load:.4g} FU by "
             f"{off / force.uncertainty:.1f} standard errors"
@@ -184,28 +180,29 @@ def require_balance(force: Result, load: float) -> None:
 def thermal_rows(
     settings: Settings, decay: float, positions: Sequence[tuple[float, bool]]
 ) -> tuple[DisplaceInTime, ...]:
-    """The load steps of a path: at each position equilibration, and where the scene asks for the state also sampling.
+    """Return the load steps of a path: equilibration at each position, and sampling where the scene asks for the state.
 
     Args:
         settings: of the scene.
         decay: time constant of a particle [TU].
         positions: displacement [LU], and whether the scene asks for it.
     """
-    look = max(chunk_steps(settings), math.ceil(APART * decay / settings.motion.time_step))
+    # Samples are half a time constant apart at least.
+    look = max(chunk_steps(settings), math.ceil(0.5 * decay / settings.motion.time_step))
     return tuple(
-        DisplaceInTime(float(position), look) for position, asked in positions for _ in range(_looks_at(asked))
+        DisplaceInTime(float(position), look) for position, asked in positions for _ in range(_steps_at(asked))
     )
 
 
 def averaged(states: Sequence[State], positions: Sequence[tuple[float, bool]]) -> list[State]:
-    """One state for each position of a path: the mean of its samples, or the last one between two positions."""
-    ends = np.cumsum([_looks_at(asked) for _, asked in positions]).tolist()
+    """Return one state for each position of a path: the mean of its samples, of an intermediate one the last state."""
+    ends = np.cumsum([_steps_at(asked) for _, asked in positions]).tolist()
     return [
         mean_state(states[end - SAMPLES : end]) if asked else states[end - 1]
         for end, (_, asked) in zip(ends, positions, strict=True)
     ]
 
 
-def _looks_at(asked: bool) -> int:
-    """Load steps at a position."""
-    return SETTLING_LOOKS + asked * SAMPLES
+def _steps_at(asked: bool) -> int:
+    """Return the number of load steps at a position."""
+    return RUN_IN_SAMPLES + asked * SAMPLES
