@@ -23,7 +23,7 @@ RECORDS = {
     "random faults": "validation/results/mutants.json",
     "listed faults": "validation/results/faults.json", "slow tests": "docs/slow.json",
     "calibration": "validation/results/calibration.csv", "costs of effects": "validation/results/costs",
-    "cost of accuracy": "docs/cost.json", "figure of tolerances": "docs/tolerance.png",
+    "figure of tolerances": "docs/tolerance.png",
     "figure of validity": "docs/validity.png",
 }  # fmt: skip
 NAMED = 4
