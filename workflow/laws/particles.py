@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.workflow.laws.law import Law
-from contact1d.workflow.laws.path import Followed, History, Path
+from contact1d.workflow.laws.path import Followed, History, Path, equilibria
 from contact1d.workflow.laws.shape import Profile as Undeformed
 from contact1d.workflow.laws.shape import places_within
 
@@ -118,6 +118,13 @@ class Particles(ABC):
         Found without a force. None where this is not known.
         """
         return None
+
+    def checked(self, path: Path, finer: int) -> Path:
+        """The path along which the work of a run is compared with `energies`: from apart on, in dense equilibria.
+
+        `finer`: times as many. Where forces depend on time, the load steps themselves.
+        """
+        return equilibria(path, self.apart, self.jumps, self.law.spacing, finer)
 
     def refined(self, history: History) -> History:
         """With further moments where a contact needs them: beside its jumps."""

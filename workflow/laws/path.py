@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -16,6 +17,9 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 NEAREST, ASIDE = 1e-9, 1e-6
 """Part of a step that is round-off, and that is beside a jump."""
+EACH_STEP, EACH_LEG, BESIDE = 32, 80, 30
+"""States in a step of a tangential path that changes the load, and in all of the displacement of others, between which
+forces are straight lines; on both sides of a jump."""
 
 
 @dataclass(frozen=True)
@@ -113,3 +117,35 @@ def legs(displacements: Array) -> list[slice]:
     turns = moves[1:][ways[moves[1:]] != ways[moves[:-1]]] + 1
     edges = [0, *turns.tolist(), len(displacements)]
     return [slice(first, last) for first, last in pairwise(edges) if last > first]
+
+
+def equilibria(path: Path, apart: float, jumps: Sequence[float], spacing: float, finer: int) -> Path:
+    """Return equilibria along a path from apart on, with as many states as the work along it needs.
+
+    In a step that changes the load, `along` given, EACH_STEP states; else EACH_LEG over all of the displacement, and
+    BESIDE in geometric progression on both sides of each jump; times `finer`.
+
+    Args:
+        path: of a run.
+        apart: displacement [LU] below which nothing is felt.
+        jumps: displacements [LU] at which the force jumps.
+        spacing: of the particles [LU].
+        finer: so many times as many.
+    """
+    start = min(0.0, apart) - NEAREST * spacing  # below that nothing is felt
+    places = np.append(start, np.maximum(path.displacement, start))
+    if path.along.any():
+        each = np.where(np.diff(places) != 0.0, EACH_STEP, 1) * finer
+        steps, moved = np.arange(places.size), np.append(path.along[:1], path.along)
+        at = np.append(0.0, np.concatenate([step + np.arange(1, count + 1) / count for step, count in enumerate(each)]))
+        return Path(np.interp(at, steps, places), np.interp(at, steps, moved), np.zeros_like(at))
+    distances = spacing * np.geomspace(NEAREST, 1.0, BESIDE)
+    near = np.asarray([jump + side for jump in jumps for side in (-distances, distances)]).ravel()
+    ends = places[[0, *(leg.stop - 1 for leg in legs(places))]].tolist()
+    passed, whole = [places[:1]], float(np.ptp(places)) or 1.0
+    for start, end in pairwise(ends):
+        count = math.ceil(EACH_LEG * finer * abs(end - start) / whole) + 1
+        between = near[(near > min(start, end)) & (near < max(start, end))]
+        leg = np.unique(np.concatenate([np.linspace(start, end, count + 1), between]))
+        passed.append((leg if end > start else leg[::-1])[1:])
+    return path_of(np.concatenate(passed))

@@ -166,6 +166,10 @@ class RecedingCells(ZonedCells):
         none = np.zeros_like(edge)
         return Zone(edge, edge, path.displacement, self.law.equations.forces(edge, none, path.displacement))
 
+    def checked(self, path: Path, finer: int) -> Path:
+        """Return the path itself: its load steps have their times."""
+        return path
+
     def energies(self, path: Path) -> tuple[float, float]:
         """U(d, a) of JKR; ∫ (G − W) 2πa da where the edge recedes, and what U jumps by at touch and separation."""
         estimate, zone = self.law, self.zone(path)

@@ -14,7 +14,7 @@ from contact1d.workflow.laws.law import Law
 from contact1d.workflow.scene import Cantilever, Damping, Impact, Scene, Slide
 
 RELAXING_STEP = 0.5
-"""ω_max·Δt without time, where a minimiser is the only one that takes steps (`workflow.deck.deck.RELAXATION`)."""
+"""ω_max·Δt without time, where a minimiser is the only one that takes steps (`workflow.deck.parts`)."""
 MOVING_STEP, MOVING_TOLERANCE = 0.2, 1e-3
 """ω_max·Δt of a slide, whose motion itself is the result, and the tolerance below which it falls with its square root.
 
