@@ -12,7 +12,7 @@ from contact1d.workflow.body.traction import BodyPressure
 from contact1d.workflow.continuation.outcome import LATTICE, LOSSES, MODEL, Outcome, Result, in_words, unmet
 from contact1d.workflow.continuation.trust import UntrustedError
 from contact1d.workflow.experiments import kind_of
-from contact1d.workflow.experiments.experiment import FINER_SPACING
+from contact1d.workflow.experiments.experiment import finer_spacing
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import FORCE, LENGTH
 
@@ -159,7 +159,7 @@ def _advice(scene: Scene, results: Mapping[str, Result]) -> str:
     if all(max(result.errors, key=result.errors.__getitem__) == "time" for result in results.values()):
         return "They are limited by the timestep, which a smaller accuracy.tolerance shortens"
     if any(result.read > tolerance * result.size for result in results.values()):
-        return f"The uncertainty of a radius is limited by the spacing: use {FINER_SPACING}"
+        return f"The uncertainty of a radius is limited by the spacing: use {finer_spacing(scene)}"
     return kind_of(scene).advice(scene)
 
 
@@ -184,8 +184,8 @@ def _lattice_message(scene: Scene, shares: Mapping[str, float], uncertain: bool)
     """
     tolerance = scene.accuracy.tolerance
     spacing = scene.bodies.spacing * np.sqrt(0.5 * tolerance / min(1.0, max(shares.values())))
+    finer = finer_spacing(scene, "" if uncertain else f", about {spacing:.2g} LU")
     return (
         f"relative discretisation errors above the tolerance of {tolerance:g}: {in_words(shares, tolerance)}. "
-        f"Use a smaller bodies.spacing{'' if uncertain else f', about {spacing:.2g} LU'}, at the same stiffness "
-        "and energy per length, or give bodies.particles if this discrete chain is intended"
+        f"Use {finer}, or give bodies.particles if this discrete chain is intended"
     )
