@@ -191,7 +191,7 @@ def with_body(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressu
                 for key, one in pressure.results.items()
             }
     # Springs in equilibrium, without an attraction: dF/dd is theirs.
-    if "pressed" in law_of(scene).beside and not (scene.interaction or scene.noise):
+    if "pressed" in law_of(scene).closed_forms and not (scene.interaction or scene.noise):
         for name in reported_state(outcome):
             if (pressure := pressures.get(name)) and pressure.stiffness:
                 of_pressure["contact_stiffness"] = (pressure.stiffness, share * pressure.stiffness.value)

@@ -61,7 +61,7 @@ class ClosedForm:
 
 def applying(case: Case) -> list[ClosedForm]:
     """The closed forms that hold for a case."""
-    return _of(case, case.law.beside)
+    return _of(case, case.law.closed_forms)
 
 
 def exact(case: Case) -> list[ClosedForm]:

@@ -71,7 +71,7 @@ class Held:
 
 def stiffness_under(settings: Settings, load: float) -> float:
     """Contact stiffness [FU/LU] under a load [FU]; where pairs separate one by one, of all that ever touch."""
-    if settings.is_toothed:
+    if settings.has_several_maxima:
         return settings.law.stuck_stiffness(settings.largest_displacement)
     return settings.law.stiffness_under(load)
 

@@ -189,7 +189,7 @@ def _under_load(rested: Trace, scene: Scene, settings: Settings, preload: float)
     tension = 0.5 * (best + broken)
     errors = {"sampling": 0.5 * (broken - best)} | dict(rested.search.doubt)
     zero, last = rested.radius_or_spot(0), len(rested) - 1
-    if settings.is_toothed:
+    if settings.has_several_maxima:
         # A tooth has no smooth top to go on to. The pull-off may be at the next one, with one particle less at each
         # edge, and further off where tension is left to it: the tops lie near F = F_A (1 − y²),
         # y = (a − a_cr)/(a₀ − a_cr).
@@ -199,7 +199,7 @@ def _under_load(rested: Trace, scene: Scene, settings: Settings, preload: float)
     else:
         critical = _extrapolated(rested)
     at_zero = {}
-    if settings.is_toothed:  # beyond the largest tension the plate would not have come back
+    if settings.has_several_maxima:  # beyond the largest tension the plate would not have come back
         swung = overshoot(settings, scene.bodies.mass, preload, 0.0) * preload
         at_zero["instability"] = abs(critical.value - zero) * min(swung / tension, 1.0)
     return {

@@ -30,7 +30,7 @@ from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.lattice import places
 from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
-from contact1d.workflow.laws.friction import Sliders, SlidingSprings, Stop, sliders_of, stops, without_rests
+from contact1d.workflow.laws.friction import JenkinsElements, SlidingSprings, Stop, elements_of, stops, without_rests
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import Path
 from contact1d.workflow.model.reduced import reduced
@@ -283,12 +283,12 @@ def _columns(rows: Sequence[Drawn]) -> dict[str, tuple[float, ...]]:
     }
 
 
-def _chain(scene: Scene, settings: Settings) -> Sliders:
+def _chain(scene: Scene, settings: Settings) -> JenkinsElements:
     """The sliders of the chain that runs."""
-    return sliders_of(scene, places(settings.chains.upper, scene.bodies.spacing))
+    return elements_of(scene, places(settings.chains.upper, scene.bodies.spacing))
 
 
-def passed(scene: Scene, chain: Sliders, settings: Settings, sparse: bool = False) -> list[tuple[Stop, bool]]:
+def passed(scene: Scene, chain: JenkinsElements, settings: Settings, sparse: bool = False) -> list[tuple[Stop, bool]]:
     """Displacement and position [LU] of every row in order, and whether the scene asks for it.
 
     `sparse`: without those from which it goes straight on.

@@ -97,9 +97,9 @@ class Settings:
         return self.law.snaps
 
     @cached_property
-    def is_toothed(self) -> bool:
+    def has_several_maxima(self) -> bool:
         """Whether the tensile force has several maxima: pairs separate one by one; they snap, or nearly so."""
-        return self.snaps or (self.is_smooth and self.law.tooth(self.chains.upper) < math.inf)
+        return self.snaps or (self.is_smooth and self.law.maxima_distance(self.chains.upper) < math.inf)
 
     @property
     def is_smooth(self) -> bool:
@@ -130,9 +130,9 @@ class Settings:
         ends = np.unique(np.linspace(1, total, min(ROWS_IN_TIME, total - 1) + 1).round())
         return [int(steps) for steps in np.diff(ends, prepend=0.0)]
 
-    def let_go_early(self, move: float) -> float:
+    def premature_detachment(self, move: float) -> float:
         """Premature detachment [LU] of a pair under displacement increments `move` [LU]."""
-        return self.law.let_go_early(move, self.forces.residual)
+        return self.law.premature_detachment(move, self.forces.residual)
 
     def in_smaller_steps(self, part: float) -> Settings:
         """The same, with increments and moves, also those of a relaxation, scaled by this factor.
