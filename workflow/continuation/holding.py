@@ -84,7 +84,7 @@ def damping_under(settings: Settings, load: float) -> float:
     if settings.motion.damped_stiffness == 0.0:
         return settings.motion.damping
     if settings.gentle and load >= 0.0:
-        return settings.motion.calm_damping
+        return settings.motion.settling_damping
     stiffer = stiffness_under(settings, load) / settings.motion.damped_stiffness
     return settings.motion.damping * math.sqrt(min(max(stiffer, 0.0), 1.0 / SOFTENING))
 

@@ -93,7 +93,7 @@ class SlideExperiment(Experiment[Slide]):
         """The planned application of the normal force [FU]."""
         scale = abs(force) or settings.forces.scale
         rows = [hold_row(scene, _calm(settings), force, scale, Start.KEPT)]
-        if settings.motion.calm_damping != settings.motion.damping:
+        if settings.motion.settling_damping != settings.motion.damping:
             rows.append(hold_row(scene, settings, force, scale, Start.HERE))
         return Phase("loading", tuple(rows))
 
@@ -179,7 +179,7 @@ def _doubts(motion: Motion) -> dict[str, str]:
 
 
 def _calm(settings: Settings) -> Settings:
-    return replace(settings, motion=replace(settings.motion, damping=settings.motion.calm_damping))
+    return replace(settings, motion=replace(settings.motion, damping=settings.motion.settling_damping))
 
 
 def _settled_along(contact: Contact, force: float, scale: float, state: State) -> State:
