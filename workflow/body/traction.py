@@ -320,11 +320,11 @@ def _total(
 
 
 def _drawn(scene: Scene, zone: ZonedProfile | None, wider: float = 0.0) -> tuple[float, Callable[[Array], Array]]:
-    """See `Law.drawn`; `wider`: relative, by how much a is larger, and c with it."""
+    """See `Law.cohesive_load`; `wider`: relative, by how much a is larger, and c with it."""
     if zone is None:
         return 0.0, np.zeros_like
     edge, reach = zone.edge, zone.reach
-    return law_of(scene).drawn(scene, edge + wider * edge, reach + wider * edge)
+    return law_of(scene).cohesive_load(scene, edge + wider * edge, reach + wider * edge)
 
 
 def _moves(load: LineLoad, body: Callable[[Array], Array], r: Array, way: float) -> Array:

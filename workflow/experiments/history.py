@@ -115,7 +115,7 @@ def _moments(scene: Scene) -> Moments:
     assert isinstance(given, History)
     values = [point.force for point in given.force] if given.force else given.places()
     count = given.steps or math.ceil(STEPS * math.sqrt(FOR_TOLERANCE / scene.accuracy.tolerance))
-    names, soonest = list[str](), law_of(scene).soonest(scene)
+    names, soonest = list[str](), law_of(scene).shortest_time(scene)
     times, wanted = [np.asarray(given.times[:1])], [np.asarray(values[:1])]
     for (before, after), (start, end) in zip(pairwise(given.times), pairwise(values), strict=True):
         parts = np.linspace(0.0, 1.0, count + 1)[1:]

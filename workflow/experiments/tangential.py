@@ -30,7 +30,7 @@ from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.lattice import places
 from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
-from contact1d.workflow.laws.friction import JenkinsElements, SlidingSprings, Stop, elements_of, stops, without_rests
+from contact1d.workflow.laws.friction import JenkinsElements, SlidingSprings, Stop, elements_of, stops, without_stops
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import Path
 from contact1d.workflow.model.reduced import reduced
@@ -295,7 +295,7 @@ def passed(scene: Scene, chain: JenkinsElements, settings: Settings, sparse: boo
     """
     assert isinstance(scene.experiment, Tangential)
     asked = stops(scene.experiment, chain)
-    first, *others = without_rests(asked) if sparse else asked
+    first, *others = without_stops(asked) if sparse else asked
     found, most = [(first, False)], _most(settings)
     before = first
     for stop in others:

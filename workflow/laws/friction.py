@@ -63,7 +63,7 @@ class JenkinsElements:
         return [float(height) for height in (between if after > before else between[::-1])]
 
 
-def without_rests(path: Sequence[Stop]) -> list[Stop]:
+def without_stops(path: Sequence[Stop]) -> list[Stop]:
     """Return a path without intermediate stops on a straight line at constant displacement, which have no effect."""
     kept = list(path[:2])
     for stop in path[2:]:

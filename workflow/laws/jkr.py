@@ -179,7 +179,7 @@ class Jkr(Law):
         cells = self.cells(x, body)
         return {"hold": (1, cells.hold), "width": (1, cells.width), "fall": (1, cells.fall), "bend": (0, cells.bend)}
 
-    def strained(self, displacement: float) -> float:
+    def largest_length_change(self, displacement: float) -> float:
         """Return the largest length change of a spring [LU], of the displacement or of pull-off in fixed grips."""
         return max(displacement, -self.fixed_grips[1])
 

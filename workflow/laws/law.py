@@ -133,7 +133,7 @@ class Law(ABC):
 
         At least four spacings.
         """
-        return max(self.half_width(max(deepest, 0.0), self.felt), 4.0 * self.spacing)
+        return max(self.half_width(max(deepest, 0.0), self.cutoff_gap), 4.0 * self.spacing)
 
     def columns(self, body: Profile, x: Array) -> Mapping[str, tuple[int, Array]]:
         """Return constants of each particle that the deck needs: by name, the power of a length and values (n,).
@@ -147,7 +147,7 @@ class Law(ABC):
         return 1.0
 
     @classmethod
-    def soonest(cls, scene: Scene) -> float | None:
+    def shortest_time(cls, scene: Scene) -> float | None:
         """Return the shortest relaxation time of a scene [TU]; None where forces depend on the path alone."""
         return None
 
@@ -169,7 +169,7 @@ class Law(ABC):
         return None
 
     @classmethod
-    def drawn(cls, scene: Scene, edge: float, reach: float) -> tuple[float, Callable[[Array], Array]]:
+    def cohesive_load(cls, scene: Scene, edge: float, reach: float) -> tuple[float, Callable[[Array], Array]]:
         """Return the force [FU] of the attraction beyond the contact edge, and the tension that it causes inside.
 
         `edge`: contact radius [LU]; `reach`: radius up to which the attraction acts [LU]. The tension [FU/LU²] is a
@@ -177,7 +177,7 @@ class Law(ABC):
         """
         return 0.0, np.zeros_like
 
-    def strained(self, displacement: float) -> float:
+    def largest_length_change(self, displacement: float) -> float:
         """Return the largest length change of a spring [LU] at a displacement [LU]."""
         return displacement
 
@@ -314,22 +314,25 @@ class Law(ABC):
 
     @cached_property
     def snap(self) -> tuple[float, float]:
-        """Undeformed gap [LU] at the snap-out of a pair, and the tension [FU] lost there; (`felt`, 0) if none snaps."""
+        """Undeformed gap [LU] at the snap-out of a pair, and the tension [FU] lost there.
+
+        Where no pair snaps, the largest gap and 0.
+        """
         level = _level_cells(self.gap)
         if level.size == 0 or not self.snaps:
-            return self.felt, 0.0
+            return self.cutoff_gap, 0.0
         return float(self.gap[level[0]]), float(self.force[level[-1] + 1] - self.force[level[0]])
 
     @property
     def joins(self) -> float:
         """Undeformed gap [LU] below which an approaching pair has snapped in; the largest gap where none snaps."""
         if self.outer is None:
-            return self.felt
+            return self.cutoff_gap
         level = _level_cells(self.outer)
-        return float(self.outer[level[0]]) if level.size else self.felt
+        return float(self.outer[level[0]]) if level.size else self.cutoff_gap
 
     @property
-    def felt(self) -> float:
+    def cutoff_gap(self) -> float:
         """Undeformed gap [LU] beyond which a particle has no force."""
         return float(self.gap[-1])
 
@@ -363,7 +366,7 @@ class Law(ABC):
     @property
     def _apart(self) -> float:
         """Displacement [LU] below which F = 0."""
-        return self.rest - self.felt
+        return self.rest - self.cutoff_gap
 
     @cached_property
     def _coincidence(self) -> float:

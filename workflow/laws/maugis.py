@@ -66,7 +66,7 @@ class Maugis(Zoned):
         return scene.the(Adhesion).range or assumed
 
     @classmethod
-    def drawn(cls, scene: Scene, edge: float, reach: float) -> tuple[float, Callable[[Array], Array]]:
+    def cohesive_load(cls, scene: Scene, edge: float, reach: float) -> tuple[float, Callable[[Array], Array]]:
         """Return −σ₀ π (c² − a²) [FU], and the function (2σ₀/π) arctan √((c² − a²)/(a² − r²)) of r [LU]."""
         adhesion, square = scene.the(Adhesion), (reach - edge) * (reach + edge)
         stress, root = adhesion.work / (adhesion.range or math.inf), math.sqrt(square)
@@ -283,9 +283,9 @@ class Maugis(Zoned):
         outer = c * np.sin(np.linspace(math.asin(a / c), 0.5 * math.pi, POINTS))
         pressed = self.modulus * float(np.trapezoid((d - self.profile.height(inner)) ** 2, inner))
         root = np.sqrt((c - outer) * (c + outer))
-        drawn = 4.0 * self.equations.stress * float(np.trapezoid((self.profile.height(outer) - d) * root, outer))
+        attraction = 4.0 * self.equations.stress * float(np.trapezoid((self.profile.height(outer) - d) * root, outer))
         disc = c * c * (c - a) - (c**3 - a**3) / 3.0
-        return pressed - 4.0 * self.equations.stress**2 / self.modulus * disc + drawn - math.pi * c * c * self.work
+        return pressed - 4.0 * self.equations.stress**2 / self.modulus * disc + attraction - math.pi * c * c * self.work
 
     def energy_at(self, position: float) -> float:
         """Return the energy [FU·LU] of the state at a position on the curve."""
@@ -412,7 +412,7 @@ class MaugisCells(ZonedCells):
         return self.law.radii(displacements)
 
     @property
-    def top(self) -> float:
+    def critical_displacement(self) -> float:
         """Displacement [LU] of the force maximum in unloading; before contact, that of a point of the curve."""
         law, edge = self.law, np.asarray([self.law.critical_radius])
         if edge[0] > 0.0:

@@ -65,7 +65,7 @@ class Springs(Particles):
     @property
     def apart(self) -> float:
         """Displacement [LU] below which no pair has a force."""
-        return self.law.rest - self.law.felt
+        return self.law.rest - self.law.cutoff_gap
 
     def held(self, displacements: Array) -> Array:
         """Return F [FU] at displacements (m,) [LU], all pairs on the branch of joined ones."""

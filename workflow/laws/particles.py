@@ -25,7 +25,7 @@ from contact1d.workflow.laws.law import Law
 from contact1d.workflow.laws.numerics import ROUND_OFF
 from contact1d.workflow.laws.path import Followed, History, Path
 from contact1d.workflow.laws.shape import Profile as Undeformed
-from contact1d.workflow.laws.shape import places_within
+from contact1d.workflow.laws.shape import positions_within
 
 Array = NDArray[np.float64]
 MORE_PHASES = (0.375, 0.25, 0.125, 0.0)
@@ -118,7 +118,7 @@ class Particles(ABC):
         """Return the times [TU] of load steps of a pull-off from a displacement [LU] at a velocity [LU/TU]."""
         return np.linspace(0.0, (deepest - self.apart) / velocity, count)
 
-    def carrying(self, times: Array, forces: Array) -> tuple[Array, Array | None]:
+    def displacements_under(self, times: Array, forces: Array) -> tuple[Array, Array | None]:
         """Return the displacements (m,) [LU] under forces (m,) [FU] ≥ 0 at times (m,) [TU], and the velocities.
 
         Velocities (m,) [LU/TU] are those of `Path`; None where displacements are straight between the states.
@@ -126,7 +126,7 @@ class Particles(ABC):
         depths = {force: self.displacement_at(force) if force > 0.0 else 0.0 for force in np.unique(forces).tolist()}
         return np.asarray([depths[force] for force in forces.tolist()]), None
 
-    def feeling(self) -> Callable[[float, float, float], float]:
+    def force_in_time(self) -> Callable[[float, float, float], float]:
         """Return the force [FU] on a body that has just touched, as a function to be called state by state.
 
         Its arguments are the next displacement [LU], the time until then [TU] and the velocity there [LU/TU].
@@ -156,7 +156,7 @@ class Particles(ABC):
         return self.limits
 
     @property
-    def top(self) -> float | None:
+    def critical_displacement(self) -> float | None:
         """Displacement [LU] of the force maximum of a contact that is unloaded; None where the law does not give it."""
         return None
 
@@ -185,14 +185,14 @@ class Particles(ABC):
 
     def shifted(self, phase: float) -> Particles:
         """Return the particles of the same body with its apex `phase` spacings from a particle."""
-        return replace(self, x=places_within(self._reach, self.law.spacing, phase))
+        return replace(self, x=positions_within(self._reach, self.law.spacing, phase))
 
     def resized(self, factor: float) -> Particles:
         """Return the particles of the same body at `factor` times the spacing."""
         law = self.law
         law = replace(law, spacing=factor * law.spacing, stiffness=factor * law.stiffness, force=factor * law.force)
         phase = 0.5 if self.x.size % 2 == 0 else 0.0
-        return replace(self, law=law, x=places_within(self._reach, law.spacing, phase))
+        return replace(self, law=law, x=positions_within(self._reach, law.spacing, phase))
 
     @property
     def _reach(self) -> float:

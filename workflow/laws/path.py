@@ -79,7 +79,9 @@ class History:
 
     def path(self, model: Particles) -> Path:
         """Return the path of the body, under prescribed forces by the particles of a model."""
-        displacement, velocity = model.carrying(self.time, self.values) if self.by_force else (self.values, None)
+        displacement, velocity = self.values, None
+        if self.by_force:
+            displacement, velocity = model.displacements_under(self.time, self.values)
         return Path(displacement, np.zeros_like(displacement), self.time, velocity)
 
 

@@ -82,13 +82,13 @@ class Receding(Zoned):
         root = elementwise.find_root(error, ends, args=(displacements,))
         return np.where(root.success, root.x, super().radii(displacements))
 
-    def _recedes(self, edge: float, displacement: float) -> float:
+    def _edge_velocity(self, edge: float, displacement: float) -> float:
         """Return the edge velocity da/dt ≤ 0 [LU/TU] at a and d [LU]."""
         opened = float(self.profile.height(np.asarray([edge]))[0]) - displacement
         excess = self.modulus * opened * opened / (2.0 * math.pi * edge * self.work) - 1.0
         return -self.rate.velocity * excess ** (1.0 / self.rate.exponent) if excess > 0.0 and opened > 0.0 else 0.0
 
-    def _narrowed(self, edge: float, displacement_at: Callable[[float], float], times: Array) -> Array:
+    def _receding(self, edge: float, displacement_at: Callable[[float], float], times: Array) -> Array:
         """Return a, (m,) [LU], of a receding edge at times (m,) [TU], from `edge` at the first; 0 once it is lost."""
         from scipy.integrate import solve_ivp
 
@@ -99,7 +99,7 @@ class Receding(Zoned):
             # A lost edge is slowed down by a high power, since an end of the motion might not be detected; a trial step
             # may go far beyond.
             radius = max(math.exp(float(log[0])), lost * least)
-            return [self._recedes(radius, displacement_at(time)) / radius / (1.0 + (0.5 * least / radius) ** 12)]
+            return [self._edge_velocity(radius, displacement_at(time)) / radius / (1.0 + (0.5 * least / radius) ** 12)]
 
         ends, start = (float(times[0]), float(times[-1])), [math.log(edge)]
         radii = np.exp(solve_ivp(change, ends, start, "LSODA", times, rtol=1e-11, atol=1e-11).y[0])
@@ -113,7 +113,7 @@ class Receding(Zoned):
             d = displacements[leg]
             kept = np.full_like(d, edge)
             if d.size > 1 and edge > 0.0:  # an edge may recede also while the body approaches
-                kept = self._narrowed(edge, partial(np.interp, xp=times[leg], fp=d), times[leg])
+                kept = self._receding(edge, partial(np.interp, xp=times[leg], fp=d), times[leg])
             if d[-1] > d[0] or edge == 0.0:
                 held = (kept > 0.0) & (d >= self.fixed_grips[1])
                 held |= np.maximum.accumulate(d >= -ROUND_OFF * self.spacing)
@@ -122,7 +122,7 @@ class Receding(Zoned):
             edge = float(kept[-1])
         return radii
 
-    def pulled(self, start: float, velocity: float, count: int) -> Array:
+    def pull_off_times(self, start: float, velocity: float, count: int) -> Array:
         """Return times [TU] of a pull from equilibrium: `count` equal steps of edge and of body each, and separation.
 
         `start`: displacement [LU]; `velocity` [LU/TU].
@@ -131,7 +131,7 @@ class Receding(Zoned):
         end = (start - least) / velocity
         while True:
             times = np.linspace(0.0, end, 4000)
-            radii = self._narrowed(edge, lambda time: start - velocity * time, times)
+            radii = self._receding(edge, lambda time: start - velocity * time, times)
             if radii[-1] == 0.0:
                 break
             end *= 2.0
@@ -179,7 +179,7 @@ class RecedingCells(ZonedCells):
 
     def moments(self, deepest: float, velocity: float, count: int) -> Array:
         """Return the times [TU] of load steps of a pull-off, at equal steps of the edge and of the body."""
-        return self.law.pulled(deepest, velocity, count)
+        return self.law.pull_off_times(deepest, velocity, count)
 
     def refined(self, history: History) -> History:
         """Return a history with further moments, at equal steps of an edge that recedes."""

@@ -57,7 +57,7 @@ class Relaxing(Independent):
         return tuple((term.share, term.time) for term in scene.the(Viscoelasticity).terms or ())
 
     @classmethod
-    def soonest(cls, scene: Scene) -> float:
+    def shortest_time(cls, scene: Scene) -> float:
         """Return the shortest relaxation or retardation time of a scene [TU]."""
         return scene.the(Viscoelasticity).shortest_time
 
@@ -138,15 +138,15 @@ class RelaxingSprings(Particles):
         cells, _, counts = self._cells
         return np.asarray(self.law.stiffness * (np.maximum(displacements[:, None] - cells.heights, 0.0) @ counts))
 
-    def spent(self, times: Array) -> Array:
+    def durations(self, times: Array) -> Array:
         """Return the durations of load steps, (m,) [TU], that end at times (m,) [TU]; the first is instantaneous."""
         return np.diff(times, prepend=times[0] - SUDDEN * self.law.material.shortest_time)
 
-    def carrying(self, times: Array, forces: Array) -> tuple[Array, Array]:
+    def displacements_under(self, times: Array, forces: Array) -> tuple[Array, Array]:
         """Return displacements and velocities (m,) [LU, LU/TU] under forces (m,) [FU] ≥ 0 at times (m,) [TU]."""
         cells, _, counts = self._cells
         memory, before, states = Memory(self.law.material, cells), 0.0, []
-        for force, time in zip((forces / self.law.stiffness).tolist(), self.spent(times).tolist(), strict=True):
+        for force, time in zip((forces / self.law.stiffness).tolist(), self.durations(times).tolist(), strict=True):
             displacement, velocity = memory.under(force, before, counts, time)
             memory.go(displacement, time, velocity)
             states.append((displacement, velocity))
@@ -154,7 +154,7 @@ class RelaxingSprings(Particles):
         displacements, velocities = zip(*states, strict=True)
         return np.asarray(displacements), np.asarray(velocities)
 
-    def feeling(self) -> Callable[[float, float, float], float]:
+    def force_in_time(self) -> Callable[[float, float, float], float]:
         """Return the force [FU] on a body that has just touched, as a function to be called state by state.
 
         Its arguments are the next displacement [LU], the time until then [TU] and the velocity there [LU/TU].
@@ -171,7 +171,7 @@ class RelaxingSprings(Particles):
 
     def prescribed(self, path: Path) -> dict[str, Array]:
         """Return the displacements, durations and final velocities of load steps, (m,) [LU, TU, LU/TU]."""
-        spent, velocity = self.spent(path.time), path.velocity
+        spent, velocity = self.durations(path.time), path.velocity
         if velocity is None:
             velocity = np.diff(path.displacement, prepend=0.0) / spent
         return {"displacement": path.displacement, "duration": spent, "velocity": velocity}

@@ -16,7 +16,7 @@ from contact1d.workflow.laws.numerics import ROUND_OFF
 Array = NDArray[np.float64]
 
 
-def places_within(reach: float, spacing: float, phase: float) -> Array:
+def positions_within(reach: float, spacing: float, phase: float) -> Array:
     """Return all x = (i + φ) s [LU] with |x| ≤ reach, rising: i an integer, φ the `phase`, s the `spacing` [LU]."""
     first, last = math.ceil(-reach / spacing - phase), math.floor(reach / spacing - phase)
     return np.asarray(spacing * (np.arange(first, last + 1) + phase), dtype=np.float64)
@@ -42,23 +42,23 @@ class Profile(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Tabulated:
-    """A profile given by its `heights` [LU] at ascending `places` [LU] from 0, linear between them.
+    """A profile given by its `heights` [LU] at ascending `positions` [LU] from 0, linear between them.
 
     It replaces a measured profile, whose transform takes long: a predictor evaluates it thousands of times.
     """
 
-    places: Array
+    positions: Array
     heights: Array
     kinks: tuple[float, ...] = ()
 
     def height(self, x: Array) -> Array:
         """Return the height [LU] at positions x [LU], the last one beyond the table."""
-        return np.interp(np.abs(x), self.places, self.heights)
+        return np.interp(np.abs(x), self.positions, self.heights)
 
     @property
     def reach(self) -> float:
         """Half-width [LU] of the body."""
-        return float(self.places[-1])
+        return float(self.positions[-1])
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,10 +69,11 @@ class Splined(Tabulated):
     def _curve(self) -> Any:
         from scipy.interpolate import CubicSpline, PPoly
 
-        kinks = [int(kink) for kink in np.searchsorted(self.places, self.kinks) if 3 < kink < self.places.size - 4]
-        parts = [slice(first, last + 1) for first, last in pairwise([0, *kinks, self.places.size - 1])]
-        cubics = [CubicSpline(self.places[part], self.heights[part]).c for part in parts]
-        return PPoly(np.concatenate(cubics, axis=1), self.places)
+        end = self.positions.size - 1
+        kinks = [kink for kink in np.searchsorted(self.positions, self.kinks).tolist() if 3 < kink < end - 3]
+        parts = [slice(first, last + 1) for first, last in pairwise([0, *kinks, end])]
+        cubics = [CubicSpline(self.positions[part], self.heights[part]).c for part in parts]
+        return PPoly(np.concatenate(cubics, axis=1), self.positions)
 
     def height(self, x: Array) -> Array:
         """Return the height [LU] at positions x [LU], the last one beyond the table."""
@@ -89,14 +90,14 @@ def tabulated(profile: Profile, spacing: float, kind: type[Tabulated] = Tabulate
     return kind(x, profile.height(x), profile.kinks)
 
 
-def beside_kinks(places: Array, profile: Profile, points: int = 60, most_kinks: int = 100) -> Array:
+def beside_kinks(positions: Array, profile: Profile, points: int = 60, most_kinks: int = 100) -> Array:
     """Return rising positions [LU] with more of them on both sides of a profile's kinks, where g rises as a root.
 
     `points`: how many on each side, in geometric progression from 1e-9 to a tenth of the kink's position; `most_kinks`:
     at how many kinks.
     """
-    end = float(places[-1])
+    end = float(positions[-1])
     distances = np.append(0.0, np.geomspace(ROUND_OFF, 0.1, points))
     near = [kink * (1.0 + sign * distances) for kink in profile.kinks[:most_kinks] for sign in (1.0, -1.0)]
-    x = np.unique(np.concatenate([places, *near]))
+    x = np.unique(np.concatenate([positions, *near]))
     return np.asarray(x[x <= end])

@@ -126,7 +126,7 @@ def _edge(estimate: Law, largest: float) -> float:
     return estimate.half_width(max(largest, 0.0), float(estimate.gap[int(estimate.force.argmin())]))
 
 
-def felt_up_to(estimate: Law, largest: float, share: float) -> float:
+def significant_gap(estimate: Law, largest: float, share: float) -> float:
     """Return the undeformed gap [LU] beyond which no force exceeds a share of the largest one; r₀ without any force.
 
     `largest`: displacement [LU] of the contact.
@@ -144,7 +144,7 @@ def chain_length(scene: Scene, estimate: Law, largest: float, share: float) -> i
     if (count := scene.bodies.own_count) is not None:
         return count
     # Without attraction the contact ends where the force is 0.
-    reach = felt_up_to(estimate, largest, share) if estimate.attracts(scene) else estimate.felt
+    reach = significant_gap(estimate, largest, share) if estimate.attracts(scene) else estimate.cutoff_gap
     margin = 1.1  # over the length that the predictor gives
     half = margin * estimate.half_width(max(largest, 0.0), reach)
     half = max(half, _edge(estimate, largest) - 0.5 * decay_length(scene) * math.log(share))

@@ -35,7 +35,7 @@ def swing(scene: Scene, settings: Settings, model: Particles, start: float, load
         return np.full(2, model.displacement_at(load))
     particle, plate = inertia(scene, settings)
     mass, drag, step = plate + settings.chains.upper * particle, settings.drag(), settings.motion.time_step
-    path, displacement, velocity, contact_force = np.empty(total), start, 0.0, model.feeling()
+    path, displacement, velocity, contact_force = np.empty(total), start, 0.0, model.force_in_time()
     force = load - float(model.held(np.asarray([displacement]))[0])
     for i in range(total):
         velocity += 0.5 * step * force / mass
@@ -62,12 +62,12 @@ def impact(scene: Scene, settings: Settings, model: Particles, velocity: float, 
     """Return the path of an impact at a velocity [LU/TU] on the reduced model, from touch to free flight.
 
     Its states are at the times of a run, `dense` so many times. Velocity Verlet of M d″ = −F, with F of
-    `Particles.feeling`, takes 16 steps for each state of a run, which are longer than timesteps of the run.
+    `Particles.force_in_time`, takes 16 steps for each state of a run, which are longer than timesteps of the run.
     """
     assert scene.plate
     assert scene.plate.mass != "auto"
     steps, time = max(1, 16 // dense), stretch(settings, velocity) * settings.motion.time_step / dense
-    step, contact_force, mass = time / steps, model.feeling(), scene.plate.mass
+    step, contact_force, mass = time / steps, model.force_in_time(), scene.plate.mass
     displacement, force = 0.0, 0.0
     displacements, forces, velocities = [0.0], [0.0], [velocity]
     while len(displacements) < FLIGHT * dense or not is_over(displacements, forces, FLIGHT * dense):

@@ -12,7 +12,7 @@ import math
 
 from contact1d.digits import apart
 from contact1d.workflow.errors import SceneEdit, SettingsError
-from contact1d.workflow.model.chain import felt_up_to
+from contact1d.workflow.model.chain import significant_gap
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Cantilever, Scene, Slide
 
@@ -31,7 +31,7 @@ def inertia(scene: Scene, settings: Settings) -> tuple[float, float]:
 def contact_half_width(scene: Scene, settings: Settings) -> float:
     """Return the half-width [LU] in which forces on upper particles exceed the tolerance times the largest one."""
     estimate, largest = settings.law, settings.largest_displacement
-    half = estimate.half_width(max(largest, 0.0), felt_up_to(estimate, largest, scene.accuracy.tolerance))
+    half = estimate.half_width(max(largest, 0.0), significant_gap(estimate, largest, scene.accuracy.tolerance))
     return min(half, 0.5 * (settings.chains.upper - 1) * scene.bodies.own_spacing)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from contact1d.workflow.laws.particles import Particles
-from contact1d.workflow.laws.shape import places_within
+from contact1d.workflow.laws.shape import positions_within
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 
@@ -20,5 +20,5 @@ def reduced(scene: Scene, settings: Settings) -> Particles:
     if bodies.particles != "auto" or bodies.own_count is not None:
         reach = min(reach, half)
     round_off = 1.0 + 1e-12  # so that a chain has its last particle
-    x = places_within(reach * round_off, law.spacing, 0.5 if settings.chains.upper % 2 == 0 else 0.0)
+    x = positions_within(reach * round_off, law.spacing, 0.5 if settings.chains.upper % 2 == 0 else 0.0)
     return replace(law.particles(x, deepest), body=bodies if bodies.profile.slow else None)

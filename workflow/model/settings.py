@@ -266,7 +266,7 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     else:
         largest = estimate.displacement_at(load * estimate.creep(scene.experiment.lasts or 0.0))
     chains = _chains(scene, estimate, forces, largest, calibration.chain * tolerance)
-    scale = forces.scale_of(scene, estimate.strained(largest))
+    scale = forces.scale_of(scene, estimate.largest_length_change(largest))
     require_digits(scene, chains.upper, forces.rest + largest, tolerance * scale)
     forces = replace(forces, scale=scale, residual=calibration.residual * tolerance * scale)
     forces = forces.with_table(scene, estimate, largest, calibration.table * tolerance * scale)
