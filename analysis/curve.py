@@ -6,6 +6,7 @@ import csv
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
+from functools import cache
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -86,7 +87,7 @@ def plain(cell: str) -> str:
 def _cells(column: Column) -> Sequence[str]:
     """The cells of a column; one `%` operation for all numbers."""
     if len(column) and isinstance(column[0], str):
-        return [as_text(str(word)) for word in column]
+        return [*map(cache(as_text), map(str, column))]  # a few words, over and over
     numbers = np.asarray(column, dtype=np.float64).tolist()
     cells = ("%.17g\n" * len(numbers) % tuple(numbers)).split()
     return ["" if cell == "nan" else cell for cell in cells]

@@ -270,8 +270,8 @@ def _missed(h: Array, rise: Array) -> float:
     """What the trapezoidal rule may miss on a leg of increments h > 0 with these changes of the force."""
     if len(h) < 2:
         return float(0.5 * h @ np.abs(rise))
-    padded_h, padded = np.pad(h, 1, mode="edge"), np.pad(rise / h, 1, mode="edge")
-    before, after = padded[:-2], padded[2:]
-    bend = np.abs(after - before) / (0.5 * (padded_h[:-2] + padded_h[2:]) + h)
-    jump = h * np.abs(rise / h - 0.5 * (before + after))
+    last, slope = len(h) - 1, rise / h
+    before, after = [0, *range(last)], [*range(1, last + 1), last]
+    bend = np.abs(slope[after] - slope[before]) / (0.5 * (h[before] + h[after]) + h)
+    jump = h * np.abs(slope - 0.5 * (slope[before] + slope[after]))
     return float((h**3 * bend / 12.0 + 0.5 * h * jump).sum())

@@ -39,7 +39,7 @@ class Profile:
         shapes = {array.shape for array in (self.x, self.z_lower, self.z_upper, self.pressure, self.shear)}
         if [len(shape) for shape in shapes] != [1]:
             raise ValueError(f"the arrays of a profile must be 1-D and equally long, got shapes {sorted(shapes)}")
-        if np.any(np.diff(self.x) < 0.0):
+        if (self.x[1:] < self.x[:-1]).any():
             raise ValueError("the arrays of a profile must be sorted by x")
 
 
@@ -153,9 +153,8 @@ def end_pressure_share(profile: Profile) -> float:
 
     Far below 1e-3 the chain is long enough: "the contact region should be smaller than the chain" (paper, Section 4).
     """
-    size = np.abs(profile.pressure)
-    largest = float(np.max(size, initial=0.0))
-    return float(max(size[0], size[-1])) / largest if largest > 0.0 else 0.0
+    ends = max(map(abs, profile.pressure[[0, -1]].tolist()))
+    return ends / float(np.abs(profile.pressure).max()) if ends else 0.0
 
 
 def spacing_of(x: Array) -> float:

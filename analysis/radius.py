@@ -190,7 +190,7 @@ def _of_edges(
     sides = [(x, p, first, last), (-x[::-1], p[::-1], end - last, end - first)]
     found = []
     # A contact that is the same on both sides has one edge.
-    for places, pressures, least, most in sides[: 1 if x[0] == -x[-1] and np.array_equal(p, p[::-1]) else 2]:
+    for places, pressures, least, most in sides[: 1 if x[0] == -x[-1] and (p == p[::-1]).all() else 2]:
         low = max(0, most - PARABOLA_POINTS)
         near = slice(low, most + 2)
         found.append(edge(places[near].tolist(), pressures[near].tolist(), least - low, most - low))
@@ -253,7 +253,7 @@ def _held_edge(x: list[float], p: list[float], first: int, last: int) -> Place:
         return somewhere
     share = min(max(found, 0.0), 1.0)
     off = min(0.5, abs(found - straight)) * spacing
-    return replace(somewhere, position=somewhere.position + (share - 0.5) * spacing, uncertainty=off)
+    return Place(x[last] + (share - 0.5) * spacing, off, somewhere.at_end)
 
 
 def _share(carried: float, inner: list[float]) -> float:

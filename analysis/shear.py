@@ -84,7 +84,8 @@ def slip(force: Array, pushed: Array, limit: Array, next_limit: Array, stiffness
     way = (wanted - after) / stiffness
     side = np.sign(way)
     faster = pushed - side * (next_limit - limit)
-    begins = np.divide(side * limit - force, faster, out=np.zeros_like(force), where=faster != 0.0)
+    with np.errstate(over="ignore"):  # of a move that is next to nothing
+        begins = np.divide(side * limit - force, faster, out=np.zeros_like(force), where=faster != 0.0)
     at_begin = limit + np.clip(begins, 0.0, 1.0) * (next_limit - limit)
     return Slip(after, way, np.abs(way) * 0.5 * (at_begin + next_limit))
 

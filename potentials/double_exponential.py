@@ -17,18 +17,18 @@ class PairPotential(ABC):
 
     @abstractmethod
     def derivative(self, order: int, r: ArrayLike) -> Array:
-        """(−1)ⁿ dⁿV/drⁿ [FU·LU/LUⁿ] of this order n for distances r ≥ 0 [LU] of any shape."""
+        """Return (−1)ⁿ dⁿV/drⁿ [FU·LU/LUⁿ] of this order n for distances r ≥ 0 [LU] of any shape."""
 
     def energy(self, r: ArrayLike) -> Array:
-        """V(r) [FU·LU] for distances r ≥ 0 [LU] of any shape."""
+        """Return V(r) [FU·LU] for distances r ≥ 0 [LU] of any shape."""
         return self.derivative(0, r)
 
     def force(self, r: ArrayLike) -> Array:
-        """f(r) = −V′(r) [FU], positive where the particles repel each other."""
+        """Return f(r) = −V′(r) [FU], positive where the particles repel each other."""
         return self.derivative(1, r)
 
     def stiffness(self, r: ArrayLike) -> Array:
-        """V″(r) = −f′(r) [FU/LU], negative where a pair can become unstable."""
+        """Return V″(r) = −f′(r) [FU/LU], negative where a pair can become unstable."""
         return self.derivative(2, r)
 
 
@@ -40,7 +40,7 @@ class Exponential(PairPotential):
     range: float
 
     def derivative(self, order: int, r: ArrayLike) -> Array:
-        """(A/aⁿ) exp(−r/a)."""
+        """Return (A/aⁿ) exp(−r/a) [FU·LU/LUⁿ] for distances r [LU] of any shape."""
         return np.asarray(self.amplitude * np.exp(-np.asarray(r, dtype=float) / self.range)) / self.range**order
 
 
@@ -50,7 +50,7 @@ class DoubleExponential(PairPotential):
 
     Args:
         repulsion: the term A exp(−r/a).
-        attraction: the term B exp(−r/b), or None. With it the law must repel at r = 0 (A/a > B/b) and
+        attraction: the term B exp(−r/b), or None. With it the potential must repel at r = 0 (A/a > B/b) and
             attract far away (b > a), so that exactly one distance is force-free.
 
     Raises:
@@ -70,13 +70,13 @@ class DoubleExponential(PairPotential):
             raise ValueError("the repulsion must prevail at r = 0 (A/a > B/b)")
 
     def derivative(self, order: int, r: ArrayLike) -> Array:
-        """That of the repulsion without that of the attraction."""
-        value = self.repulsion.derivative(order, r)
-        return value if self.attraction is None else value - self.attraction.derivative(order, r)
+        """Return the derivative of the repulsion minus that of the attraction."""
+        repulsion = self.repulsion.derivative(order, r)
+        return repulsion if self.attraction is None else repulsion - self.attraction.derivative(order, r)
 
     @property
     def formula(self) -> str:
-        """V(r) as text, with 17 significant digits."""
+        """Return V(r) as text, with 17 significant digits."""
         terms = f"{self.repulsion.amplitude:.17g} exp(-r/{self.repulsion.range:.17g})"
         if self.attraction is not None:
             terms += f" - {self.attraction.amplitude:.17g} exp(-r/{self.attraction.range:.17g})"
@@ -84,14 +84,14 @@ class DoubleExponential(PairPotential):
 
     @property
     def longest_range(self) -> float:
-        """The range of the term that dominates at large distance [LU]."""
+        """Return the range of the term that dominates at large distance [LU]."""
         return self.repulsion.range if self.attraction is None else self.attraction.range
 
     def force_free_distance(self) -> float:
-        """r₀ with f(r₀) = 0: r₀ = ln[(A/a)/(B/b)] / (1/a − 1/b) [LU].
+        """Return the distance r₀ with f(r₀) = 0: r₀ = ln[(A/a)/(B/b)] / (1/a − 1/b) [LU].
 
         Raises:
-            ValueError: for a law without attraction, which is force-free nowhere.
+            ValueError: for a potential without attraction, which is force-free nowhere.
         """
         if self.attraction is None:
             raise ValueError("an interaction without attraction has no force-free distance")
@@ -99,7 +99,7 @@ class DoubleExponential(PairPotential):
         return math.log(ratio) / (1.0 / self.repulsion.range - 1.0 / self.attraction.range)
 
     def cutoff_for(self, share: float) -> float:
-        """Distance [LU] beyond which the force is below `share` of that at r₀ (without attraction: at 0).
+        """Return the distance [LU] beyond which the force is below `share` of that at r₀ (without attraction: at 0).
 
         The far force is that of the longest term and falls as exp(−r/b), so the cutoff is r₀ + b ln(1/share).
         """

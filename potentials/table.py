@@ -1,12 +1,12 @@
 """LAMMPS `pair_style table` files of a central interaction, exact down to zero distance of opposite particles.
 
-LAMMPS interpolates g(s) = f(r)/r over s = r² on a uniform grid and stops where a pair comes closer than the first
-entry. The two bodies therefore lie in parallel planes a small offset ε apart (out of plane, with no motion there), and
+LAMMPS interpolates g(s) = f(r)/r over s = r² on a uniform grid and stops if a pair comes closer than the first entry.
+The two bodies therefore lie in parallel planes a small offset ε apart (out of plane, with no motion there), and
 the table is a function of the distance in space r_L = √(r² + ε²):
 
     F_table(r_L) = f(r) · r_L / r,      so that the force in the plane, F_table · r / r_L, is f(r) exactly.
 
-Since r_L² = r² + ε², the offset only shifts the grid: it costs no accuracy, and r_L ≥ ε keeps every run going.
+Since r_L² = r² + ε², the offset only shifts the grid: it costs no accuracy, and since r_L ≥ ε no run stops.
 Within one grid cell of r = 0, where a finite core's g = f/r diverges, g is held at its value one cell out: there, and
 only there, the force falls to 0 at r = 0 instead of jumping to its opposite.
 """
@@ -28,10 +28,6 @@ FEWEST_POINTS = 2_000
 MOST_POINTS = 400_000
 INNER_CELLS = 4
 """Grid cells between the first entry and r = 0: a spline's end condition does not reach across them."""
-SAMPLES = 20_000
-"""Distances at which the error of a table is measured."""
-SPLINE_REACH = 28
-"""Entries over which a change of one is felt by the spline: (2 − √3)^28 = 1e-16."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +35,7 @@ class Table:
     """A tabulated pair interaction.
 
     Attributes:
-        law: the law that it represents.
+        law: the potential that it represents.
         cutoff: r_c [LU]; the energy is V(r) − V(r_c), the force f(r) up to r_c and 0 beyond.
         points: number of grid points over r_L².
     """
@@ -50,77 +46,79 @@ class Table:
 
     @property
     def cell(self) -> float:
-        """Grid step of r² [LU²]."""
+        """Return the grid step of r² [LU²]."""
         return self.cutoff**2 / (self.points - 1 - INNER_CELLS)
 
     @property
     def plane_offset(self) -> float:
-        """ε [LU], the distance of the two bodies' planes: ε² lies one cell beyond the grid's own margin."""
-        return float(np.sqrt((INNER_CELLS + 1) * self.cell))
+        """Return the distance ε of the two bodies' planes [LU]: ε² lies one cell beyond the margin of the grid."""
+        return math.sqrt((INNER_CELLS + 1) * self.cell)
 
     @property
     def core(self) -> float:
-        """Distance [LU] below which the force is smoothed to 0."""
-        return float(np.sqrt(self.cell))
+        """Return the distance [LU] below which the force is smoothed to 0."""
+        return math.sqrt(self.cell)
 
     def grid(self) -> Array:
-        """r_L² [LU²] of every entry, shape (points,)."""
+        """Return r_L² [LU²] of all entries, shape (points,)."""
         first = self.plane_offset**2 - INNER_CELLS * self.cell
         return np.asarray(first + self.cell * np.arange(self.points), dtype=np.float64)
 
     def entries(self) -> tuple[Array, Array, Array]:
-        """(r_L [LU], energy [FU·LU], F_table [FU]), each of shape (points,)."""
+        """Return r_L [LU], energy [FU·LU] and F_table [FU] of all entries, each of shape (points,)."""
         squared = self.grid()
         distance = np.sqrt(squared)
         r = np.sqrt(np.maximum(squared - self.plane_offset**2, self.cell))
         slope = self.law.force(r) / r
-        # Where g is held, the energy goes on with the force −dE/dr_L = g r_L that belongs to it.
-        held = 0.5 * slope * np.maximum(self.cell - (squared - self.plane_offset**2), 0.0)
-        return distance, self.law.energy(r) - self.law.energy(self.cutoff) + held, slope * distance
+        # Where g is constant, the energy continues with the corresponding force −dE/dr_L = g r_L.
+        inside = 0.5 * slope * np.maximum(self.cell - (squared - self.plane_offset**2), 0.0)
+        return distance, self.law.energy(r) - self.law.energy(self.cutoff) + inside, slope * distance
 
     def force(self, r: Array) -> Array:
-        """The force in the plane [FU] that LAMMPS interpolates from this table at distances r ≤ r_c [LU].
+        """Return the force in the plane [FU] that LAMMPS interpolates from this table at distances r ≤ r_c [LU].
 
         It interpolates g = F_table/r_L by a cubic spline over s = r_L² with knots at the entries. Between two of them,
         at the share t of the cell h: (1 − t) g₀ + t g₁ − t (1 − t) [(2 − t) M₀ + (1 + t) M₁] h²/6, M = g″.
         """
         slope, bend = _knots(self)
-        place = (np.square(r) + self.plane_offset**2 - self.grid()[0]) / self.cell
-        left = np.clip(place.astype(np.intp), 0, self.points - 2)
-        t = place - left
+        position = (np.square(r) + self.plane_offset**2 - self.grid()[0]) / self.cell
+        left = np.clip(position.astype(np.intp), 0, self.points - 2)
+        t = position - left
         curved = (2.0 - t) * bend[left] + (1.0 + t) * bend[left + 1]
         between = (1.0 - t) * slope[left] + t * slope[left + 1] - t * (1.0 - t) * curved
         return np.asarray(between * r)
 
-    # A scene asks for the same ones again and again; what is kept is small, tables being equal by value.
+    # Cached, since a scene needs the errors of few tables often.
     @lru_cache(maxsize=64)  # noqa: B019  # a table is small, and equal by value
-    def error_beyond(self, r_min: float) -> float:
-        """Largest interpolation error of the force [FU] for r_min ≤ r ≤ r_c, from SAMPLES dense near r_min."""
-        r = r_min * (self.cutoff / r_min) ** np.linspace(0.0, 1.0, SAMPLES)
-        return float(np.max(np.abs(self.force(r) - self.law.force(r))))
+    def error_beyond(self, r_min: float, samples: int = 20_000) -> float:
+        """Return the largest interpolation error of the force [FU] for r_min ≤ r ≤ r_c, sampled densely near r_min."""
+        r = r_min * (self.cutoff / r_min) ** np.linspace(0.0, 1.0, samples)
+        return float(np.abs(self.force(r) - self.law.force(r)).max())
 
 
-@lru_cache(maxsize=4)  # the same one is asked for offset by offset
+@lru_cache(maxsize=4)  # each lateral offset of the bodies needs the knots
 def _knots(table: Table) -> tuple[Array, Array]:
-    """g at the entries of a table, and M h²/6 of its spline there, each of shape (points,).
+    """Return g at the entries of a table, and M h²/6 of its spline there, each of shape (points,).
 
     On a uniform grid M₋ + 4 M₀ + M₊ = 6 δ²g/h² is solved by the decaying Green's function z^|j| / 2√3, z = √3 − 2. The
-    spline's ends, where LAMMPS has conditions of its own, lie in the margin of INNER_CELLS and beyond the cutoff.
-    `scipy.interpolate.CubicSpline`, which the tests hold it against, takes longer to import than a small run takes.
+    spline's ends, where LAMMPS has other end conditions, lie in the margin of INNER_CELLS and beyond the cutoff.
+    `scipy.interpolate.CubicSpline`, the reference of the tests, takes longer to import than a small run takes.
     """
     distance, _, force = table.entries()
     slope = force / distance
     second = np.zeros_like(slope)
     second[1:-1] = slope[:-2] - 2.0 * slope[1:-1] + slope[2:]
-    green = (math.sqrt(3.0) - 2.0) ** np.abs(np.arange(-SPLINE_REACH, SPLINE_REACH + 1)) / (2.0 * math.sqrt(3.0))
+    z = math.sqrt(3.0) - 2.0
+    reach = math.ceil(math.log(np.spacing(1.0), -z))  # entries beyond which z^|j| is round-off
+    green = z ** abs(np.arange(-reach, reach + 1)) / (2.0 * math.sqrt(3.0))
     return slope, np.convolve(second, green, mode="same")
 
 
 def table_for(law: DoubleExponential, cutoff: float, closest: float, error: float) -> Table:
-    """The smallest table whose force error is at most `error` [FU] from `closest` [LU] up to the cutoff [LU].
+    """Return the smallest table whose force error is at most `error` [FU] from `closest` [LU] to the cutoff [LU].
 
     The number of points doubles until the measured error (`Table.error_beyond`) is small enough, or MOST_POINTS is
-    reached: what was reached stands in the file's header either way.
+    reached: the header of the file states the error that was reached.
     """
     table = Table(law, cutoff, FEWEST_POINTS)
     while table.error_beyond(closest) > error and 2 * table.points <= MOST_POINTS:

@@ -61,7 +61,7 @@ def pages() -> None:
     from validation.study import read_record
 
     records = {name: read_record(RESULTS / f"{name}.json") for name in ("paper", "hard", "speed")}
-    (ROOT / "VALIDATION.md").write_text(summary(records["paper"], records["hard"]), encoding="utf-8")
+    (ROOT / "VALIDATION.md").write_text(summary(**records), encoding="utf-8")
     (RESULTS / "tables.md").write_text(tables_page([records["paper"], records["hard"]]), encoding="utf-8")
     write_between(ROOT / "docs" / "performance.md", "speed", speed_table(records["speed"]))
     save_figure(margins(margins_of(records["hard"])), ROOT / "docs" / "stability" / "margins.png")

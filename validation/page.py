@@ -72,9 +72,11 @@ def duration(seconds: float) -> str:
 
 
 def agreement(rows: Sequence[Row]) -> str:
-    """What rows say together, for a sentence: "all 8 rows pass", "2 of 8 rows fail"."""
-    failed = len(verdicts(rows, "FAIL"))
-    return f"{failed} of {len(rows)} rows fail" if failed else f"all {len(rows)} rows pass"
+    """What rows say together, for a sentence: "all 8 rows pass", "5 of 8 rows pass, 2 fail, 1 differs as expected"."""
+    counts = {"fail": len(verdicts(rows, "FAIL")), "differ as expected": len(verdicts(rows, "DIFFERS"))}
+    short = [f"{count} {words}" for words, count in counts.items() if count]
+    passed = f"{len(rows) - sum(counts.values())} of" if short else "all"
+    return ", ".join([f"{passed} {len(rows)} rows pass", *short])
 
 
 def margins_of(record: Record) -> dict[str, list[float]]:
@@ -164,7 +166,7 @@ def tables_page(records: Iterable[Record]) -> str:
     return "\n\n".join(filter(None, parts)) + "\n"
 
 
-def summary(paper: Record, hard: Record) -> str:
+def summary(paper: Record, hard: Record, speed: Record) -> str:
     """VALIDATION.md: what was asked, what came out, some figures, and what is not validated."""
     counted = [
         (name, meaning, str(len(own)), str(len(verdicts(own, "PASS"))), str(len(verdicts(own, "DIFFERS"))))
@@ -176,7 +178,8 @@ def summary(paper: Record, hard: Record) -> str:
     filled = {
         "paper": f"{outcome(paper.rows)} (measured {_when(paper.answers)})",
         "hard": f"{agreement(hard.rows)} (measured {_when(hard.answers)})",
-        "failing": _failing([*paper.answers, *hard.answers]),
+        "speed": f"{agreement(speed.rows)} (measured {_when(speed.answers)})",
+        "failing": _failing([*paper.answers, *hard.answers, *speed.answers]),
         "evidence": table(("reference", "meaning", "rows", "pass", "differ"), counted),
         "studies": studies_table(paper),
         "differing": _differing(paper),

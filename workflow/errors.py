@@ -1,7 +1,7 @@
-"""What the program raises for a person to read: what is wrong, what is allowed, what to do.
+"""Errors for the user: what is wrong, what is allowed, what to do.
 
-An error carries its remedy: advice in words, and edits of the scene that the raising place knows to help. Whoever
-reports it tries the first of these once (`workflow.runs.advised`).
+An error has its suggested fix: advice in words, and edits of the scene that the raising function knows to help.
+`workflow.runs.advised` tries the first of these once.
 """
 
 from __future__ import annotations
@@ -15,40 +15,40 @@ from typing import ClassVar
 
 @dataclass(frozen=True)
 class SceneEdit:
-    """Values by dotted keys, and effects that are left out."""
+    """New values by dotted keys, and effects to leave out."""
 
     values: Mapping[str, object] = field(default_factory=dict)
     without: tuple[str, ...] = ()
 
 
 class Contact1dError(Exception):
-    """Every error that is about a scene, a folder or a run, and not a mistake in a program.
+    """An error in a scene, a folder or a run, and not in a program.
 
     Attributes:
-        exit_code: of a command that it ends: 2, the scene or the call is wrong; 3, the run failed.
+        exit_code: exit code of the command line: 2, the scene or the call is wrong; 3, the run failed.
         changes: edits of the scene that may help, the best one first.
     """
 
     exit_code: ClassVar[int] = 2
 
     def __init__(self, *arguments: object, changes: Iterable[SceneEdit] = ()) -> None:
-        """Keep the changes beside the arguments; both survive pickling."""
+        """Store the arguments and the changes; both are kept by pickling."""
         super().__init__(*arguments)
         self._changes = tuple(changes)
 
     @cached_property
     def message(self) -> str:
-        """What is wrong, without where the files are."""
+        """Return what is wrong, without the folder of the files."""
         return str(self)
 
     @property
     def changes(self) -> tuple[SceneEdit, ...]:
-        """See above."""
+        """Return edits of the scene that may help, the best one first."""
         return self._changes
 
 
 class FolderError(Contact1dError, RuntimeError):
-    """A folder that no run may be written into, or that no run can be read from."""
+    """A folder into which no run may be written, or from which no run can be read."""
 
 
 class RunError(Contact1dError, RuntimeError):
@@ -57,18 +57,18 @@ class RunError(Contact1dError, RuntimeError):
     Attributes:
         message: why.
         folder: the run folder.
-        kept: whether the run began, so that its files are there, and its results.json says the same.
+        kept: whether the run began: then its files are in the folder, and its results.json has the message.
     """
 
     exit_code = 3
 
     def __init__(self, message: str, folder: Path, kept: bool = True) -> None:
-        """Keep them; they are arguments, so that the error can be pickled."""
+        """Store the attributes; all of them are arguments, so that the error can be pickled."""
         super().__init__(message, folder, kept)
         self.message, self.folder, self.kept = message, folder, kept
 
     def __str__(self) -> str:
-        """Return the message, and where the files are or would have been."""
+        """Return the message and the run folder."""
         return f"{self.message}\n{'files kept in' if self.kept else 'run folder:'} {self.folder}"
 
 
@@ -83,17 +83,17 @@ class UntrustedError(Contact1dError, RuntimeError):
     exit_code = 3
 
     def __init__(self, message: str, advice: str = "", changes: Iterable[SceneEdit] = ()) -> None:
-        """Keep all."""
+        """Store the attributes and the changes."""
         super().__init__(message, advice, changes=changes)
         self.message, self.advice = message, advice
 
     def __str__(self) -> str:
-        """Return both, one behind the other."""
+        """Return the message, followed by the advice."""
         return f"{self.message}: {self.advice}" if self.advice else self.message
 
 
 class ThroughError(UntrustedError):
-    """The bodies went through each other, which may be the path there and not the load (`in_smaller_steps`)."""
+    """The bodies went through each other, maybe due to load steps that are too large (`in_smaller_steps`)."""
 
 
 class ChainEndError(UntrustedError):
@@ -119,12 +119,9 @@ class RestlessError(UntrustedError):
 class TensionError(UntrustedError):
     """A tensile force that the contact does not sustain; `most` is about its pull-off force [FU]."""
 
-    HELD_SHARE = 0.9
-    """Tensile force that is suggested, over the pull-off force."""
-
     def __init__(self, force: float, most: float) -> None:
-        """The required force [FU] and the pull-off force; they are the arguments for pickling."""
-        suggested = float(f"{-self.HELD_SHARE * most:.3g}")
+        """Store the required force and the pull-off force [FU], which are the arguments for pickling."""
+        suggested = float(f"{-0.9 * most:.3g}")  # a tensile force that the contact sustains
         super().__init__(
             f"{force:.4g} FU is never reached: the pull-off force is about {most:.4g} FU",
             changes=[SceneEdit({"experiment.force": suggested})],

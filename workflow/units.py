@@ -1,7 +1,7 @@
-"""The one unit system: length LU, force FU, mass MU, time TU = √(MU·LU/FU), temperature as energy k_BT in FU·LU.
+"""The unit system of the model: length LU, force FU, mass MU, time TU = √(MU·LU/FU), temperature as k_BT in FU·LU.
 
 `SI` has every unit of the model with its powers, which all conversions use; a test compares them with pint's, whose
-registry reads the units in a scene's texts. `Scales` is what LU, FU and MU represent in SI, where a scene says so.
+registry reads the units in a scene's texts. `Scales` has the sizes of LU, FU and MU in SI, where a scene gives them.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ NUMBER = "1"
 
 
 class ModelUnit(NamedTuple):
-    """A unit of SI, and that of the model for the same dimension: LU^length FU^force MU^mass, with TU = √(MU·LU/FU)."""
+    """An SI unit, and the model unit of the same dimension, LU^length FU^force MU^mass, with TU = √(MU·LU/FU)."""
 
     si: str
     length: float = 0.0
@@ -34,7 +34,7 @@ class ModelUnit(NamedTuple):
 
     @property
     def powers(self) -> dict[str, float]:
-        """The powers that are not 0, by LU, FU and MU, which must be known for its size in SI."""
+        """Return the powers that are not 0, by LU, FU and MU: the unit has a size in SI where these have one."""
         return {base: power for base, power in zip(("LU", "FU", "MU"), self[1:], strict=True) if power}
 
 
@@ -52,43 +52,44 @@ SI = {
     NUMBER: ModelUnit("1"),
 }
 """The units of the model by their names."""
-WITH_PREFIX = (*(own.si for own in SI.values() if own.si not in ("kg", "1")), "J/m²")
-"""Units of SI that take a prefix."""
-EXACT = 1e-12
-"""By which the logarithm of a power of ten may fall short of it."""
+WITH_PREFIX = (*(unit.si for unit in SI.values() if unit.si not in ("kg", "1")), "J/m²")
+"""SI units that take a prefix."""
 PREFIXES = "yzafpnµm kMGT"
-"""Of SI units, by powers of 1000 from the first on."""
-FIRST = -8
-"""The power of the first prefix."""
+"""SI prefixes by rising powers of 1000; the blank is no prefix."""
+FIRST = -PREFIXES.index(" ")
+"""The power of 1000 of the first prefix."""
 IN_WORDS = re.compile(
     r"([-−]?\d[\d.]*(?:e[+-]?\d+)?) (\()?([LFM]U(?:[·/][LFMT]U²?)*|TU)(?!\w)(?(2)\))|\(([LFM]U(?:[·/][LFMT]U²?)*|TU)\)"
 )
-"""A number with a unit of the model in a text, "1.5 FU/LU" or "1.5 (FU/LU)"; or that unit alone, in brackets."""
+"""A number with a unit of the model in a text, "1.5 FU/LU" or "1.5 (FU/LU)"; or only the unit, in brackets."""
 DIGITS = 4
-"""Of a number in a text, at least."""
+"""Least significant digits of a number in a text."""
 EXACTNESS = 1e-8
-"""A relative uncertainty below it, as of a unit that was given, is left out."""
+"""Relative uncertainty below which none is printed, as for a unit that was given."""
 
 
 def scale_of(value: float, unit: str) -> tuple[float, str]:
-    """The factor, and the unit with its prefix, for a number of this size in an SI `unit`.
+    """Return the factor, and the unit with its prefix, for a number of this size in an SI `unit`.
 
-    Of a compound unit (N/m) the first has the prefix, as in mN/m.
+    In a compound unit (N/m) the first one takes the prefix, as in mN/m.
     """
-    power = math.floor(math.log10(abs(float(f"{value:.6g}"))) / 3.0 + EXACT) if value and math.isfinite(value) else 0
-    power = power if 0 <= power - FIRST < len(PREFIXES) and unit in WITH_PREFIX else 0
+    power = 0
+    if value and math.isfinite(value) and unit in WITH_PREFIX:
+        # The logarithm of a power of ten may fall short of it by its round-off error.
+        power = math.floor(math.log10(abs(float(f"{value:.6g}"))) / 3.0 + 1e-12)
+    power = power if 0 <= power - FIRST < len(PREFIXES) else 0
     return 1000.0**-power, PREFIXES[power - FIRST].strip() + unit
 
 
 def prefixed(value: float, unit: str, digits: int = DIGITS) -> str:
-    """A value [`unit` of SI] with so many digits and a prefix: `2.356 µN`."""
+    """Return a value [SI `unit`] as text with this number of digits and a prefix: `2.356 µN`."""
     factor, name = scale_of(value, unit)
     return f"{value * factor:.{digits}g} {name}"
 
 
 @cache
 def registry() -> Any:
-    """Pint's units and those of the model, in which quantities calculate."""
+    """Return pint's registry with the units of the model, for arithmetic with quantities."""
     import pint
 
     units: Any = pint.UnitRegistry()
@@ -98,19 +99,22 @@ def registry() -> Any:
 
 
 def _calculated(operation: Callable[[Any, Any], Any]) -> Callable[[Quantity, Any], Quantity]:
-    """The operator of quantities that does this with pint's, between a quantity and another one or a number."""
+    """Return the operator that applies pint's `operation` to a quantity and another quantity or a number."""
 
-    def calculate(self: Quantity, other: Any) -> Quantity:
-        other = other if isinstance(other, Quantity) else Quantity(float(other), 0.0, NUMBER)
+    def calculate(self: Quantity, operand: Any) -> Quantity:
+        right = operand if isinstance(operand, Quantity) else Quantity(float(operand), 0.0, NUMBER)
 
-        def result(one: float, two: float) -> Any:
-            return operation(registry().Quantity(one, self.unit), registry().Quantity(two, other.unit))
+        def applied(left_value: float, right_value: float) -> Any:
+            return operation(registry().Quantity(left_value, self.unit), registry().Quantity(right_value, right.unit))
 
-        found = result(self.value, other.value)
-        found = found.to(next((name for name in WITH_PREFIX if found.check(name)), found.to_base_units().units))
-        moved = result(self.value + self.uncertainty, other.value), result(self.value, other.value + other.uncertainty)
-        spread = sum(abs((one - found).to(found.units).magnitude) for one in moved)
-        return Quantity(float(found.magnitude), float(spread), f"{found.units:~P}".replace("Δ", "") or NUMBER)
+        result = applied(self.value, right.value)
+        result = result.to(next((name for name in WITH_PREFIX if result.check(name)), result.to_base_units().units))
+        moved = (
+            applied(self.value + self.uncertainty, right.value),
+            applied(self.value, right.value + right.uncertainty),
+        )
+        spread = sum(abs((changed - result).to(result.units).magnitude) for changed in moved)
+        return Quantity(float(result.magnitude), float(spread), f"{result.units:~P}".replace("Δ", "") or NUMBER)
 
     return calculate
 
@@ -119,8 +123,8 @@ def _calculated(operation: Callable[[Any, Any], Any]) -> Callable[[Quantity, Any
 class Quantity:
     """A number with its uncertainty, both in `unit`: of SI, or of the model where a scene has no units.
 
-    Quantities and numbers calculate with each other, +, −, ·, / and powers: units by pint, and the uncertainty is the
-    sum of the changes that those of the operands make, since these may depend on each other.
+    The operators +, −, ·, / and powers take quantities and numbers. Units are pint's; the uncertainty is the sum of the
+    changes due to the uncertainty of each operand, since these may depend on each other.
     """
 
     value: float
@@ -128,26 +132,30 @@ class Quantity:
     unit: str
 
     def __float__(self) -> float:
-        """The value."""
+        """Return the value without unit and uncertainty."""
         return self.value
 
     @classmethod
     def of(cls, entry: Mapping[str, Any], in_si: bool = True) -> Quantity:
-        """The quantity of an entry in results.json, in SI where that is known and wanted."""
+        """Return the quantity of an entry in results.json: in SI, where the entry has that and `in_si` asks for it."""
         entry = entry.get("si", entry) if in_si else entry
         return cls(entry["value"], entry["uncertainty"], entry["unit"])
 
     @property
     def si(self) -> Quantity | None:
-        """This quantity where its unit is one of SI; None where the scene has no units."""
+        """Return this quantity where its unit is an SI unit; None where the scene has no units."""
         return None if self.unit in SI and self.unit != NUMBER else self
 
     def entry(self) -> dict[str, Any]:
-        """What results.json holds of it."""
+        """Return the entry of this quantity in results.json."""
         return vars(self).copy()
 
     def to(self, unit: str) -> Quantity:
-        """The same in another unit, "mN" for instance. Raises pint.DimensionalityError for another dimension."""
+        """Return the quantity in another unit, "mN" for instance.
+
+        Raises:
+            pint.DimensionalityError: the unit has another dimension.
+        """
         factor = registry().Quantity(1.0, self.unit).to(unit).magnitude
         return Quantity(self.value * factor, self.uncertainty * factor, unit)
 
@@ -159,7 +167,7 @@ class Quantity:
     __pow__ = _calculated(pow)
 
     def __str__(self) -> str:
-        """`402.7 ± 1.3 MPa`: the uncertainty with two digits, units of SI with a prefix."""
+        """Return `402.7 ± 1.3 MPa`: the uncertainty with two digits, SI units with a prefix."""
         factor, unit = (
             (1.0, self.unit) if self.si is None else scale_of(max(abs(self.value), self.uncertainty), self.unit)
         )
@@ -171,7 +179,7 @@ class Quantity:
 
 
 def rounded(value: float, uncertainty: float) -> str:
-    """`value ± uncertainty`, the uncertainty with two digits and the value to the same place, in one notation."""
+    """Return `value ± uncertainty`: the uncertainty with two digits, the value with the same decimals and exponent."""
     if not math.isfinite(uncertainty) or uncertainty <= 1e-3 * EXACTNESS * abs(value):
         return f"{value:.10g} ± {uncertainty:.2g}"
     place, power = 1 - math.floor(math.log10(uncertainty)), 0
@@ -190,10 +198,10 @@ class Scales:
 
     Attributes:
         length, force: one LU [m], one FU [N].
-        mass: one MU [kg]; None: not known, and with it no time.
-        length_uncertainty, force_uncertainty: of these; 0 where they are given.
-        known: whether they stand for anything; see UNKNOWN.
-        ends: pairs of what they may be instead, one for each number with ± that they are made of.
+        mass: one MU [kg]; None where it is unknown, and then so are times.
+        length_uncertainty, force_uncertainty: uncertainties of one LU [m] and one FU [N]; 0 where the scene gives both.
+        known: whether the scene has units; otherwise see UNKNOWN.
+        ends: for each number with ± on which the scales depend, the scales at both ends of its range.
     """
 
     length: float
@@ -205,39 +213,39 @@ class Scales:
     ends: tuple[tuple[Scales, ...], ...] = ()
 
     def know(self, unit: str) -> bool:
-        """Whether one `unit` is known in SI."""
+        """Return whether the size of one `unit` in SI is known."""
         return self.known and unit in SI and (self.mass is not None or not SI[unit].mass)
 
     def factor(self, unit: str) -> float:
-        """SI value of one `unit`. Raises KeyError for a unit that is not known."""
+        """Return the SI value of one `unit`. Raises KeyError where it is unknown."""
         if not self.know(unit):
             raise KeyError(unit)
-        own = SI[unit]
-        return float(self.length**own.length * self.force**own.force * (self.mass or 1.0) ** own.mass)
+        powers = SI[unit]
+        return float(self.length**powers.length * self.force**powers.force * (self.mass or 1.0) ** powers.mass)
 
     def base(self, unit: str) -> tuple[float, str]:
-        """The factor from a model `unit` to the base unit in which its numbers are shown, and that unit.
+        """Return the factor from a model `unit` to the base unit in which its numbers are shown, and that unit.
 
-        Of SI where it is known, else the unit itself.
+        This is the SI unit where its size is known, otherwise the model unit.
         """
         return (self.factor(unit), SI[unit].si) if self.know(unit) else (1.0, unit)
 
     def written(self, value: float, unit: str) -> tuple[float, str]:
-        """As `base`, with the prefix with which a number of this size is written."""
+        """Return the factor and the unit of `base`, with the prefix for a number of this size."""
         factor, name = self.base(unit)
         prefix, name = scale_of(value * factor, name)
         return factor * prefix, name
 
     def in_words(self, text: str) -> str:
-        """A text whose numbers and units of the model are in SI, where they are known: `1.5 nN` for `1.5e-09 FU`."""
+        """Return a text with its numbers in SI units, where these are known: `1.5 nN` for `1.5e-09 FU`."""
 
-        def shown(found: re.Match[str]) -> str:
-            number, _, unit, alone = found.groups()
+        def shown(match: re.Match[str]) -> str:
+            number, _, unit, alone = match.groups()
             if alone or not self.know(unit):
-                return f"({self.base(alone)[1]})" if alone else found[0]
+                return f"({self.base(alone)[1]})" if alone else match[0]
             value = float(number.replace("−", "-"))
             if not value:
-                return found[0].replace(unit, self.base(unit)[1])
+                return match[0].replace(unit, self.base(unit)[1])
             factor, name = self.written(value, unit)
             digits = len(re.sub(r"e.*|\D", "", number).lstrip("0"))
             return f"{value * factor:.{max(DIGITS, digits)}g} {name}"
@@ -245,17 +253,17 @@ class Scales:
         return IN_WORDS.sub(shown, text)
 
     def in_si(self, value: float, uncertainty: float, unit: str) -> dict[str, float | str]:
-        """The quantity in SI: value, uncertainty, unit. Relative uncertainties of the scales are added to its own.
+        """Return value, uncertainty and unit of a quantity in SI, with the relative uncertainty of the scales added.
 
         Independent changes of a scale add up in squares.
         """
-        factor, own = self.factor(unit), SI[unit]
-        scales = abs(own.length) * self.length_uncertainty / self.length
-        scales += abs(own.force) * self.force_uncertainty / self.force
-        scales += math.hypot(*(max(abs(one.factor(unit) / factor - 1.0) for one in both) for both in self.ends))
-        spread = uncertainty * factor + abs(value * factor) * scales
-        return {"value": value * factor, "uncertainty": spread, "unit": own.si}
+        factor, model_unit = self.factor(unit), SI[unit]
+        relative = abs(model_unit.length) * self.length_uncertainty / self.length
+        relative += abs(model_unit.force) * self.force_uncertainty / self.force
+        relative += math.hypot(*(max(abs(scales.factor(unit) / factor - 1.0) for scales in pair) for pair in self.ends))
+        spread = uncertainty * factor + abs(value * factor) * relative
+        return {"value": value * factor, "uncertainty": spread, "unit": model_unit.si}
 
 
 UNKNOWN = Scales(1.0, 1.0, known=False)
-"""Of a scene without units: all numbers stay in those of the model."""
+"""The scales of a scene without units, whose numbers stay in units of the model."""

@@ -90,6 +90,10 @@ _HOMES = {
 
 def __getattr__(name: str) -> object:
     """Import a public name when it is first used: the command line starts without LAMMPS, numpy or matplotlib."""
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("contact1d")
     for home, names in _HOMES.items():
         if name in names:
             return getattr(import_module(f"contact1d.{home}"), name)

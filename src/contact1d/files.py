@@ -10,21 +10,19 @@ from os import PathLike
 from pathlib import Path
 
 AnyPath = str | PathLike[str]
-LARGEST = 8_000_000
-"""Bytes of a text file that is read: a scene with a measured profile of 1e5 points has half of them."""
 PART = ".part"
-"""What ends the name of a file that is not whole yet."""
+"""Suffix of a file that is not complete yet."""
 FULL_DISK = {
     errno.ENOSPC: "the disk is full",
     errno.EDQUOT: "the disk quota is used up",
     errno.EFBIG: "a file would be larger than is allowed (ulimit -f)",
 }
-"""Errors of the system by which no further file can be written, as text."""
+"""System errors after which no further file can be written, as text."""
 
 
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
-    """Give the temporary path to write to; it replaces `path` at the end, unless there is an error."""
+    """Yield the temporary path to write to; it replaces `path` at the end, unless there is an error."""
     part = path.with_name(path.name + PART)
     yield part
     os.replace(part, path)
@@ -34,18 +32,19 @@ class UnreadableError(ValueError):
     """A file that can't be read as text; its arguments are the path, and the reason with what to do."""
 
     def __str__(self) -> str:
-        """Return both."""
+        """Return the path and the reason."""
         return ": ".join(self.args)
 
 
-def read_text(path: Path) -> str:
-    """The text of a regular file of at most LARGEST bytes, in UTF-8. Raises UnreadableError.
+def read_text(path: Path, largest: int = 8_000_000) -> str:
+    """Return the text of a regular file of at most `largest` bytes, in UTF-8. Raises UnreadableError.
 
-    A pipe or a device is not opened: it may have no end.
+    By default a file may be twice as large as a scene with a measured profile of 1e5 points. A pipe or a device is not
+    opened: it may have no end.
     """
     try:
-        if path.stat().st_size > LARGEST:
-            reason = f"has {path.stat().st_size} bytes, and at most {LARGEST} are read; make it smaller"
+        if path.stat().st_size > largest:
+            reason = f"has {path.stat().st_size} bytes, and at most {largest} are read; make it smaller"
         elif path.is_dir():
             reason = "is a directory; name a file in it"
         elif not path.is_file():
@@ -62,6 +61,6 @@ def read_text(path: Path) -> str:
 
 
 def write_whole(path: Path, text: str) -> None:
-    """Write a text file, whole or not at all."""
+    """Write a text file atomically: completely or not at all."""
     with whole(path) as part:
         part.write_text(text, encoding="utf-8")

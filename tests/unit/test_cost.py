@@ -147,9 +147,8 @@ def test_the_dominant_error_is_that_of_the_result_with_the_largest_error() -> No
 
 
 def test_a_variant_without_a_main_result_is_a_row_with_the_reason() -> None:
-    found = with_errors(
-        VariantRuns({"critical_radius": result(1.0, solver=0.0)}), {"adhesion_force": result(1.0, solver=0.0)}
-    )
+    exact = result(1.0, solver=0.0)
+    found = with_errors(VariantRuns({"critical_radius": exact}), {"adhesion_force": exact})
     assert found.failure == "no adhesion_force"
     assert table(record(found))[1][-1] == "no adhesion_force"
 

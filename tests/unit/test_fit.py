@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import json
 import math
-import time
 from pathlib import Path
 from typing import Any
 
@@ -22,8 +21,6 @@ MODULUS, WORK, RADIUS = 2e6, 0.05, 5e-6
 SPHERE = Sphere(MODULUS, WORK, RADIUS)
 STIFFNESS = 2.0 * MODULUS * SPHERE.zero_load_radius
 DEPTH = SPHERE.zero_load_radius**2 / RADIUS
-QUICK = 10.0
-"""Seconds in which a file is refused."""
 BASE = {
     "bodies": {"profile": {"kind": "parabola", "radius": f"{RADIUS} m"}},
     "material": {"contact_modulus": "1 MPa"},
@@ -142,16 +139,12 @@ def test_a_file_that_is_none(tmp_path: Path, text: str, words: str) -> None:
     assert "\n" not in str(error.value)
 
 
-def test_a_file_of_ten_million_lines_is_refused_at_once(tmp_path: Path) -> None:
+def test_a_file_that_is_too_large_is_refused_before_it_is_read(tmp_path: Path) -> None:
     path = tmp_path / "curve.csv"
-    with path.open("w", encoding="utf-8") as file:
-        file.write("z [nm],F [nN]\n")
-        for _ in range(100):
-            file.write("1234.5,2345.6\n" * 100_000)
-    begin = time.perf_counter()
+    with path.open("wb") as file:
+        file.truncate(10**9)  # no line in it is one of a curve
     with pytest.raises(Contact1dError, match="average neighbouring points"):
         fit(plan(path))
-    assert time.perf_counter() - begin < QUICK
 
 
 def test_mistakes_of_a_fit_file_are_named_together(tmp_path: Path) -> None:

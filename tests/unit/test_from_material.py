@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from contact1d.workflow.identify import IdentifyError
-from contact1d.workflow.identify.choice import chosen, theories_of
+from contact1d.workflow.identify.choice import choose, theories_of
 from contact1d.workflow.identify.contact import KEYS, read_contact
 from contact1d.workflow.scene import SceneError
 from validation.references.maugis import LAMBDA_OVER_TABOR, marks
@@ -35,7 +35,7 @@ STEEL_ON_GLASS = 1.0 / ((1.0 - 0.3**2) / 210e9 + (1.0 - 0.22**2) / 70e9)
 
 def refused(**contact: Any) -> str:
     with pytest.raises(IdentifyError) as caught:
-        chosen(read_contact(contact))
+        choose(read_contact(contact))
     return str(caught.value)
 
 
@@ -109,7 +109,7 @@ def test_one_mistake_is_one_sentence(change: dict[str, Any], words: str) -> None
 
 
 def test_steel_on_glass_has_thirty_particles_in_hertzs_radius() -> None:
-    choice = chosen(read_contact(LOADED))
+    choice = choose(read_contact(LOADED))
     radius = math.cbrt(0.75 * 10.0 * 0.01 / STEEL_ON_GLASS)
     assert choice.contact_radius == pytest.approx(radius, rel=GRID)
     scene = choice.scene
@@ -134,7 +134,7 @@ def test_steel_on_glass_has_thirty_particles_in_hertzs_radius() -> None:
 )
 def test_spacing_of_other_bodies_follows_from_their_radius(profile: dict[str, Any], radius: float | None) -> None:
     contact = {key: value for key, value in LOADED.items() if key != "radius"} | {"profile": profile}
-    choice = chosen(read_contact(contact))
+    choice = choose(read_contact(contact))
     wanted = radius or math.cbrt(0.75 * 10.0 * 0.01 / STEEL_ON_GLASS)  # z = r²/2R, R = 10 mm
     assert choice.contact_radius == pytest.approx(wanted, rel=GRID)
     assert choice.scene.bodies.profile.kind == profile["kind"]
@@ -149,7 +149,7 @@ def test_measured_profile_is_read_from_beside_its_contact_and_by_its_units(tmp_p
         (tmp_path / "tip.csv").write_text("\n".join([names, *rows]), encoding="utf-8")
         (tmp_path / "tip.toml").write_text(f'{known}profile = {{ kind = "table", file = "tip.csv"{scale} }}\n')
         if good:
-            assert chosen(read_contact(tmp_path / "tip.toml")).contact_radius == pytest.approx(radius, rel=GRID)
+            assert choose(read_contact(tmp_path / "tip.toml")).contact_radius == pytest.approx(radius, rel=GRID)
         else:
             with pytest.raises(SceneError, match=r"profile\.scale: missing: the file has no unit; write scale"):
                 read_contact(tmp_path / "tip.toml")
@@ -163,7 +163,7 @@ def test_a_profile_that_cannot_be_read_is_an_error_of_its_contact(name: str, rea
 
 
 def test_two_chains_are_chosen_where_they_are_asked_for() -> None:
-    choice = chosen(read_contact(TIP | {"radius": "5 um", "model": "particles"}))
+    choice = choose(read_contact(TIP | {"radius": "5 um", "model": "particles"}))
     assert choice.target is not None
     assert choice.scene.bodies.lower == "particles"
     assert choice.scene.effects == ("interaction",)
@@ -198,7 +198,7 @@ def test_theories_are_those_of_the_closed_forms() -> None:
 @pytest.mark.parametrize("model", ["plane", "particles"])
 def test_a_scene_of_a_stiff_tip_says_which_theory_holds(model: str, energy: float, tabor: str, holds: str) -> None:
     """R = 10 nm, E* = 37 GPa, h₀ = 0.3 nm; F_A of Maugis and Dugdale by another solver."""
-    choice = chosen(read_contact(TIP | {"surface_energy": energy, "model": model}))
+    choice = choose(read_contact(TIP | {"surface_energy": energy, "model": model}))
     assert choice.theories is not None
     assert choice.theories.holding == holds
     if model == "plane":
@@ -219,7 +219,7 @@ def test_rough_surfaces_are_refused_with_the_roughness_that_is_not() -> None:
     most = words.split("up to a roughness of ")[1].split(" m")[0]
     assert float(most) < 1e-9
     contact = read_contact(smooth | {"roughness": f"{most} m", "model": "particles"})
-    assert "roughness" in chosen(contact).doubts
+    assert "roughness" in choose(contact).doubts
 
 
 def test_contact_as_wide_as_its_sphere_is_refused() -> None:
@@ -242,5 +242,5 @@ def test_page_has_every_key_and_its_examples_are_contacts() -> None:
 
 
 def test_contact_under_an_atom_is_doubted() -> None:
-    words = chosen(read_contact(TIP | {"radius": "1 nm"})).doubts["below_an_atom"]
+    words = choose(read_contact(TIP | {"radius": "1 nm"})).doubts["below_an_atom"]
     assert words.startswith("the contact is narrower than an atom: DMT has a zero-load radius of 196.8 pm")

@@ -116,10 +116,10 @@ def test_scene_has_the_particles_in_the_contact_radius_that_its_tolerance_takes_
 
 def test_regime_is_told() -> None:
     """μ = 1.10 for silica, where Maugis' pull-off is 4.7 % above JKR's; μ = 3000 for rubber."""
-    from contact1d.workflow.identify.choice import chosen
+    from contact1d.workflow.identify.choice import choose
     from contact1d.workflow.identify.contact import read_contact
 
-    silica, rubber = (chosen(read_contact(MATERIALS[name].asked)) for name in ("silica", "rubber"))
+    silica, rubber = (choose(read_contact(MATERIALS[name].asked)) for name in ("silica", "rubber"))
     assert set(silica.doubts) == {"tabor"}
     assert "whose pull-off force is 4.7% smaller than that of Maugis and Dugdale" in silica.doubts["tabor"]
     assert rubber.doubts == {}

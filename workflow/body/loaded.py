@@ -122,7 +122,8 @@ class Loaded:
         apex = has_apex(self.scene, TIP if self.body is None else KNOWN_TIP)
 
         def of(chosen: Array) -> LineLoad:
-            return line_load(self.x[chosen], load[chosen], self.edge, self.jump, apex, self.body, self.shape.kinks)
+            kinks = *self.shape.kinks, self.shape.reach
+            return line_load(self.x[chosen], load[chosen], self.edge, self.jump, apex, self.body, kinks)
 
         return through(self.x.size, stride, of, first)
 

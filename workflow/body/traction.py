@@ -163,7 +163,11 @@ def _pressure(state: Loaded, share: float, given: float) -> BodyPressure | None:
     fine, side, (ring, pulled) = levels[0], x[x.size // 2 :][::own], _drawn(scene, zone)
     inside = side[(side > 0.0) & (side < fine.edge * INSIDE)]
     r = inside if fine.has_apex else np.append(0.0, inside)
-    p, *coarser = (one.pressure(r) - pulled(r) for one in levels)
+    node, area = _nodes(state, fine.edge, ZONED if ring else ANGLES)
+    where = np.append(r, node)
+    p, *coarser = (one.pressure(where) - pulled(where) for one in levels)
+    forces = area * p[r.size :]
+    p, *coarser = (one[: r.size] for one in (p, *coarser))
     # Where g is flat up to an edge that lies between two particles, p is that of a punch, ∝ 1/a.
     at_most = _moves(fine, fine.body or state.heights, r, -1.0 if state.is_elastic else 1.0) if state.is_alone else 0.0
     moves = np.maximum(np.abs(p), at_most)
@@ -181,14 +185,10 @@ def _pressure(state: Loaded, share: float, given: float) -> BodyPressure | None:
         name: replace(one, uncertainty=one.uncertainty or float(error[place] + by_shape(read)))
         for name, (one, place, read) in _largest(state, fine, r, told, lambda r: fine.pressure(r) - pulled(r)).items()
     }
-    pieces = state.shape.slow or not state.is_elastic
-    kinks = [*state.shape.kinks, *(np.arange(1, PIECES) * fine.edge / PIECES * pieces)]
-    force, size = _total(fine, kinks, pulled, ZONED if ring else ANGLES)
+    force, size = float(forces.sum()) + ring, float(np.abs(forces).sum()) - ring
     edge, stiffness = state.radius.value / state.wider, _stiffness(state, share)
-    doubt = _added_up(state) / ((size - ring) or 1.0)
-    return BodyPressure(
-        r, p, error + by_shape(np.asarray), doubt, edge, results, force + ring, size - ring, stiffness
-    )  # fmt: skip
+    doubt = _added_up(state) / (size or 1.0)
+    return BodyPressure(r, p, error + by_shape(np.asarray), doubt, edge, results, force, size, stiffness)
 
 
 def _between(
@@ -216,7 +216,8 @@ def _added_up(state: Loaded) -> float:
     """Most by which the sum of the particles is off ∫ q dx [FU]: Δ²/12 of each change of slope (Euler, Maclaurin)."""
     if state.jump != 0.0:
         return 0.0
-    return float(np.abs(np.diff(np.pad(state.load, 2), 2)).sum()) * state.scene.bodies.spacing / state.wider / 12.0
+    bends = np.abs(np.convolve(state.load, (1.0, -2.0, 1.0)))
+    return float(bends.sum()) * state.scene.bodies.spacing / state.wider / 12.0
 
 
 def _stiffness(state: Loaded, share: float) -> Quantity | None:
@@ -304,19 +305,19 @@ def _is_bounded(state: Loaded, fine: LineLoad, top: int, noise: float) -> bool:
     return (top == 0 and state.jump is None) or fine.at_edge <= pole
 
 
-def _total(
-    fine: LineLoad, kinks: Sequence[float], pulled: Callable[[Array], Array], angles: int
-) -> tuple[float, float]:
-    """∫ p dA and ∫ |p| dA [FU] over the contact by quadrature of p(r), r = a sin θ, between kinks."""
+def _nodes(state: Loaded, edge: float, angles: int) -> tuple[Array, Array]:
+    """Radii r = a sin θ [LU] at which p(r) is added up over the contact, between kinks, and the area of each [LU²]."""
     node, weight = gauss(angles)
     share = 0.5 * (node + 1.0)
-    ends = np.arcsin([0.0, *np.unique([kink / fine.edge for kink in kinks if 0.0 < kink < fine.edge]), 1.0])
+    kinks = [kink / edge for kink in state.shape.kinks if kink < edge]
+    if state.shape.slow or not state.is_elastic:
+        kinks += [piece / PIECES for piece in range(1, PIECES)]
+    ends = np.arcsin(sorted({0.0, *kinks, 1.0}))
     width = np.diff(ends)[:, None]
     angle = (ends[:-1, None] + width * share * share * (3.0 - 2.0 * share)).ravel()  # dense at both ends of a piece
     step = (0.5 * width * weight * 6.0 * share * (1.0 - share)).ravel()
-    r = fine.edge * np.sin(angle)
-    each = 2.0 * np.pi * (fine.pressure(r) - pulled(r)) * r * fine.edge * np.cos(angle) * step
-    return float(each.sum()), float(np.abs(each).sum())
+    r = edge * np.sin(angle)
+    return r, 2.0 * np.pi * r * edge * np.cos(angle) * step
 
 
 def _drawn(scene: Scene, zone: ZonedProfile | None, wider: float = 0.0) -> tuple[float, Callable[[Array], Array]]:

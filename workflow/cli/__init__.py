@@ -1,1 +1,1 @@
-"""The command line: what it reads and prints, and how it ends; no physics."""
+"""The command line: options, output on the terminal, exit codes; no physics."""

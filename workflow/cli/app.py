@@ -1,4 +1,4 @@
-"""The command line. Heavy imports wait until a command runs, so that `contact1d --help` is quick."""
+"""The commands and their options. Heavy imports are inside the commands, so that `contact1d --help` is quick."""
 
 from __future__ import annotations
 
@@ -14,14 +14,21 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import contact1d as api
-from contact1d.workflow.cli.ending import CALL_IS_WRONG, FAILS, Commands, command, read, say, say_counts, stop
+from contact1d.workflow.cli.ending import (
+    CALL_IS_WRONG,
+    FAILS,
+    Commands,
+    command,
+    print_counts,
+    print_lines,
+    read,
+    stop,
+)
 from contact1d.workflow.cli.identify import identify
 
 if TYPE_CHECKING:
     from contact1d.workflow.runs.finished import Run
 
-GARBAGE_THRESHOLD = 300_000
-"""New objects between garbage collections: a run with its figures makes fewer; with 700 they take a tenth of it."""
 
 app = typer.Typer(
     cls=Commands,
@@ -67,22 +74,22 @@ def contact1d(
 
 
 def scene_files(incomplete: str) -> list[str]:
-    """The *.toml files and the folders that begin with `incomplete`; a folder that is the only one is opened."""
-    found = sorted(glob(f"{escape(incomplete)}*"))
-    files = [path for path in found if path.endswith(".toml")]
-    folders = [os.path.join(path, "") for path in found if os.path.isdir(path)]
+    """Return the *.toml files and the folders that begin with `incomplete`, or what is in the only such folder."""
+    paths = sorted(glob(f"{escape(incomplete)}*"))
+    files = [path for path in paths if path.endswith(".toml")]
+    folders = [os.path.join(path, "") for path in paths if os.path.isdir(path)]
     return scene_files(folders[0]) if len(folders) == 1 and not files else files + folders
 
 
 def effect_names(incomplete: str) -> list[str]:
-    """The effects that begin with `incomplete`."""
+    """Return the names of the effects that begin with `incomplete`."""
     from contact1d.workflow.scene import EFFECTS
 
     return [name for name in EFFECTS if name.startswith(incomplete)]
 
 
 Format = StrEnum("Format", ["PNG", "SVG", "PDF"])
-"""Of figures."""
+"""File formats of figures."""
 
 
 SceneFile = Annotated[
@@ -144,9 +151,9 @@ def run(
             progress.close()
             from contact1d.workflow.cli.summary import line_load, quantities
 
-            say(quantities(finished.document), finished.warnings)
+            print_lines(quantities(finished.document), finished.warnings)
             if not quiet:
-                say(line_load(finished), {}, finished.folder)
+                print_lines(line_load(finished), {}, finished.folder)
 
         wanted = format_.value if figures else False
         api.run(checked, folder, wanted, progress, time_limit, workers=workers, ranks=ranks, printed=printed)
@@ -160,8 +167,8 @@ def deck(
 ) -> None:
     """Write the LAMMPS deck of a scene without running it.
 
-    Where a run searches (load, pull_off), the deck holds an estimated schedule; the deck that `run` leaves behind holds
-    the one that its search ended with.
+    Where a run searches (load, pull_off), the deck has an estimated schedule; the deck in the folder of a finished run
+    has the final one.
     """
     with command("writing the deck", out, quiet=True):
         folder = api.write_deck(read(scene, set_, without), out)
@@ -172,13 +179,13 @@ def doctor() -> None:
     """Check the installation: packages, MPI library, LAMMPS and its styles."""
     from contact1d.workflow.cli.doctor import checks
 
-    bad = 0
+    failed = 0
     for check in checks():
-        bad += not check.ok
+        failed += not check.ok
         typer.secho(f"{'ok  ' if check.ok else 'FAIL'} {check.name}: {check.detail}", fg=None if check.ok else "red")
         if not check.ok and check.advice:
             typer.echo(f"     {check.advice}")
-    if bad:
+    if failed:
         raise typer.Exit(FAILS)
 
 
@@ -189,7 +196,7 @@ def sweep(
     ],
     out: Annotated[
         Path | None,
-        typer.Option(help="Folder of the sweep; points done there are kept.", show_default="sweeps/<name of the file>"),
+        typer.Option(help="Folder of the sweep; its finished points stay.", show_default="sweeps/<name of the file>"),
     ] = None,
     executor: Annotated[str, typer.Option(help="`local`: processes here; `slurm`: jobs of a cluster.")] = "local",
     workers: Annotated[
@@ -203,7 +210,7 @@ def sweep(
 ) -> None:
     """Run a scene at each point of a sweep; one table, results.csv, has all results.
 
-    The file names a base scene and [[axes]], each with a key of the scene and its values. Broken off at any moment, the
+    The file names a base scene and [[axes]], each with a key of the scene and its values. After an interruption the
     same command continues with the missing points. Exit code 3: a point failed or can't be run; the table says why.
     """
     folder = out or Path("sweeps") / file.stem
@@ -214,7 +221,7 @@ def sweep(
         done = api.sweep(file, folder, executor, workers, format_.value if figures else False, progress, partition)
         if parquet:
             write_parquet(done.folder)
-    say_counts(done.counts, folder / TABLE)
+    print_counts(done.counts, folder / TABLE)
 
 
 def fit(
@@ -229,10 +236,10 @@ def fit(
 
     The file names the data (CSV with columns z or d, and F, with units), parameters, the instrument and a base scene.
     Leaves fit.json, curve.csv and fit.png; of several curves fits.csv, histograms and maps. Exit code 3: the data do
-    not tell what was asked for, and the message says what would help.
+    not determine the parameters, and the message suggests a fix.
     """
     folder = out or Path("fits") / file.stem
-    with command("the fit", folder, "what is known was written", quiet, str(file)) as progress:
+    with command("the fit", folder, "the results so far were written", quiet, str(file)) as progress:
         from contact1d.workflow.fit.data import is_series
         from contact1d.workflow.fit.many import TABLE
         from contact1d.workflow.fit.plan import read_fit
@@ -241,11 +248,11 @@ def fit(
         if is_series(read_fit(file)):
             done = api.fit_many(file, folder, workers, progress)
             progress.close()
-            say_counts(done.counts, folder / TABLE)
+            print_counts(done.counts, folder / TABLE)
             return
-        found = api.fit(file, folder=folder, progress=progress)
+        fitted = api.fit(file, folder=folder, progress=progress)
         progress.close()
-        say(lines(found), found.warnings, folder)
+        print_lines(lines(fitted), fitted.warnings, folder)
 
 
 def cost(
@@ -277,7 +284,7 @@ def cost(
         folder.mkdir(parents=True, exist_ok=True)
         record = cost_of(checked, folder, repeats, workers or cores(), progress)
         write_report(record, folder)
-    say(summary(record), {}, folder)
+    print_lines(summary(record), {}, folder)
 
 
 def report(
@@ -308,7 +315,7 @@ def animate(
     It has the states that the run kept: those of its curve, thinned where they are many; or, in states.lammpstrj, too,
     all of them with `[output] states = "all"` in the scene.
     """
-    with command("the picture", quiet=True):
+    with command("the animation", quiet=True):
         from contact1d.workflow.report.animation import animate as write
         from contact1d.workflow.report.animation import ovito_script
 
@@ -317,9 +324,9 @@ def animate(
 
 
 Kind = StrEnum("Kind", ["PULL_OFF", "LOAD", "PATH", "HOLD", "HISTORY", "IMPACT", "SLIDE", "TANGENTIAL"])
-"""The experiments."""
+"""The experiments for which `new` has a scene."""
 Profile = StrEnum("Profile", ["PARABOLA", "CIRCLE", "ELLIPSOID", "CONE", "FLAT_PUNCH", "POWER"])
-"""The profiles that need no file."""
+"""The profiles that need no file of measured heights."""
 
 
 def new(
@@ -345,8 +352,8 @@ def materials() -> None:
     """List the named materials: Young's modulus, Poisson's ratio, and where they are from."""
     from contact1d.workflow.scene.materials import MATERIALS
 
-    for name, one in MATERIALS.items():
-        typer.echo(f"{name:<16}{one['youngs_modulus']:>9}  ν = {one['poisson_ratio']:<6}{one['source']}")
+    for name, material in MATERIALS.items():
+        typer.echo(f"{name:<16}{material['youngs_modulus']:>9}  ν = {material['poisson_ratio']:<6}{material['source']}")
 
 
 def schema(
@@ -367,7 +374,7 @@ def schema(
 
 
 def _write(path: Path, text: str, instead: str) -> None:
-    """Write a file that is not there yet."""
+    """Write a new file; an existing one is never replaced."""
     if path.parent.is_file():
         stop(f"{path.parent} is a file; a folder is needed", CALL_IS_WRONG)
     if not path.parent.is_dir():
@@ -378,19 +385,19 @@ def _write(path: Path, text: str, instead: str) -> None:
     except FileExistsError:
         stop(f"{path} exists and is not overwritten; {instead}", CALL_IS_WRONG)
     except OSError:
-        path.unlink(missing_ok=True)  # whole or not at all
+        path.unlink(missing_ok=True)  # no incomplete file is left
         raise
 
 
-for one in (new, run, sweep, fit, report, animate, deck, cost, identify, materials, schema, doctor):
-    app.command()(one)
+for function in (new, run, sweep, fit, report, animate, deck, cost, identify, materials, schema, doctor):
+    app.command()(function)
 
 
 def main() -> None:
     """Entry point of the command `contact1d`."""
-    gc.set_threshold(GARBAGE_THRESHOLD)
-    atexit.register(gc.freeze)  # the system takes all of it back at once
-    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # it looks for some in every package that is installed
+    gc.set_threshold(300_000)  # more objects than a run with figures makes; at 700, garbage collection is a tenth of it
+    atexit.register(gc.freeze)  # the system takes back all memory at once
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # pydantic searches every installed package for them
     app(prog_name="contact1d")
 
 

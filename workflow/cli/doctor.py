@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from contact1d.workflow.engine.session import Session
 
 DISTRIBUTION = "contact1d"
-OLDEST_PYTHON = (3, 11)
 PACKAGES = ("MOLECULE", "RIGID", "TALLY", "EXTRA-FIX", "LEPTON")
 STYLES = (
     ("atom", "bond"),
@@ -56,20 +55,18 @@ thermo_style    custom step ebond
 thermo_modify   norm no
 run             0
 """
-"""A spring of energy K (r - r0)², K = 2, r0 = 1, stretched to r = 1.5, so that it pulls with 2 K (r - r0)."""
-SPRING_ENERGY, SPRING_FORCE = 0.5, 2.0
-ROUND_OFF = 1e-12
+"""Two atoms and a spring of energy K (r - r0)², K = 2, r0 = 1, at r = 1.5: its energy is 0.5, its force 2."""
 
 
 @dataclass(frozen=True)
 class Check:
-    """One thing that a run needs.
+    """A requirement of a run, and whether this machine meets it.
 
     Attributes:
-        name: what was looked at.
-        ok: whether it is as it must be.
-        detail: what was found.
-        advice: what to do if it is not.
+        name: the requirement.
+        ok: whether it is met.
+        detail: the version or state that was found.
+        advice: what to do if it is not met.
     """
 
     name: str
@@ -79,25 +76,25 @@ class Check:
 
 
 def checks() -> list[Check]:
-    """Return all checks in the order in which a defect should be mended; starts LAMMPS once, in a temporary folder."""
-    found = [*_python(), *_machine()]
+    """Return all checks, in the order in which failures should be fixed; LAMMPS starts once, in a temporary folder."""
+    results = [*_python(), *_machine()]
     try:
         from contact1d.workflow.engine.session import Engine
 
         with tempfile.TemporaryDirectory() as folder, Engine.session(Path(folder), time_limit=60.0) as session:
-            found += _lammps(session)
+            results += _lammps(session)
     except ImportError as error:
-        found.append(Check("LAMMPS runs", False, str(error), "reinstall contact1d: pip install -e . in its folder"))
+        results.append(Check("LAMMPS runs", False, str(error), "reinstall contact1d: pip install -e . in its folder"))
     except (EngineError, OSError) as error:
-        found.append(Check("LAMMPS runs", False, getattr(error, "message", str(error)), REINSTALL))
-    return found
+        results.append(Check("LAMMPS runs", False, getattr(error, "message", str(error)), REINSTALL))
+    return results
 
 
 def listening_sockets(pid: int) -> list[str]:
     """Return the local addresses (as the kernel writes them, hexadecimal) at which process `pid` accepts connections.
 
     Raises:
-        OSError: this system has no /proc, or the process is not ours to look at.
+        OSError: this system has no /proc, or the process belongs to another user.
     """
     links = set()
     for link in Path(f"/proc/{pid}/fd").iterdir():
@@ -112,9 +109,8 @@ def listening_sockets(pid: int) -> list[str]:
 
 
 def _python() -> Iterator[Check]:
-    """Python, and the packages that this distribution asks for."""
-    oldest = ".".join(map(str, OLDEST_PYTHON))
-    yield Check("Python", sys.version_info >= OLDEST_PYTHON, sys.version.split()[0], f"use Python {oldest} or newer")
+    """Yield the checks of Python, and of the packages that this distribution requires."""
+    yield Check("Python", sys.version_info >= (3, 11), sys.version.split()[0], "use Python 3.11 or newer")
     try:
         lines = importlib.metadata.requires(DISTRIBUTION) or []
     except importlib.metadata.PackageNotFoundError:
@@ -145,7 +141,7 @@ def _machine() -> Iterator[Check]:
 
 
 def _lammps(session: Session) -> Iterator[Check]:
-    """What LAMMPS is made of, a run of two atoms, and that it accepts no connections."""
+    """Yield the checks of LAMMPS: its packages and styles, a run of two atoms, and that it accepts no connections."""
     installation = session.about(STYLES)
     yield Check("LAMMPS starts", True, f"version {installation.version}")
     yield Check("MPI library", True, installation.mpi or "found by the system")
@@ -155,8 +151,9 @@ def _lammps(session: Session) -> Iterator[Check]:
     yield Check("LAMMPS packages", not missing, detail, REINSTALL)
     session.execute(TWO_ATOMS, phase="two atoms")
     energy, force = session.values("ebond", "fx[1]")
-    ok = abs(energy - SPRING_ENERGY) < ROUND_OFF and abs(force - SPRING_FORCE) < ROUND_OFF
-    detail = f"energy {energy:.15g} (must be {SPRING_ENERGY}), force {force:.15g} (must be {SPRING_FORCE})"
+    round_off = 1e-12
+    ok = abs(energy - 0.5) < round_off and abs(force - 2.0) < round_off
+    detail = f"energy {energy:.15g} (must be 0.5), force {force:.15g} (must be 2.0)"
     yield Check("two-atom run", ok, detail, REINSTALL)
     try:
         addresses = listening_sockets(session.pid)

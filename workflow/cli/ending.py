@@ -1,4 +1,4 @@
-"""How every command ends: done, or with a message on standard error and an exit code. The one reader of scene files."""
+"""The end of every command: its output, or a message on standard error with an exit code; the reader of scene files."""
 
 from __future__ import annotations
 
@@ -20,54 +20,55 @@ if TYPE_CHECKING:
     from contact1d.workflow.scene import Scene
 
 FAILS = 1
-"""A check of `doctor` fails."""
+"""Exit code: a check of `doctor` failed."""
 CALL_IS_WRONG = 2
-"""The scene, an option or a folder is wrong; nothing was written."""
+"""Exit code: the scene, an option or a folder is wrong; nothing was written."""
 RUN_FAILED = 3
+"""Exit code: the run failed, or its result can't be trusted; files are kept."""
 INTERRUPTED = 130
-
-BAD_PLACE = (
+"""Exit code: interrupted by the user."""
+BAD_PATH = (
     errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.EEXIST, errno.ENAMETOOLONG,
     errno.ELOOP,
 )  # fmt: skip
-"""What the system says about a place that the caller should choose otherwise."""
+"""Errors of the system for a path that the caller should choose otherwise."""
 
 
 class Commands(typer.core.TyperGroup):
     """All commands, with the errors of their options reported in the same form as others."""
 
     def invoke(self, ctx: Any) -> Any:
-        """Run the command."""
+        """Run a command, with errors of its options reported like all others."""
         with command(ctx.info_name, quiet=True):
             return super().invoke(ctx)
 
 
 def stop(message: str, code: int) -> NoReturn:
-    """Print the error and end with this exit code."""
+    """Print an error message and end the program with an exit code."""
     typer.secho(message, err=True, fg="red")
     raise SystemExit(code)
 
 
-def say(lines: Iterable[str], warnings: Mapping[str, str], place: object = None) -> None:
-    """Print lines, warnings on standard error, and where the files are."""
+def print_lines(lines: Iterable[str], warnings: Mapping[str, str], path: object = None) -> None:
+    """Print lines, warnings on standard error, and the path of the files."""
     typer.echo("\n".join(lines))
     for name, message in warnings.items():
         typer.secho(f"warning {name}: {message}", err=True, fg="yellow")
-    if place is not None:
-        typer.echo(f"\n{place}")
+    if path is not None:
+        typer.echo(f"\n{path}")
 
 
-def say_counts(counts: Mapping[str, int], table: Path) -> None:
-    """Print how many of a series ended how, and where their table is; the end of the command where one is not done."""
+def print_counts(counts: Mapping[str, int], table: Path) -> None:
+    """Print the number of points by status, and the path of their table; exit code 3 if any is not done."""
     typer.echo(f"{', '.join(f'{count} {status}' for status, count in sorted(counts.items()))}; {table}")
     if set(counts) != {"done"}:
         raise typer.Exit(RUN_FAILED)
 
 
 def read(path: Path, overrides: list[str] | None, without: list[str] | None, progress: Progress | None = None) -> Scene:
-    """The scene in a file as the options change it; with every problem reported, the end of the command.
+    """Return the scene in a file with the changes of the options; report all problems and end if there are any.
 
-    With a `progress`, which reports it, a suggested fix of the scene is tried.
+    With a `progress`, a suggested fix is tried first, and reported there.
     """
     from contact1d.workflow.scene import SceneError, read_scene
 
@@ -83,7 +84,7 @@ def read(path: Path, overrides: list[str] | None, without: list[str] | None, pro
 
 
 def problems_in(where: str, error: Exception) -> str:
-    """The problems of a file, each on a line of its own, under their number; another error as it is."""
+    """Return the number of problems of a file and a line for each; of another error its message."""
     count = len(getattr(error, "problems", ()))
     head = [f"{where}: {count} problem{'s' if count > 1 else ''}"] if count else []
     return "\n  ".join([*head, *str(error).split("\n")])
@@ -91,16 +92,16 @@ def problems_in(where: str, error: Exception) -> str:
 
 @contextmanager
 def command(
-    what: str, folder: Path | None = None, kept: str = "", quiet: bool = False, source: str = "the scene"
+    task: str, folder: Path | None = None, kept: str = "", quiet: bool = False, source: str = "the scene"
 ) -> Iterator[Progress]:
-    """Do the work of a command; an error in it ends it with a message and the exit code of that error.
+    """Provide the progress of a command, and end it at any error with a message and the exit code of that error.
 
     Args:
-        what: is done, for "… failed".
-        folder: where files are; named if it is there when the work breaks off.
-        kept: what is left then, and what to do, as words; not where its numbers were written before.
+        task: subject of the message "… failed".
+        folder: folder of the files, reported if it exists when the command fails.
+        kept: what a failed command leaves, and what to do; not reported if results.json was written.
         quiet: whether no progress is shown.
-        source: what is read: its name stands above its problems.
+        source: name of the file that is read, above its problems.
     """
     from contact1d.workflow.engine.progress import Silent, choose_progress
 
@@ -115,14 +116,14 @@ def command(
             left.append(f"files are kept in {folder}")
         if isinstance(error, KeyboardInterrupt):
             stop("; ".join(["interrupted", *left]), INTERRUPTED)
-        ending = _ending(error, what, left, str(folder or ""), source)
+        ending = _ending(error, task, left, str(folder or ""), source)
         if ending is None:
             raise
         stop(*ending)
 
 
-def _ending(error: BaseException, what: str, left: Iterable[str], folder: str, source: str) -> tuple[str, int] | None:
-    """The message and the exit code for an error; None for a defect of the program."""
+def _ending(error: BaseException, task: str, left: Iterable[str], folder: str, source: str) -> tuple[str, int] | None:
+    """Return message and exit code of an error; None for a defect of the program."""
     from concurrent.futures.process import BrokenProcessPool
 
     from contact1d.workflow.errors import Contact1dError
@@ -130,14 +131,14 @@ def _ending(error: BaseException, what: str, left: Iterable[str], folder: str, s
     if isinstance(error, Contact1dError):
         if error.exit_code == CALL_IS_WRONG:
             return problems_in(source, error), CALL_IS_WRONG
-        place = getattr(error, "folder", None)  # one that was there for a while only is not named
-        is_there = place is not None and place.is_dir()
-        return f"{what} failed: {error if is_there else error.message}", RUN_FAILED
+        run_folder = getattr(error, "folder", None)
+        is_kept = run_folder is not None and run_folder.is_dir()  # a temporary folder is not reported
+        return f"{task} failed: {error if is_kept else error.message}", RUN_FAILED
     if isinstance(error, ImportError) and not (error.name or "").startswith("contact1d"):
         return f"the installation is incomplete ({error}): check it with `contact1d doctor`", FAILS
     reason = ""
-    if isinstance(error, OSError) and error.errno != errno.EPIPE:  # a reader that went away is no error: typer ends
-        if sentence := _of_a_place(error, folder):
+    if isinstance(error, OSError) and error.errno != errno.EPIPE:  # typer handles an output pipe that was closed
+        if sentence := _path_error(error, folder):
             return sentence, CALL_IS_WRONG
         reason = FULL_DISK.get(error.errno or 0, error.strerror or str(error))
         reason += f" ({os.fsdecode(error.filename)})" if error.filename else ""
@@ -145,12 +146,12 @@ def _ending(error: BaseException, what: str, left: Iterable[str], folder: str, s
         reason = "one of its processes was killed, most often because the machine was out of memory"
     elif isinstance(error, MemoryError):
         reason = "the machine is out of memory"
-    return ("; ".join([f"{what} failed: {reason}", *left]), RUN_FAILED) if reason else None
+    return ("; ".join([f"{task} failed: {reason}", *left]), RUN_FAILED) if reason else None
 
 
-def _of_a_place(error: OSError, folder: str) -> str:
-    """What is wrong with a place that the caller chose; "" where it is something else."""
-    place = os.fsdecode(error.filename) if isinstance(error.filename, str | bytes) else folder
-    if error.errno in (errno.EEXIST, errno.ENOTDIR) and os.path.isfile(place):
-        return f"{place} is a file; a folder is needed"
-    return f"{place} cannot be written: {error.strerror}" if error.errno in BAD_PLACE and place else ""
+def _path_error(error: OSError, folder: str) -> str:
+    """Return the message of an error in a path that the caller chose; "" for any other error."""
+    path = os.fsdecode(error.filename) if isinstance(error.filename, str | bytes) else folder
+    if error.errno in (errno.EEXIST, errno.ENOTDIR) and os.path.isfile(path):
+        return f"{path} is a file; a folder is needed"
+    return f"{path} cannot be written: {error.strerror}" if error.errno in BAD_PATH and path else ""

@@ -9,11 +9,11 @@ from typing import Annotated, Any
 import typer
 
 import contact1d as api
-from contact1d.workflow.cli.ending import CALL_IS_WRONG, command, say, stop
+from contact1d.workflow.cli.ending import CALL_IS_WRONG, command, print_lines, stop
 
 
 def _number(unit: str, meaning: str) -> Any:
-    """An option that is a number in this unit."""
+    """Return an option whose value is a number in this unit."""
     return typer.Option(metavar=unit, help=meaning, show_default=False)
 
 
@@ -52,8 +52,8 @@ def identify(
         surface_energy = "0.05 J/m²"
         range = "0.3 nm"
 
-    (docs/identify.md has every key): a scene with everything chosen, its run, with JKR, DMT and Maugis-Dugdale beside
-    it, and which of them holds.
+    (docs/identify.md has every key): a scene with every number chosen, its run, the predictions of JKR, DMT
+    and Maugis-Dugdale, and which of them holds.
 
     With `--run`: the length and force unit, in metres and newtons, with which a finished pull_off is JKR's contact of
     the material (Eq. 9, Table 1). With `--radius`: a scene whose interaction has JKR's F_A and a_0 of that sphere, or
@@ -75,10 +75,10 @@ def identify(
 
 
 def _mistakes(given: Mapping[str, Any], material: Path | None) -> list[str]:
-    """What is wrong with the options `given`, or with having them together."""
+    """Return the messages about options with a wrong value, or that exclude or lack one another."""
     if material is not None:
-        others = ", ".join(f"--{name}" for name in given)
-        return [f"{others}: not with MATERIAL: give it in the file"] if others else []
+        names = ", ".join(f"--{name}" for name in given)
+        return [f"{names}: not with MATERIAL: give it in the file"] if names else []
     problems = [
         f"--{name} must be greater than 0, not {value:g}"
         for name, value in given.items()
@@ -114,17 +114,17 @@ def _units_of_run(folder: Path, contact_modulus: float, surface_energy: float) -
 
 
 def _from_material(file: Path, out: Path) -> None:
-    """Choose, run, and say what came out beside the theories."""
+    """Run the contact of a material file and print its results with the predictions of the theories."""
     with command("the run", out, source=str(file)) as progress:
-        found = api.from_material(file, out, progress)
-    from contact1d.workflow.cli.summary import beside_theories, quantities, regime
+        done = api.from_material(file, out, progress)
+    from contact1d.workflow.cli.summary import quantities, regime, theory_table
 
-    lines = [found.scene.title, *regime(found), "", *quantities(found.run.document), *beside_theories(found)]
-    say(lines, {**found.doubts, **found.run.warnings}, found.run.folder / "scene.toml")
+    lines = [done.scene.title, *regime(done), "", *quantities(done.run.document), *theory_table(done)]
+    print_lines(lines, {**done.doubts, **done.run.warnings}, done.run.folder / "scene.toml")
 
 
 def _scene_of_sphere(given: Mapping[str, float], tolerance: float, out: Path) -> None:
-    """Identify, run, and say what came out."""
+    """Find the interaction of a sphere, and print its parameters and the results of the run."""
     modulus, radius = given["contact-modulus"], given["radius"]
     with command("the run", out) as progress:
         from contact1d.workflow.identify import Target, jkr_target, material_scene
@@ -134,17 +134,18 @@ def _scene_of_sphere(given: Mapping[str, float], tolerance: float, out: Path) ->
             target = jkr_target(modulus, given["surface-energy"], radius)
         else:
             target = Target(given["adhesion-force"], given["zero-load-radius"])
-        found = search(
+        identified = search(
             *material_scene(modulus, radius, target, given.get("length-unit"), tolerance=tolerance), out, progress
         )
     from contact1d.workflow.cli.summary import quantities
     from contact1d.workflow.units import prefixed
 
-    lines = [f"identified in {found.runs} run{'s' if found.runs > 1 else ''}"]
-    for (name, asked), unit in zip(vars(target).items(), ("N", "m"), strict=True):
-        off = found.run.document[name]["si"]["value"] / asked - 1.0
-        lines.append(f"  {name.replace('_', ' ')}: target {prefixed(asked, unit)}, deviation {off:+.1e}")
-    for name, term in found.scene.interaction or ():
+    lines = [f"identified in {identified.runs} run{'s' if identified.runs > 1 else ''}"]
+    for (name, wanted), unit in zip(vars(target).items(), ("N", "m"), strict=True):
+        deviation = identified.run.document[name]["si"]["value"] / wanted - 1.0
+        lines.append(f"  {name.replace('_', ' ')}: target {prefixed(wanted, unit)}, deviation {deviation:+.1e}")
+    for name, term in identified.scene.interaction or ():
         if name in ("repulsion", "attraction"):
             lines.append(f"  {name:<28} amplitude {term.amplitude:.6g} FU·LU, range {term.range:.6g} LU")
-    say([*lines, *quantities(found.run.document)], found.run.warnings, found.run.folder / "scene.toml")
+    finished = identified.run
+    print_lines([*lines, *quantities(finished.document)], finished.warnings, finished.folder / "scene.toml")

@@ -1,6 +1,6 @@
-"""A scene file to start from, as text: what a scene of its kind needs, and every other key behind a #.
+"""The text of a scene file to start from: what a scene of its kind needs, and every other key behind a #.
 
-The comments are what the tables themselves say of their keys; `starter.toml` has the values alone.
+The comments are the descriptions of the keys in their tables; `starter.toml` has the values.
 """
 
 from __future__ import annotations
@@ -16,8 +16,6 @@ from contact1d.workflow.scene.problems import as_toml
 from contact1d.workflow.scene.quantities import Allowed, keys_of
 from contact1d.workflow.scene.schema import meaning
 
-WIDTH = 118
-"""Characters of a line of comment."""
 HEAD = (
     "A scene of contact1d; run it with: contact1d run FILE.",
     "Remove the # before a key or a table to set it. Combinations of tables are checked at the start of a run.",
@@ -25,16 +23,19 @@ HEAD = (
 )
 
 DATA: dict[str, Any] = tomllib.loads(Path(__file__).with_name("starter.toml").read_text(encoding="utf-8"))
-"""What is set in the file of each kind, and examples of what is not."""
+"""The values in the file of each experiment, and examples for keys that are not set."""
 
 
 def starter_scene(kind: str, profile: str | None = None, material: str | None = None) -> dict[str, Any]:
-    """What is set in a scene of this experiment, with a parabola of steel on glass unless others are given.
+    """Return the tables of a scene of an experiment.
 
-    `material` is "steel/glass", upper and lower body, or one name for both.
+    Args:
+        kind: experiment.
+        profile: profile of the upper body; None: a parabola.
+        material: upper and lower body, such as "steel/glass", or one name for both; None: steel on glass.
 
     Raises:
-        SceneError: this experiment has bodies of its own.
+        SceneError: the bodies of this experiment are fixed.
     """
     scene = dict(DATA["scenes"][kind])
     bodies = scene.get("bodies", {})
@@ -49,7 +50,7 @@ def starter_scene(kind: str, profile: str | None = None, material: str | None = 
 
 
 def starter(kind: str, profile: str | None = None, material: str | None = None) -> str:
-    """The text of a scene file for an experiment of this kind; arguments as of `starter_scene`."""
+    """Return the text of a scene file for an experiment; arguments as of `starter_scene`."""
     scene, keys = starter_scene(kind, profile, material), keys_of(Scene)
     read_scene({"title": kind, **scene})  # so that a material without a name is reported before there is a file
     experiment = keys["experiment"].allowed.kinds[kind]
@@ -63,21 +64,21 @@ def starter(kind: str, profile: str | None = None, material: str | None = None) 
 
 
 def _table(name: str, table: type[Table], given: Mapping[str, Any] | None, allowed: Allowed) -> Iterator[str]:
-    """A table with all its keys; behind # what is not given."""
+    """Yield the lines of a table with all its keys; those that are not given behind #."""
     yield from _comment((table.__doc__ or "").strip().splitlines()[0])
     yield from _other_kinds(allowed, table)
     yield f"[{name}]" if given is not None else f"#[{name}]"
-    here, examples = given or {}, DATA["examples"].get(name, {})
+    values, examples = given or {}, DATA["examples"].get(name, {})
     for word, key in keys_of(table).items():
         if word != "kind":
             yield from _comment(meaning(table, word))
-            yield from _inside(key.allowed, here.get(word))
-        value = here.get(word, examples.get(word, key.default))
-        yield f"{'' if word in here else '#'}{word} = {as_toml(value)}"
+            yield from _inside(key.allowed, values.get(word))
+        value = values.get(word, examples.get(word, key.default))
+        yield f"{'' if word in values else '#'}{word} = {as_toml(value)}"
 
 
 def _inside(allowed: Allowed, given: object) -> Iterator[str]:
-    """What stands in an inline table: each key, and which other kinds of table there are."""
+    """Yield the comments of an inline table: its keys, and the other kinds of table that may stand there."""
     for kind, table in allowed.tables.items():
         if isinstance(given, Mapping) and kind not in ("", given.get("kind")):
             continue
@@ -91,9 +92,10 @@ def _other_kinds(allowed: Allowed, chosen: type[Table], begin: str = "# ") -> It
     for kind, table in allowed.kinds.items():
         if table is not chosen:
             keys = keys_of(table)
-            what, others = keys["kind"].description, ", ".join(word for word in keys if word != "kind")
-            yield from _comment(f'or kind = "{kind}" ({what}){f" with {others}" if others else ""}', begin)
+            parameters = ", ".join(word for word in keys if word != "kind")
+            extra = f" with {parameters}" if parameters else ""
+            yield from _comment(f'or kind = "{kind}" ({keys["kind"].description}){extra}', begin)
 
 
-def _comment(text: str, begin: str = "# ") -> list[str]:
-    return textwrap.wrap(text, WIDTH, initial_indent=begin, subsequent_indent="#" + " " * (len(begin) + 1))
+def _comment(text: str, begin: str = "# ", width: int = 118) -> list[str]:
+    return textwrap.wrap(text, width, initial_indent=begin, subsequent_indent="#" + " " * (len(begin) + 1))

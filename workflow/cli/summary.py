@@ -1,4 +1,4 @@
-"""Terminal output of a finished run: its results with uncertainty, the pressure profile, the regime of a material."""
+"""Terminal output of a finished run: its results with uncertainty, the line load, the regime of an adhesive contact."""
 
 from __future__ import annotations
 
@@ -33,19 +33,14 @@ NAMES = {
     "separation_energy": "separation energy per length",
     "work_of_adhesion": "implied work of adhesion W",
 }
-COLUMNS = 64
-ROWS = 9
-SHOWN_SHARE = 0.01
-"""Pressure over the largest one that is still shown."""
-BLOCK, EMPTY, AXIS = "█", " ", "─"
 
 
 def quantities(results: Mapping[str, Any]) -> list[str]:
-    """The reduction, then a line for each result: name, value ± uncertainty, unit, closed forms.
+    """Return a line with the reduction, and a line for each result: name, value ± uncertainty, unit, closed forms.
 
-    In SI where the units are known, and then also what LU and FU are where they are other than m and N.
+    Results are in SI where the units are known, and LU and FU are printed where they are not 1 m and 1 N.
     """
-    lines = [f"  {'reduction':<31} {_whose(results)}"] if "reduction" in results else []
+    lines = [f"  {'reduction':<31} {_reduction(results)}"] if "reduction" in results else []
     if scan := results.get("scan"):
         lines += [f"  {'scan' * (not i):<31} {part}" for i, part in enumerate(scan["text"].split("; "))]
     for name, entry in results_in(results).items():
@@ -55,12 +50,12 @@ def quantities(results: Mapping[str, Any]) -> list[str]:
         number = "not reported" if entry["value"] is None else str(Quantity.of(entry))
         lines.append(f"  {label:<31} {number:<32} {', '.join(in_words(results, name))}".rstrip())
     units = {unit: Quantity(**entry) for unit, entry in results.get("units", {}).items()}
-    lines += [f"  {'1 ' + unit:<31} {one}" for unit, one in units.items() if one.value != 1.0]
+    lines += [f"  {'1 ' + unit:<31} {size}" for unit, size in units.items() if size.value != 1.0]
     return lines + inputs.in_words(results)
 
 
-def _whose(results: Mapping[str, Any]) -> str:
-    """The reduction, and whose the radii and pressures are."""
+def _reduction(results: Mapping[str, Any]) -> str:
+    """Return the reduction, and the body to which radii and pressures belong."""
     reduction = str(results["reduction"])
     if results.get("scene", {}).get("bodies", {}).get("profile", {}).get("kind") == "flat":
         return f"{reduction}: the same for a flat body"
@@ -72,7 +67,7 @@ def _whose(results: Mapping[str, Any]) -> str:
 
 
 def line_load(run: Run) -> list[str]:
-    """The line load of the state that is reported first."""
+    """Return a plot of the line load of the state that is reported first, as lines of text."""
     assert run.outcome is not None
     name, profile = next(iter(run.outcome.profiles.items()))
     return [
@@ -81,66 +76,68 @@ def line_load(run: Run) -> list[str]:
     ]
 
 
-def pressure_plot(profile: Profile, radius: float, scales: Scales = UNKNOWN) -> list[str]:
-    """The line load over x as bars in a terminal, compression up; the marks below it are at ±a; in SI by `scales`."""
+def pressure_plot(
+    profile: Profile, radius: float, scales: Scales = UNKNOWN, columns: int = 64, rows: int = 9
+) -> list[str]:
+    """Plot the line load over x with characters, compression up, marks at ±a below; in SI by `scales`."""
     largest = float(np.max(np.abs(profile.pressure), initial=0.0))
     if largest == 0.0:
         return ["  no pressure"]
-    half = 1.1 * float(np.max(np.abs(profile.x[np.abs(profile.pressure) > SHOWN_SHARE * largest])))
-    x = np.linspace(-half, half, COLUMNS)
+    visible = np.abs(profile.pressure) > 0.01 * largest
+    half = 1.1 * float(np.max(np.abs(profile.x[visible])))
+    x = np.linspace(-half, half, columns)
     pressure = np.interp(x, profile.x, profile.pressure, left=0.0, right=0.0)
-    step = (pressure.max() - min(pressure.min(), 0.0)) / ROWS or 1.0
+    step = (pressure.max() - min(pressure.min(), 0.0)) / rows or 1.0
     top, bottom = math.ceil(max(pressure.max(), 0.0) / step), math.floor(min(pressure.min(), 0.0) / step)
     load, load_unit = scales.written(float(np.max(np.abs(pressure))), LINE_PRESSURE)
     length, length_unit = scales.written(half, LENGTH)
     lines = []
     for level in range(top, bottom - 1, -1):
-        reached = np.sign(level) * pressure > (abs(level) - 0.5) * step
-        bars = "".join(np.where(reached, BLOCK, EMPTY)) if level else AXIS * COLUMNS
+        is_filled = np.sign(level) * pressure > (abs(level) - 0.5) * step
+        bars = "".join(np.where(is_filled, "█", " ")) if level else "─" * columns
         lines.append(f"{level * step * load:>12.3g} {bars}")
     ends = moved_centre(profile) + np.asarray([-radius, radius])
     if radius > 0.0 and np.abs(ends).max() < half:
-        places = np.rint((ends + half) / (2.0 * half) * (COLUMNS - 1))
-        marks = "".join(np.where(np.isin(np.arange(COLUMNS), places), "^", EMPTY))
+        edges = np.rint((ends + half) / (2.0 * half) * (columns - 1))
+        marks = "".join(np.where(np.isin(np.arange(columns), edges), "^", " "))
         lines.append(f"{'':13}{marks}  ± a")
     extent = f"x from {-half * length:.1f} to {half * length:.1f} {length_unit}"
-    return [*lines, f"{load_unit:>12} {extent.center(COLUMNS)}"]
+    return [*lines, f"{load_unit:>12} {extent.center(columns)}"]
 
 
 THEORY = {"adhesion_force": "N", "zero_load_radius": "m", "critical_radius": "m", "loaded_radius": "m"}
-"""What the theories say, and its unit."""
+"""Predictions of the theories, with their units."""
 LABELS = {**NAMES, "loaded_radius": "radius under load"}
-WIDTH = 18
 
 
-def regime(found: MaterialRun) -> Iterator[str]:
-    """What the contact is, and which theory holds."""
-    contact, theories = found.contact, found.theories
-    said = [f"E* = {prefixed(contact.contact_modulus, 'Pa')}"]
+def regime(done: MaterialRun) -> Iterator[str]:
+    """Yield lines with the parameters of a contact, the theory that holds, and the model."""
+    contact, theories = done.contact, done.theories
+    parameters = [f"E* = {prefixed(contact.contact_modulus, 'Pa')}"]
     if contact.work_of_adhesion:
-        said.append(f"work of adhesion W = {contact.work_of_adhesion:.4g} J/m²")
+        parameters.append(f"work of adhesion W = {contact.work_of_adhesion:.4g} J/m²")
         assumed = " (assumed: no range was given)" if "range" not in contact.given else ""
-        said.append(f"range h_0 = {prefixed(contact.range, 'm')}{assumed}")
+        parameters.append(f"range h_0 = {prefixed(contact.range, 'm')}{assumed}")
     if contact.load is not None:
-        said.append(f"load {prefixed(contact.load, 'N')}")
-    yield f"  {', '.join(said)}"
+        parameters.append(f"load {prefixed(contact.load, 'N')}")
+    yield f"  {', '.join(parameters)}"
     if theories is not None:
         yield f"  Tabor parameter μ = {theories.tabor:.3g}, {theories.verdict.theory}: {theories.verdict.reason}"
-    spacing = found.scene.bodies.spacing * found.run.scales.length
-    what = "a chain on a rigid plane" if found.scene.bodies.lower == "rigid_plane" else "two chains of particles"
-    count = found.contact_radius / spacing
-    yield f"  {what}: {count:.0f} particles in the contact radius, {prefixed(spacing, 'm')} apart"
+    spacing = done.scene.bodies.spacing * done.run.scales.length
+    model = "a chain on a rigid plane" if done.scene.bodies.lower == "rigid_plane" else "two chains of particles"
+    count = done.contact_radius / spacing
+    yield f"  {model}: {count:.0f} particles in the contact radius, {prefixed(spacing, 'm')} apart"
 
 
-def beside_theories(found: MaterialRun) -> Iterator[str]:
-    """A table: the predictions of each theory."""
-    theories = found.theories
+def theory_table(done: MaterialRun, width: int = 18) -> Iterator[str]:
+    """Yield the lines of a table with the predictions of each theory, a column of `width` characters for each."""
+    theories = done.theories
     if theories is None:
         return
     columns = [f"{name}*" if name == theories.holding else name for name in theories.values]
-    yield f"\n  {f'theory, at μ = {theories.tabor:.3g}':<28} {''.join(f'{name:<{WIDTH}}' for name in columns)}".rstrip()
+    yield f"\n  {f'theory, at μ = {theories.tabor:.3g}':<28} {''.join(f'{name:<{width}}' for name in columns)}".rstrip()
     for name, unit in THEORY.items():
         if all(name in marks for marks in theories.values.values()):
-            shown = "".join(f"{prefixed(marks[name], unit):<{WIDTH}}" for marks in theories.values.values())
+            shown = "".join(f"{prefixed(marks[name], unit):<{width}}" for marks in theories.values.values())
             yield f"  {LABELS[name]:<28} {shown}".rstrip()
     yield "  * holds at this μ, that of the material"

@@ -61,9 +61,9 @@ def curve_errors(
     measured = {"force": trace.force, "displacement": trace.displacement}
     lattice = rows.followed(measured) if "time" in repeated else rows.lattice
     inputs = rows.inputs if case.is_open else {}
-    softness = 1.0 / _stiffness(case, trace.displacement)
     found: dict[str, Values] = {"force": {"solver": solver}}
     if trace.given != "displacement":
+        softness = 1.0 / _stiffness(case, trace.displacement)
         found["displacement"] = {"solver": solver * softness}
     for name, errors in found.items():
         if name in lattice:
@@ -234,12 +234,13 @@ def _late(case: Reduction, trace: Trace) -> Array:
 
 def _missed(case: Reduction, trace: Trace, error: Array) -> Array:
     """How far [LU] states that were to carry a force are from it, at most, (m,); 0 of others."""
-    found, stiffness = np.zeros(len(trace)), _stiffness(case, trace.displacement)
+    found = np.zeros(len(trace))
     for i, wanted in trace.wanted.items():
         force, d = float(trace.force[i]), float(trace.displacement[i])
         parts = abs(wanted - force), float(error[i])
         off = max(parts) if trace.given == "load" else sum(parts)  # what a load does not balance is both
-        found[i] = REACHED * abs(displacement_under(trace, i, force - off, float(stiffness[i])) - d)
+        stiffness = float(_stiffness(case, np.asarray([d]))[0])
+        found[i] = REACHED * abs(displacement_under(trace, i, force - off, stiffness) - d)
     return found
 
 

@@ -10,10 +10,8 @@ The pressure of the body and closed forms are checked where these are made (`bod
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 
@@ -21,7 +19,7 @@ from contact1d.workflow.continuation.outcome import Agreement
 from contact1d.workflow.continuation.reduction import Reduction
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.laws.particles import Array, Particles
-from contact1d.workflow.laws.path import Path, legs, path_of
+from contact1d.workflow.laws.path import Path
 from contact1d.workflow.scene import Scene
 
 PLAN, ABSOLUTE = 1e-9, 1e-5
@@ -34,9 +32,6 @@ ENERGY, LEAST_LOSS, OPEN = 1e-3, 0.05, 4.0
 the spacing and half the steps change, where that is more: forces rise as roots at first."""
 DENSER = 4
 """Load steps for each of a history that show what these miss: twice as many may miss the same by chance."""
-EACH_STEP, EACH_LEG, BESIDE, NEAREST = 32, 80, 30, 1e-9
-"""Positions in a step of a tangential path that changes the load, and in all of the displacement of others, between
-which forces are straight lines; on both sides of a jump, the nearest of them over the spacing."""
 
 
 def plan(scene: Scene, states: Sequence[State], forces: Array) -> dict[str, Agreement]:
@@ -132,14 +127,14 @@ def energy(case: Reduction, work: Work, doubt: float = 0.0) -> dict[str, Agreeme
 
 def _missing(model: Particles, work: Work, finer: int) -> tuple[float, float, float, float] | None:
     """Work that is neither stored nor lost, the work, what is stored and lost, and the size of it [FU·LU]."""
-    path = work.path if work.kinetic or model.law.in_time else _dense(work.path, model, finer)
+    path = work.path if work.kinetic else model.checked(work.path, finer)
     if (found := model.energies(path)) is None:
         return None
     stored, lost = found
     if work.kinetic:
         whole, done = work.kinetic
         return done - stored - lost, done, stored + lost, whole
-    followed = None if model.law.in_time and work.forces is not None else model.follow(path)
+    followed = None if path is work.path and work.forces is not None else model.follow(path)
     forces = followed.total if followed else np.asarray(work.forces)
     if forces[0] != 0.0:  # work begins there; what was gained and lost before is no part of it
         first = {name: column[:1] for name, column in vars(path).items() if column is not None}
@@ -156,27 +151,6 @@ def _missing(model: Particles, work: Work, finer: int) -> tuple[float, float, fl
 
 def _denser(case: Reduction, work: Work) -> Work:
     """The same of a history in smaller load steps."""
-    if work.kinetic or not case.model.law.in_time:
+    if work.kinetic or case.model.checked(work.path, 1) is not work.path:
         return work
     return Work(case.driven(case.model, DENSER).path)
-
-
-def _dense(path: Path, model: Particles, finer: int) -> Path:
-    """Equilibria along a path from apart on, with as many states as the work along it needs."""
-    start = min(0.0, model.apart) - NEAREST * model.law.spacing  # below that nothing is felt
-    places = np.append(start, np.maximum(path.displacement, start))
-    if path.along.any():
-        each = np.where(np.diff(places) != 0.0, EACH_STEP, 1) * finer
-        steps, moved = np.arange(places.size), np.append(path.along[:1], path.along)
-        at = np.append(0.0, np.concatenate([step + np.arange(1, count + 1) / count for step, count in enumerate(each)]))
-        return Path(np.interp(at, steps, places), np.interp(at, steps, moved), np.zeros_like(at))
-    near = model.law.spacing * np.geomspace(NEAREST, 1.0, BESIDE)
-    beside = np.asarray([jump + side for jump in model.jumps for side in (-near, near)]).ravel()
-    ends = places[[0, *(leg.stop - 1 for leg in legs(places))]].tolist()
-    found, whole = [places[:1]], float(np.ptp(places)) or 1.0
-    for start, end in pairwise(ends):
-        count = math.ceil(EACH_LEG * finer * abs(end - start) / whole) + 1
-        between = beside[(beside > min(start, end)) & (beside < max(start, end))]
-        leg = np.unique(np.concatenate([np.linspace(start, end, count + 1), between]))
-        found.append((leg if end > start else leg[::-1])[1:])
-    return path_of(np.concatenate(found))

@@ -14,7 +14,7 @@ from contact1d.workflow.continuation.state import State, radius_rule
 from contact1d.workflow.continuation.trust import is_converged, require_trust
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.lattice import bodies, period
-from contact1d.workflow.deck.parts import PLANE_DEPTH
+from contact1d.workflow.deck.parts import plane_depth
 from contact1d.workflow.deck.steps import Displace, Draw, Phase, Row, swept
 from contact1d.workflow.deck.system import ANCHORS, PARTICLES
 from contact1d.workflow.engine.failure import NOT_FINITE
@@ -196,7 +196,7 @@ class Contact:
         self.session.measure(text, meanwhile=meanwhile)
         spacing, settings, states = self.scene.bodies.spacing, self.settings, list[State]()
         # The wall's force is a difference of distances from far below.
-        depth = PLANE_DEPTH * max(settings.largest_displacement, spacing)
+        depth = plane_depth(self.scene, settings)
         round_off = float(np.finfo(np.float64).eps) * depth * settings.forces.plane_stiffness
         for start in range(0, len(rows), self._at_once):
             batch = rows[start : start + self._at_once]

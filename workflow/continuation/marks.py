@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +31,8 @@ SURELY = 1.1
 """Error of the force at a limit point over what it gains up to there, to first order."""
 PLACE_FACTOR = 2.0
 """Error of the position of the force maximum over the distance between those of two polynomials."""
+_top, _crossed = lru_cache(maxsize=4)(largest_tension), lru_cache(maxsize=4)(smooth_crossing)
+"""Of the last few curves: the budget has one read again with other radii."""
 
 
 def unloading(branch: Trace, settings: Settings) -> dict[str, Reading]:
@@ -47,13 +50,10 @@ def unloading(branch: Trace, settings: Settings) -> dict[str, Reading]:
         found["adhesion_force"] = Reading(peak.smooth, FORCE, errors)
         if branch.radius(peak.index) is not None:
             found["critical_radius"] = _critical_radius(branch, peak, settings, sum(errors.values()))
-    if (zero := _zero_load(branch)) is not None:
-        found["zero_load_radius"] = zero
-        if (reach := _zero_load_reach(branch)) is not None:
-            found["cohesive_radius"] = reach
-    if "adhesion_force" in found and zero is not None:
-        found |= _separation(branch, peak)
-    return found
+    zero = _zero_load(branch)
+    if "adhesion_force" in found and zero:
+        zero |= _separation(branch, peak)
+    return found | zero
 
 
 def _separation(branch: Trace, peak: Peak) -> dict[str, Reading]:
@@ -63,7 +63,7 @@ def _separation(branch: Trace, peak: Peak) -> dict[str, Reading]:
     """
     model = branch.model
     d, force = branch.lists
-    start, end = smooth_crossing(d, force, 0.0), model.apart
+    start, end = _crossed(d, force, 0.0), model.apart
     held = [(one, own) for one, own in zip(d[::-1], force[::-1], strict=True) if end <= one < start]
     lost = branch.radius(len(branch) - 1) is None or _distance_from_limit(branch) <= LAST
     if not held or not (lost or abs(force[-1]) <= SEPARATED * peak.tension):
@@ -74,7 +74,6 @@ def _separation(branch: Trace, peak: Peak) -> dict[str, Reading]:
         value, other = (float(np.trapezoid(pulled[rows], way[rows])) for rows in (slice(None), _every_other(way.size)))
         return {"work_of_separation": Reading(value, ENERGY, {"sampling": abs(value - other)})}
     at, own = np.asarray([*held, (start, 0.0)]).T
-    off = own - model.held(at)
 
     def work(nodes: int, every: int) -> float:
         """By Gauss's quadrature over u, d = d_end + (d₀ − d_end) u²: a limit point has an infinite slope."""
@@ -84,7 +83,8 @@ def _separation(branch: Trace, peak: Peak) -> dict[str, Reading]:
         u = 0.5 * (u + 1.0)
         places = end + (start - end) * u**2
         others = [*range(0, len(at) - 1, every), len(at) - 1]
-        curve = model.held(places) + np.interp(places, at[others], off[others], left=0.0)
+        off = own[others] - model.held(at[others])
+        curve = model.held(places) + np.interp(places, at[others], off, left=0.0)
         return -(start - end) * float(weights @ (u * curve))
 
     value = work(NODES, 1)
@@ -127,39 +127,29 @@ def _critical_radius(branch: Trace, peak: Peak, settings: Settings, missed: floa
     return Reading(radius, LENGTH, errors)
 
 
-def _zero_load(branch: Trace) -> Reading | None:
-    """a where the force crosses 0, by a parabola; a straight line estimates its error.
+def _zero_load(branch: Trace) -> dict[str, Reading]:
+    """a where the force crosses 0, by a parabola, and how far an attraction with a range goes there, c.
 
-    None where it never does, or only as the contact is lost.
+    A straight line estimates the error. None where the force never crosses 0, or only as the contact is lost.
     """
     d, force = branch.lists
     try:
         index, place = crossing(d, force, 0.0)
     except ValueError:
-        return None
+        return {}
     after = min(index + 1, len(d) - 1)
     if branch.radius(after) is None:
-        return None
-    radii = [branch.radius_or_spot(i) for i in (after, index)]
-    line = float(np.interp(place, [d[after], d[index]], radii))
-    radius = radius_at(branch, smooth_crossing(d, force, 0.0))
-    return Reading(radius, LENGTH, {"sampling": abs(radius - line)})
+        return {}
 
+    def there(length: Callable[[int], float]) -> Reading:
+        line = float(np.interp(place, [d[after], d[index]], [length(after), length(index)]))
+        value = _through_nearest(branch, _crossed(d, force, 0.0), length)
+        return Reading(value, LENGTH, {"sampling": abs(value - line)})
 
-def _zero_load_reach(branch: Trace) -> Reading | None:
-    """c where the force crosses 0, likewise; None where the attraction has no range."""
-    d, force = branch.lists
-    index, place = crossing(d, force, 0.0)
-    near = (min(index + 1, len(d) - 1), index)
-    if branch.reach(index) is None:
-        return None
-
-    def reach(state: int) -> float:
-        return branch.reach(state) or 0.0
-
-    line = float(np.interp(place, [d[i] for i in near], [reach(i) for i in near]))
-    value = _through_nearest(branch, smooth_crossing(d, force, 0.0), reach)
-    return Reading(value, LENGTH, {"sampling": abs(value - line)})
+    found = {"zero_load_radius": there(branch.radius_or_spot)}
+    if branch.reach(index) is not None:
+        found["cohesive_radius"] = there(lambda state: branch.reach(state) or 0.0)
+    return found
 
 
 def early_loss(branch: Trace, peak: Peak, settings: Settings) -> float:
@@ -195,7 +185,7 @@ def peak_of(trace: Trace) -> Peak:
 
     Up to there it gains as much as the model has over the same distance before.
     """
-    found = largest_tension(*trace.lists)
+    found = _top(*trace.lists)
     last = len(trace) - 1
     left = _distance_from_limit(trace)
     if found.index < last or left > LAST:

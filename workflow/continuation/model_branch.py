@@ -239,9 +239,8 @@ class ModelBranch:
         self, positions: Array, along: Sequence[float] | Array | None = None, time: Sequence[float] | None = None
     ) -> None:
         none = np.zeros(len(positions))
-        columns = (positions, none if along is None else along, none if time is None else time)
-        rows = zip(*columns, strict=True)
-        self._rows += [Row(self._phase, self._leg, float(d), float(x), float(t), math.nan) for d, x, t in rows]
+        columns = (none if one is None else np.asarray(one) for one in (along, time))
+        self._add_path([self._phase] * none.size, Path(positions, *columns))
 
     def _add_path(self, phases: Sequence[str], path: Path) -> None:
         """States in time."""

@@ -137,7 +137,8 @@ class Reduction:
         is_chosen = bodies.particles == "auto" and bodies.own_count is None  # else positions are part of the scene
         if not (is_chosen or self.model.shares_edges):
             return [], []
-        return self.model.lattices(bodies.profile.curvature_radius is None)
+        is_pointed = bodies.profile.curvature_radius is None and not bodies.profile.has_edge
+        return self.model.lattices(is_pointed)
 
     @cached_property
     def lattice(self) -> Values:

@@ -96,9 +96,9 @@ class Trace:
         return len(self.displacement)
 
     @property
-    def lists(self) -> tuple[list[float], list[float]]:
+    def lists(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Displacements and forces, as arguments of the functions that read a curve."""
-        return self.displacement.tolist(), self.force.tolist()
+        return tuple(self.displacement.tolist()), tuple(self.force.tolist())
 
     @property
     def legs(self) -> list[Trace]:
@@ -121,35 +121,37 @@ class Trace:
 
     def radius(self, state: int) -> float | None:
         """Contact radius [LU]; None where the bodies do not touch."""
-        found = self.contact(state)
-        return None if found is None else self._perturbed(found, state)
+        return self.radius_or_spot(state) if self.contact(state) else None
 
     def radius_or_spot(self, state: int) -> float:
         """The same; 0 where no particle is in tension."""
-        found = self.contact(state) or self.rule.or_spot(self.profile(state))
-        return self._perturbed(found, state)
+        found = self._read(state)
+        value = found.value + self._further(state, lambda i: self._read(i).value)
+        if found.uncertainty == 0.0:  # a body that ends at an edge
+            return value
+        return max(0.0, self.perturbation.radius_factor * (value + self.shift_of(state) * found.uncertainty))
+
+    def _read(self, state: int) -> ContactRadius:
+        return self.contact(state) or self.rule.or_spot(self.profile(state))
 
     def reach(self, state: int) -> float | None:
         """How far an attraction goes beyond the contact, c [LU]; None where it ends with that."""
         own = self.profile(state)
         if not isinstance(own, ZonedProfile) or own.reach <= own.edge:
             return None
-        return self._there(state, lambda i: float(getattr(self.profile(i), "reach", 0.0)))
 
-    def _perturbed(self, found: ContactRadius, state: int) -> float:
-        value = self._there(state, lambda i: (self.contact(i) or self.rule.or_spot(self.profile(i))).value)
-        if found.uncertainty == 0.0:  # a body that ends at an edge
-            return value
-        shifted = value + self.shift_of(state) * found.uncertainty
-        return max(0.0, self.perturbation.radius_factor * shifted)
+        def reach(i: int) -> float:
+            return float(getattr(self.profile(i), "reach", 0.0))
 
-    def _there(self, state: int, length: Callable[[int], float]) -> float:
-        """A length [LU] where a state is moved to."""
-        value, moved = length(state), _of(self.perturbation.moved, state)
+        return reach(state) + self._further(state, reach)
+
+    def _further(self, state: int, length: Callable[[int], float]) -> float:
+        """How much larger a length [LU] is where a state is moved to."""
+        moved = _of(self.perturbation.moved, state)
         if not moved:
-            return value
+            return 0.0
         d = self.displacement - self.perturbation.moved
-        return value + moved * (slope(d, state, length) or self.model.law.radius_rate(float(d[state])))
+        return moved * (slope(d, state, length) or self.model.law.radius_rate(float(d[state])))
 
     def phases(self, *names: str) -> Trace:
         """The states of these phases, "unloading_2" being one of "unloading"."""
@@ -270,9 +272,12 @@ def of_model(
     x = np.concatenate([followed.x[0] - beside[::-1], followed.x, followed.x[-1] + beside])
     none = np.zeros_like(x)
 
+    def of_all(forces: Array) -> Array:
+        return np.concatenate([none[:BESIDE], forces, none[:BESIDE]]) / spacing
+
     def profile(state: int) -> Profile:
-        pressure = np.pad(followed.force(state), BESIDE) / spacing
-        shear = none if followed.shear is None else np.pad(followed.shear(state), BESIDE) / spacing
+        pressure = of_all(followed.force(state))
+        shear = none if followed.shear is None else of_all(followed.shear(state))
         if followed.zone:
             return ZonedProfile(x, none, none, pressure, shear, *(float(one[state]) for one in followed.zone))
         return Profile(x, none, none, pressure, shear)

@@ -21,11 +21,6 @@ from contact1d.workflow.runs.advised import in_words
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-SAVED, SAVED_SHARE = 0.1, 0.1
-"""CPU time [s], and its part of that of the scene, which a change saves at least to be recommended."""
-ROUNDED_UP = 1.05
-"""A bound with two digits over the bound."""
-
 
 class Error(NamedTuple):
     """A relative error of a result, or an upper bound of it."""
@@ -34,21 +29,21 @@ class Error(NamedTuple):
     is_bound: bool = False
 
     def __str__(self) -> str:
-        """`0.00012`, or `less than 0.00013`."""
-        return f"less than {ROUNDED_UP * self.relative:.2g}" if self.is_bound else f"{self.relative:.2g}"
+        """Return `0.00012`, or for an upper bound `less than 0.00013`, where two digits never round it down."""
+        return f"less than {1.05 * self.relative:.2g}" if self.is_bound else f"{self.relative:.2g}"
 
 
 @dataclass(frozen=True)
-class Measured:
-    """The runs of a scene, and how it compares with the reference.
+class VariantRuns:
+    """The runs of a variant of a scene, and its errors against the reference.
 
     Attributes:
-        results: of all runs the same.
-        cpu_runs: CPU time of each, of LAMMPS and the program together, without figures [s].
+        results: results by name, the same in every run.
+        cpu_runs: CPU time of each run, of LAMMPS and the program together, without figures [s].
         warnings: names of the warnings, then of the results that miss the tolerance.
         failure: why there are no numbers, "" where there are.
-        edit: what is changed in the scene, as `contact1d run` takes it; the key that it is about first.
-        errors: of the main results, against the reference.
+        edit: what is changed in the scene, in the form that `contact1d run` accepts; the varied key first.
+        errors: errors of the main results against the reference.
         dominant: the largest source in the budget of the result with the largest error.
     """
 
@@ -67,53 +62,57 @@ class Measured:
 
     @property
     def change(self) -> tuple[str, str]:
-        """`accuracy.tolerance` and `0.01`; `without` and an effect."""
+        """The varied key and its value, such as `accuracy.tolerance` and `0.01`, or `without` and an effect."""
         setting, value = next(iter(self.edit.values.items()), ("without", "".join(self.edit.without)))
         return setting, str(value)
 
     @property
     def error(self) -> Error:
-        """The largest of the errors; infinite where there is none."""
+        """The largest of the errors; infinite if there is none."""
         return max(self.errors.values(), default=Error(math.inf))
 
 
 @dataclass(frozen=True)
 class CostRecord:
-    """A whole study.
+    """The record of a cost study: the reference, and the runs of every variant of the scene.
 
     Attributes:
-        title, tolerance: of the scene.
-        reference_tolerance, reference: of the reference, with its main results.
-        rows: tolerances from coarse to fine, the scene's own among them, then settings, then effects left out.
+        title: title of the scene.
+        tolerance: accuracy.tolerance of the scene.
+        reference_tolerance: accuracy.tolerance of the reference.
+        reference: main results of the reference, by name.
+        rows: tolerances from coarse to fine, that of the scene among them, then settings, then effects left out.
     """
 
     title: str
     tolerance: float
     reference_tolerance: float
     reference: Mapping[str, Result]
-    rows: tuple[Measured, ...]
+    rows: tuple[VariantRuns, ...]
 
     @property
-    def own(self) -> Measured:
-        """The scene as it is."""
-        return next(one for one in self.rows if one.edit.values == {"accuracy.tolerance": self.tolerance})
+    def baseline(self) -> VariantRuns:
+        """The runs of the scene without a change."""
+        return next(row for row in self.rows if row.edit.values == {"accuracy.tolerance": self.tolerance})
 
-    def new_warnings(self, one: Measured) -> list[str]:
-        """What a variant warns of, and the scene as it is does not."""
-        return [name for name in one.warnings if name not in self.own.warnings]
+    def new_warnings(self, variant: VariantRuns) -> list[str]:
+        """Return the warnings of a variant that the scene without a change does not have."""
+        return [name for name in variant.warnings if name not in self.baseline.warnings]
 
     @property
     def advice(self) -> str:
-        """The cheapest variant within the tolerance that warns of nothing new, where it saves time."""
-        own = self.own
-        fit = [one for one in self.rows if one.error.relative <= self.tolerance and not self.new_warnings(one)]
-        best = min(fit, key=lambda one: one.cpu_s, default=own)
-        if own in fit and own.cpu_s - best.cpu_s < max(SAVED, SAVED_SHARE * own.cpu_s):
-            least = f"{SAVED:g} s and {SAVED_SHARE:.0%} of the time"
+        """The cheapest variant within the tolerance without new warnings, where it saves enough time."""
+        # CPU time [s], and its part of that of the scene, which a change saves at least to be recommended.
+        saved_s = saved_share = 0.1
+        baseline = self.baseline
+        accurate = [row for row in self.rows if row.error.relative <= self.tolerance and not self.new_warnings(row)]
+        best = min(accurate, key=lambda row: row.cpu_s, default=baseline)
+        if baseline in accurate and baseline.cpu_s - best.cpu_s < max(saved_s, saved_share * baseline.cpu_s):
+            least = f"{saved_s:g} s and {saved_share:.0%} of the time"
             return f"Keep the scene as it is: no variant within its tolerance saves {least}."
-        if not fit:
+        if not accurate:
             return "Neither the scene as it is nor a variant is known to be within its tolerance."
-        return f"Use {in_words(best.edit)}: error {best.error}, {best.cpu_s:.2g} s in place of {own.cpu_s:.2g} s."
+        return f"Use {in_words(best.edit)}: error {best.error}, {best.cpu_s:.2g} s in place of {baseline.cpu_s:.2g} s."
 
 
 def write_report(record: CostRecord, folder: Path) -> None:
@@ -123,21 +122,22 @@ def write_report(record: CostRecord, folder: Path) -> None:
 
 
 def table(record: CostRecord) -> list[tuple[str, ...]]:
-    """The table of the study: a header and the rows."""
+    """Return the table of a study as text: a header, then a row for each variant."""
     rows: list[tuple[str, ...]] = [("setting", "value", "true error", "CPU time", "of the scene's", "dominant error")]
-    for one in record.rows:
-        setting, value = one.change
-        cells = (
-            [str(one.error), f"{one.cpu_s:.2g} s", f"{one.cpu_s / record.own.cpu_s:.2f}"] if one.errors else [""] * 3
-        )
-        remarks = [one.failure or one.dominant, ", ".join(record.new_warnings(one)[:2])]
+    baseline = record.baseline
+    for variant in record.rows:
+        setting, value = variant.change
+        cells = ["", "", ""]
+        if variant.errors:
+            cells = [str(variant.error), f"{variant.cpu_s:.2g} s", f"{variant.cpu_s / baseline.cpu_s:.2f}"]
+        remarks = [variant.failure or variant.dominant, ", ".join(record.new_warnings(variant)[:2])]
         cells.append("; the run warns: ".join(filter(None, remarks)))
-        rows.append((setting, value + " (as it is)" * (one is record.own), *cells))
+        rows.append((setting, value + " (as it is)" * (variant is baseline), *cells))
     return rows
 
 
 def summary(record: CostRecord) -> list[str]:
-    """The study for a terminal: the table, its definitions, what to do."""
+    """Return the lines that a terminal shows of a study: the table, its definitions, the advice."""
     rows = table(record)
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return [
@@ -150,21 +150,21 @@ def summary(record: CostRecord) -> list[str]:
 
 
 def cost_figure(record: CostRecord) -> Figure:
-    """Error over CPU time of every row with numbers, beside its value; ↓ before that of an upper bound."""
+    """Draw error over CPU time of every variant with numbers, labelled with its value; ↓ marks upper bounds."""
     figure = new_figure((7.4, 5.2))
     axes = figure.subplots()
     groups: dict[str, list[tuple[float, float]]] = {}
-    for one in record.rows:
-        if one.errors:
-            setting, value = one.change
-            at = one.cpu_s, one.error.relative
-            groups.setdefault(setting, []).append(at)
-            axes.annotate(f"  {'↓' * one.error.is_bound}{value}", at, fontsize=7)
+    for variant in record.rows:
+        if variant.errors:
+            setting, value = variant.change
+            point = variant.cpu_s, variant.error.relative
+            groups.setdefault(setting, []).append(point)
+            axes.annotate(f"  {'↓' * variant.error.is_bound}{value}", point, fontsize=7)
+    baseline = record.baseline
     for setting, points in groups.items():
-        axes.plot(
-            *zip(*points, strict=True), "o" if setting != record.own.change[0] else "o-", linewidth=0.8, label=setting
-        )
-    axes.plot(record.own.cpu_s, record.own.error.relative, "k*", markersize=13, label="scene as it is")
+        marker = "o" if setting != baseline.change[0] else "o-"
+        axes.plot(*zip(*points, strict=True), marker, linewidth=0.8, label=setting)
+    axes.plot(baseline.cpu_s, baseline.error.relative, "k*", markersize=13, label="scene as it is")
     axes.axhline(record.tolerance, color=THEORY, linewidth=0.8, linestyle=":", label="its tolerance")
     axes.loglog()
     axes.legend(frameon=False)

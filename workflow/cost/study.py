@@ -1,7 +1,7 @@
 """A cost study: every variant of a scene runs through `run`, its true error against one reference that is finer in all.
 
-The tolerance of the reference falls by ten, with all else finer, too, until a run takes long or fails. A main result of
-it is uncertain by what that run states and by its change since the reference before.
+References follow one another, each with a tenth of the tolerance and everything else finer, too, until a run takes long
+or fails. The uncertainty of a main result is that of the last run, plus its change from the run before.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from contact1d.workflow.continuation.outcome import MODEL, Result, unmet
-from contact1d.workflow.cost.report import CostRecord, Error, Measured
+from contact1d.workflow.cost.report import CostRecord, Error, VariantRuns
 from contact1d.workflow.cost.variants import finer, variants_of
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.errors import Contact1dError, RunError
@@ -25,55 +25,51 @@ from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.runs.processors import pool
 from contact1d.workflow.scene import Scene
 
-LONG_REFERENCE, LONG_STUDY = 10.0, 60.0
-"""CPU times [s]: of a reference, after which there is no finer one; of all runs, after which none is repeated, since
-they are long against what disturbs a timing."""
-LEVELS = 4
-"""References, each finer than the one before."""
-CERTAIN = 0.1
-"""Uncertainty over an error up to which the error is a number; beyond it there is an upper bound."""
 
-
-def measured(scene: Scene, folder: Path) -> Measured:
-    """Run a scene once, in a folder of this process in `folder`; a failure is a result."""
+def run_once(scene: Scene, folder: Path) -> VariantRuns:
+    """Run a scene once, in a folder of this process in `folder`; a run that fails is returned with the reason."""
     began = time.process_time()
     try:
         done = run(scene, folder / str(os.getpid()), figures=False, workers=1)
     except Contact1dError as error:
-        return Measured(failure=error.message)
+        return VariantRuns(failure=error.message)
     assert done.outcome is not None
     results, spent = done.outcome.results, time.process_time() - began + done.timing["lammps_cpu_s"]
     warnings = *done.warnings, *unmet(results, scene.accuracy.tolerance, (MODEL,))
-    return Measured(results, (spent,), warnings)
+    return VariantRuns(results, (spent,), warnings)
 
 
-def measure(scenes: Sequence[Scene], folder: Path, repeats: int, workers: int, progress: Progress) -> list[Measured]:
-    """Run every scene in turn, and all again, so that a slow minute hits them alike.
+def measure(
+    scenes: Sequence[Scene], folder: Path, repeats: int, workers: int, progress: Progress, longest_s: float = 60.0
+) -> list[VariantRuns]:
+    """Run all scenes in rounds, so that a machine that is slow for a while slows all of them.
 
     Args:
         scenes: at least one.
-        folder: for run folders.
-        repeats: rounds; none begins after LONG_STUDY.
+        folder: where run folders are made.
+        repeats: number of rounds.
         workers: runs at a time.
         progress: informed of each run that ends.
+        longest_s: CPU time of all runs [s] after which no round begins: such runs are long compared with what disturbs
+            a timing.
     """
-    done = [Measured()] * len(scenes)
+    done = [VariantRuns()] * len(scenes)
     progress.phase("runs", repeats * len(done), "run")
     with pool(workers) as executor:
-        while repeats and sum(sum(one.cpu_runs) for one in done) < LONG_STUDY:
+        while repeats and sum(sum(runs.cpu_runs) for runs in done) < longest_s:
             repeats -= 1
-            for i, one in enumerate(executor.map(measured, scenes, repeat(folder))):
-                done[i] = replace(one, cpu_runs=done[i].cpu_runs + one.cpu_runs)
+            for i, runs in enumerate(executor.map(run_once, scenes, repeat(folder))):
+                done[i] = replace(runs, cpu_runs=done[i].cpu_runs + runs.cpu_runs)
                 progress.advance(1)
     return done
 
 
 def cost_of(scene: Scene, folder: Path, repeats: int, workers: int, progress: Progress) -> CostRecord:
-    """True error and CPU time of a scene and of its variants.
+    """Measure the true error and the CPU time of a scene and of its variants.
 
     Args:
-        scene: to be studied.
-        folder: where run folders may be for a while; it exists.
+        scene: the scene of the study.
+        folder: an existing folder, for temporary run folders.
         repeats: rounds of measurement.
         workers: runs at a time.
         progress: informed of what begins, and of each run that ends.
@@ -81,55 +77,71 @@ def cost_of(scene: Scene, folder: Path, repeats: int, workers: int, progress: Pr
     Raises:
         RunError: no reference could be computed.
     """
-    with TemporaryDirectory(prefix=".cost-", dir=folder) as place:
+    with TemporaryDirectory(prefix=".cost-", dir=folder) as temporary:
         progress.phase("reference")
-        finest, reference = reference_of(scene, Path(place))
-        variants = [one for one in variants_of(scene) if one[1].accuracy.tolerance > finest or one[1] == scene]
-        done = measure([other for _, other in variants], Path(place), repeats, workers, progress)
-    rows = tuple(judged(replace(one, edit=edit), reference) for (edit, _), one in zip(variants, done, strict=True))
-    return CostRecord(scene.title, scene.accuracy.tolerance, finest, reference, rows)
+        finest, reference = reference_of(scene, Path(temporary))
+        variants = [
+            (edit, variant)
+            for edit, variant in variants_of(scene)
+            if variant.accuracy.tolerance > finest or variant == scene
+        ]
+        done = measure([variant for _, variant in variants], Path(temporary), repeats, workers, progress)
+    rows = (with_errors(replace(runs, edit=edit), reference) for (edit, _), runs in zip(variants, done, strict=True))
+    return CostRecord(scene.title, scene.accuracy.tolerance, finest, reference, tuple(rows))
 
 
-def reference_of(scene: Scene, folder: Path) -> tuple[float, Mapping[str, Result]]:
-    """Tolerance and main results of the reference, these with the change since the one before as an error, too.
+def reference_of(
+    scene: Scene, folder: Path, levels: int = 4, longest_s: float = 10.0
+) -> tuple[float, Mapping[str, Result]]:
+    """Return tolerance and main results of the finest reference; the change from the one before counts as an error.
+
+    Args:
+        scene: the scene of the study.
+        folder: where run folders are made.
+        levels: number of references at most, each finer than the one before.
+        longest_s: CPU time of a reference [s] after which no finer one is run.
 
     Raises:
-        RunError: none finer than the scene works.
+        RunError: no reference that is finer than the scene gives numbers.
     """
-    finest, last, other = math.inf, dict[str, Result](), scene
-    for _ in range(LEVELS):
-        other = finer(other)
-        one = measured(other, folder)
+    finest, last, refined = math.inf, dict[str, Result](), scene
+    for _ in range(levels):
+        refined = finer(refined)
+        runs = run_once(refined, folder)
         main = {
             name: replace(best, errors={**best.errors, MODEL: abs(best.value - last.get(name, best).value)})
-            for name, best in main_results(other, one.results).items()
+            for name, best in main_results(refined, runs.results).items()
             if best.size
         }
         if not main:
             break
-        finest, last = other.accuracy.tolerance, main
-        if one.cpu_s > LONG_REFERENCE:
+        finest, last = refined.accuracy.tolerance, main
+        if runs.cpu_s > longest_s:
             break
     if not last:
-        reason = one.failure or "its main results are all 0"
+        reason = runs.failure or "its main results are all 0"
         raise RunError(f"a reference that is finer than the scene gives no numbers: {reason}", folder, kept=False)
     return finest, last
 
 
-def judged(one: Measured, reference: Mapping[str, Result]) -> Measured:
-    """The runs of a variant with their errors; one that lacks a main result has failed."""
-    if missing := [name for name in reference if name not in one.results]:
-        return replace(one, failure=one.failure or f"no {missing[0]}")
-    errors = {name: _error(one.results[name], best) for name, best in reference.items()}
+def with_errors(runs: VariantRuns, reference: Mapping[str, Result]) -> VariantRuns:
+    """Return the runs of a variant with their errors against the reference; without a main result they have failed."""
+    if missing := [name for name in reference if name not in runs.results]:
+        return replace(runs, failure=runs.failure or f"no {missing[0]}")
+    errors = {name: _error(runs.results[name], best) for name, best in reference.items()}
     worst = max(errors, key=errors.__getitem__)
-    budget = dict(one.results[worst].errors)
+    budget = dict(runs.results[worst].errors)
     if "input" in budget:  # a number with ± is the same in the reference
-        budget["input"] -= one.results[worst].given
-    return replace(one, errors=errors, dominant=f"{max(budget, key=budget.__getitem__)} of {worst}")
+        budget["input"] -= runs.results[worst].given
+    return replace(runs, errors=errors, dominant=f"{max(budget, key=budget.__getitem__)} of {worst}")
 
 
-def _error(one: Result, best: Result) -> Error:
-    """The error of a result; an upper bound where the reference, or chance, leaves open more than a tenth of it."""
-    error, unsure = abs(one.value - best.value), best.uncertainty - best.given + one.errors.get("statistics", 0.0)
-    is_bound = unsure > CERTAIN * error
-    return Error((error + is_bound * unsure) / best.size, is_bound)
+def _error(result: Result, best: Result, largest_share: float = 0.1) -> Error:
+    """Return the error of a result against its reference.
+
+    It is an upper bound where the uncertainty of the reference and the statistical error exceed `largest_share` of it.
+    """
+    error = abs(result.value - best.value)
+    uncertainty = best.uncertainty - best.given + result.errors.get("statistics", 0.0)
+    is_bound = uncertainty > largest_share * error
+    return Error((error + is_bound * uncertainty) / best.size, is_bound)

@@ -1,8 +1,8 @@
 """A scene and its schedule as one flat LAMMPS deck; pure text, nothing runs here.
 
-A deck is a head (bodies, effects, method) and a schedule: phases, each a loop over rows. A row moves or loads the plate
-and measures. Python runs the same text, row by row, so that it can choose the next row by what it measured; the
-deck that it leaves behind holds the rows of the schedule that the search ended with.
+A deck is a head (bodies, effects, method) and a schedule: phases, each a loop over rows. A row is a load step: it moves
+or loads the plate and measures. Python runs the same text row by row, so that the next row can depend on what was
+measured; the deck that is kept has the rows of the schedule with which the search ended.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from contact1d.workflow.deck.effects import Contribution, contributions
 from contact1d.workflow.deck.fragments import DeckError, Fragment, block, commands, deleted, fragment, indexed, listed
-from contact1d.workflow.deck.parts import bins, moving, own_units, standing
+from contact1d.workflow.deck.parts import bins, free_to_move, rigidly_mounted, unit_conversion
 from contact1d.workflow.deck.steps import (
     APPENDED,
     NEW,
@@ -43,33 +43,34 @@ class Deck:
 
     @cached_property
     def units(self) -> DeckUnits:
-        """Those in which the text and system.data are written."""
+        """Return the units of the text and of system.data."""
         return units_for(self.scene)
 
     @cached_property
     def written(self) -> tuple[Scene, Settings]:
-        """Scene and settings in these units."""
+        """Return scene and settings in the units of the deck."""
         return self.units.scene(self.scene), self.units.settings(self.settings)
 
     @cached_property
     def stepped(self) -> bool:
-        """Whether nothing has to come to rest, so that all rows of a phase are steps of one run."""
+        """Return whether no particle has to relax, so that all rows of a phase are steps of one run."""
         return self.scene.is_stepped
 
     @cached_property
     def parts(self) -> tuple[Contribution, ...]:
-        """The parts of bodies, lower body, effects and method, in deck order."""
+        """Return the parts of bodies, lower body, effects and method, in deck order."""
         scene, settings = self.written
-        brought = [*contributions(scene, settings), *(standing if scene.stands else moving)(scene, settings)]
-        if self.units.are_own:
-            brought.append(own_units(self.units))
+        mounting = rigidly_mounted if scene.stands else free_to_move
+        parts = [*contributions(scene, settings), *mounting(scene, settings)]
+        if self.units.are_rescaled:
+            parts.append(unit_conversion(self.units))
         if scene.interaction:
-            brought += bins(scene, settings, brought)
-        return tuple(sorted(brought, key=lambda part: part.stage))
+            parts += bins(scene, settings, parts)
+        return tuple(sorted(parts, key=lambda part: part.stage))
 
     @cached_property
     def head(self) -> str:
-        """Everything before the schedule.
+        """Return the text before the schedule.
 
         Raises:
             DeckError: if fragments and variables do not fit together.
@@ -96,15 +97,15 @@ class Deck:
         return title + "\n" + "\n".join(blocks)
 
     def begin(self, phase: str, fragments: Sequence[str] = ()) -> str:
-        """The commands before the rows of a phase."""
+        """Return the commands before the rows of a phase."""
         return indexed({"row_phase": phase}) + commands(fragments)
 
     def row(self, kind: type[Row]) -> str:
-        """One row up to its measurement: displacement or load, then measurement."""
+        """Return the commands of one row: displacement or load, then measurement."""
         return commands(self._row(kind))
 
     def as_read(self, columns: Mapping[str, NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:
-        """Numbers of load steps that are one timestep each as LAMMPS reads those of a list: to 15 digits."""
+        """Return numbers of load steps, each of one timestep, as LAMMPS reads them from a list: to 15 digits."""
         return {
             name: np.asarray(
                 [
@@ -116,7 +117,12 @@ class Deck:
         }
 
     def in_one_run(self, rows: Sequence[Row], skips: Sequence[int] = ()) -> str:
-        """All rows, each a position of the plate, in one run; `skips`: those whose state is not written, else none."""
+        """Return the commands of rows that are positions of the plate, all in one run.
+
+        Args:
+            rows: all of one kind.
+            skips: 1 for each row whose state is not written, 0 for the others; by default all are written.
+        """
         columns = zip(*(row.texts(self.units.to_deck) for row in rows), strict=True)
         # A column is one word on one line, as LAMMPS has it.
         given = {name: f"[{','.join(texts)}]" for name, texts in zip(rows[0].columns(), columns, strict=True)}
@@ -126,16 +132,16 @@ class Deck:
         return indexed(given) + self.row(type(rows[0])) + deleted(given)
 
     def values(self, row: Row, first: bool) -> str:
-        """The variables of one row; `first`: no state has been written before."""
+        """Return the definitions of the variables of one row; `first`: no state has been written before."""
         texts = (*row.texts(self.units.to_deck), NEW if first else APPENDED)
         return indexed(dict(zip(self._columns(type(row)), texts, strict=False)))
 
     def row_end(self, kind: type[Row]) -> str:
-        """The end of its measurement; its variables are deleted, as by `next` after the last row."""
+        """Return the end of a row's measurement; its variables are deleted, as by `next` after the last row."""
         return commands(self._measured) + deleted(self._columns(kind))
 
     def state(self, first: bool) -> str:
-        """Write the state of the last row; where rows of one run are kept, they have written it."""
+        """Return the commands that write the state of the last row; none where rows of one run have written it."""
         if self.stepped and self.keeps:
             return ""
         append = "row_append" if self.keeps else "state_append"
@@ -143,17 +149,17 @@ class Deck:
         return indexed({append: NEW if first else APPENDED}) + written + deleted([append])
 
     def text(self, phases: Sequence[Phase]) -> str:
-        """in.lammps: the head and a loop for each phase.
+        """Return in.lammps: the head and a loop for each phase.
 
         Raises:
             DeckError: if fragments and variables do not fit together, in the head or in a phase.
         """
-        passed = [phase for phase in phases if phase.rows]
-        self._check_schedule(passed)
-        return f"{self.head}\n{self.schedule(passed)}"
+        schedule = [phase for phase in phases if phase.rows]
+        self._check_schedule(schedule)
+        return f"{self.head}\n{self.schedule(schedule)}"
 
     def schedule(self, phases: Sequence[Phase]) -> str:
-        """The loops, for phases that have rows."""
+        """Return the loops of phases, each of which has rows."""
         blocks, first = list[str](), True
         for phase in phases:
             loop = self._loop(phase, first)
@@ -164,7 +170,7 @@ class Deck:
 
     @property
     def keeps(self) -> bool:
-        """Whether states of the whole loading history are kept."""
+        """Return whether states of the whole loading history are kept."""
         return self.scene.output is not None
 
     @property
@@ -174,13 +180,13 @@ class Deck:
         return (self._named("output_swept"), *[self._named("output_states")] * self.keeps, "set_up")
 
     def _named(self, fragment: str) -> str:
-        return f"{fragment}_in_units" if self.units.are_own else fragment
+        return f"{fragment}_in_units" if self.units.are_rescaled else fragment
 
     def _columns(self, kind: type[Row]) -> tuple[str, ...]:
         return (*kind.columns(), *["row_append"] * (self.keeps and not self.stepped))
 
     def _row(self, kind: type[Row]) -> tuple[str, ...]:
-        """The fragments of a row up to its measurement."""
+        """Return the fragments of a row up to its measurement."""
         step, kept = kind.step, [self._state] * self.keeps
         if kind is Displace and not self.stepped:
             step += "_gently" * self.settings.gentle or "_snapping" * self.settings.snaps
@@ -213,7 +219,7 @@ class Deck:
         kind = type(phase.rows[0])
         names, kept = self._columns(kind), appended(phase, self.stepped, first)
         values = zip(
-            *((*row.texts(self.units.to_deck), k) for row, k in zip(phase.rows, kept, strict=True)), strict=True
+            *((*row.texts(self.units.to_deck), word) for row, word in zip(phase.rows, kept, strict=True)), strict=True
         )
         lists = "".join(listed(name, texts) for name, texts in zip(names, values, strict=False))
         return (
@@ -224,7 +230,7 @@ class Deck:
         )
 
     def _check(self) -> dict[str, str]:
-        """Return who defines each name of the head.
+        """Return the part or fragment that defines each name of the head.
 
         Every variable is defined once, before it is needed, and used; every ID is defined once; there is one
         `pair_style` at most, and no group has two integrators.
@@ -233,8 +239,8 @@ class Deck:
             styles = [part.name for part in self.parts if getattr(part, slot)]
             if len(styles) > 1:
                 raise DeckError(f"each brings a {slot}, of which a deck has one: {', '.join(styles)}")
-        moved = [part.integrates for part in self.parts if part.integrates]
-        doubly = sorted({group for group in moved if moved.count(group) > 1})
+        groups = [part.integrates for part in self.parts if part.integrates]
+        doubly = sorted({group for group in groups if groups.count(group) > 1})
         if doubly:
             raise DeckError(f"integrated twice: {', '.join(doubly)}")
         owners: dict[str, str] = {}
@@ -242,19 +248,23 @@ class Deck:
         needed = {name for step in steps for name in fragment(step).needs}
         for part in self.parts:
             for name in part.variables:
-                _own(owners, name, f"[{part.name}]")
+                _define(owners, name, f"[{part.name}]")
             for piece in map(fragment, part.fragments):
-                _pass(owners, piece)
+                _add(owners, piece)
                 needed |= set(piece.needs)
         for name in self._output:
-            _pass(owners, fragment(name))
+            _add(owners, fragment(name))
         unused = {name for part in self.parts for name in part.variables} - needed
         if unused:
             raise DeckError(f"defined but not used: {', '.join(sorted(unused))}")
         return owners
 
     def _check_schedule(self, phases: Sequence[Phase]) -> None:
-        """Go through the phases as LAMMPS does: what a step needs is defined by then, what it redefines, too."""
+        """Check that names are defined before a fragment of the schedule needs or redefines them.
+
+        Raises:
+            DeckError: one is not, or it is defined twice.
+        """
         owners = self._check()
         for phase in phases:
             kind = type(phase.rows[0])
@@ -264,22 +274,22 @@ class Deck:
             last = (self._state,) if written else ()
             kept = {"state_append": "the state"} if written and not self.keeps else {}
             row = (*self._row(kind), *self._measured)
-            here = owners | given | kept
+            defined = owners | given | kept
             for name in (*phase.begin, *row, *row, *last):
-                _pass(here, fragment(name))
-            owners = {name: owner for name, owner in here.items() if name not in given and name not in kept}
+                _add(defined, fragment(name))
+            owners = {name: owner for name, owner in defined.items() if name not in given and name not in kept}
 
 
-def _own(owners: dict[str, str], name: str, owner: str) -> None:
-    """Note who defines a name. Raises DeckError where somebody else does already."""
+def _define(owners: dict[str, str], name: str, owner: str) -> None:
+    """Add the owner of a name. Raises DeckError where the name has another owner already."""
     if owners.setdefault(name, owner) != owner:
         raise DeckError(f"defined twice: {name}, by {owners[name]} and by {owner}")
 
 
-def _pass(owners: dict[str, str], piece: Fragment) -> None:
-    """Note what a fragment defines. Raises DeckError where it needs or redefines what nothing before it has defined."""
+def _add(owners: dict[str, str], piece: Fragment) -> None:
+    """Add the names that a fragment defines. Raises DeckError where it needs or redefines an undefined name."""
     missing = sorted({*piece.needs, *piece.redefines} - owners.keys())
     if missing:
         raise DeckError(f"used but not defined: {', '.join(missing)}, in {piece.name}")
     for name in piece.defines:
-        _own(owners, name, piece.name)
+        _define(owners, name, piece.name)

@@ -14,7 +14,7 @@ from importlib.resources import files
 VARIABLE_USE = re.compile(r"\$\{(\w+)\}|\bv_(\w+)")
 KEYS = ("Purpose", "Formula", "Needs", "Defines")
 REDEFINES = "Redefines"
-"""Optional in a header: names that an earlier fragment has defined, and that represent something else from here on."""
+"""Optional in a header: names that an earlier fragment has defined, and that are defined anew here."""
 
 
 class DeckError(RuntimeError):
@@ -30,7 +30,7 @@ class Fragment:
         text: the whole file.
         needs: names of the LAMMPS variables that must be defined before it.
         defines: IDs and names that it defines.
-        redefines: those that it defines anew.
+        redefines: IDs and names of earlier fragments that it defines anew.
     """
 
     name: str
@@ -41,15 +41,15 @@ class Fragment:
 
     @cached_property
     def commands(self) -> str:
-        """The text without its comments."""
+        """Return the text without its comments."""
         return "".join(line for line in self.text.splitlines(keepends=True) if not line.startswith("#"))
 
 
 @cache
 def fragment(name: str) -> Fragment:
-    """Read `lammps_inputs/fragments/<name>.lmp` and hold its header against its text.
+    """Read `lammps_inputs/fragments/<name>.lmp` and compare its header with its text.
 
-    Of a name "<name>:2" ARM in the text is 2, and BEFORE 1: a piece that a deck has several times.
+    For a fragment that a deck has several times: with the name "<name>:2" ARM in the text becomes 2, and BEFORE 1.
 
     Raises:
         DeckError: if a header line is missing, or a variable is used that is neither needed nor defined, or named as
@@ -74,43 +74,40 @@ def fragment(name: str) -> Fragment:
 
 
 def used_variables(commands: str) -> set[str]:
-    """Names of the LAMMPS variables that a piece of LAMMPS text reads."""
-    return {a or b for a, b in VARIABLE_USE.findall(commands)}
+    """Return the names of the LAMMPS variables that a piece of LAMMPS text reads."""
+    return {braced or prefixed for braced, prefixed in VARIABLE_USE.findall(commands)}
 
 
-def _names(found: re.Match[str] | None) -> tuple[str, ...]:
-    if found is None:
+def _names(line: re.Match[str] | None) -> tuple[str, ...]:
+    if line is None:
         return ()
-    return tuple(word for word in re.sub(r"\([^)]*\)", " ", found[1]).split() if word != "-")
-
-
-NUMBERS_PER_LINE = 6
+    return tuple(word for word in re.sub(r"\([^)]*\)", " ", line[1]).split() if word != "-")
 
 
 def indexed(variables: Mapping[str, str]) -> str:
-    """Lines that define LAMMPS variables."""
+    """Return lines that define LAMMPS variables."""
     return "".join(f"variable        {name} index {value}\n" for name, value in variables.items())
 
 
 def deleted(names: Iterable[str]) -> str:
-    """Lines that delete LAMMPS variables."""
+    """Return lines that delete LAMMPS variables."""
     return "".join(f"variable        {name} delete\n" for name in names)
 
 
 def block(name: str, variables: Mapping[str, str]) -> str:
-    """A fragment with its header, below the variables that it needs."""
+    """Return a fragment with the variables that it needs between its header and its commands."""
     piece = fragment(name)
-    header = 5 if piece.redefines else 4
+    header = len(KEYS) + bool(piece.redefines)
     comments = piece.text[: len(piece.text) - len(piece.text.split("\n", header)[header])]
     return comments + indexed(variables) + piece.text[len(comments) :]
 
 
 def commands(names: Sequence[str]) -> str:
-    """The commands of fragments, one after the other."""
+    """Return the commands of fragments, one after the other."""
     return "".join(fragment(name).commands for name in names)
 
 
-def listed(name: str, texts: Sequence[str]) -> str:
-    """`variable … index` over several lines."""
-    lines = [" ".join(texts[i : i + NUMBERS_PER_LINE]) for i in range(0, len(texts), NUMBERS_PER_LINE)]
+def listed(name: str, texts: Sequence[str], per_line: int = 6) -> str:
+    """Return a `variable … index` with its values over several lines."""
+    lines = [" ".join(texts[start : start + per_line]) for start in range(0, len(texts), per_line)]
     return f"variable        {name} index " + " &\n                ".join(lines) + "\n"

@@ -1,13 +1,14 @@
-"""Geometry: where particles and anchors stand at displacement 0.
+"""Geometry: positions of particles and anchors at displacement 0.
 
-Particle i stands at x_i = (i − (N−1)/2)·spacing; the lower body at z = 0, the upper one at z = rest + h(x). In LAMMPS
+Particle i is at x_i = (i − (N−1)/2)·spacing; the lower body at z = 0, the upper one at z = rest + h(x). In LAMMPS
 the paper's z is z and the plane of motion is y = const: y = 0 for the lower body, y = ε for the upper one (see
 `potentials.table`).
 
-An anchor is a particle's place in its bulk. Neighbour springs of zero rest length, k_n (p_{i+1} − p_i), pull a chain's
-ends inward and a curved chain straight. Their force on the undeformed chain, r_i = k_n Σ_j (p_j − p_i) over the
-neighbours j of i, is cancelled exactly by moving each anchor by −r_i/k, k its bulk spring's: since that is linear and
-of zero rest length too, it is a constant force −r_i on particle i, and Σ r_i = 0 leaves the plate's force as it is.
+An anchor is the bulk's end of a particle's spring. Neighbour springs of zero rest length, k_n (p_{i+1} − p_i), pull a
+chain's ends inward and a curved chain straight. Their force on the undeformed chain, r_i = k_n Σ_j (p_j − p_i) over the
+neighbours j of i, is cancelled exactly by moving each anchor by −r_i/k, k the stiffness of the bulk spring: since that
+is linear and of zero rest length too, it is a constant force −r_i on particle i, and Σ r_i = 0 leaves the plate's force
+unchanged.
 """
 
 from __future__ import annotations
@@ -26,12 +27,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Body:
-    """One body; positions [LU] of shape (N, 3), columns x, y (out of plane), z.
+    """One body: positions [LU], shape (N, 3), columns x, y (out of plane), z.
 
     Attributes:
         name: "lower" or "upper".
         particles: undeformed positions.
-        anchors: the bulk's ends of the bulk springs, shape (0, 3) where particles stand still in the body.
+        anchors: the bulk's ends of the bulk springs, shape (0, 3) where particles are fixed in the body.
         far_anchors: the bulk's ends of the long bonds, shape (N, 3), or (0, 3).
     """
 
@@ -42,14 +43,14 @@ class Body:
 
 
 def places(count: int, spacing: float) -> Array:
-    """x_i = (i − (N−1)/2)·spacing [LU], shape (count,)."""
+    """Return the positions of particles, x_i = (i − (N−1)/2)·spacing [LU], shape (count,)."""
     return np.asarray((np.arange(count) - 0.5 * (count - 1)) * spacing, dtype=np.float64)
 
 
 def neighbour_forces(particles: Array, stiffness: float) -> Array:
-    """Forces r_i [FU] of zero-length neighbour springs on the chain `particles` (N, 3) [LU]; their sum is 0.
+    """Return the forces r_i [FU], (N, 3), of zero-length neighbour springs on the chain `particles` (N, 3) [LU].
 
-    A chain that closes on itself has none.
+    Their sum is 0. A periodic chain has no such forces.
     """
     pull = stiffness * np.diff(particles, axis=0)
     force = np.zeros_like(particles)
@@ -59,7 +60,7 @@ def neighbour_forces(particles: Array, stiffness: float) -> Array:
 
 
 def bodies(scene: Scene, settings: Settings) -> tuple[Body, ...]:
-    """The bodies of a scene, lower one first; on a rigid plane the upper one alone."""
+    """Return the bodies of a scene, the lower one first; on a rigid plane the upper one alone."""
     x = places(settings.chains.upper, scene.bodies.own_spacing)
     flat = np.zeros_like(x)
     offset = settings.forces.table.plane_offset if settings.forces.table else 0.0
@@ -78,15 +79,14 @@ def bodies(scene: Scene, settings: Settings) -> tuple[Body, ...]:
 
 
 def period(scene: Scene, settings: Settings) -> float:
-    """Length [LU] after which bodies without end repeat themselves."""
+    """Return the period of periodic bodies [LU]."""
     return settings.chains.lower * scene.bodies.spacing
 
 
 def start_offset(scene: Scene, settings: Settings) -> float:
-    """Position of the upper body's middle along x [LU]: as given, or 0.
+    """Return the position of the upper body's middle along x [LU]: as given, or 0.
 
-    In a slide such that particles begin between the opposite ones: on top of them they would stand at rest too, and
-    fall to either side.
+    In a slide particles begin between the opposite ones: on top of them the equilibrium is unstable.
     """
     bodies = scene.bodies
     if bodies.upper_offset is not None:
@@ -94,8 +94,8 @@ def start_offset(scene: Scene, settings: Settings) -> float:
     if not scene.experiment.motion_is_result or bodies.lower == "rigid_plane":
         return 0.0
     first = 0.5 * (settings.chains.lower - 1) * bodies.spacing - 0.5 * (settings.chains.upper - 1) * bodies.own_spacing
-    beside = first / bodies.spacing - math.floor(first / bodies.spacing)
-    return bodies.spacing * (0.5 - beside)
+    phase = first / bodies.spacing - math.floor(first / bodies.spacing)
+    return bodies.spacing * (0.5 - phase)
 
 
 def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body:
@@ -123,7 +123,7 @@ def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body
 
 
 def _staggered(particles: Array, scene: Scene) -> Array:
-    """Shift of a plate's atoms out of the plane, (N, 3) [LU]; 0 without a plate."""
+    """Return the shift of a plate's atoms out of the plane, (N, 3) [LU]; 0 without a plate."""
     shift = np.zeros_like(particles)
     if scene.plate:
         shift[:, 1] = STAGGER_SHARE * len(particles) * scene.bodies.own_spacing * (-1.0) ** np.arange(len(particles))

@@ -1,10 +1,10 @@
-"""Rows of a schedule: each kind of step is a fragment `steps/<step>.lmp` and the variables that a row of it gives.
+"""Rows of a schedule: a kind of row is a fragment `steps/<step>.lmp` and the variables whose values a row gives.
 
 A field `load` is the LAMMPS variable `row_load`. A phase is a named sequence of rows of one kind.
 
-Which rows have their state in states.lammpstrj, `[output] states` asks. A frame is a row's own, or that of a phase
-whose last state is written anyway: then the row has none of its own. Python runs a search without knowing what comes,
-so that it writes all of them and then leaves out those that are not wanted.
+`[output] states` asks for the number of rows whose states are in states.lammpstrj. Each has one frame: that of the
+row, or that of its phase, where this writes its last state anyway. A search does not know its rows in advance: it
+writes all states, and afterwards removes those that are not wanted.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ UNITS = (
     | dict.fromkeys(("damping", "drag"), "FU·TU/LU")
     | {"spring": "FU/LU", "duration": "TU", "velocity": "LU/TU"}
 )
-"""Units of the numbers in rows; whole ones have none."""
+"""Units of the numbers in rows; integers have none."""
 
 
 @dataclass(frozen=True)
@@ -38,18 +38,20 @@ class Row:
 
     @classmethod
     def columns(cls) -> tuple[str, ...]:
-        """Names of the LAMMPS variables, in order."""
+        """Return the names of the LAMMPS variables, in order."""
         return tuple(f"row_{field.name}" for field in fields(cls))
 
     def texts(self, to_deck: Callable[[float, str], float]) -> tuple[str, ...]:
-        """Their values as LAMMPS text; `to_deck` converts a value with its unit to that of the deck."""
-        given = {field.name: getattr(self, field.name) for field in fields(self)}
-        return tuple(str(v) if isinstance(v, int) else number(to_deck(v, UNITS[name])) for name, v in given.items())
+        """Return the values as LAMMPS text; `to_deck` converts a value with its unit to that of the deck."""
+        return tuple(
+            str(value) if isinstance(value, int) else number(to_deck(value, UNITS[name]))
+            for name, value in vars(self).items()
+        )
 
 
 @dataclass(frozen=True)
 class Displace(Row):
-    """The plate is put to a displacement [LU] and the particles are brought to rest."""
+    """The plate is set to a displacement [LU] and the particles relax."""
 
     step: ClassVar[str] = "displace"
     displacement: float
@@ -57,10 +59,10 @@ class Displace(Row):
 
 @dataclass(frozen=True)
 class Cohere(Displace):
-    """The same where an attraction has a range.
+    """The plate is set to a displacement [LU], with a contact edge that adhesion with a range has there.
 
     Attributes:
-        edge, reach: up to where the bodies touch, and attract each other [LU].
+        edge, reach: distances up to which the bodies touch and attract each other [LU].
         height: mean of g(x) over the contact [LU].
     """
 
@@ -72,7 +74,7 @@ class Cohere(Displace):
 
 @dataclass(frozen=True)
 class Spend(Displace):
-    """The same, reached after a duration [TU] with a velocity [LU/TU]."""
+    """The plate reaches a displacement [LU] after a duration [TU] with a velocity [LU/TU]."""
 
     step: ClassVar[str] = "sweep_timed"
     duration: float
@@ -81,7 +83,7 @@ class Spend(Displace):
 
 @dataclass(frozen=True)
 class Draw(Row):
-    """The plate is put to a displacement and a position along x [LU], in a straight line, its particles with it."""
+    """The plate moves to a displacement and a position along x [LU], in a straight line, its particles with it."""
 
     step: ClassVar[str] = "sweep_along"
     displacement: float
@@ -138,13 +140,13 @@ class Hold(Row):
     """A load [FU], compression positive, until the plate is at rest, parted or through.
 
     Attributes:
-        start: 1: the position is kept to come back to, -1: first go back there, 0: go on.
+        start: 1: the position is saved, -1: the saved position is restored first, 0: neither.
         load: on the plate [FU].
         damping: coefficient of a particle [FU·TU/LU].
-        drag: of the moving bodies over their inertia's share [FU·TU/LU].
+        drag: coefficient of the moving bodies over their inertia's share [FU·TU/LU].
         rest: unbalanced force below which the plate is at rest [FU].
         parted, through: displacements [LU] below and above which LAMMPS stops.
-        steps: timesteps after which it stops in any case.
+        steps: largest number of timesteps.
     """
 
     step: ClassVar[str] = "hold"
@@ -166,11 +168,11 @@ class Phase:
     """A named part of a schedule.
 
     Attributes:
-        name: what happens, one word.
+        name: one word for its motion, "loading" for instance.
         rows: all of one kind.
         state: whether every atom's position and force are written after the last row.
         begin: fragments that come before the first row.
-        kept: with `[output] states`, whether the state of each row is kept; None: of all.
+        kept: with `[output] states`, whether the state of each row is kept; None: all are.
     """
 
     name: str
@@ -181,63 +183,64 @@ class Phase:
 
 
 def numbered(name: str, taken: Sequence[str]) -> str:
-    """The name of a phase: "loading", and where that is taken "loading_2", "loading_3", …"""
-    count = 1 + sum(one.partition("_")[0] == name for one in taken)
+    """Return the name of a phase: "loading", and where that is taken "loading_2", "loading_3", …"""
+    count = 1 + sum(phase.partition("_")[0] == name for phase in taken)
     return name if count == 1 else f"{name}_{count}"
 
 
 SWEPT: tuple[type[Row], ...] = (Displace, Cohere, Spend, Draw)
-"""Those that are one timestep each on a rigid plane."""
+"""Kinds of rows that are one timestep each on a rigid plane."""
 
 
 def swept(columns: Mapping[str, NDArray[np.float64]]) -> list[Row]:
-    """Load steps on a rigid plane with these columns, (m,), by their names."""
-    kind = next(one for one in SWEPT if one.columns() == tuple(f"row_{name}" for name in columns))
+    """Return the rows of load steps on a rigid plane with these columns, (m,), by their names."""
+    variables = tuple(f"row_{name}" for name in columns)
+    kind = next(kind for kind in SWEPT if kind.columns() == variables)
     return [kind(*numbers) for numbers in zip(*(column.tolist() for column in columns.values()), strict=True)]
 
 
 def displacements(places: Sequence[float]) -> tuple[Displace, ...]:
-    """Rows that put the plate to each of the displacements [LU]."""
+    """Return rows that set the plate to each of the displacements [LU]."""
     return tuple(Displace(float(place)) for place in places)
 
 
 STATES = "states.lammpstrj"
 FRAME = b"ITEM: TIMESTEP\n"
 NONE, NEW, APPENDED = "none", "no", "yes"
-"""What `row_append` of `fragments/steps/kept.lmp` may be."""
+"""Values of `row_append` in `fragments/steps/kept.lmp`."""
 
 
 def chosen(rows: Sequence[int], wanted: int | str, marked: Collection[int] = ()) -> list[int]:
-    """The numbers among `rows`, rising, that are kept: all, or so many evenly, with the `marked` ones among them."""
+    """Return the numbers of the rows to keep, rising: all, or as many as `wanted`, evenly spaced, with the `marked`."""
     if wanted == "all" or len(rows) <= int(wanted):
         return list(rows)
-    found = {rows[i] for i in np.linspace(0, len(rows) - 1, int(wanted)).round().astype(int)}
+    kept = {rows[i] for i in np.linspace(0, len(rows) - 1, int(wanted)).round().astype(int)}
     ends = {rows[0], rows[-1]}
     for mark in sorted({*marked} & {*rows}):
-        replaceable = found - ends - {*marked}
-        if mark not in found and replaceable:
-            found.remove(min(replaceable, key=lambda row: abs(row - mark)))
-        found.add(mark)
-    return sorted(found)
+        replaceable = kept - ends - {*marked}
+        if mark not in kept and replaceable:
+            kept.remove(min(replaceable, key=lambda row: abs(row - mark)))
+        kept.add(mark)
+    return sorted(kept)
 
 
 def marked_rows(phases: Sequence[Phase]) -> list[int]:
-    """Numbers, over all phases, of the rows whose state a phase writes at its end."""
+    """Return the numbers, over all phases, of the rows whose state a phase writes at its end."""
     ends = np.cumsum([len(phase.rows) for phase in phases]).tolist()
     return [end - 1 for phase, end in zip(phases, ends, strict=True) if phase.state and phase.rows]
 
 
 def keeping(phases: Sequence[Phase], rows: Collection[int]) -> tuple[Phase, ...]:
-    """The phases with the rows of these numbers kept."""
-    found, first = [], 0
+    """Return the phases with `kept` set for the rows of these numbers."""
+    result, first = [], 0
     for phase in phases:
-        found.append(replace(phase, kept=tuple(first + i in rows for i in range(len(phase.rows)))))
+        result.append(replace(phase, kept=tuple(first + i in rows for i in range(len(phase.rows)))))
         first += len(phase.rows)
-    return tuple(found)
+    return tuple(result)
 
 
 def appended(phase: Phase, in_one_run: bool, first: bool) -> list[str]:
-    """`row_append` of each row of a phase; `first`: no frame has been written before it."""
+    """Return `row_append` of each row of a phase; `first`: no frame has been written before it."""
     wanted = _kept(phase)
     if phase.state and not in_one_run:
         wanted[-1] = False
@@ -249,7 +252,7 @@ def appended(phase: Phase, in_one_run: bool, first: bool) -> list[str]:
 
 
 def skipped(phase: Phase) -> list[int]:
-    """0 for each row of a phase that is kept, where rows are steps of one run; 1 for the others."""
+    """Return 0 for each row of a phase that is kept, where rows are steps of one run, and 1 for the others."""
     return [int(not keep) for keep in _kept(phase)]
 
 
@@ -261,7 +264,10 @@ def _kept(phase: Phase) -> list[bool]:
 
 
 def leave_out(folder: Path, phases: Sequence[Phase], in_one_run: bool) -> None:
-    """Rewrite the states of a run that has written one frame for each row, and one more where a phase has a state."""
+    """Rewrite the states of a run without the unwanted ones.
+
+    The run has written one frame for each row, and one more where a phase has a state.
+    """
     wanted: list[bool] = []
     for phase in (phase for phase in phases if phase.rows):
         rows = [word != NONE for word in appended(phase, in_one_run, first=False)]
@@ -274,7 +280,7 @@ def leave_out(folder: Path, phases: Sequence[Phase], in_one_run: bool) -> None:
 
 
 def _frames(path: Path) -> Iterator[bytes]:
-    """The frames of a dump, one in memory at a time."""
+    """Yield the frames of a dump, with one in memory at a time."""
     lines: list[bytes] = []
     with path.open("rb") as file:
         for line in file:

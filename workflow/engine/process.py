@@ -24,7 +24,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
-from contact1d.workflow.engine.launcher import Calls, cause_among_ranks, launcher_of, on_one_node
+from contact1d.workflow.engine.launcher import Listener, cause_among_ranks, launcher_of, on_one_node
 
 BOOT = """
 import sys, types
@@ -33,16 +33,13 @@ for depth, name in enumerate(("contact1d", "contact1d.workflow", "contact1d.work
     package.__path__ = [sys.argv[1 + depth]]
     sys.modules[name] = package
 """
-"""How a worker starts: from our files, whatever the current folder and the user's script are, and from no more of them
-than it needs: the packages' `__init__.py` do not run."""
+"""The start of a worker's program. It imports contact1d from the folders of this installation, whatever the current
+folder and the user's script are, and only the modules that it needs: the packages' `__init__.py` do not run."""
 ALONE = "from contact1d.workflow.engine.worker import main\nmain(*map(int, sys.argv[4:]))"
 RANKS = "from contact1d.workflow.engine.ranks import main\nmain(*sys.argv[4:])"
 
-TICK = 0.2
-"""Seconds between two looks at the deadline and the progress while a worker is busy."""
-
 LAUNCHER_PREFIXES = ("PMI_", "PMIX_", "MPI_LOCAL")
-"""What mpiexec or srun tell their own ranks: a worker that read it would pose as one of them."""
+"""Environment variables that mpiexec or srun set for their ranks: a worker must not take itself for one of them."""
 
 
 class WorkerLostError(Exception):
@@ -88,13 +85,13 @@ class WorkerProcess:
     """A running worker. After any failure it is dead, and stays so.
 
     Attributes:
-        ranks: MPI ranks that it is.
+        ranks: number of its MPI ranks.
         pid: its process id; that of the launcher for several ranks.
-        last_words: what it printed before it died; "" while it lives.
+        last_output: its output before it died; "" while it lives.
     """
 
     def __init__(self, ranks: int) -> None:
-        """Start a worker of so many MPI ranks, which loads LAMMPS.
+        """Start a worker with this number of MPI ranks, which loads LAMMPS.
 
         Raises:
             RanksError: several ranks, and what they need isn't installed.
@@ -106,25 +103,25 @@ class WorkerProcess:
         self._ready = select.poll()
         self._ready.register(self._connection.fileno(), select.POLLIN)
         self.pid = self._process.pid
-        self.last_words, self._last_board = "", (0, 0)
+        self.last_output, self._last_board = "", (0, 0)
 
     def _start(self) -> None:
-        self._connection, theirs = Pipe()
+        self._connection, worker_end = Pipe()
         with tempfile.TemporaryFile() as file:
             file.truncate(16)
             self._board_map = mmap.mmap(file.fileno(), 16)
-            self._run([], ALONE, (theirs.fileno(), file.fileno(), os.getpid()), theirs.fileno(), file.fileno())
-        theirs.close()
+            self._run([], ALONE, (worker_end.fileno(), file.fileno(), os.getpid()), worker_end.fileno(), file.fileno())
+        worker_end.close()
 
     def _start_ranks(self) -> None:
-        """A launcher starts the ranks, wherever it does; what a child inherits they may not have."""
+        """Start the ranks by a launcher, maybe on other machines: they inherit no open files."""
         launcher = launcher_of(self.ranks)
         with tempfile.TemporaryDirectory() as folder, (Path(folder) / "board").open("w+b") as file:
             file.truncate(16)
             self._board_map = mmap.mmap(file.fileno(), 16)
-            with Calls(Path(folder) / "socket") as calls:
-                self._run(launcher, RANKS, (calls.address, file.name))
-                self._connection = calls.answered(self._process)
+            with Listener(Path(folder) / "socket") as listener:
+                self._run(launcher, RANKS, (listener.address, file.name))
+                self._connection = listener.connection_to(self._process)
 
     def _run(self, launcher: Sequence[str], entry: str, arguments: tuple[object, ...], *files: int) -> None:
         packages = (str(parent) for parent in reversed(Path(__file__).parents[:3]))
@@ -140,7 +137,7 @@ class WorkerProcess:
 
     @property
     def alive(self) -> bool:
-        """Whether it accepts requests."""
+        """Return whether the worker accepts requests."""
         return not self._connection.closed and self._process.poll() is None
 
     def board(self) -> tuple[int, int]:
@@ -153,14 +150,16 @@ class WorkerProcess:
         deadline: float,
         tick: Callable[[], None] | None = None,
         meanwhile: Callable[[], object] | None = None,
+        interval: float = 0.2,
     ) -> Any:
         """Send a request and return the answer; any exception before that kills the worker.
 
         Args:
             request: verb and arguments.
             deadline: on the clock `time.monotonic` [s].
-            tick: called about five times a second while waiting.
+            tick: called every `interval` while waiting.
             meanwhile: called once, while the worker is busy.
+            interval: time between two checks of the deadline [s].
 
         Raises:
             OutOfTimeError: the deadline passed.
@@ -170,25 +169,25 @@ class WorkerProcess:
             self._connection.send(request)
             if meanwhile:
                 meanwhile()
-            while not self._ready.poll(1e3 * max(0.0, min(TICK, deadline - time.monotonic()))):
+            while not self._ready.poll(1e3 * max(0.0, min(interval, deadline - time.monotonic()))):
                 if time.monotonic() >= deadline:
                     raise OutOfTimeError("it ran out of time")
                 if tick:
                     tick()
             return receive(self._connection)
         except (EOFError, ConnectionError):
-            raise WorkerLostError(self._cause_of_death()) from None
+            raise WorkerLostError(self._cause_of_end()) from None
         except BaseException:
             self.kill()
             raise
 
     def kill(self) -> None:
-        """End it at once and release everything that it held."""
+        """Kill the worker at once and release its files and memory."""
         self._end()
         self._release()
 
     def stop(self) -> None:
-        """Let it end by itself, which it does when its pipe closes; kill it after a second."""
+        """Close the pipe, on which the worker ends by itself; kill it after a second."""
         self._connection.close()
         try:
             self._process.wait(1.0)
@@ -197,13 +196,13 @@ class WorkerProcess:
         self._release()
 
     def forget(self) -> None:
-        """After a fork, in the child: do not touch it, since it belongs to the parent."""
+        """Close the files of the worker in a forked child, without ending it: it belongs to the parent."""
         self._connection.close()
         self._output.close()
         self._process.returncode = 0
 
     def _end(self) -> None:
-        """Kill it; a launcher is asked first, which then ends its ranks, on other machines too."""
+        """Kill the worker; a launcher is terminated first, so that it ends its ranks, on other machines too."""
         if self.ranks > 1:
             self._process.terminate()
             with suppress(subprocess.TimeoutExpired):
@@ -215,23 +214,23 @@ class WorkerProcess:
         self._connection.close()
         if not self._board_map.closed:
             self._output.seek(0)
-            self.last_words = self._output.read(4000).decode(errors="replace").strip()
+            self.last_output = self._output.read(4000).decode(errors="replace").strip()
             self._last_board = self._board[0], self._board[1]
             self._board.release()
             self._board_map.close()
             self._output.close()
 
-    def _cause_of_death(self) -> str:
+    def _cause_of_end(self) -> str:
         try:
             self._process.wait(5.0)
         except subprocess.TimeoutExpired:
             self._end()
         self._release()
         code = self._process.returncode
-        if self.ranks > 1 and (cause := cause_among_ranks(self.ranks, self.last_words)):
+        if self.ranks > 1 and (cause := cause_among_ranks(self.ranks, self.last_output)):
             return cause
         if code >= 0:
-            words = self.last_words.splitlines()[-1:] or ["no message"]
+            words = self.last_output.splitlines()[-1:] or ["no message"]
             return f"the LAMMPS process ended by itself with exit code {code} ({words[0]})"
         name = signal.Signals(-code).name
         if name == "SIGKILL":

@@ -9,40 +9,37 @@ import sys
 import time
 from typing import Any, Protocol, TextIO
 
-QUIET_SECONDS = 5.0
-"""Least time between two plain lines of the same phase."""
-
 
 class Progress(Protocol):
     """A listener to a run."""
 
     def phase(self, name: str, expected_steps: int | None = None, counted: str = "step") -> None:
-        """Begin a phase with a number of steps, or of another count; None where the number is unknown."""
+        """Begin a phase of `expected_steps` steps, or whatever is `counted`; None where the number is unknown."""
 
     def advance(self, steps: int) -> None:
         """Note that this number of steps of the phase is done."""
 
     def note(self, text: str) -> None:
-        """Tell one line."""
+        """Show one line of text."""
 
     def close(self) -> None:
         """End; further calls do nothing."""
 
 
 class Silent:
-    """Nobody listens."""
+    """A listener that shows nothing."""
 
     def phase(self, name: str, expected_steps: int | None = None, counted: str = "step") -> None:
-        """Do nothing."""
+        """Ignore the beginning of a phase."""
 
     def advance(self, steps: int) -> None:
-        """Do nothing."""
+        """Ignore the steps that are done."""
 
     def note(self, text: str) -> None:
-        """Do nothing."""
+        """Ignore the line of text."""
 
     def close(self) -> None:
-        """Do nothing."""
+        """Do nothing, as there is nothing to close."""
 
 
 class Lines:
@@ -53,8 +50,8 @@ class Lines:
         quiet: least time between two lines of a phase [s].
     """
 
-    def __init__(self, stream: TextIO, quiet: float = QUIET_SECONDS) -> None:
-        """Write nothing yet."""
+    def __init__(self, stream: TextIO, quiet: float = 5.0) -> None:
+        """Store the stream; the first phase writes the first line."""
         self._stream, self._quiet = stream, quiet
         self._name, self._expected, self._done, self._counted = "", None, 0, "step"
         self._start = self._last = time.monotonic()
@@ -87,7 +84,7 @@ class Lines:
         print(text, file=self._stream, flush=True)
 
     def close(self) -> None:
-        """Leave the stream open: it is not ours."""
+        """Leave the stream open, as it belongs to the caller."""
 
 
 class Bar:
@@ -111,7 +108,7 @@ class Bar:
         from rich.text import Text
 
         class Rate(ProgressColumn):
-            """What is counted, per second."""
+            """The rate of the counted steps, per second."""
 
             def render(self, task: Any) -> Text:
                 return Text("" if task.speed is None else f"{task.speed:.3g}/s")
@@ -127,7 +124,7 @@ class Bar:
         self._task = self._rich.add_task(name, total=expected_steps)
 
     def advance(self, steps: int) -> None:
-        """Move the bar."""
+        """Move the bar by these steps."""
         if self._task is not None:
             self._rich.advance(self._task, steps)
 

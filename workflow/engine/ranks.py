@@ -3,7 +3,7 @@
     parent ──request──▶ rank 0 ──▶ the others,   all: LAMMPS,   the others' atoms ──▶ rank 0 ──answer──▶ parent
 
 Each rank has the particles of a slice along x. A rank that fails alone, while the others wait for it in the middle of a
-step, says why on its output and ends them all.
+step, prints the cause and ends them all.
 """
 
 from __future__ import annotations
@@ -22,16 +22,9 @@ from typing import Any
 from contact1d.workflow.engine.readout import RefusalError
 from contact1d.workflow.engine.worker import Runner, answer, leave, send, watch
 
-PAUSE = 1e-4
-"""Seconds between two looks of a rank without work: one that waits in MPI takes a whole processor."""
-PATIENCE = 1.0
-"""Seconds in which the parent ends all ranks where all have failed; then one that has failed does."""
-SAID = "failed on rank"
-"""What a rank begins its last words with."""
-
 
 def main(socket: str, board: str) -> None:
-    """Answer requests until the parent closes the socket; of ranks other than 0: until rank 0 leaves.
+    """Answer requests until the parent closes the socket; ranks other than 0 until rank 0 leaves.
 
     Args:
         socket: address of the parent's listener, for rank 0.
@@ -54,36 +47,36 @@ def main(socket: str, board: str) -> None:
         return bool(hung_up.poll(0)) or os.getppid() != launcher
 
     threading.Thread(target=watch, args=(runner, gone), daemon=True).start()
-    _tell(world, ("prepare",))
-    with suppress(RefusalError):  # the first `open` tells of it
+    _broadcast(world, ("prepare",))
+    with suppress(RefusalError):  # which the first `open` reports
         runner.prepare()
     try:
         while True:
             request = connection.recv()
-            _tell(world, request)
+            _broadcast(world, request)
             send(connection, answer(runner, request[0], tuple(request[1:])))
     except (EOFError, OSError):
-        _tell(world, None)
+        _broadcast(world, None)
         leave()
 
 
-def _tell(world: Any, request: tuple[Any, ...] | None) -> None:
+def _broadcast(world: Any, request: tuple[Any, ...] | None) -> None:
     for rank in range(1, world.size):
         world.send(request, rank)
 
 
 def _follow(world: Any, gone: Callable[[], bool]) -> None:
-    """Do what rank 0 is asked, until it leaves."""
+    """Run the requests of rank 0 on another rank, until rank 0 leaves."""
     runner = Runner(memoryview(bytearray(16)).cast("q"), world)
     threading.Thread(target=watch, args=(runner, gone), daemon=True).start()
     while True:
         while not world.iprobe(source=0):
-            time.sleep(PAUSE)
+            time.sleep(1e-4)  # a rank that waits in MPI takes a whole processor
         request = world.recv(source=0)
         if request is None:
             leave()
         outcome, words, *_ = answer(runner, request[0], tuple(request[1:]))
         if outcome != "done" and request[0] != "prepare":
-            time.sleep(PATIENCE)
-            print(f"{SAID} {world.rank}: {words}", flush=True)
+            time.sleep(1.0)  # in which the parent ends all ranks, if all have failed
+            print(f"failed on rank {world.rank}: {words}", flush=True)  # `launcher.cause_among_ranks` reads it
             os._exit(1)  # the launcher ends the others; after MPI's Abort it may leave without these words

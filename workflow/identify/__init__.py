@@ -1,4 +1,4 @@
-"""From a material to a scene: the interaction with which the model has a wanted F_A and a₀, found by a solver."""
+"""From a material to a scene: choice of the model, and the interaction that gives a required F_A and a₀."""
 
 from contact1d.workflow.identify.choice import MaterialRun, from_material
 from contact1d.workflow.identify.interaction import (

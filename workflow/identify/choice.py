@@ -1,4 +1,4 @@
-"""From a material to a finished run: which scene represents a contact, a chain on a rigid plane or two, and its run."""
+"""From a material to a finished run: the scene of a contact, one chain on a rigid plane or two chains, and its run."""
 
 from __future__ import annotations
 
@@ -12,27 +12,31 @@ from contact1d.files import AnyPath
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.experiments.spacing import contact_curve, contact_radius, with_spacing
 from contact1d.workflow.identify.contact import AnyContact, AskedContact, read_contact
-from contact1d.workflow.identify.interaction import IdentifyError, Target, identify, jkr_target, material_scene
-from contact1d.workflow.identify.theories import Theories, judged, require_size
+from contact1d.workflow.identify.interaction import (
+    PRELOAD_SHARE,
+    IdentifyError,
+    Target,
+    identify,
+    jkr_target,
+    material_scene,
+)
+from contact1d.workflow.identify.theories import Theories, limitations, require_size
 from contact1d.workflow.runs import advised
 from contact1d.workflow.runs.finished import Run
 from contact1d.workflow.scene import Scene, scene_from_dict
 
-PRELOAD_SHARE = 0.7
-"""Preload of a pull-off over JKR's F_A, where no load is given."""
-
 
 @dataclass(frozen=True)
 class Choice:
-    """A scene for a contact.
+    """The scene that represents a contact.
 
     Attributes:
-        contact: what was asked for.
-        scene: with every number chosen; of two chains, its interaction is still to be searched for.
-        theories: the theories of an adhesive sphere; None of another body.
-        target: what the interaction of two chains is to give, in units of the scene; None on the plane.
-        doubts: by name, why the scene represents the contact in part only.
-        contact_radius: that determines the spacing [m].
+        contact: the described contact.
+        scene: scene with every number chosen; the interaction of two chains is still to be identified.
+        theories: theories of an adhesive sphere; None for any other body.
+        target: F_A and a₀ that the interaction of two chains must give, in units of the scene; None on the plane.
+        doubts: limitations of the scene as a model of the contact, by name.
+        contact_radius: contact radius that determines the spacing [m].
     """
 
     contact: AskedContact
@@ -45,46 +49,50 @@ class Choice:
 
 @dataclass(frozen=True)
 class MaterialRun(Choice):
-    """A contact with the run that represents it; `scene` is that of the run."""
+    """The finished run that represents a contact, with its scene."""
 
     run: Run
 
 
 def theories_of(contact: AskedContact) -> Theories | None:
-    """The theories of an adhesive sphere; None for another body, or without attraction."""
+    """Return the theories of an adhesive sphere; None for any other body, or without attraction."""
     if contact.radius is None or not contact.work_of_adhesion:
         return None
     sphere = MaugisDugdale(contact.radius, contact.contact_modulus, contact.work_of_adhesion, contact.range)
     return Theories(sphere, contact.load)
 
 
-def chosen(contact: AskedContact) -> Choice:
-    """A scene for a contact.
+def choose(contact: AskedContact) -> Choice:
+    """Return the scene that represents a contact.
 
     Raises:
         IdentifyError: no chain can represent it; the message says why.
-        SceneError: the profile is none.
+        SceneError: the profile is invalid.
     """
     theories = theories_of(contact)
-    doubts = {} if theories is None else judged(contact, theories)
+    doubts = {} if theories is None else limitations(contact, theories)
     if contact.model == "particles":
         return _particles(contact, theories, doubts)
     experiment: dict[str, Any] = {"kind": "load", "force": contact.load}
     if contact.work_of_adhesion:
-        experiment = {"kind": "pull_off", "preload": contact.load or usual_preload(contact)}
+        experiment = {"kind": "pull_off", "preload": contact.load or default_preload(contact)}
     scene = on_plane(contact, experiment)
     radius = contact_radius(scene)
     require_size(contact, radius)
     return Choice(contact, with_spacing(scene), theories, None, doubts, radius)
 
 
-def usual_preload(contact: AskedContact) -> float:
-    """PRELOAD_SHARE of the largest tension under a fixed load [N]."""
+def default_preload(contact: AskedContact) -> float:
+    """Return the preload of a pull-off without a given one [N]: PRELOAD_SHARE of JKR's pull-off force of the body."""
     return -PRELOAD_SHARE * float(contact_curve(on_plane(contact, {"kind": "load", "force": 1.0}))[2].min())
 
 
 def on_plane(contact: AskedContact, experiment: Any, **tables: Any) -> Scene:
-    """The contact's scene with an experiment and further tables, on a rigid plane. Raises SceneError."""
+    """Return the scene of a contact on a rigid plane, with an experiment and further tables.
+
+    Raises:
+        SceneError: the tables make no valid scene.
+    """
     data = contact.scene.given
     if not contact.work_of_adhesion:
         data.pop("adhesion", None)
@@ -92,7 +100,11 @@ def on_plane(contact: AskedContact, experiment: Any, **tables: Any) -> Scene:
 
 
 def _particles(contact: AskedContact, theories: Theories | None, doubts: dict[str, str]) -> Choice:
-    """Two chains, whose interaction is to give JKR's F_A and a₀."""
+    """Return the scene of two chains, with JKR's F_A and a₀ as the target of their interaction.
+
+    Raises:
+        IdentifyError: the contact is no adhesive sphere, or a number of it has an uncertainty.
+    """
     if contact.scene.shares:
         raise IdentifyError(
             f'model = "particles" fits an interaction to values alone, and {", ".join(contact.scene.shares)} has ±: '
@@ -120,21 +132,21 @@ def _particles(contact: AskedContact, theories: Theories | None, doubts: dict[st
 
 
 def from_material(source: AnyContact, folder: AnyPath, progress: Progress | None = None) -> MaterialRun:
-    """Choose a scene for a contact that is described in SI, and run it.
+    """Choose the scene of a contact that is described in SI, and run it.
 
         contact1d.from_material("rubber.toml", "runs/rubber").run.results.adhesion_force
 
     Args:
-        source: a TOML file, by its path, or its tables; see docs/identify.md.
+        source: a TOML file, by its path, or its tables; docs/identify.md has the keys.
         folder: run folder.
         progress: informed of phases and steps.
 
     Raises:
-        SceneError: the description has mistakes; all of them.
+        SceneError: all problems of the description.
         IdentifyError: no chain can represent this contact; the message says why.
-        SettingsError, RunError: see `workflow.runs.campaign.run`.
+        SettingsError, RunError: as `contact1d.run`.
     """
-    choice = chosen(read_contact(source))
+    choice = choose(read_contact(source))
     if choice.target is None:
         run = advised.run(choice.scene, folder, progress=progress)
     else:

@@ -1,4 +1,4 @@
-"""Data of a real contact, from a TOML file or a table: shapes, materials, attraction, load, in SI."""
+"""The description of a contact in SI, from a TOML file or its tables: shapes, materials, attraction, load."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from contact1d.workflow.scene.si_text import UnitTextError, si_value
 from contact1d.workflow.scene.tables import SPHERES
 
 AnyContact = str | PathLike[str] | Mapping[str, Any]
-"""What `read_contact` makes a contact of: a TOML file, by its path, or its tables."""
+"""A material file, by its path, or its tables."""
 Model = Literal["plane", "particles"]
 MODELS: tuple[Model, ...] = ("plane", "particles")
 RIGID = "rigid"
-PLACES = {
+SCENE_KEYS = {
     "radius": "bodies.profile.radius",
     "profile": "bodies.profile",
     "upper": "material.upper",
@@ -39,9 +39,9 @@ PLACES = {
     "tolerance": "accuracy.tolerance",
     "title": "title",
 }
-"""Keys that a scene has, too, and where."""
-KEYS = (*PLACES, "roughness", "model")
-STANDS_IN = {
+"""Keys of a description that a scene has, too, with their dotted keys there."""
+KEYS = (*SCENE_KEYS, "roughness", "model")
+DEFAULTS = {
     "title": "A contact",
     "bodies.particles": "auto",
     "bodies.spacing": "auto",
@@ -56,17 +56,17 @@ STANDS_IN = {
     "experiment.kind": "load",
     "experiment.force": 1.0,
 }
-"""A chain on a rigid plane, for what is not given or has no place in a description."""
+"""Values of a chain on a rigid plane for all that a description does not give, by dotted keys of a scene."""
 NONE_AT_ZERO = ("surface_energy", "work_of_adhesion", "load")
-"""Keys that count as not given where they are 0."""
+"""Keys that count as absent if their value is 0."""
 
 
 @dataclass(frozen=True)
 class AskedContact:
-    """A body on a flat one, in SI.
+    """The described contact of a body with a flat one, in SI.
 
     Attributes:
-        scene: a chain on a rigid plane with what was given, in metres and newtons; what was not given stands in.
+        scene: a chain on a rigid plane with the described values and DEFAULTS, in metres and newtons.
         given: the description.
         roughness: rms height [m]; None: not given.
     """
@@ -77,67 +77,67 @@ class AskedContact:
 
     @property
     def shape(self) -> Shape:
-        """The upper body's profile."""
+        """The profile of the upper body."""
         return self.scene.bodies.profile
 
     @property
     def radius(self) -> float | None:
-        """R of a sphere [m], None of another body."""
+        """The radius R of a sphere [m]; None for any other body."""
         return self.shape.curvature_radius if self.shape.kind in SPHERES else None
 
     @property
     def contact_modulus(self) -> float:
-        """E* [Pa]."""
+        """The contact modulus E* [Pa]."""
         assert self.scene.material is not None
         return self.scene.material.effective_modulus()
 
     @property
     def work_of_adhesion(self) -> float:
-        """W = 2γ [J/m²]; 0: no attraction."""
+        """The work of adhesion W = 2γ [J/m²]; 0: no attraction."""
         return self.scene.work_of_adhesion
 
     @property
     def range(self) -> float:
-        """h₀ of the attraction [m]."""
+        """The range h₀ of the attraction [m]."""
         return law_of(self.scene).range_of(self.scene, ASSUMED_RANGE)
 
     @property
     def load(self) -> float | None:
-        """Its load [N]; None: not given."""
+        """The load [N]; None: not given."""
         return self.scene.experiment.compression if "load" in self.given else None
 
     @property
     def model(self) -> Model:
-        """A chain on a rigid plane, or two chains with a fitted interaction."""
+        """The model: a chain on a rigid plane, or two chains of particles with a fitted interaction."""
         return "particles" if self.given.get("model") == "particles" else "plane"
 
 
 def read_contact(source: AnyContact, complete: bool = True) -> AskedContact:
-    """The contact that a file or its tables describe, read as a scene with 1 LU = 1 m and 1 FU = 1 N.
+    """Return the contact that a file or its tables describe, read as a scene with 1 LU = 1 m and 1 FU = 1 N.
 
     Args:
         source: a TOML file, by its path, or its tables.
-        complete: whether it must have a load or an adhesion: something to run.
+        complete: whether a load or an adhesion is required.
 
     Raises:
-        SceneError: with every problem at once.
+        SceneError: all problems of the description.
     """
     folder = Path() if isinstance(source, Mapping) else Path(fspath(source)).parent
     data = dict(source) if isinstance(source, Mapping) else read_tables(source)
     if {"bodies", "experiment"} <= data.keys():
         raise SceneError([Problem("bodies", "this is a scene, not a material file", hint="run it with contact1d run")])
     problems = [*_mistakes(data, complete), *_without_unit(data, folder)]
-    taken = {problem.path for problem in problems}
+    reported = {problem.path for problem in problems}
     scene = None
     try:
-        scene = scene_from_dict(_as_scene({key: v for key, v in data.items() if key not in taken}), folder=folder)
+        scene = scene_from_dict(_as_scene({key: v for key, v in data.items() if key not in reported}), folder=folder)
     except SceneError as error:
-        found = [_as_given(problem, data) for problem in error.problems]
-        keys = {key for key, value in data.items() if value != RIGID} - taken
-        problems += [one for one in found if one.path.partition(".")[0] in keys]
+        of_scene = [_as_given(problem, data) for problem in error.problems]
+        keys = {key for key, value in data.items() if value != RIGID} - reported
+        problems += [problem for problem in of_scene if problem.path.partition(".")[0] in keys]
     roughness = _length(data, "roughness", problems)
     if problems or scene is None:
-        raise SceneError(sorted(problems, key=lambda one: _rank(one, data)))
+        raise SceneError(sorted(problems, key=_rank))
     return AskedContact(scene, data, roughness)
 
 
@@ -146,7 +146,7 @@ def _adheres(data: Mapping[str, Any]) -> bool:
 
 
 def _mistakes(data: Mapping[str, Any], complete: bool) -> Iterator[Problem]:
-    """What no scene would say of the keys and of having them together."""
+    """Yield the problems of a description that its scene would not have: unknown, missing and exclusive keys."""
     for key in (key for key in data if key not in KEYS):
         meant = nearest(key, KEYS)
         hint = f'did you mean "{meant}"?' if meant else f"allowed here: {', '.join(KEYS)}"
@@ -178,7 +178,7 @@ def _mistakes(data: Mapping[str, Any], complete: bool) -> Iterator[Problem]:
 
 
 def _without_unit(data: Mapping[str, Any], folder: Path) -> Iterator[Problem]:
-    """A profile's file has units of its own, or the profile a scale; what else is wrong with it the scene says."""
+    """Yield a problem if neither the file of a profile has units nor the profile a scale."""
     profile = data.get("profile")
     if isinstance(profile, Mapping) and isinstance(profile.get("file"), str) and not {"scale", "units"} & {*profile}:
         with suppress(ValueError):
@@ -188,34 +188,34 @@ def _without_unit(data: Mapping[str, Any], folder: Path) -> Iterator[Problem]:
 
 
 def _as_scene(data: Mapping[str, Any]) -> dict[str, Any]:
-    """A chain on a rigid plane with what is given; what is missing, or no scene has, stands in."""
-    given = {PLACES[key]: v for key, v in data.items() if key in PLACES and (v or key not in NONE_AT_ZERO)}
+    """Return the tables of a chain on a rigid plane with the described values, and DEFAULTS for all others."""
+    given = {SCENE_KEYS[key]: v for key, v in data.items() if key in SCENE_KEYS and (v or key not in NONE_AT_ZERO)}
     unknown: dict[str, Any] = dict.fromkeys(("material.upper", "material.lower"), RIGID)
     if not unknown.keys() & given.keys():
         unknown = {"material.contact_modulus": 1.0}
     if "range" in data and not _adheres(data):
         unknown["adhesion.work_of_adhesion"] = 0.0
     tables: dict[str, Any] = {}
-    set_values(tables, STANDS_IN | unknown | given)
+    set_values(tables, DEFAULTS | unknown | given)
     return tables
 
 
 def _as_given(problem: Problem, data: Mapping[str, Any]) -> Problem:
-    """The problem of a scene, by the contact's own key and units."""
-    keys = [key for key in PLACES if key in data]
-    own = next((key for key in keys if problem.path.startswith(PLACES[key])), problem.path)
-    path = problem.path.replace(PLACES.get(own, own), own, 1)
+    """Return a problem of the scene with the key of the description in place of the scene's."""
+    keys = [key for key in SCENE_KEYS if key in data]
+    described = next((key for key in keys if problem.path.startswith(SCENE_KEYS[key])), problem.path)
+    path = problem.path.replace(SCENE_KEYS.get(described, described), described, 1)
     return Problem(path, problem.message, problem.given, problem.hint)
 
 
-def _rank(problem: Problem, data: Mapping[str, Any]) -> int:
-    """Its place among the keys: unknown ones first."""
+def _rank(problem: Problem) -> int:
+    """Return the position of a problem's key in KEYS; -1 for an unknown key."""
     key = problem.path.partition(".")[0]
     return KEYS.index(key) if key in KEYS else -1
 
 
 def _length(data: Mapping[str, Any], key: str, problems: list[Problem]) -> float | None:
-    """A length ≥ 0 [m]; None where it is absent or wrong."""
+    """Return a length ≥ 0 [m]; None if it is absent, or invalid, which is appended to `problems`."""
     given = data.get(key)
     if given is None:
         return None

@@ -1,11 +1,12 @@
-"""The interaction with which a scene's run has a wanted F_A and a₀: Newton's method, with runs for the values.
+"""The interaction for which the run of a scene has a required F_A and a₀, by Newton's method on
 
-    ( ln F_A/F_A*,  ln a₀/a₀* )  over  ( ln of the amplitudes' factor, ln of the ranges' factor ),
+    ( ln F_A/F_A*,  ln a₀/a₀* )  over  ( ln of the factor of the amplitudes, ln of the factor of the ranges ).
 
-the start and the slopes from independent pairs, without a run. With the radius R₁ of the chain's parabola and the
-stiffness per length c of both chains in series, F_A R₁/(c a₀³) rises from 0 to 4/(9√3) = 0.2566 as the range of the
-interaction falls to 0, where springs break. JKR with the springs that the MDR gives a material,
-R₁ = R/2 and c = E*, has 1/6. The other way, a finished run has the LU and FU of a material (Eq. 9 of the paper).
+Runs give the values; the start and the slopes are those of independent pairs, without a run. With the radius R₁ of the
+chain's parabola and the stiffness per length c of both chains in series, F_A R₁/(c a₀³) rises from 0 to
+4/(9√3) = 0.2566 as the range of the interaction falls to 0, the limit of brittle springs. JKR with the springs of the
+MDR, R₁ = R/2 and c = E*, has 1/6. The inverse problem, LU and FU of a finished run for a material, is Eq. 9 of the
+paper.
 """
 
 from __future__ import annotations
@@ -34,31 +35,30 @@ from contact1d.workflow.scene import PullOff, Scene, scene_from_dict
 from contact1d.workflow.scene.tables import PARABOLA_SHARE, SPHERES
 from contact1d.workflow.units import SI, Scales
 
-BRITTLE_RATIO = 4.0 / (9.0 * math.sqrt(3.0))
-"""F_A R₁/(c a₀³) in the limit of a vanishing range."""
-REACHABLE_RATIO = 0.95 * BRITTLE_RATIO
-"""Beyond this the range would be so short that each pair snaps by itself."""
-ROUNDING = 1.0 + 1e-5
-"""Keeps a nearest value possible after it was printed with six digits."""
+Array = NDArray[np.float64]
+LARGEST_RADIUS_SHARE = 0.6
+"""Largest contact radius over the radius of the sphere: beyond it neither parabola nor half-space is valid."""
+PRELOAD_SHARE = 0.7
+"""Preload of a pull-off over JKR's F_A, where no load is given."""
 
 
 class IdentifyError(Contact1dError, ValueError):
-    """A target that the model can't reach; the message names the nearest one that it can."""
+    """A target that the model can't reach, with the nearest possible one in the message."""
 
 
 @dataclass(frozen=True)
 class Target:
-    """What a run is to find: F_A [FU] and a₀ [LU]."""
+    """Required results of a run: F_A [FU] and a₀ [LU]."""
 
     adhesion_force: float
     zero_load_radius: float
 
 
 def require_reachable(scene: Scene, target: Target) -> None:
-    """Refuse a target that springs of the scene's stiffness cannot reach.
+    """Check that springs of the scene's stiffness can reach a target.
 
     Raises:
-        IdentifyError: with the nearest zero-load radius and the nearest adhesion force.
+        IdentifyError: they cannot; the message has the nearest zero-load radius and the nearest adhesion force.
     """
     if not isinstance(scene.experiment, PullOff) or scene.interaction is None or scene.interaction.attraction is None:
         raise IdentifyError("only a pull_off with an attraction finds F_A and a₀")
@@ -69,22 +69,25 @@ def require_reachable(scene: Scene, target: Target) -> None:
 
 
 def require_held(target: Target, layer: float, radius: float, units: tuple[str, str]) -> None:
-    """Refuse a target that a layer of springs does not hold, whatever the interaction.
+    """Check that a layer of springs can have F_A and a₀ of a target, with any interaction.
 
     Args:
         target: F_A and a₀, in `units`.
         layer: stiffness per length of both chains in series [force/length²].
         radius: R₁ of the chain's parabola [length].
-        units: of force and length, for the message.
+        units: units of force and length, for the message.
 
     Raises:
-        IdentifyError: with the nearest zero-load radius and the nearest adhesion force.
+        IdentifyError: it cannot; the message has the nearest zero-load radius and the nearest adhesion force.
     """
+    brittle_limit = 4.0 / (9.0 * math.sqrt(3.0))
+    largest_ratio = 0.95 * brittle_limit  # beyond it the range would be so short that each pair snaps by itself
+    rounding = 1.0 + 1e-5  # the nearest values are possible as they are printed, with six digits
     force, a_0 = target.adhesion_force, target.zero_load_radius
-    if force * radius / (layer * a_0**3) <= REACHABLE_RATIO:
+    if force * radius / (layer * a_0**3) <= largest_ratio:
         return
-    smallest = ROUNDING * (force * radius / (REACHABLE_RATIO * layer)) ** (1.0 / 3.0)
-    largest = REACHABLE_RATIO * layer * a_0**3 / radius / ROUNDING
+    smallest = rounding * (force * radius / (largest_ratio * layer)) ** (1.0 / 3.0)
+    largest = largest_ratio * layer * a_0**3 / radius / rounding
     newton, metre = units
     raise IdentifyError(
         f"an adhesion force of {force:.6g} {newton} with a zero-load radius of {a_0:.6g} {metre} is not possible with "
@@ -93,45 +96,34 @@ def require_held(target: Target, layer: float, radius: float, units: tuple[str, 
     )
 
 
-RESOLUTION = 28.5
-"""Particles in a₀, unless the length unit is given: as in the first row of the paper's Table 1."""
-FEWEST_IN_RADIUS = 8.0
-"""Fewest particles in a₀ that a length unit must leave."""
-MOST_IN_RADIUS = 2000.0
-"""Most particles in a₀."""
-LARGEST_RADIUS_SHARE = 0.6
-"""Largest a₀ over the radius of the sphere: beyond it neither parabola nor half-space is valid."""
-PRELOAD_SHARE = 0.7
-"""Preload of a scene for a material over its F_A."""
-SHAPE = {"amplitudes": 2.0, "ranges": 2.0}
-"""A/B and b/a of the fitted interaction: those of the example scene pull_off.toml."""
-
-
 def material_scene(
     contact_modulus: float, radius: float, target: Target, length_unit: float | None = None, *, tolerance: float
 ) -> tuple[Scene, Target]:
-    """A scene for a sphere of a material, and its target in model units; the interaction is still to be identified.
+    """Return the scene of a sphere of a material, whose interaction is still to be identified, and its target.
 
     The reduction is the MDR's, so that stiffness, displacement and radius are those of the sphere. FU is chosen so that
     a bulk spring has the stiffness 1 FU/LU.
 
     Args:
         contact_modulus: E* [Pa].
-        radius: R of the sphere, or effective of both [m].
+        radius: R of the sphere, or effective radius of both spheres [m].
         target: F_A [N] and a₀ [m].
-        length_unit: of one LU [m]; None: such that a₀ has some 28 particles.
-        tolerance: of the scene.
+        length_unit: one LU [m]; None: 28.5 particles in a₀, as in the first row of the paper's Table 1.
+        tolerance: relative tolerance of the scene.
+
+    Returns:
+        The scene, and the target in its units.
 
     Raises:
-        IdentifyError: a target out of reach, or a length unit that is too coarse.
+        IdentifyError: the target is out of reach, or the length unit too coarse or too fine.
     """
     require_held(target, contact_modulus, PARABOLA_SHARE["mdr"] * radius, ("N", "m"))  # the MDR's springs are E*
-    unit = target.zero_load_radius / RESOLUTION if length_unit is None else length_unit
+    unit = target.zero_load_radius / 28.5 if length_unit is None else length_unit
     _require_resolved(target.zero_load_radius, unit, radius)
     force_unit = 2.0 * contact_modulus * unit**2
     wanted = Target(target.adhesion_force / force_unit, target.zero_load_radius / unit)
     depth = wanted.zero_load_radius**2 / (radius / unit)
-    reach, energy = 0.3 * depth, 0.1 * depth**2
+    reach, energy = 0.3 * depth, 0.1 * depth**2  # only a start
     scene = scene_from_dict(
         {
             "title": f"Sphere of R = {radius:.4g} m, E* = {contact_modulus:.4g} Pa",
@@ -142,8 +134,8 @@ def material_scene(
                 "reduction": "mdr",
                 "bulk_stiffness": "auto",
             },
-            "interaction": {
-                "repulsion": {"amplitude": SHAPE["amplitudes"] * energy, "range": reach / SHAPE["ranges"]},
+            "interaction": {  # of the shape in the example scene pull_off.toml: A/B = b/a = 2
+                "repulsion": {"amplitude": 2.0 * energy, "range": reach / 2.0},
                 "attraction": {"amplitude": energy, "range": reach},
             },
             "material": {"contact_modulus": contact_modulus, "length_unit": unit, "force_unit": force_unit},
@@ -154,69 +146,64 @@ def material_scene(
     return scene, wanted
 
 
-def _require_resolved(a_0: float, unit: float, radius: float) -> None:
-    """Refuse an a₀ [m] of too few or too many length units [m], or too large a part of the sphere's radius [m]."""
+def _require_resolved(a_0: float, unit: float, radius: float, fewest: float = 8.0, most: float = 2000.0) -> None:
+    """Check that a₀ [m] has `fewest` to `most` particles one length unit [m] apart and is small against R [m].
+
+    Raises:
+        IdentifyError: it has not, or is not; the message has the allowed length unit or radius.
+    """
     particles = a_0 / unit
-    if not FEWEST_IN_RADIUS <= particles <= MOST_IN_RADIUS:
-        side, count = ("most", FEWEST_IN_RADIUS) if particles < FEWEST_IN_RADIUS else ("least", MOST_IN_RADIUS)
+    if not fewest <= particles <= most:
+        side, count = ("most", fewest) if particles < fewest else ("least", most)
         given, limit = apart(unit, a_0 / count, 4)
         raise IdentifyError(
             f"a length unit of {given} m gives {particles:.2g} particles in the zero-load radius of {a_0:.4g} m: "
             f"use at {side} {limit} m for {count:g}"
         )
     if a_0 > LARGEST_RADIUS_SHARE * radius:
-        share, most = apart(a_0 / radius, LARGEST_RADIUS_SHARE, 2)
+        share, limit = apart(a_0 / radius, LARGEST_RADIUS_SHARE, 2)
         raise IdentifyError(
-            f"the zero-load radius of {a_0:.4g} m is {share} of the sphere's: JKR is for a << R, here up to {most}. "
+            f"the zero-load radius of {a_0:.4g} m is {share} of the sphere's: JKR is for a << R, here up to {limit}. "
             "Use a larger radius, a larger contact modulus or a smaller surface energy"
         )
 
 
 def jkr_target(contact_modulus: float, surface_energy: float, radius: float) -> Target:
-    """F_A = 3πγR [N] and a₀ = (9πγR²/E*)^{1/3} [m] of JKR; E* [Pa], γ of one side [J/m²], R [m]."""
+    """Return F_A = 3πγR [N] and a₀ = (9πγR²/E*)^{1/3} [m] of JKR from E* [Pa], γ of one side [J/m²] and R [m]."""
     sphere = PowerLaw.sphere(radius, contact_modulus, work_of_adhesion=2.0 * surface_energy)
     return Target(sphere.pull_off_force(), sphere.zero_load_radius())
 
 
-Array = NDArray[np.float64]
-SLOPE_STEP = 0.03
-"""Step of the finite differences of the predictor, in both logarithms: well above the grain of its grid."""
-FIRST_STEP, FARTHEST = 0.25, 9.0
-"""First and last step of a search for a bracket, in the logarithm of a factor."""
-START_ERROR = 1e-4
-"""Of both logarithms at the start: what the predictor itself is good for."""
-TAIL = 1e-5
-"""Force at the predictor's cutoff over the force scale."""
-POINTS = 1000
-"""Distances at which the predictor has the force of a row."""
-
-
 def estimated(scene: Scene, target: Target) -> Scene:
-    """The scene with the interaction with which independent pairs have the target: near it, and no run needed.
+    """Return the scene with the interaction for which independent pairs reach the target, without a run.
 
     Raises:
-        IdentifyError: as in `identify`.
+        IdentifyError: no interaction of this shape has the target.
     """
     require_reachable(scene, target)
     return scaled(scene, start(scene, target))
 
 
 def start(scene: Scene, target: Target) -> Array:
-    """Where independent pairs have the target: for each range the amplitudes that give F_A, and of those the range
-    that gives a₀. Both depend on their unknown in one direction only, so that each is a bracketed search.
+    """Return the logarithms of the factors with which independent pairs reach the target, (2,).
+
+    F_A is monotone in the amplitudes, and a₀ in the range at that F_A: two nested bracketed searches.
+
+    Raises:
+        IdentifyError: no interaction of this shape has the target.
     """
     amplitude, wanted = 0.0, np.log([target.adhesion_force, target.zero_load_radius])
 
-    def off(amplitude: float, reach: float) -> Array:
+    def deviations(amplitude: float, reach: float) -> Array:
         return _estimated(scaled(scene, np.array([amplitude, reach]))) - wanted
 
-    def radius_off(reach: float) -> float:
+    def radius_deviation(reach: float) -> float:
         nonlocal amplitude
-        amplitude = _root(lambda a: float(off(a, reach)[0]), amplitude)
-        return float(off(amplitude, reach)[1])
+        amplitude = _root(lambda a: float(deviations(a, reach)[0]), amplitude)
+        return float(deviations(amplitude, reach)[1])
 
     try:
-        reach = _root(radius_off, 0.0)
+        reach = _root(radius_deviation, 0.0)
     except _NoRootError as error:
         nearest = target.zero_load_radius * math.exp(error.nearest)
         raise IdentifyError(
@@ -227,39 +214,50 @@ def start(scene: Scene, target: Target) -> Array:
 
 
 class _NoRootError(ValueError):
-    """No change of sign was found; `nearest` is the value of the function that is nearest to zero."""
+    """A function without a change of sign in the searched interval; `nearest` is its value nearest to zero."""
 
     def __init__(self, nearest: float) -> None:
         super().__init__(nearest)
         self.nearest = nearest
 
 
-def _root(function: Callable[[float], float], start: float) -> float:
-    """The zero of a monotone function of a logarithm, searched on both sides of `start`.
+def _root(
+    function: Callable[[float], float], start: float, step: float = 0.25, last_step: float = 9.0, error: float = 1e-4
+) -> float:
+    """Return the zero of a monotone function of a logarithm, searched on both sides of `start`.
+
+    Args:
+        function: function of the logarithm of a factor.
+        start: first logarithm.
+        step: first step; each next one is twice as long.
+        last_step: longest step.
+        error: error of the logarithm; the predictor is no more accurate.
 
     Raises:
-        _NoRootError: there is none within a factor of exp(FARTHEST).
+        _NoRootError: the function has one sign in the searched interval.
     """
     low = high = start
     below = above = function(start)
-    step = FIRST_STEP
     while below * above > 0.0:
-        if step > FARTHEST:
+        if step > last_step:
             raise _NoRootError(min(below, above, key=abs))
         low, high, step = start - step, start + step, 2.0 * step
         below, above = function(low), function(high)
-    return low if low == high else float(brentq(function, low, high, xtol=START_ERROR))
+    return low if low == high else float(brentq(function, low, high, xtol=error))
 
 
-def slopes(scene: Scene, at: Array) -> Array:
-    """d(ln F_A, ln a₀)/d(logarithms) of independent pairs, by central differences."""
-    steps = SLOPE_STEP * np.eye(2)
-    ends = [[_estimated(scaled(scene, at + sign * step)) for sign in (1.0, -1.0)] for step in steps]
-    return np.column_stack([(above - below) / (2.0 * SLOPE_STEP) for above, below in ends])
+def slopes(scene: Scene, logarithms: Array, step: float = 0.03) -> Array:
+    """Return d(ln F_A, ln a₀)/d(logarithms) of independent pairs, (2, 2), by central differences.
+
+    The step is much larger than the error of the predictor by its grid.
+    """
+    moves = step * np.eye(2)
+    ends = [[_estimated(scaled(scene, logarithms + sign * move)) for sign in (1.0, -1.0)] for move in moves]
+    return np.column_stack([(above - below) / (2.0 * step) for above, below in ends])
 
 
 def scaled(scene: Scene, logarithms: Array) -> Scene:
-    """The scene with both amplitudes and both ranges multiplied by the exponentials of `logarithms`."""
+    """Return the scene with both amplitudes and both ranges multiplied by the exponentials of `logarithms`."""
     data = scene.model_dump(by_alias=True, exclude_none=True)
     for term in ("repulsion", "attraction"):
         for key, factor in zip(("amplitude", "range"), np.exp(logarithms).tolist(), strict=True):
@@ -267,39 +265,39 @@ def scaled(scene: Scene, logarithms: Array) -> Scene:
     return scene_from_dict(data)
 
 
-def _estimated(scene: Scene) -> Array:
-    """ln F_A and ln a₀ of independent pairs, by the predictor of every run's settings, on a coarser grid."""
+def _estimated(scene: Scene, tail: float = 1e-5, points: int = 1000) -> Array:
+    """Return ln F_A and ln a₀ of independent pairs, (2,), by the predictor of the settings on a coarser grid.
+
+    Args:
+        scene: scene with an interaction.
+        tail: force at the cutoff of the predictor over the force scale.
+        points: distances at which the predictor has forces.
+    """
     law = interaction_law(scene)
     assert law is not None
-    cutoff, rest = law.cutoff_for(TAIL), law.force_free_distance()
-    estimate = of_pairs(law, scene.bodies, scene.bodies.spacing, scene.bulk_stiffness, cutoff, rest, POINTS)
+    cutoff, rest = law.cutoff_for(tail), law.force_free_distance()
+    estimate = of_pairs(law, scene.bodies, scene.bodies.spacing, scene.bulk_stiffness, cutoff, rest, points)
     radius = estimate.half_width(estimate.displacement_at(0.0), _largest_tension(estimate))
     return np.log([estimate.pull_off_force(), radius])
 
 
 def _largest_tension(estimate: Law) -> float:
-    """The undeformed gap [LU] of the force maximum, between the points of the grid by a parabola."""
+    """Return the undeformed gap of the force maximum [LU], between the points of the grid by a parabola."""
     force, points = estimate.force, np.arange(estimate.force.size, dtype=np.float64)
     i = min(max(int(np.argmin(force)), 1), len(force) - 2)
-    place, _ = vertex(points, -force, i, 1)
-    return float(np.interp(place, points, estimate.gap))
-
-
-MOST_RUNS = 8
-"""Runs after which the search gives up; two to four are usual."""
-SEARCH_SHARE = 0.3
-"""A search ends where both deviations are below this share of the scene's tolerance."""
+    peak, _ = vertex(points, -force, i, 1)
+    return float(np.interp(peak, points, estimate.gap))
 
 
 @dataclass(frozen=True)
 class Identified:
-    """A scene that has its target.
+    """A scene whose run reaches its target.
 
     Attributes:
-        scene: with the interaction that was found.
-        run: of that scene.
-        deviations: relative ones of F_A and a₀ from the target.
-        runs: how many it took.
+        scene: scene with the identified interaction.
+        run: finished run of that scene.
+        deviations: relative deviations of F_A and a₀ from the target.
+        runs: number of runs of the search.
     """
 
     scene: Scene
@@ -308,41 +306,42 @@ class Identified:
     runs: int
 
 
-def identify(scene: Scene, target: Target, folder: Path, progress: Progress | None = None) -> Identified:
+def identify(
+    scene: Scene, target: Target, folder: Path, progress: Progress | None = None, most_runs: int = 8
+) -> Identified:
     """Scale the interaction of a pull_off `scene` so that its F_A and a₀ are those of `target`.
 
     Args:
-        scene: a pull_off with attraction; its interaction's shape is kept.
-        target: wanted.
-        folder: run folder; it holds the last run.
+        scene: a pull_off with attraction; the shape of its interaction is kept.
+        target: required F_A and a₀.
+        folder: run folder, for the last run.
         progress: informed of phases and steps.
+        most_runs: runs after which the search ends without a result; two to four are usual.
 
     Raises:
-        IdentifyError: no interaction of this shape has the target, or the search does not end.
-        SettingsError, RunError: see `workflow.runs.campaign.run`.
+        IdentifyError: no interaction of this shape has the target, or the search does not converge.
+        SettingsError, RunError: as `contact1d.run`.
     """
     require_reachable(scene, target)
-    at = start(scene, target)
-    found: Identified | None = None
-    for count in range(1, MOST_RUNS + 1):
-        trial = scaled(scene, at)
+    largest_deviation = 0.3 * scene.accuracy.tolerance
+    logarithms = start(scene, target)
+    for count in range(1, most_runs + 1):
+        trial = scaled(scene, logarithms)
         finished = run(trial, folder, figures=False, progress=progress)
         values = [finished.model.results[name].value for name in UNIT_FIXING_RESULTS]
-        reached = np.log(np.asarray(values) / (target.adhesion_force, target.zero_load_radius))
-        found = Identified(trial, finished, (math.expm1(reached[0]), math.expm1(reached[1])), count)
-        if np.abs(reached).max() < SEARCH_SHARE * scene.accuracy.tolerance:
-            return found
-        at = at - np.linalg.solve(slopes(scene, at), reached)
-    assert found is not None
+        errors = np.log(np.asarray(values) / (target.adhesion_force, target.zero_load_radius))
+        deviations = math.expm1(errors[0]), math.expm1(errors[1])
+        if np.abs(errors).max() < largest_deviation:
+            return Identified(trial, finished, deviations, count)
+        logarithms = logarithms - np.linalg.solve(slopes(scene, logarithms), errors)
     raise IdentifyError(
-        f"the search did not converge in {MOST_RUNS} runs: deviation {found.deviations[0]:.1e} of the adhesion force, "
-        f"{found.deviations[1]:.1e} of a₀. Use a smaller [accuracy] tolerance or more particles in a₀"
+        f"the search did not converge in {most_runs} runs: deviation {deviations[0]:.1e} of the adhesion force, "
+        f"{deviations[1]:.1e} of a₀. Use a smaller [accuracy] tolerance or more particles in a₀"
     )
 
 
 def scales_of_run(folder: Path, contact_modulus: float, surface_energy: float) -> tuple[Scales, dict[str, Any]]:
-    """The scales with which the run is JKR's contact of the material, and the run's quantities that have a unit of LU
-    and FU.
+    """Return the scales with which a run is JKR's contact of a material, and its results with units of LU and FU.
 
     Args:
         folder: run folder of a pull_off, or of a path that found F_A and a₀.
@@ -350,7 +349,7 @@ def scales_of_run(folder: Path, contact_modulus: float, surface_energy: float) -
         surface_energy: γ of one side [J/m²].
 
     Raises:
-        IdentifyError: no such run, or one without these quantities.
+        IdentifyError: the folder has no such run, or F_A or a₀ is missing.
     """
     try:
         run = load_run(folder).model

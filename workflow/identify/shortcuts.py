@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, overload
 
 from contact1d.files import AnyPath
-from contact1d.workflow.identify.choice import on_plane, usual_preload
+from contact1d.workflow.identify.choice import default_preload, on_plane
 from contact1d.workflow.identify.contact import AskedContact, read_contact
 from contact1d.workflow.runs.advised import run
 from contact1d.workflow.runs.finished import Run
@@ -17,26 +17,26 @@ from contact1d.workflow.scene.quantities import keys_of
 
 @dataclass(frozen=True)
 class Contact:
-    """A body on a flat one, which experiments are made with; `sphere`, `cone`, `punch` and `profile` make it.
+    """A body on a flat one, made by `sphere`, `cone`, `punch` or `profile`; each experiment returns the finished run.
 
-    Each experiment returns the finished run. Quantities are texts with units, or numbers in SI.
+    Quantities are texts with units, or numbers in SI.
 
     Attributes:
-        asked: what was given.
+        asked: the described contact.
     """
 
     asked: AskedContact
 
     def scene(self, kind: str, friction: float | None = None, **experiment: Any) -> Scene:
-        """The scene of an experiment with the keys of docs/scene.md, to run, to sweep or to print.
+        """Return the scene of an experiment with the keys of docs/scene.md, to run, to sweep or to print.
 
-        A pull-off has by default a preload of 0.7 of the theory's pull-off force.
+        By default, the preload of a pull-off is 0.7 of the pull-off force of theory.
 
         Raises:
-            SceneError: with every problem at once.
+            SceneError: all problems of the scene.
         """
         if kind == "pull_off" and experiment.get("preload") is None:
-            experiment["preload"] = usual_preload(self.asked)
+            experiment["preload"] = default_preload(self.asked)
         tables: dict[str, Any] = {} if friction is None else {"friction": {"coefficient": friction}}
         return on_plane(self.asked, experiment | {"kind": kind}, **tables)
 
@@ -47,16 +47,16 @@ class Contact:
     def load(self, force: list[Any], folder: AnyPath | None = None) -> list[Run]: ...
 
     def load(self, force: Any, folder: AnyPath | None = None) -> Run | list[Run]:
-        """Press with a force; negative: pull. The folder is temporary where none is given.
+        """Press with a force, or pull if it is negative; without a folder, the run folder is temporary.
 
-        Of a list of forces a run for each, in folders 1, 2, … of the folder.
+        A list of forces makes a list of runs, in the folders 1, 2, … of the folder.
         """
         if isinstance(force, list):
-            return [self.load(one, folder and Path(folder) / str(i)) for i, one in enumerate(force, 1)]
+            return [self.load(step, folder and Path(folder) / str(i)) for i, step in enumerate(force, 1)]
         return run(self.scene("load", force=force), folder)
 
     def pull_off(self, preload: str | float | None = None, folder: AnyPath | None = None) -> Run:
-        """Press with a preload, and pull until the bodies separate; see `scene`."""
+        """Press with a preload, by default that of `scene`, and pull until the bodies separate."""
         return run(self.scene("pull_off", preload=preload), folder)
 
     def path(self, displacements: Any, folder: AnyPath | None = None) -> Run:
@@ -66,42 +66,42 @@ class Contact:
     def tangential(
         self, normal_force: str | float, friction: float, folder: AnyPath | None = None, **experiment: Any
     ) -> Run:
-        """Press with a normal force and displace tangentially, by `displacements` or `cycles`, with Coulomb's law."""
+        """Press with a normal force and displace tangentially with Coulomb friction, by `displacements` or `cycles`."""
         return run(self.scene("tangential", friction, normal_force=normal_force, **experiment), folder)
 
 
 def sphere(radius: str | float, counter_radius: str | float | None = None, **contact: Any) -> Contact:
-    """A sphere, as a paraboloid, on a flat body, or on another sphere of `counter_radius` (negative: in a cup).
+    """Return the contact of a sphere, as a paraboloid, with a flat body or a sphere (`counter_radius` < 0: a cup).
 
         contact1d.sphere(radius="2 mm", upper="rubber", lower="glass", work_of_adhesion="80 mJ/m²").pull_off()
 
     Args:
-        radius: at the apex.
-        counter_radius: of the other body.
+        radius: radius of curvature at the apex.
+        counter_radius: radius of the opposite body; None: flat.
         contact: `upper` and `lower` (names of materials, or tables with youngs_modulus and poisson_ratio), or
             `contact_modulus`; `work_of_adhesion`, `tolerance`, `title` (docs/identify.md).
 
     Raises:
-        SceneError: with every problem at once.
+        SceneError: all problems of the description.
     """
-    other = {} if counter_radius is None else {"counter_radius": counter_radius}
-    return _contact(contact, kind="parabola", radius=radius, **other)
+    curvature = {} if counter_radius is None else {"counter_radius": counter_radius}
+    return _contact(contact, kind="parabola", radius=radius, **curvature)
 
 
 def cone(half_angle: str, **contact: Any) -> Contact:
-    """A cone of this angle between axis and flank, "80°"; further arguments as of `sphere`."""
+    """Return the contact of a cone with an angle between axis and flank, such as "80°"; other arguments as `sphere`."""
     return _contact(contact, kind="cone", half_angle=half_angle)
 
 
 def punch(radius: str | float, **contact: Any) -> Contact:
-    """A flat punch; further arguments as of `sphere`."""
+    """Return the contact of a flat punch; other arguments as `sphere`."""
     return _contact(contact, kind="flat_punch", radius=radius)
 
 
 def profile(file: AnyPath | None = None, **contact: Any) -> Contact:
-    """A measured profile from a file, or from the lists `r` or `x` and `z`; further arguments as of `sphere`.
+    """Return the contact of a measured profile, a file or lists `r` or `x` and `z`; other arguments as `sphere`.
 
-    How a scan is read say `centre`, `level`, `smooth`, `fit` and `units`, as in a scene (docs/scene.md).
+    `centre`, `level`, `smooth`, `fit` and `units` determine how a scan is read, as in a scene (docs/scene.md).
     """
     keys = keys_of(Measured).keys() - {"kind", "file"}
     given: dict[str, Any] = {key: contact.pop(key) for key in keys if key in contact}

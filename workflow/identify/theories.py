@@ -1,4 +1,4 @@
-"""Theories of a contact: JKR, DMT, Maugis and Dugdale, which of them holds, and whether a chain represents it.
+"""The theories of an adhesive contact, JKR, DMT, Maugis and Dugdale: which one holds, and whether a chain is a model.
 
 Radius and force of the body before any run, by the method of dimensionality reduction: with E* per
 length, g(x) = |x| ∫ f′/√(x² − r²) dr and Heß's rule at the edge, d = g(a) − √(2πaW/E*),
@@ -25,11 +25,11 @@ from contact1d.workflow.units import prefixed
 
 @dataclass(frozen=True)
 class Theories:
-    """One adhesive sphere by every theory, in SI.
+    """An adhesive sphere by every theory, in SI.
 
     Args:
         sphere: the contact with a range of the attraction, by Maugis and Dugdale.
-        load: F [N], positive in compression; None: 0.
+        load: force [N], positive in compression; None: 0.
     """
 
     sphere: MaugisDugdale
@@ -37,19 +37,19 @@ class Theories:
 
     @property
     def tabor(self) -> float:
-        """μ = (R W²/(E*² h₀³))^(1/3)."""
+        """The Tabor parameter μ = (R W²/(E*² h₀³))^(1/3)."""
         return self.sphere.tabor
 
     @cached_property
     def verdict(self) -> Verdict:
-        """Which theory holds under the load, and why."""
+        """The theory that holds under the load, with the reason."""
         return valid_theory(
             self.tabor, (self.load or 0.0) / (math.pi * self.sphere.work_of_adhesion * self.sphere.radius)
         )
 
     @cached_property
     def values(self) -> Mapping[str, Mapping[str, float]]:
-        """By theory, F_A [N], a₀ [m], a where a fixed load pulls off [m], a under the load [m] where one is given."""
+        """By theory F_A [N], a₀ [m], the critical radius under load control [m], and the radius under a load [m]."""
         return {
             str(name): {
                 "adhesion_force": contact.pull_off_force(), "zero_load_radius": contact.zero_load_radius(),
@@ -61,41 +61,37 @@ class Theories:
 
     @property
     def holding(self) -> str:
-        """The theory of `values` that holds: by μ, DMT below 0.1, JKR above 5, else Maugis and Dugdale."""
+        """The theory of `values` that holds by μ: DMT below 0.1, JKR above 5, else Maugis and Dugdale."""
         return str(of_tabor(self.tabor))
 
 
-ATOM = 0.3e-9
-"""Diameter of an atom [m]: continuum theory does not hold for narrower contacts."""
-ROUGH_SHARE, TOO_ROUGH_SHARE = 0.1, 1.0
-"""Roughness over the stretch δ_c at which an asperity as blunt as the sphere separates. Fuller and Tabor (1975): the
-pull-off force falls with it, to about a third at 1 and to zero at 3; sharper asperities separate earlier."""
-
-
-def judged(contact: AskedContact, theories: Theories) -> dict[str, str]:
-    """Limitations of a chain as a model of an adhesive sphere.
+def limitations(contact: AskedContact, theories: Theories) -> dict[str, str]:
+    """Return the limitations of a chain as a model of an adhesive sphere, by name.
 
     Raises:
-        IdentifyError: it cannot represent it.
+        IdentifyError: a chain is no model of the contact.
     """
+    atom = 0.3e-9  # diameter [m]
     held, doubts = theories.values[theories.holding], {}
-    if held["zero_load_radius"] < ATOM:
+    if held["zero_load_radius"] < atom:
         doubts["below_an_atom"] = (
             f"the contact is narrower than an atom: {theories.holding} has a zero-load radius of "
-            f"{prefixed(held['zero_load_radius'], 'm')}, and an atom's diameter is {prefixed(ATOM, 'm')}. Continuum "
+            f"{prefixed(held['zero_load_radius'], 'm')}, and an atom's diameter is {prefixed(atom, 'm')}. Continuum "
             "theory does not hold; use an atomistic model"
         )
+    # Fuller and Tabor (1975): the pull-off force falls with the roughness over the stretch at which an asperity as
+    # blunt as the sphere separates, to about a third at 1 and to zero at 3; sharper asperities separate earlier.
     jkr, roughness = theories.sphere.theories[Theory.JKR], contact.roughness or 0.0
     stretch = -jkr.displacement(jkr.fixed_grips_radius())
-    beside = f"asperities of {prefixed(roughness, 'm')} against an elastic stretch of {prefixed(stretch, 'm')}"
-    if roughness > TOO_ROUGH_SHARE * stretch:
+    lengths = f"asperities of {prefixed(roughness, 'm')} against an elastic stretch of {prefixed(stretch, 'm')}"
+    if roughness > stretch:
         raise IdentifyError(
-            f"the surfaces are too rough for the adhesion of a smooth sphere: {beside} at pull-off, even of an "
+            f"the surfaces are too rough for the adhesion of a smooth sphere: {lengths} at pull-off, even of an "
             "asperity as blunt as the sphere, so that few asperities adhere at a time (Fuller and Tabor). A scene is "
-            f"offered up to a roughness of {_down(TOO_ROUGH_SHARE * stretch)} m"
+            f"offered up to a roughness of {_down(stretch)} m"
         )
-    if roughness > ROUGH_SHARE * stretch:
-        doubts["roughness"] = f"{beside} at pull-off: the pull-off force is below that of a smooth sphere"
+    if roughness > 0.1 * stretch:
+        doubts["roughness"] = f"{lengths} at pull-off: the pull-off force is below that of a smooth sphere"
     assumed = "range" not in contact.given
     if (assumed or contact.model == "particles") and (words := beyond_jkr(theories.sphere, assumed)):
         doubts["tabor"] = words
@@ -103,13 +99,17 @@ def judged(contact: AskedContact, theories: Theories) -> dict[str, str]:
 
 
 def _down(value: float) -> str:
-    """Three digits, rounded down."""
+    """Return a value as text, rounded down to three digits."""
     digits = 10.0 ** (math.floor(math.log10(value)) - 2)
     return f"{math.floor(value / digits) * digits:.3g}"
 
 
 def require_size(contact: AskedContact, radius: float) -> None:
-    """Refuse a contact that is not small compared with its sphere."""
+    """Check that a contact radius [m] is small compared with the radius of the sphere.
+
+    Raises:
+        IdentifyError: it is not; the message has the largest share.
+    """
     sphere = contact.radius and contact.shape.steepest.curvature_radius
     if sphere and radius > LARGEST_RADIUS_SHARE * sphere:
         share, most = apart(radius / sphere, LARGEST_RADIUS_SHARE, 2)

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from contact1d.workflow.laws.law import Law
 from contact1d.workflow.laws.numerics import ROUND_OFF
-from contact1d.workflow.laws.path import Followed, History, Path
+from contact1d.workflow.laws.path import Followed, History, Path, equilibria
 from contact1d.workflow.laws.shape import Profile as Undeformed
 from contact1d.workflow.laws.shape import positions_within
 
@@ -109,6 +109,13 @@ class Particles(ABC):
         Computed independently of the forces, which it checks; None where the law has no expression for them.
         """
         return None
+
+    def checked(self, path: Path, finer: int) -> Path:
+        """Return the path along which the work of a run is compared with `energies`: dense equilibria from apart on.
+
+        `finer`: how many times as many. Where forces depend on time, the path of the load steps themselves.
+        """
+        return equilibria(path, self.apart, self.jumps, self.law.spacing, finer)
 
     def refined(self, history: History) -> History:
         """Return a history with further moments on both sides of the jumps of the force."""

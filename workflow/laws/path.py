@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -119,3 +120,35 @@ def legs(displacements: Array) -> list[slice]:
     turns = moves[1:][directions[moves[1:]] != directions[moves[:-1]]] + 1
     edges = [0, *turns.tolist(), len(displacements)]
     return [slice(first, last) for first, last in pairwise(edges) if last > first]
+
+
+def equilibria(path: Path, apart: float, jumps: Sequence[float], spacing: float, finer: int) -> Path:
+    """Return equilibria along a path from apart on, with as many states as the work along it needs.
+
+    Args:
+        path: of a run.
+        apart: displacement [LU] below which the force is 0.
+        jumps: displacements [LU] at which the force jumps.
+        spacing: of the particles [LU].
+        finer: so many times as many.
+    """
+    start = min(0.0, apart) - ROUND_OFF * spacing  # apart
+    displacements = np.append(start, np.maximum(path.displacement, start))
+    if path.along.any():
+        # 32 states in a step that changes the load; between others forces are straight lines.
+        counts = np.where(np.diff(displacements) != 0.0, 32, 1) * finer
+        steps, along = np.arange(displacements.size), np.append(path.along[:1], path.along)
+        moments = [step + np.arange(1, count + 1) / count for step, count in enumerate(counts)]
+        states = np.append(0.0, np.concatenate(moments))
+        return Path(np.interp(states, steps, displacements), np.interp(states, steps, along), np.zeros_like(states))
+    # 80 states over all of the displacement, and 30 in geometric progression on both sides of each jump.
+    distances = spacing * np.geomspace(ROUND_OFF, 1.0, 30)
+    near = np.asarray([jump + side for jump in jumps for side in (-distances, distances)]).ravel()
+    ends = displacements[[0, *(leg.stop - 1 for leg in legs(displacements))]].tolist()
+    parts, total = [displacements[:1]], float(np.ptp(displacements)) or 1.0
+    for first, last in pairwise(ends):
+        count = math.ceil(80 * finer * abs(last - first) / total) + 1
+        between = near[(near > min(first, last)) & (near < max(first, last))]
+        leg = np.unique(np.concatenate([np.linspace(first, last, count + 1), between]))
+        parts.append((leg if last > first else leg[::-1])[1:])
+    return path_of(np.concatenate(parts))

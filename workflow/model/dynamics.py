@@ -174,7 +174,7 @@ def _product(scene: Scene, tolerance: float, still_step: float) -> float:
         # particle's.
         product = 0.2 * math.sqrt(min(1.0, tolerance / MOVING_TOLERANCE))
     else:
-        # Without time only the minimiser takes steps (`workflow.deck.deck.RELAXATION`).
+        # Without time only the minimiser takes steps (`workflow.deck.parts`).
         product = still_step if scene.method == "dynamic" else 0.5
     return min([product, *(effect.largest_phase(tolerance) for effect in scene.present)])
 

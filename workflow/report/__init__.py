@@ -1,1 +1,1 @@
-"""One HTML page for a run, several runs or a sweep: the scene, the results, interactive figures."""
+"""HTML pages of a run, several runs or a sweep, with interactive figures; animations of a run."""

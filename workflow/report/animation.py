@@ -1,4 +1,4 @@
-"""The states of a run as an animation: bodies and bulk springs, particles coloured by pressure, the force beneath."""
+"""Animations of the states of a run: bodies and bulk springs, particles coloured by pressure, the force below."""
 
 from __future__ import annotations
 
@@ -25,29 +25,25 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 HEIGHT = 6.0
-"""Of the picture [inch]."""
+"""Height of an animation [inch]."""
 FORMATS = (".gif", ".mp4")
 OVITO = "view_in_ovito.py"
-SPRINGS_SHOWN = 160
-"""Particles up to which each bulk spring is drawn; of more they would be a grey field."""
-SPRING_LENGTH = 0.25
-"""Length at which a spring is drawn, over the height of the picture: a bulk has none in the model."""
 
 
 def animate(folder: AnyPath, out: AnyPath | None = None, frames_per_second: int = 10) -> Path:
-    """Write the way of a finished run as GIF or MP4.
+    """Write the states of a finished run as an animation, GIF or MP4.
 
     Args:
-        folder: the run folder.
-        out: the file, by its ending; None: way.gif in the folder.
-        frames_per_second: states a second.
+        folder: run folder.
+        out: file to write, whose suffix is the format; None: way.gif in the run folder.
+        frames_per_second: states per second.
 
     Returns:
-        The file's path.
+        Path of the file.
 
     Raises:
         FolderError: the folder holds no finished run, or one of a single state.
-        Contact1dError: the ending is another one, or MP4 is asked for and there is no ffmpeg.
+        Contact1dError: the suffix is neither .gif nor .mp4, or MP4 is wanted without ffmpeg.
     """
     run = load_run(folder)
     path = Path(out) if out is not None else run.folder / "way.gif"
@@ -63,7 +59,7 @@ def animate(folder: AnyPath, out: AnyPath | None = None, frames_per_second: int 
 
 
 def ovito_script(folder: AnyPath) -> Path:
-    """Put the script beside the states of a run with which OVITO shows them; returns its path.
+    """Write the script with which OVITO shows the states of a run into its folder, and return its path.
 
     Raises:
         FolderError: the folder holds no finished run, or no states.
@@ -86,28 +82,32 @@ def _draw(run: Run, states: States, path: Path, frames_per_second: int) -> None:
     moves = _bodies(above, run, bodies, loads.panels[0]), _trace(below, curve)
     plain_axes(figure)
     figure.draw_without_rendering()
-    figure.set_layout_engine(None)  # it is the same for all states
+    figure.set_layout_engine(None)  # the layout is the same for all states
     animation = FuncAnimation(
         figure, lambda frame: [move(frame) for move in moves], frames=len(states.rows), blit=False
     )  # fmt: skip
     writer = (PillowWriter if path.suffix == ".gif" else FFMpegWriter)(fps=frames_per_second)
     with whole(path) as part:
-        named = part.with_suffix(part.suffix + path.suffix)  # the writer goes by the ending
+        named = part.with_suffix(part.suffix + path.suffix)  # the writer takes the format from the suffix
         animation.save(str(named), writer=writer, dpi=DPI)
         named.replace(part)
 
 
-def _bodies(axes: Axes, run: Run, chart: Chart, loads: Panel) -> Callable[[int], Artist]:
-    """Particles, coloured by pressure, with their bulk springs; returns what moves them. A plane has no particles."""
+def _bodies(axes: Axes, run: Run, chart: Chart, loads: Panel, most_springs: int = 160) -> Callable[[int], Artist]:
+    """Draw particles, coloured by pressure, and the bulk springs of chains of up to `most_springs` particles.
+
+    Of more particles the springs would be a grey area. Returns the function that draws a frame.
+    """
     from matplotlib.collections import LineCollection
 
     (panel,), on_plane = chart.panels, run.scene.bodies.lower == "rigid_plane"
     chains = panel.series[:1] if on_plane else panel.series
-    places = np.concatenate([np.stack(np.broadcast_arrays(one.x, one.y), axis=-1) for one in chains], axis=1)
+    positions = np.concatenate([np.stack(np.broadcast_arrays(line.x, line.y), axis=-1) for line in chains], axis=1)
     pressure = np.tile(loads.series[0].y, len(chains))
-    length, scale = SPRING_LENGTH * float(np.ptp(panel.y.view)), float(np.abs(pressure).max()) or 1.0
-    count = places.shape[1] // len(chains)
-    ends = np.repeat([[0.0, length], [0.0, -length]], count, axis=0)[: places.shape[1]]
+    # The bulk springs have no length in the model: a quarter of the height is drawn.
+    length, scale = 0.25 * float(np.ptp(panel.y.view)), float(np.abs(pressure).max()) or 1.0
+    count = positions.shape[1] // len(chains)
+    ends = np.repeat([[0.0, length], [0.0, -length]], count, axis=0)[: positions.shape[1]]
     springs = LineCollection([], colors="#bbbbbb", linewidths=0.6)
     axes.add_collection(springs)
     dots = axes.scatter([], [], c=[], s=12, cmap="coolwarm_r", vmin=-scale, vmax=scale, zorder=3)
@@ -117,17 +117,17 @@ def _bodies(axes: Axes, run: Run, chart: Chart, loads: Panel) -> Callable[[int],
     describe(axes, chart.x.label, panel.y.label, run.scene.title, zero=on_plane)
 
     def move(frame: int) -> Artist:
-        dots.set_offsets(places[frame])
+        dots.set_offsets(positions[frame])
         dots.set_array(pressure[frame])
-        if count <= SPRINGS_SHOWN:
-            springs.set_segments(list(np.stack([places[frame], places[frame] + ends], axis=1)))
+        if count <= most_springs:
+            springs.set_segments(list(np.stack([positions[frame], positions[frame] + ends], axis=1)))
         return dots
 
     return move
 
 
 def _trace(axes: Axes, chart: Chart) -> Callable[[int], Artist]:
-    """The main curve with a mark; returns what moves it."""
+    """Draw the main curve with a mark at the state, and return the function that moves the mark to a frame."""
     (panel,) = chart.panels
     *curve, state = panel.series
     draw_panel(axes, chart.x, replace(panel, series=curve))

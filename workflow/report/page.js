@@ -1,12 +1,12 @@
 "use strict";
-// Draws the figures of the page, and moves through the states of a run: line load, force and bodies together.
+// Draws the figures of the page; a slider moves line load, force and bodies through the states of a run.
 const data = JSON.parse(document.getElementById("data").textContent);
 const config = { responsive: true, displaylogo: false, showSendToCloud: false };
 // What all charts have in common.
 const axis = { showline: true, ticks: "outside", automargin: true, exponentformat: "power" };
 const common = {
   template: "none",
-  // Above is the place of the tool bar; the legend is below the plot, in words that wrap.
+  // The tool bar is above the plot; the legend is below it, as text that wraps.
   margin: { l: 70, r: 15, t: 36, b: 60 },
   hovermode: "closest",
   hoverlabel: { namelength: -1 },
@@ -20,7 +20,7 @@ const swatch = ({ mode, fill, marker, line: { color, width, dash }, opacity }) =
   const drawn = area + (mode.includes("lines") ? along : "") + (mode.includes("markers") ? point : "");
   return `<svg viewBox="0 0 28 12" fill="${color}" opacity="${opacity}" aria-hidden="true">${drawn}</svg>`;
 };
-// A name in the legend shows and hides what has it.
+// A name in the legend shows and hides the series of that name.
 const legend = (id, traces) => {
   const list = document.createElement("ul");
   list.className = "legend";
@@ -30,7 +30,7 @@ const legend = (id, traces) => {
     button.ariaPressed = "true";
     button.addEventListener("click", () => {
       button.ariaPressed = String(button.ariaPressed !== "true");
-      const named = traces.flatMap((one, i) => (one.legendgroup === trace.legendgroup ? [i] : []));
+      const named = traces.flatMap(({ legendgroup }, i) => (legendgroup === trace.legendgroup ? [i] : []));
       Plotly.restyle(id, { visible: button.ariaPressed === "true" }, named);
     });
     list.appendChild(document.createElement("li")).append(button);
@@ -63,8 +63,8 @@ if (data.path) {
   const slider = document.getElementById("state");
   const output = document.getElementById("words");
   // A series that moves has a list for each state.
-  const at = (values) => (Array.isArray(values[0]) ? values[Number(slider.value)] : values);
-  const moved = (chart) => chart.data.map((trace) => ({ ...trace, x: at(trace.x), y: at(trace.y) }));
+  const stateOf = (values) => (Array.isArray(values[0]) ? values[Number(slider.value)] : values);
+  const moved = (chart) => chart.data.map((trace) => ({ ...trace, x: stateOf(trace.x), y: stateOf(trace.y) }));
   charts.forEach((chart, i) => draw(`path-${i}`, moved(chart), chart.layout));
   const show = () => {
     charts.forEach((chart, i) => {

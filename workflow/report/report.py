@@ -1,6 +1,6 @@
-"""Runs, or a sweep, as one HTML page that needs no network and no other file.
+"""The HTML page of runs or of a sweep, which needs no network and no other file.
 
-A scene is put in words for somebody who has not seen its file, from the tables' own descriptions.
+A scene is described for readers who have not seen its file, with the descriptions of its tables and keys.
 """
 
 from __future__ import annotations
@@ -31,51 +31,48 @@ from contact1d.workflow.sweep.table import RECORD, counts_in, read_record, read_
 from contact1d.workflow.units import NUMBER, SI, Quantity, Scales
 
 PACKAGE = files("contact1d.workflow.report")
-MOST_ROWS = 500
-"""Rows of a sweep's table that the page shows; results.csv has all."""
-MOST_RUNS = 24
-"""Runs on one page: more make neither a table nor a figure that can be read; that is what a sweep is for."""
-MARKS = (
+SIGNATURES = (
     b'<meta name="generator" content="contact1d report">',
     b'<script type="application/json" id="data">{"charts": ',
 )
-"""What a page has that is ours: since 0.2.0, and always."""
+"""Text by which a page of contact1d is recognised: since 0.2.0, and in every version."""
 
 
 def report(folders: Sequence[AnyPath], out: AnyPath = "report.html") -> Path:
-    """Write the page of run folders, or of one sweep's folder.
+    """Write the page of runs or of a sweep.
 
     Args:
-        folders: one or several runs, which are overlaid; or one sweep.
-        out: the file.
+        folders: folders of one or several runs, which are overlaid; or the folder of one sweep.
+        out: file to write.
 
     Returns:
-        The file's path.
+        Path of the file.
 
     Raises:
         FolderError: a folder holds neither a run nor a sweep, or there are too many; or the file is there and no page.
     """
     path = Path(out)
-    if path.exists() and not (path.is_file() and any(mark in path.read_bytes() for mark in MARKS)):
+    if path.exists() and not (path.is_file() and any(signature in path.read_bytes() for signature in SIGNATURES)):
         raise FolderError(f"{path} is no page of contact1d: a page replaces an earlier page only; choose another file")
-    places = [Path(folder) for folder in folders]
-    sweeps = [place for place in places if (place / RECORD).is_file()]
-    if sweeps and len(places) > 1:
+    paths = [Path(folder) for folder in folders]
+    sweeps = [folder for folder in paths if (folder / RECORD).is_file()]
+    if sweeps and len(paths) > 1:
         raise FolderError(f"{sweeps[0]} holds a sweep: a page shows one sweep, or runs")
-    if len(places) > MOST_RUNS:
-        raise FolderError(f"{len(places)} runs are too many for one page; at most {MOST_RUNS}")
+    most_runs = 24  # more make neither a table nor a figure that can be read: they are for a sweep
+    if len(paths) > most_runs:
+        raise FolderError(f"{len(paths)} runs are too many for one page; at most {most_runs}")
     try:
-        page = _of_sweep(places[0]) if sweeps else _of_runs([read_run(place) for place in places])
+        page = _of_sweep(paths[0]) if sweeps else _of_runs([read_run(folder) for folder in paths])
     except (OSError, LookupError, TypeError, ValueError, EOFError, BadZipFile, csv.Error) as error:
         raise FolderError(
-            f"a file in {' or '.join(map(str, places))} can't be read ({error}): start the run or the sweep again"
+            f"a file in {' or '.join(map(str, paths))} can't be read ({error}): start the run or the sweep again"
         ) from error
     write_whole(path, page)
     return path
 
 
 def _of_runs(runs: Sequence[Run]) -> str:
-    """Runs in words for somebody who has not seen their scenes; one that failed says why."""
+    """Return the page of runs; a failed run is reported with the reason."""
     names = _names(runs)
     done = {name: run for name, run in zip(names, runs, strict=True) if run.status == "done"}
     drawn = {name: charts(run) for name, run in done.items()}
@@ -86,7 +83,7 @@ def _of_runs(runs: Sequence[Run]) -> str:
     return _page(
         "runs.html", charts_of(drawn), moving, runs=runs, names=names, done=done, entries=entries,
         sentence=sentence, scene_in_words=scene_in_words, facts=_facts, deck=_deck,
-        quantities=list(dict.fromkeys(name for one in entries.values() for name in one)), beside=in_words,
+        quantities=list(dict.fromkeys(name for results in entries.values() for name in results)), theory=in_words,
     )  # fmt: skip
 
 
@@ -96,7 +93,7 @@ def _deck(run: Run) -> str:
 
 
 def _facts(run: Run) -> dict[str, str]:
-    """What accuracy cost: tolerance, refinements, steps, times."""
+    """Return tolerance, refinements, LAMMPS steps and times of a run as text."""
     accuracy: Mapping[str, Any] = run.document.get("accuracy", {})
     asked, timing = run.scene.accuracy.tolerance, run.timing
     return {
@@ -110,7 +107,7 @@ def _facts(run: Run) -> dict[str, str]:
 
 
 def _names(runs: Sequence[Run]) -> list[str]:
-    """What each run is called on the page: its title, or its folder where titles are the same."""
+    """Return the name of each run on the page: its title, or its folder if two titles are equal."""
     for names in ([run.scene.title for run in runs], [run.folder.name for run in runs]):
         if len(set(names)) == len(names):
             return names
@@ -118,6 +115,7 @@ def _names(runs: Sequence[Run]) -> list[str]:
 
 
 def _of_sweep(folder: Path) -> str:
+    most_rows = 500  # results.csv has all
     plan, units = read_record(folder), units_in(folder)
     drawn = {"": sweep_charts(folder, plan, units)}
 
@@ -127,30 +125,27 @@ def _of_sweep(folder: Path) -> str:
     return _page(
         "sweep.html", charts_of(drawn), None, plan=plan, units=units, folder=folder, number=number, label=label_in,
         titles={axis.key: title_of(plan, axis) for axis in plan.axes},
-        rows=list(islice(read_table(folder), MOST_ROWS)), counts=counts_in(folder),
+        rows=list(islice(read_table(folder), most_rows)), counts=counts_in(folder),
         base=json.dumps(plan.base, indent=2, ensure_ascii=False),
     )  # fmt: skip
 
 
 def _page(template: str, charts: Sequence[Data], moving: Mapping[str, Any] | None, **values: Any) -> str:
-    """A page without other files. Texts are plain; through `symbols` `F_A` and `R^0.5` become HTML."""
+    """Return a page with its scripts and data; the filter `symbols` writes `F_A` and `R^0.5` in plain text as HTML."""
     from plotly.offline import get_plotlyjs
 
-    made = Environment(
+    environment = Environment(
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True,
         loader=FunctionLoader(lambda name: PACKAGE.joinpath(name).read_text(encoding="utf-8")),
     )  # fmt: skip
-    made.filters["symbols"] = symbols
+    environment.filters["symbols"] = symbols
     data = json.dumps({"charts": charts, "path": moving}, ensure_ascii=False, allow_nan=False).replace("</", "<\\/")
-    return made.get_template(template).render(values, plotly=get_plotlyjs(), data=data, charts=charts, moving=moving)
-
-
-MOST_ITEMS = 6
-"""Items of a list that are shown; of more, the ends."""
+    page = environment.get_template(template)
+    return page.render(values, plotly=get_plotlyjs(), data=data, charts=charts, moving=moving)
 
 
 def sentence(scene: Scene, scales: Scales) -> str:
-    """The scene in a sentence: the body and what it is pressed on, the effects, the experiment."""
+    """Return a sentence with the bodies, effects and experiment of a scene."""
     bodies, experiment = scene.bodies, scene.experiment
     size, given = (
         ", ".join(f"{name} {value}" for name, value in _values(table, scales) if name != "kind")
@@ -158,12 +153,12 @@ def sentence(scene: Scene, scales: Scales) -> str:
     )
     lower = "a rigid plane" if bodies.lower == "rigid_plane" else "a lower body"
     effects = f" with {', '.join(scene.effects)}" if scene.effects else ""
-    kind, what = bodies.profile.kind.replace("_", " "), experiment.kind.replace("_", " ")
-    return f"A {kind} ({size}) on {lower}{effects}. Experiment: {what}, {given}.".replace(" ()", "")
+    shape, test = bodies.profile.kind.replace("_", " "), experiment.kind.replace("_", " ")
+    return f"A {shape} ({size}) on {lower}{effects}. Experiment: {test}, {given}.".replace(" ()", "")
 
 
 def scene_in_words(scene: Scene, scales: Scales) -> list[dict[str, Any]]:
-    """Every table that the scene has, in order: its name, what it stands for, what each value is, with its unit."""
+    """Return name, meaning and values with units of each table of a scene, in order."""
     tables = {name: getattr(scene, name) for name in Scene.model_fields}
     return [
         {"name": name.replace("_", " "), "meaning": _meaning(table), "values": list(_values(table, scales))}
@@ -192,7 +187,8 @@ def _values(table: Table, scales: Scales, within: str = "") -> Iterator[tuple[st
             yield within + label, text.replace("N/m", "J/m²") if unit and "J/m²" in unit.text else text
 
 
-def _shown(value: Any, unit: str, scales: Scales) -> str:
+def _shown(value: Any, unit: str, scales: Scales, most_items: int = 6) -> str:
+    """Return a value of a scene as text; of a list with more than `most_items` its first and last ones."""
     if isinstance(value, Table):
         return f"({', '.join(text for _, text in _values(value, scales))})"
     if isinstance(value, bool):
@@ -202,6 +198,7 @@ def _shown(value: Any, unit: str, scales: Scales) -> str:
         return f"{value * factor:.6g} {name}".removesuffix(f" {NUMBER}")
     if isinstance(value, tuple | list):
         items = [_shown(item, unit, scales) for item in value]
-        few = items if len(items) <= MOST_ITEMS else [*items[: MOST_ITEMS // 2], "…", *items[-MOST_ITEMS // 2 :]]
-        return ", ".join(few) + (f" ({len(items)} in all)" if few != items else "")
+        half = most_items // 2
+        shown = items if len(items) <= most_items else [*items[:half], "…", *items[-half:]]
+        return ", ".join(shown) + (f" ({len(items)} in all)" if shown != items else "")
     return str(value)

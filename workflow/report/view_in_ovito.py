@@ -1,12 +1,12 @@
-"""The states of a run in OVITO: particles coloured by how the opposite body presses or pulls them, springs as bonds.
+"""The states of a run in OVITO: particles coloured by the force of the opposite body, springs as bonds.
 
 With OVITO's Python module (`pip install ovito`), or as a script of OVITO Pro,
 
     python view_in_ovito.py
 
-writes beside itself, from states.lammpstrj and system.data, way.ovito: a session that every OVITO opens (File, Load
-Session State) and plays; and way.png: the state with the largest force. Heights are drawn larger than x, by the same
-factor in all states. Blue presses, red pulls; the colours' scale is that of all states.
+writes two files from states.lammpstrj and system.data into the folder of the script: way.ovito, a session that every
+OVITO opens (File, Load Session State) and plays, and way.png, the state with the largest force. Heights are drawn
+larger than x, by the same factor in all states. Blue is compression, red tension, on one scale for all states.
 """
 
 from __future__ import annotations
@@ -27,25 +27,24 @@ from ovito.modifiers import (
 )
 from ovito.vis import ColorLegendOverlay, TachyonRenderer, Viewport
 
-SHARE = 0.01
-"""Force on a particle over the largest one from which on it is in the picture."""
 SHAPE = 0.35
 """Height of the bodies in the picture over their width."""
 SIZE = (1600, 900)
+"""Width and height of the picture [pixel]."""
 PRESS = "ParticleType == 2 ? Force.Z : (ParticleType == 1 ? -Force.Z : 0)"
-"""What presses a particle onto the opposite body, in OVITO's words [FU]: types are 1 lower, 2 upper particles."""
+"""Force that presses a particle onto the opposite body [FU], in OVITO's syntax; types: 1 lower, 2 upper particles."""
 COLOURS = np.array([[0.70, 0.02, 0.15], [0.86, 0.86, 0.86], [0.02, 0.30, 0.70]])
 
 
 def main(folder: Path) -> None:
-    """Load the way, find what there is to see, save session and picture."""
+    """Load the states, choose view and colours, and save session and picture."""
     pipeline = import_file(str(folder / "system.data"))
-    way = LoadTrajectoryModifier()
-    way.source.load(str(folder / "states.lammpstrj"))
-    pipeline.modifiers.append(way)
+    trajectory = LoadTrajectoryModifier()
+    trajectory.source.load(str(folder / "states.lammpstrj"))
+    pipeline.modifiers.append(trajectory)
     pipeline.modifiers.append(ComputePropertyModifier(output_property="Press", expressions=[PRESS]))
     states = [pipeline.compute(i).particles for i in range(pipeline.num_frames)]
-    half, height, spacing, largest, frame = measured(states)
+    half, height, spacing, largest, frame = extents(states)
     colours = ColorCodingModifier(property="Press", start_value=-largest, end_value=largest)
     colours.gradient = ColorCodingModifier.Gradient(COLOURS)
     larger = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, SHAPE * 2.0 * half / height, 0.0]]
@@ -74,17 +73,20 @@ def main(folder: Path) -> None:
     print(folder / "way.ovito")
 
 
-def measured(states: list[Any]) -> tuple[float, float, float, float, int]:
-    """Half-width, height, spacing [LU] of what is to be seen, largest force of a particle [FU], frame of most force."""
+def extents(states: list[Any], least_share: float = 0.01) -> tuple[float, float, float, float, int]:
+    """Return half-width, height and spacing of the view [LU], largest force on a particle [FU], frame of most force.
+
+    The view has all particles with at least `least_share` of the largest force.
+    """
     kinds = np.asarray(states[0]["Particle Type"])
     press = np.asarray([state["Press"] for state in states])
-    places = np.asarray([state["Position"] for state in states])
+    positions = np.asarray([state["Position"] for state in states])
     upper, bodies = kinds == 2, kinds <= 2
     largest = float(np.abs(press).max()) or 1.0
-    spacing = float(np.median(np.diff(places[0, upper, 0]))) if upper.sum() > 1 else 1.0
-    felt = np.abs(places[:, :, 0])[np.abs(press) > SHARE * largest]
-    half = 1.2 * float(felt.max(initial=0.0)) + 2.0 * spacing
-    heights = places[:, :, 2][bodies & (np.abs(places[:, :, 0]) <= half)]
+    spacing = float(np.median(np.diff(positions[0, upper, 0]))) if upper.sum() > 1 else 1.0
+    loaded = np.abs(positions[:, :, 0])[np.abs(press) > least_share * largest]
+    half = 1.2 * float(loaded.max(initial=0.0)) + 2.0 * spacing
+    heights = positions[:, :, 2][bodies & (np.abs(positions[:, :, 0]) <= half)]
     frame = int(np.argmax(np.abs(press[:, upper].sum(axis=1))))
     return half, float(np.ptp(heights)) or spacing, spacing, largest, frame
 

@@ -53,8 +53,8 @@ def run(
     reader = partial(edited, scene)
     with ExitStack() as temporary:
         if folder is None:
-            folder = Path(mkdtemp(prefix="contact1d-")) / "run"
-            temporary.callback(rmtree, folder.parent, ignore_errors=True)
+            folder = mkdtemp(prefix="contact1d-")
+            temporary.callback(rmtree, folder, ignore_errors=True)
         try:
             done = campaign.run(
                 scene, folder, figures, progress, time_limit, settings, workers=workers, ranks=ranks, printed=printed

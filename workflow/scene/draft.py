@@ -41,7 +41,7 @@ TERMS = {
     "judged": "material elastic|!bodies.bulk_stiffness=auto elastic|!material.length_unit|!material.force_unit|"
     "material.surface_energy",
 }
-"""Conditions that have a word of their own in others."""
+"""Conditions that have a word of their own in others: facts, each made of those before it."""
 VALUES: Mapping[str, Any] = {"0": 0.0, "true": True, "false": False}
 """Values in a condition that are no text."""
 KNOWN = "*"
@@ -67,7 +67,7 @@ class Draft:
     Attributes:
         kind, lower, profile: what the experiment, the lower body and the profile are; None if that is not known.
         experiment: the experiment's table, which declares what it needs; `Kind` if it is not known.
-        facts: what conditions call by a word and no path has; a text is that of messages.
+        facts: what conditions call by a word and no path has, `TERMS` too; a text is that of messages.
         effects: those whose tables are there.
     """
 
@@ -85,6 +85,8 @@ class Draft:
             "goes_along": self.experiment.goes_along,
             "finds_pull_off": self.experiment.finds_pull_off,
         }
+        for name, conditions in TERMS.items():
+            self.facts[name] = self.holds(conditions)
 
     def _first(self, effects: Sequence[str], text: str, dynamic: str) -> str:
         """The first of these effects that is there, else the method if that is dynamic, in words; else none."""
@@ -104,15 +106,13 @@ class Draft:
     def holds(self, conditions: str) -> bool:
         """Whether all `conditions` hold, between blanks; of alternatives, between bars, one does.
 
-        A condition is one of `TERMS` or of the `facts`, a path at which something stands, or a path with "=" and the
-        value that is known to be there or in the list there. With "!" before it, it must not hold.
+        A condition is one of the `facts`, a path at which something stands, or a path with "=" and the value that is
+        known to be there or in the list there. With "!" before it, it must not hold.
         """
         return all(any(self._is(*one) for one in alternatives) for alternatives in _read(conditions))
 
     def _is(self, name: str, text: str | None, wanted: bool) -> bool:
-        if name in TERMS:
-            found = self.holds(TERMS[name])
-        elif text is not None:
+        if text is not None:
             known, value = self[name], VALUES.get(text, text)
             found = known is not None and (
                 text == KNOWN or known == value or (isinstance(known, list | tuple) and value in known)

@@ -273,11 +273,10 @@ def check_fit(scene: Place) -> None:
 
 def _check(draft: Draft, keys: str, broken: object, message: str, fix: str, *ways: Mapping[str, float]) -> None:
     """Report a rule that is broken, at each of its keys that may stand there."""
-    if isinstance(broken, str):
-        broken = draft.holds(broken)
-        message, fix = (text.format_map(draft.facts) for text in (message, fix))
-    if not broken:
+    if not (draft.holds(broken) if isinstance(broken, str) else broken):
         return
+    if isinstance(broken, str):
+        message, fix = (text.format_map(draft.facts) for text in (message, fix))
     changes = tuple({path: draft.written(path, number)} for way in ways for path, number in way.items())
     if ways:
         texts = (f"{one:g}" if isinstance(one, float) else one for way in changes for one in way.values())

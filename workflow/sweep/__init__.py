@@ -1,1 +1,1 @@
-"""A base scene and axes to a run for each point, one table of all results, and figures over the axes."""
+"""Sweeps: a run of a base scene at each point of given axes, one table of all results, figures over the axes."""

@@ -1,6 +1,6 @@
 """A sweep file: a base scene and axes of values; its points are their product, or the axes side by side (zip).
 
-Each point is a checked scene, named by the hash of what is in it.
+Each point is a checked scene, named by the hash of its content.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ from contact1d.workflow.scene.read import plain_data, set_values
 from contact1d.workflow.scene.si_text import UnitTextError, si_base
 
 AnySweep = str | PathLike[str] | Mapping[str, Any]
-"""What `read_sweep` makes a sweep of."""
+"""A sweep file, by its path, or its tables."""
 KEYS = ("title", "scene", "base", "combine", "axes")
 SPAN_KEYS = ("from", "to", "steps", "scale")
 COMBINATIONS = ("product", "zip")
 SCALES = ("linear", "log")
 MOST_POINTS = 1_000_000
-"""Points of a sweep: a day and a half of the quickest scenes."""
+"""Largest number of points of a sweep: a day and a half of the quickest scenes."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Axis:
 
     @cached_property
     def numbers(self) -> tuple[tuple[float, ...], str]:
-        """The values as numbers, of texts in SI, and the one unit of these; no numbers where some are words."""
+        """The values as numbers, of texts with units in SI, and their common unit; no numbers if any is a word."""
         if all(map(_is_number, self.values)):
             return tuple(map(float, self.values)), ""
         try:
@@ -55,7 +55,7 @@ class Axis:
 
     @cached_property
     def cells(self) -> tuple[Any, ...]:
-        """The values as the table has them: numbers, words as they are, tables and lists as in a scene file."""
+        """The values as cells of the table: numbers, words as they are, tables and lists as in a scene file."""
         return self.numbers[0] or tuple(
             value if isinstance(value, str | int | float) and not isinstance(value, bool) else as_toml(value)
             for value in self.values
@@ -64,13 +64,13 @@ class Axis:
 
 @dataclass(frozen=True)
 class SweepPlan:
-    """What a sweep file asks for.
+    """The points that a sweep file describes.
 
     Attributes:
-        title: of the sweep.
-        base: tables of the base scene, unchecked: an axis may bring what it lacks.
-        folder: where files that the base scene names are searched.
-        axes: at least one.
+        title: title of the sweep.
+        base: tables of the base scene, unchecked: an axis may add what they lack.
+        folder: folder to which paths in the base scene are relative.
+        axes: at least one axis.
         combine: "product": every value with every other, the last axis quickest; "zip": the first values together, the
             second ones, and so on.
     """
@@ -82,16 +82,16 @@ class SweepPlan:
     combine: str
 
     def __len__(self) -> int:
-        """How many points there are."""
+        """Return the number of points."""
         lengths = [len(axis.values) for axis in self.axes]
         return math.prod(lengths) if self.combine == "product" else lengths[0]
 
     def values(self) -> Iterator[tuple[Any, ...]]:
-        """The values of each point, one for each axis."""
+        """Yield the values of each point, one for each axis."""
         return self._combined(axis.values for axis in self.axes)
 
     def cells(self) -> Iterator[tuple[Any, ...]]:
-        """The same as the table has them."""
+        """Yield the values of each point as cells of the table, one for each axis."""
         return self._combined(axis.cells for axis in self.axes)
 
     def _combined(self, columns: Iterable[tuple[Any, ...]]) -> Iterator[tuple[Any, ...]]:
@@ -99,7 +99,7 @@ class SweepPlan:
 
 
 Rule = tuple[bool, str, str, object, str]
-"""A row of a table of rules: whether it is broken, where, what must be, what is given (None: nothing), what to do."""
+"""A rule of a sweep file: whether it is broken, the key, the message, what is given (None: nothing), the fix."""
 
 
 def _broken(rules: Iterable[Rule]) -> list[Problem]:
@@ -111,10 +111,10 @@ def _broken(rules: Iterable[Rule]) -> list[Problem]:
 
 
 def read_sweep(source: AnySweep) -> SweepPlan:
-    """The sweep that a TOML file, its path given, or a mapping with the same keys describes.
+    """Return the sweep that a TOML file, by its path, or a mapping with the keys of such a file describes.
 
     Raises:
-        SceneError: every problem of the sweep file; or those of the base scene's file, if it can't be read.
+        SceneError: all problems of the sweep file; or those of the base scene's file, if it can't be read.
     """
     tables = plain_data(source) if isinstance(source, Mapping) else read_tables(source)
     folder = Path.cwd() if isinstance(source, Mapping) else Path(source).parent
@@ -136,7 +136,7 @@ def read_sweep(source: AnySweep) -> SweepPlan:
 
 
 def _of_file(tables: Mapping[str, Any]) -> Iterator[Rule]:
-    """What must hold of the keys at the top of a sweep file."""
+    """Yield the rules of the keys at the top of a sweep file."""
     title, combine, axes = tables.get("title", ""), tables.get("combine", "product"), tables.get("axes")
     scene, base = tables.get("scene"), tables.get("base")
     one_base = "give a scene file, or the scene's tables under [base]"
@@ -160,7 +160,7 @@ def _unknown(table: Mapping[str, Any], allowed: Sequence[str], where: str = "") 
 
 
 def _of_axis(table: Any, where: str) -> Iterator[Rule]:
-    """What must hold of an axis by itself."""
+    """Yield the rules of one axis."""
     if not isinstance(table, Mapping):
         yield True, where, "must be a table with key and values", table, ""
         return
@@ -171,10 +171,10 @@ def _of_axis(table: Any, where: str) -> Iterator[Rule]:
     named = [name for name in SPAN_KEYS if name in table]
     missing = [name for name in SPAN_KEYS[:3] if name not in table]
     if values is not None:
-        at = f"{where}.values"
-        yield bool(named), at, f"not together with {', '.join(named)}", None, "give the one"
-        yield not _is_list(values), at, "must be a list", values, ""
-        yield _is_list(values) and not values, at, "is empty: the sweep would have no point", None, ""
+        path = f"{where}.values"
+        yield bool(named), path, f"not together with {', '.join(named)}", None, "give one of the two"
+        yield not _is_list(values), path, "must be a list", values, ""
+        yield _is_list(values) and not values, path, "is empty: the sweep would have no point", None, ""
     elif missing:
         yield True, where, f"lacks {', '.join(missing)}", None, "give values, or from, to and steps"
     else:
@@ -182,7 +182,7 @@ def _of_axis(table: Any, where: str) -> Iterator[Rule]:
 
 
 def _of_span(table: Mapping[str, Any], where: str) -> Iterator[Rule]:
-    """What must hold of an axis from one end to another."""
+    """Yield the rules of an axis that is given by its ends."""
     given, steps, scale = (table["from"], table["to"]), table["steps"], table.get("scale", "linear")
     ends, _ = Axis("", given).numbers
     must = "must be a finite number"
@@ -192,13 +192,13 @@ def _of_span(table: Mapping[str, Any], where: str) -> Iterator[Rule]:
         yield not ends and not _is_number(end), f"{where}.{name}", must, end, ""
     whole = type(steps) is int and 1 <= steps < MOST_POINTS
     yield not whole, f"{where}.steps", f"must be a whole number from 1 to {MOST_POINTS - 1}", steps, ""
-    at = f"{where}.scale"
-    yield scale not in SCALES, at, 'must be "linear" or "log"', scale, ""
-    yield scale == "log" and min(ends, default=1.0) <= 0.0, at, "log needs from and to above 0", scale, ""
+    path = f"{where}.scale"
+    yield scale not in SCALES, path, 'must be "linear" or "log"', scale, ""
+    yield scale == "log" and min(ends, default=1.0) <= 0.0, path, "log needs from and to above 0", scale, ""
 
 
 def _of_axes(axes: Sequence[Axis], combine: str) -> Iterator[Rule]:
-    """What must hold of the axes together."""
+    """Yield the rules of all axes together."""
     keys, lengths = [axis.key for axis in axes], [len(axis.values) for axis in axes]
     for i, key in enumerate(keys):
         yield key in keys[:i], f"axes[{i}].key", "another axis has the same key", key, ""
@@ -211,7 +211,10 @@ def _of_axes(axes: Sequence[Axis], combine: str) -> Iterator[Rule]:
 
 
 def _span(table: Mapping[str, Any]) -> tuple[Any, ...]:
-    """steps + 1 values, both ends exact; whole numbers where all of a linear span are; texts where the ends are."""
+    """Return the steps + 1 values of an axis that is given by its ends, which are exact.
+
+    They are whole numbers if all values of a linear axis are whole, and texts with units if the ends are texts.
+    """
     given, steps, scale = (table["from"], table["to"]), table["steps"], table.get("scale", "linear")
     ends, unit = Axis("", given).numbers
     start, end = ends if unit else given
@@ -231,14 +234,20 @@ def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
-NAME_LENGTH = 16
-"""Hexadecimal digits of a point's name: of a million points two are alike with a chance of 3e-8."""
-UNKNOWN = ("unknown key", "unknown table", "not a path of keys")
+UNKNOWN_KEY = ("unknown key", "unknown table", "not a path of keys")
+"""Messages of problems with a key that is no key of a scene."""
 
 
 @dataclass(frozen=True)
 class Point:
-    """A point: the value of each axis, its scene, its name; or, without a scene, why it can't be one."""
+    """A point of a sweep.
+
+    Attributes:
+        values: the value of each axis.
+        scene: its scene; None where the values give no valid one.
+        name: name of its run folder.
+        reason: why there is no scene.
+    """
 
     values: tuple[Any, ...]
     scene: Scene | None
@@ -247,7 +256,7 @@ class Point:
 
 
 def points(plan: SweepPlan) -> Iterator[Point]:
-    """The points in order, made one by one."""
+    """Yield the points of a sweep in order, each made as it is needed."""
     for values in plan.values():
         try:
             scene = _scene(plan, values)
@@ -258,7 +267,11 @@ def points(plan: SweepPlan) -> Iterator[Point]:
 
 
 def require_keys(plan: SweepPlan) -> None:
-    """Check that each axis is a key of the scene. Raises SceneError; wrong values are errors of their points."""
+    """Check that each axis is a key of the scene; wrong values are errors of their points.
+
+    Raises:
+        SceneError: an axis names no key of the scene.
+    """
     try:
         _scene(plan, next(plan.values()))
     except SceneError as error:
@@ -266,16 +279,19 @@ def require_keys(plan: SweepPlan) -> None:
         wrong = [
             problem
             for problem in error.problems
-            if problem.path.startswith("set ") or (problem.message in UNKNOWN and _is_of_axis(problem.path, keys))
+            if problem.path.startswith("set ") or (problem.message in UNKNOWN_KEY and _is_of_axis(problem.path, keys))
         ]
         if wrong:
             raise SceneError(wrong) from None
 
 
 def name_of(scene: Scene) -> str:
-    """SHA-256 of everything in the scene that is more than a title, shortened."""
+    """Return the first 16 hexadecimal digits of the SHA-256 of the scene without its title.
+
+    Among a million points two names agree with a probability of 3e-8.
+    """
     content = {name: table for name, table in scene.tables.items() if name != "title"}
-    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:NAME_LENGTH]
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
 
 
 def _scene(plan: SweepPlan, values: tuple[Any, ...]) -> Scene:

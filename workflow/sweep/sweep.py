@@ -1,6 +1,6 @@
 """A sweep: its missing points run on this machine or as Slurm jobs; the table and figures have all points.
 
-The run folders alone record what is done, so the same command continues a sweep that was interrupted at any moment.
+Only the run folders record which points are done, so that the same command continues an interrupted sweep.
 """
 
 from __future__ import annotations
@@ -30,7 +30,6 @@ from contact1d.workflow.scene import Scene, SceneError
 from contact1d.workflow.scene.problems import as_toml
 from contact1d.workflow.sweep.axes import AnySweep, SweepPlan, points, read_sweep, require_keys
 from contact1d.workflow.sweep.table import (
-    MANY_ROWS,
     RECORD,
     RUNS,
     Answer,
@@ -55,9 +54,9 @@ class Sweep:
     """A finished or interrupted sweep.
 
     Attributes:
-        folder: with results.csv, figures, and a run folder for each point in runs/.
-        counts: how many points ended as `done`, `failed`, `refused`, or are `missing`.
-        quantities: the results by name, columns of the table beside <name>_uncertainty, and their units.
+        folder: folder with results.csv, figures, and a run folder for each point in runs/.
+        counts: number of points that ended as `done`, `failed`, `refused`, or are `missing`.
+        quantities: unit of each result, by name; the table has columns <name> and <name>_uncertainty.
     """
 
     folder: Path
@@ -69,12 +68,12 @@ class Sweep:
 
         Its columns have no units in their names; `.attrs["units"]` has the unit of each column that has one.
         """
-        found = frame_of(self.folder)
-        units = {name[1]: name[2] for header in found.columns if (name := HEADER.fullmatch(header))}
+        frame = frame_of(self.folder)
+        units = {name[1]: name[2] for header in frame.columns if (name := HEADER.fullmatch(header))}
         units |= {column: unit for name, unit in self.quantities.items() for column in columns_of(name)}
-        found.columns = found.columns.map(bare)
-        found.attrs["units"] = units
-        return found
+        frame.columns = frame.columns.map(bare)
+        frame.attrs["units"] = units
+        return frame
 
 
 def sweep(
@@ -90,16 +89,16 @@ def sweep(
 
     Args:
         source: a sweep file, by its path, or its tables.
-        folder: of the sweep; one of an earlier state of this sweep goes on.
+        folder: folder of the sweep; points that ran in it earlier are kept.
         executor: "local", "slurm", or anything with the interface of `concurrent.futures`.
         workers: processes, or jobs of Slurm, at a time; None: as many as there are processors.
-        figures: whether to draw, or the format: "png" (as True has it), "svg" or "pdf".
+        figures: whether to draw, or the format: "png" (the same as True), "svg" or "pdf".
         progress: informed of each point.
-        partition: of Slurm; None: its default.
+        partition: partition of Slurm; None: its default.
 
     Raises:
         SceneError: the sweep file is wrong, or an axis names no key of the scene; nothing is written.
-        FolderError: the folder holds another sweep or something else, or this sweep is at work in it.
+        FolderError: the folder holds another sweep or something else, or this sweep is active in it.
         ExecutorError: there is no such executor.
     """
     plan = read_sweep(source)
@@ -108,7 +107,7 @@ def sweep(
     workplace = workplace_of(executor, workers, folder, partition)
     record = _record(plan)
     progress = progress or Silent()
-    if (folder / RECORD).is_file() and not _same(folder, record, progress):
+    if (folder / RECORD).is_file() and not _continues(folder, record, progress):
         raise FolderError(
             f"{folder} holds another sweep: its base scene or the keys of its axes differ; choose another folder"
         )
@@ -134,50 +133,53 @@ def sweep(
 
 
 def _record(plan: SweepPlan) -> str:
-    """The sweep in the form of a sweep file; values other than numbers and text are written as in a scene."""
+    """Return the text of a sweep file for a sweep, its base scene included."""
     head = f"title = {as_toml(plan.title)}\ncombine = {as_toml(plan.combine)}\n"
     axes = "".join(f"\n[[axes]]\nkey = {as_toml(a.key)}\nvalues = {as_toml(list(a.values))}\n" for a in plan.axes)
     base = "".join(f"{key} = {as_toml(value)}\n" for key, value in plan.base.items())
     return f"{head}{axes}\n[base]\n{base}"
 
 
-def _same(folder: Path, record: str, progress: Progress) -> bool:
-    """Whether base scene and keys of the axes are the same. Values may be added; a broken record is replaced."""
+def _continues(folder: Path, record: str, progress: Progress) -> bool:
+    """Whether the folder holds a sweep with the same base scene and axis keys; values may be added.
+
+    A record that can't be read is replaced where there are runs.
+    """
     try:
         plans = [read_record(folder), read_sweep(record)]
     except FolderError:
-        if own := (folder / RUNS).is_dir():
+        if has_runs := (folder / RUNS).is_dir():
             progress.note(f"{folder / RECORD} is not the record of a sweep and is replaced")
-        return own
-    one, two = ((plan.base, [axis.key for axis in plan.axes]) for plan in plans)
-    return one == two
+        return has_runs
+    earlier, today = ((plan.base, [axis.key for axis in plan.axes]) for plan in plans)
+    return earlier == today
 
 
 def _missing(plan: SweepPlan, folder: Path, rows: list[str | Answer], progress: Progress) -> Iterator[Task]:
-    """Scenes and folders of points that have no answer yet, each once; into `rows` goes each name, or a refusal."""
+    """Yield scene and folder of each point without an answer, once; append each point's name or refusal to `rows`."""
     seen = set()
     for point in points(plan):
         if point.scene is None:
             rows.append(Answer("refused", point.reason))
-            said = ", ".join(f"{axis.key} = {value}" for axis, value in zip(plan.axes, point.values, strict=True))
-            progress.note(f"{said}: refused: {point.reason}")
+            values = ", ".join(f"{axis.key} = {value}" for axis, value in zip(plan.axes, point.values, strict=True))
+            progress.note(f"{values}: refused: {point.reason}")
         else:
             rows.append(point.name)
-            place = folder / RUNS / point.name
-            if point.name not in seen and answer_in(place) is None:
+            run_folder = folder / RUNS / point.name
+            if point.name not in seen and answer_in(run_folder) is None:
                 seen.add(point.name)
-                if (place / RESULTS).exists():
+                if (run_folder / RESULTS).exists():
                     progress.note(f"{point.name}: its {RESULTS} is invalid, so it is run again")
-                yield point.scene, place
+                yield point.scene, run_folder
                 continue
         progress.advance(1)
 
 
 def _answered(tasks: Iterator[Task], workplace: Workplace) -> Iterator[tuple[str, Answer]]:
-    """Run tasks, `workplace.window` chunks at a time; yields name and answer as they come.
+    """Run tasks, `workplace.window` chunks at a time; yield name and answer of each as it ends.
 
-    A process that dies breaks its executor. Then what was under way runs again, one by one, so that one task alone
-    has to answer for the second death.
+    A process that dies breaks its executor. The tasks that ran or waited then run again one by one, so that a second
+    failure is that of a known task.
     """
     while (first := next(tasks, None)) is not None:
         suspects: list[Task] = []
@@ -195,45 +197,49 @@ def _answered(tasks: Iterator[Task], workplace: Workplace) -> Iterator[tuple[str
 def _through(
     executor: Executor, tasks: Iterator[Task], chunk: int, window: int, broken: list[Task]
 ) -> Iterator[tuple[str, Answer]]:
-    """Answers of an executor as they come; what is under way when it breaks is put into `broken`."""
+    """Yield name and answer of each task as it ends; put the tasks of an executor that breaks into `broken`."""
     waiting: dict[Future[list[Answer]], list[Task]] = {}
     while True:
-        while not broken and len(waiting) < window and (some := list(islice(tasks, chunk))):
+        while not broken and len(waiting) < window and (job := list(islice(tasks, chunk))):
             try:
-                waiting[executor.submit(attempt_all, some)] = some
+                waiting[executor.submit(attempt_all, job)] = job
             except BrokenExecutor:
-                broken += some
+                broken += job
         if not waiting:
             return
         for future in wait(waiting, return_when=FIRST_COMPLETED).done:
-            some = waiting.pop(future)
+            job = waiting.pop(future)
             try:
                 answers = future.result()
             except BrokenExecutor:
-                broken += some
+                broken += job
                 continue
             except OSError:
                 raise
             except CalledProcessError as error:
                 raise ExecutorError(f"the job was refused: {' '.join(map(str, error.cmd))} gives the reason") from None
-            except Exception as error:  # of the executor: a job that was cancelled, a node that went away
-                answers = [answer_in(path) or _not_run(error) for _, path in some]
-            yield from ((path.name, answer) for (_, path), answer in zip(some, answers, strict=True))
+            except Exception as error:  # of the executor, such as a cancelled job or a lost node
+                answers = [answer_in(path) or _not_run(error) for _, path in job]
+            yield from ((path.name, answer) for (_, path), answer in zip(job, answers, strict=True))
 
 
 def _not_run(error: Exception) -> Answer:
-    """The answer of a point whose job ended before it: the same command runs it."""
+    """Return the answer of a point whose job ended before the point ran."""
     words = " ".join(str(error).split()).rstrip(".")
     return Answer("missing", f"its job ended before it ran; start the sweep again: {words}")
 
 
 def attempt_all(tasks: Sequence[Task]) -> list[Answer]:
-    """Run scenes one after the other in this process, which loads LAMMPS once."""
+    """Run scenes one after the other in this process, which loads LAMMPS once, and return their answers."""
     return [_attempt(scene, folder) for scene, folder in tasks]
 
 
 def _attempt(scene: Scene, folder: Path) -> Answer:
-    """Run a scene. A full disk is raised: no other point would fare better."""
+    """Run a scene and return its answer.
+
+    Raises:
+        OSError: the disk is full, which stops all other points, too.
+    """
     entry = attempt(scene, folder)
     if not isinstance(entry, RunError):
         return Answer("done")
@@ -244,41 +250,40 @@ def _attempt(scene: Scene, folder: Path) -> Answer:
 
 
 def _finish(plan: SweepPlan, folder: Path, rows: Sequence[str | Answer], answers: Mapping[str, Answer]) -> Sweep:
-    """Write the table: each row's refusal, what its run's folder says, or an answer that no folder holds."""
-    broken_off = Answer("missing", "the sweep was interrupted before it")
+    """Write the table of a sweep from refusals, run folders, and the answers that no folder holds."""
+    parquet_rows = 100_000  # rows from which on the table is written as Parquet as well
+    interrupted = Answer("missing", "the sweep was interrupted before it")
 
     def answered() -> Iterator[tuple[tuple[Any, ...], Answer]]:
-        for cells, row in zip(plan.cells(), chain(rows, repeat(broken_off)), strict=False):
-            known = row if isinstance(row, Answer) else answer_in(folder / RUNS / row) or answers.get(row, broken_off)
-            yield cells, known
+        for cells, row in zip(plan.cells(), chain(rows, repeat(interrupted)), strict=False):
+            if isinstance(row, Answer):
+                yield cells, row
+            else:
+                yield cells, answer_in(folder / RUNS / row) or answers.get(row, interrupted)
 
     units = write_table(folder, plan.axes, answered)
-    if len(plan) >= MANY_ROWS:
+    if len(plan) >= parquet_rows:
         write_parquet(folder)
     return Sweep(folder, counts_in(folder), units)
 
 
-NAMES = ("local", "slurm")
+EXECUTORS = ("local", "slurm")
 JOB_POINTS = 100
-"""Points of a job of Slurm: to begin one takes as long as some tens of quick runs."""
-AHEAD = 4
-"""Chunks for each worker that are handed in before their turn, so that none waits for the parent."""
-UNKNOWN_WORKERS = 16
-"""Workers that an executor is taken to have which doesn't say."""
+"""Points of a job of Slurm: the start of a job takes as long as some tens of quick runs."""
 
 
 class ExecutorError(Contact1dError, RuntimeError):
-    """An executor that isn't there."""
+    """An executor that is unknown, not installed, or out of reach from this machine."""
 
 
 @dataclass(frozen=True)
 class Workplace:
-    """Where points run.
+    """An executor for points, and how many it is given at a time.
 
     Attributes:
-        opened: a context with an executor in it; opened again after a process that died took the first one with it.
-        chunk: points that are handed in together.
-        window: chunks that are under way or wait.
+        opened: returns a context with an executor; called again after a process that died broke the first one.
+        chunk: points that are submitted together.
+        window: chunks that run or wait.
     """
 
     opened: Callable[[], AbstractContextManager[Executor]]
@@ -289,24 +294,26 @@ class Workplace:
 def workplace_of(
     executor: Executor | str, workers: int | None, folder: Path, partition: str | None = None
 ) -> Workplace:
-    """Where an executor works.
+    """Return the executor for the points of a sweep.
 
     Args:
         executor: "local", "slurm", or one that the caller opened and will close.
         workers: processes here, or jobs at a time; None: as many as there are processors.
-        folder: of the sweep, where Slurm's scripts and outputs go.
-        partition: of Slurm; None: its default one.
+        folder: folder of the sweep, for Slurm's scripts and outputs.
+        partition: partition of Slurm; None: its default.
 
     Raises:
-        ExecutorError: there is no such place, or what it needs isn't installed; the message says what to install.
+        ExecutorError: the executor is unknown, or what it needs isn't installed; the message says what to install.
     """
+    ahead = 4  # chunks for each worker that are submitted before their turn, so that no worker waits for the parent
     if isinstance(executor, Executor):
-        return Workplace(lambda: nullcontext(executor), 1, AHEAD * (workers or UNKNOWN_WORKERS))
+        assumed_workers = 16  # an executor does not give its number of workers
+        return Workplace(lambda: nullcontext(executor), 1, ahead * (workers or assumed_workers))
     count = workers or cores()
     if executor == "local":
-        return Workplace(lambda: pool(count), 1, AHEAD * count)
+        return Workplace(lambda: pool(count), 1, ahead * count)
     if executor != "slurm":
-        raise ExecutorError(f"there is no executor {executor!r}: take {' or '.join(NAMES)}")
+        raise ExecutorError(f"there is no executor {executor!r}: take {' or '.join(EXECUTORS)}")
     if find_spec("executorlib") is None:
         raise ExecutorError("Slurm is reached through executorlib: install it with pip install 'contact1d[cluster]'")
     if which("sbatch") is None:
@@ -319,7 +326,7 @@ def workplace_of(
 def _slurm(folder: Path, partition: str) -> Iterator[Executor]:
     resources = {"cores": 1, "partition": partition}
     with catch_warnings():
-        simplefilter("ignore")  # its own use of pydantic, and that it cannot check a partition
+        simplefilter("ignore")  # executorlib's use of pydantic, and that it cannot check a partition
         from executorlib import SlurmClusterExecutor
 
         opened = SlurmClusterExecutor(resource_dict=resources, cache_directory=str(folder))
@@ -328,7 +335,7 @@ def _slurm(folder: Path, partition: str) -> Iterator[Executor]:
 
 
 def _partition(wanted: str | None) -> str:
-    """The partition asked for, or Slurm's default one: executorlib hands in an empty name otherwise.
+    """Return the wanted partition, or Slurm's default one, since executorlib would submit an empty name.
 
     Raises:
         ExecutorError: Slurm doesn't run, or has no such partition.
@@ -338,9 +345,9 @@ def _partition(wanted: str | None) -> str:
     listed = run(["sinfo", "--noheader", "--format=%P"], capture_output=True, text=True, check=False)
     names = listed.stdout.split()
     if not names:
-        said = listed.stderr.strip().splitlines()
+        errors = listed.stderr.strip().splitlines()
         raise ExecutorError(
-            f"Slurm does not answer here{f' ({said[-1]})' if said else ''}: start the sweep on a machine of the "
+            f"Slurm does not answer here{f' ({errors[-1]})' if errors else ''}: start the sweep on a machine of the "
             "cluster, or leave out --executor slurm to run it on this machine"
         )
     plain = [name.rstrip("*") for name in names]

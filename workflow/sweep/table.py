@@ -1,4 +1,4 @@
-"""One table of all results: a row for each point, in the order of the axes, from what the run folders hold."""
+"""The table of a sweep: a row for each point, in the order of the axes, with the results in the run folders."""
 
 from __future__ import annotations
 
@@ -23,23 +23,23 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 RECORD = "sweep.toml"
-"""The sweep, as it ran last."""
+"""File with the sweep as it ran last."""
 RUNS = "runs"
-"""Folder of the run folders."""
+"""Folder with the run folders of all points."""
 TABLE = "results.csv"
 PARQUET = "results.parquet"
-MANY_ROWS = 100_000
-"""Rows from which on the table is written as Parquet as well."""
-FIXED = ("status", "reason", "run")
+STATUS_COLUMNS = ("status", "reason", "run")
 
 
 @dataclass(frozen=True)
 class Answer:
-    """What became of a point: `done`, `failed`, `refused` (no run can be made of it), or `missing` so far.
+    """The outcome of a point.
 
     Attributes:
-        run: its folder, relative to the sweep's; empty where there is none.
-        results: those that are reported.
+        status: `done`, `failed`, `refused` (no valid scene), or `missing` (not run yet).
+        reason: why it is not done, or its warnings.
+        run: run folder, relative to that of the sweep; empty where there is none.
+        results: the reported results, by name.
     """
 
     status: str
@@ -49,7 +49,7 @@ class Answer:
 
 
 def answer_in(folder: Path) -> Answer | None:
-    """What the run in a folder of a sweep says; None where none came to its end there."""
+    """Return the outcome of the run in a folder of a sweep; None where no run ended there."""
     document = document_in(folder)
     if not document:
         return None
@@ -62,15 +62,15 @@ def answer_in(folder: Path) -> Answer | None:
 def write_table(
     folder: Path, axes: Sequence[Axis], rows: Callable[[], Iterable[tuple[tuple[Any, ...], Answer]]]
 ) -> dict[str, str]:
-    """Write results.csv, in SI where it is known. Two passes over the runs, one of them in memory at a time.
+    """Write results.csv, in SI where it is known, in two passes over the runs with a single run in memory.
 
     Args:
-        folder: of the sweep.
-        axes: with their values.
-        rows: makes the rows, in order: cells of the axes, and the answer.
+        folder: folder of the sweep.
+        axes: axes of the sweep.
+        rows: returns the rows in order: cells of the axes, and the answer.
 
     Returns:
-        The quantities: names, and the unit of each.
+        The unit of each result, by name.
     """
     units = _units(answer for _, answer in rows())
     columns = [column for name in units for column in columns_of(name)]
@@ -78,29 +78,36 @@ def write_table(
     of_results = {column: unit for name, unit in units.items() if unit not in SI for column in columns_of(name)}
     with whole(folder / TABLE) as part, part.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(headed([*(axis.key for axis in axes), *FIXED, *columns], of_axes | of_results))
+        writer.writerow(headed([*(axis.key for axis in axes), *STATUS_COLUMNS, *columns], of_axes | of_results))
         for cells, answer in rows():
-            own = {name: one for name, one in answer.results.items() if one.unit == units[name]}
-            numbers = {name: (one.value, one.uncertainty) for name, one in own.items()}
+            numbers = {
+                name: (quantity.value, quantity.uncertainty)
+                for name, quantity in answer.results.items()
+                if quantity.unit == units[name]
+            }
             results = chain.from_iterable(numbers.get(name, ("", "")) for name in units)
             writer.writerow(map(as_text, [*cells, answer.status, answer.reason, answer.run, *results]))
     return units
 
 
 def columns_of(name: str) -> tuple[str, str]:
-    """The columns of a result."""
+    """Return the two columns of a result: its value and its uncertainty."""
     return name, f"{name}_uncertainty"
 
 
 def frame_of(folder: Path) -> DataFrame:
-    """The table as a pandas.DataFrame, its texts without the mark of a spreadsheet."""
+    """Return the table as a pandas.DataFrame, its texts without the mark that protects them in a spreadsheet."""
     import pandas
 
     return pandas.read_csv(folder / TABLE, float_precision="round_trip").replace(MARKED, r"\1", regex=True)
 
 
 def write_parquet(folder: Path) -> None:
-    """The table again as results.parquet. Raises Contact1dError where pyarrow isn't installed."""
+    """Write the table as results.parquet.
+
+    Raises:
+        Contact1dError: pyarrow isn't installed.
+    """
     if find_spec("pyarrow") is None:
         raise Contact1dError("Parquet needs pyarrow: install it with pip install 'contact1d[tables]'")
     with whole(folder / PARQUET) as part:
@@ -108,7 +115,7 @@ def write_parquet(folder: Path) -> None:
 
 
 def document_in(folder: Path) -> dict[str, Any]:
-    """What results.json in a run folder holds; nothing where it can't be read."""
+    """Return the content of results.json in a run folder; an empty dict where it can't be read."""
     try:
         return read_results(folder)
     except FolderError:
@@ -116,7 +123,11 @@ def document_in(folder: Path) -> dict[str, Any]:
 
 
 def read_record(folder: Path) -> SweepPlan:
-    """The sweep in a folder, as it ran last. Raises FolderError."""
+    """Return the sweep in a folder as it ran last.
+
+    Raises:
+        FolderError: the folder holds no record of a sweep.
+    """
     try:
         return read_sweep(folder / RECORD)
     except SceneError:
@@ -124,26 +135,26 @@ def read_record(folder: Path) -> SweepPlan:
 
 
 def units_in(folder: Path) -> dict[str, str]:
-    """The results of a sweep by name, with their units."""
+    """Return the unit of each result of a sweep, by name."""
     return _units(filter(None, (answer_in(folder / row["run"]) for row in read_table(folder))))
 
 
 def _units(answers: Iterable[Answer]) -> dict[str, str]:
-    """The unit of each result, as the first run that has it gives it."""
+    """Return the unit of each result in the first run that has it, by name."""
     units: dict[str, str] = {}
     for answer in answers:
-        for name, one in answer.results.items():
-            units.setdefault(name, one.unit)
+        for name, quantity in answer.results.items():
+            units.setdefault(name, quantity.unit)
     return units
 
 
 def counts_in(folder: Path) -> dict[str, int]:
-    """How many points of a sweep's table ended as `done`, `failed`, `refused`, or are `missing`."""
+    """Return how many points of a sweep's table ended as `done`, `failed`, `refused`, or are `missing`."""
     return dict(Counter(row["status"] for row in read_table(folder)))
 
 
 def read_table(folder: Path) -> Iterator[dict[str, str]]:
-    """The rows of results.csv, one by one, by names without units, cells as text."""
+    """Yield the rows of results.csv, cells as text by the names of their columns without units."""
     with (folder / TABLE).open(newline="", encoding="utf-8") as file:
         rows = csv.reader(file)
         names = [*map(bare, next(rows))]
@@ -151,5 +162,5 @@ def read_table(folder: Path) -> Iterator[dict[str, str]]:
 
 
 def bare(header: str) -> str:
-    """The name of a column without its unit."""
-    return found[1] if (found := HEADER.fullmatch(header)) else header
+    """Return the name of a column without its unit."""
+    return match[1] if (match := HEADER.fullmatch(header)) else header

@@ -13,12 +13,8 @@ from contact1d.workflow.scene import Scene
 
 LEAST_SLENDERNESS = 0.02
 """Least edge of the box over that of a bin: LAMMPS wants no bin above 100 times the box."""
-BINS = 100
-"""Most bins of LAMMPS's neighbour search across a box made wide by atoms that feel no pair force: they take memory."""
-
-
-DEEP = 4.0
-"""Radius of particles that are spheres over the deepest expected displacement: a wall loses what lies deeper."""
+MOST_BINS_ACROSS = 100
+"""Bins of LAMMPS's neighbour search across a box that atoms without pair forces make wide: each bin takes memory."""
 
 
 class Stage(IntEnum):
@@ -46,11 +42,11 @@ class Contribution:
         fragments: names in `lammps_inputs/fragments`, in order.
         variables: LAMMPS variables that the fragments need, name to value.
         pair_style: its part of the shared slot `pair_style`, or "".
-        atom_style: the same of `atom_style`, where atoms have more than the bonds that they always have; or "".
+        atom_style: its part of the shared slot `atom_style`, where atoms have more than bonds, or "".
         step_begin, step_end: fragments around every measurement.
         integrates: the atom group whose motion its fragment integrates, or "": a group has one integrator at most.
-        pushes: the LAMMPS variable of the force [FU] with which it presses the upper body onto the lower one, beside
-            contact and load, or "".
+        pushes: the LAMMPS variable of a force [FU] other than contact and load that presses the upper body onto the
+            lower one, or "".
     """
 
     name: str
@@ -66,18 +62,26 @@ class Contribution:
 
 
 def number(value: float) -> str:
-    """A number as LAMMPS text that reads back to the same double."""
+    """Return a number as LAMMPS text that reads back to the same double."""
     return repr(float(value))
 
 
 def sphere_radius(scene: Scene, settings: Settings) -> float:
-    """Radius [LU] of particles that are spheres; 0 where they are points."""
+    """Return the radius [LU] of particles that are spheres; 0 where they are points."""
     deepest = max(settings.largest_displacement, scene.bodies.spacing)
-    return DEEP * deepest if scene.friction else 0.0
+    return 4.0 * deepest if scene.friction else 0.0  # a wall loses a sphere that overlaps it further
+
+
+def skin(scene: Scene) -> float:
+    """Return the skin of the neighbour lists [LU].
+
+    A load step of a path moves a body by less, so that a list lasts for a relaxation.
+    """
+    return 0.5 * scene.bodies.spacing
 
 
 def first_upper_anchor(scene: Scene, settings: Settings) -> int:
-    """Its number among the atoms: first come the particles of both bodies, then the lower anchors."""
+    """Return the atom ID of the first upper anchor, after the particles of both bodies and the lower anchors."""
     below = {"particles": 2, "rigid_chain": 1, "rigid_plane": 0}[scene.bodies.lower]
     return settings.chains.upper + below * settings.chains.lower + 1
 
@@ -85,9 +89,9 @@ def first_upper_anchor(scene: Scene, settings: Settings) -> int:
 EFFECTS: dict[str, Callable[[Scene, Settings], Contribution]] = {
     name: getattr(import_module(f"{__name__}.{name}"), name) for name in NAMES
 }
-"""The function of each effect: that of its name, in the module of its name, which knows what stands above."""
+"""The function of each effect, in the module of the same name, which imports what is defined above."""
 
 
 def contributions(scene: Scene, settings: Settings) -> tuple[Contribution, ...]:
-    """The parts of all effects of a scene."""
+    """Return the parts of all effects of a scene, in the order of the effects."""
     return tuple(EFFECTS[name](scene, settings) for name in scene.effects)

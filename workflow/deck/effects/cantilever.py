@@ -4,7 +4,7 @@ Plate and particles move at v on average, and so does their heat bath: drag is r
 
     F_i = −γ (v_i − v)  on each upper particle,    F = −c_plate (V − v)  on the plate,
 
-since the bulk goes with its body. Otherwise the cantilever would pull at a drag that is no friction of the contact.
+since the bulk moves with its body. Otherwise the cantilever would measure a drag that is no friction of the contact.
 """
 
 from contact1d.workflow.deck.effects import Contribution, Stage, first_upper_anchor, number
@@ -13,7 +13,7 @@ from contact1d.workflow.scene import Cantilever, Scene
 
 
 def cantilever(scene: Scene, settings: Settings) -> Contribution:
-    """The drive starts with the phase that slides; see `steps/drive` and, for the further legs, `steps/turn`."""
+    """Return the spring and its drive: `steps/drive` starts it to slide, `steps/turn` begins each further leg."""
     legs = settings.motion.drive
     velocities, clocks = [leg.velocity for leg in legs], [leg.time_step for leg in legs]
     variables = {

@@ -6,7 +6,7 @@ from contact1d.workflow.scene import Scene
 
 
 def damping(scene: Scene, settings: Settings) -> Contribution:
-    """With noise the Langevin thermostat includes the damping, and this effect adds nothing."""
+    """Return the drag on the particles; nothing with noise, whose Langevin thermostat includes the damping."""
     if scene.noise:
         return Contribution("damping", Stage.DRAG, ())
     return Contribution("damping", Stage.DRAG, ("damping",), {"damping_coefficient": number(settings.motion.damping)})

@@ -2,22 +2,23 @@
 
 import math
 
-from contact1d.workflow.deck.effects import BINS, LEAST_SLENDERNESS, Contribution, Stage, number
+from contact1d.workflow.deck.effects import LEAST_SLENDERNESS, MOST_BINS_ACROSS, Contribution, Stage, number
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 
 
 def horizontal(scene: Scene, settings: Settings) -> Contribution:
-    """Shared slots: the guide's direction x; with k_t ≠ k_n the far anchors and their bond type in system.data."""
+    """Return the motion along x, which frees the guide; with k_t ≠ k_n also the bonds to the far anchors."""
     if settings.chains.far == 0.0:
         return Contribution("horizontal", Stage.SPRINGS, ("horizontal",))
     # A body without end is a box as narrow as its period, whatever the length of its far bonds.
     narrow = settings.chains.lower * scene.bodies.spacing if scene.bodies.periodic else math.inf
     difference = abs(scene.tangential_stiffness - settings.forces.bulk_stiffness)
+    longest_bin = max(settings.chains.far / MOST_BINS_ACROSS, settings.forces.cutoff)
     variables = {
         "far_bond_type": "3" if scene.neighbours else "2",
         "far_bond_coefficient": number(difference / 2),
         "far_length": number(settings.chains.far),
-        "far_bin": number(min(max(settings.chains.far / BINS, settings.forces.cutoff), narrow / LEAST_SLENDERNESS)),
+        "far_bin": number(min(longest_bin, narrow / LEAST_SLENDERNESS)),
     }
     return Contribution("horizontal", Stage.SPRINGS, ("horizontal", "far"), variables)

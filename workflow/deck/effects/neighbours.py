@@ -6,6 +6,6 @@ from contact1d.workflow.scene import Neighbours, Scene
 
 
 def neighbours(scene: Scene, settings: Settings) -> Contribution:
-    """Shared slots: a bond type in system.data, and the positions of the anchors (`workflow.deck.lattice`)."""
+    """Return the springs between neighbours, for which system.data has bonds and shifted anchors (`deck.lattice`)."""
     coefficient = number(scene.the(Neighbours).stiffness / 2)
     return Contribution("neighbours", Stage.SPRINGS, ("neighbours",), {"neighbours_bond_coefficient": coefficient})

@@ -6,7 +6,10 @@ from contact1d.workflow.scene import Noise, Scene
 
 
 def noise(scene: Scene, settings: Settings) -> Contribution:
-    """`fix langevin` takes the relaxation time m/γ. A drag on the plate has its random force, on one of its anchors."""
+    """Return the Langevin thermostats of the particles and, where the plate has a drag, of one of its anchors.
+
+    `fix langevin` takes the relaxation time m/γ.
+    """
     variables = {
         "noise_temperature": number(scene.the(Noise).temperature),
         "noise_damp": number(scene.bodies.mass / settings.motion.damping),
@@ -26,6 +29,6 @@ def noise(scene: Scene, settings: Settings) -> Contribution:
     if settings.motion.drive and settings.motion.settling_damping != settings.motion.damping:  # until `steps/told`
         fragments += ("noise_calm",)
         variables["noise_calm_damp"] = number(scene.bodies.mass / settings.motion.settling_damping)
-    if not settings.motion.drive:  # nobody asks for the heat
+    if not settings.motion.drive:  # the heat is no result
         before = after = ()
     return Contribution("noise", Stage.DRAG, fragments, variables, step_begin=before, step_end=after)

@@ -1,12 +1,12 @@
 """Effect [plate]: the upper plate is a rigid body, M Z″ = F_contact − F_load − c Z′ (Eq. 5 of the paper)."""
 
-from contact1d.workflow.deck.effects import BINS, Contribution, Stage, number
+from contact1d.workflow.deck.effects import MOST_BINS_ACROSS, Contribution, Stage, number
 from contact1d.workflow.model.settings import STAGGER_SHARE, Settings
 from contact1d.workflow.scene import Plate, Scene
 
 
 def plate(scene: Scene, settings: Settings) -> Contribution:
-    """Shared slot: the mass of the anchors in system.data. The drag is shared out among them."""
+    """Return the rigid plate: its mass, in system.data, and its drag are distributed over its anchors."""
     anchors = settings.chains.upper * (1 if settings.chains.far == 0.0 else 2)
     alone = anchors == 1
     free = {True: "NULL", False: "0.0"} if alone else {True: "on", False: "off"}
@@ -17,8 +17,8 @@ def plate(scene: Scene, settings: Settings) -> Contribution:
     if scene.experiment.draws_off:
         fragments = ("drawn", *fragments)
     width = 2.0 * STAGGER_SHARE * settings.chains.upper * scene.bodies.own_spacing
-    own = max(settings.forces.cutoff, settings.chains.far / BINS)
-    if scene.interaction and width / BINS > own:
+    wide_bin = width / MOST_BINS_ACROSS
+    if scene.interaction and wide_bin > max(settings.forces.cutoff, settings.chains.far / MOST_BINS_ACROSS):
         fragments += ("wide",)
-        variables["wide_bin"] = number(width / BINS)
+        variables["wide_bin"] = number(wide_bin)
     return Contribution("plate", Stage.PLATE, fragments, variables, integrates="plate")
