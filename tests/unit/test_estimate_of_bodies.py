@@ -168,7 +168,7 @@ def test_a_pair_snaps_over_the_fall_of_its_own_grid(stiffness: float, points: in
     assert found.stiffness == 0.5 * stiffness
 
 
-def test_pairs_that_do_not_snap_are_not_let_go_early() -> None:
+def test_pairs_that_do_not_snap_do_not_detach_prematurely() -> None:
     found = pairs("parabola", 5.0)
     assert not found.snaps
     assert found.premature_detachment(1.0, 1.0) == 0.0
