@@ -251,7 +251,7 @@ class Branch(ContactBranch):
         Returns the increment [LU].
         """
         estimate, zero = self.settings.law, self._last
-        tooth = estimate.tooth(self.settings.chains.upper)
+        tooth = estimate.maxima_distance(self.settings.chains.upper)
         densest = (zero.displacement - estimate.rest + float(estimate.gap[-1])) / MOST_TEETH
         step = min(self.settings.increment(), max(tooth, densest) / PER_TOOTH)
         through = tooth < math.inf or self.context.through

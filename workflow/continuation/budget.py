@@ -247,7 +247,7 @@ def _missed(case: Reduction, trace: Trace, error: Array) -> Array:
 def _stiffness(case: Reduction, displacement: Array) -> Array:
     """dF/dd [FU/LU] at displacements (m,) [LU] of the model, at least that of a particle."""
     settings, model = case.settings, case.model
-    if settings.is_toothed:
+    if settings.has_several_maxima:
         return np.full_like(displacement, settings.law.stuck_stiffness(settings.largest_displacement))
     step = BEFORE * abs(model.deepest - model.apart) or model.law.spacing
     rise = model.held(displacement) - model.held(displacement - step)

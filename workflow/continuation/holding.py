@@ -71,7 +71,7 @@ class Held:
 
 def stiffness_under(settings: Settings, load: float) -> float:
     """Contact stiffness [FU/LU] under a load [FU]; where pairs separate one by one, of all that ever touch."""
-    if settings.is_toothed:
+    if settings.has_several_maxima:
         return settings.law.stuck_stiffness(settings.largest_displacement)
     return settings.law.stiffness_under(load)
 
@@ -84,7 +84,7 @@ def damping_under(settings: Settings, load: float) -> float:
     if settings.motion.damped_stiffness == 0.0:
         return settings.motion.damping
     if settings.gentle and load >= 0.0:
-        return settings.motion.calm_damping
+        return settings.motion.settling_damping
     stiffer = stiffness_under(settings, load) / settings.motion.damped_stiffness
     return settings.motion.damping * math.sqrt(min(max(stiffer, 0.0), 1.0 / SOFTENING))
 

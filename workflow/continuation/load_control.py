@@ -218,7 +218,7 @@ class LoadBranch(ContactBranch):
     def _missed_teeth(self, search: LoadSearch) -> float:
         """Tension [FU] that a plate may miss which oscillates past a force maximum, where pairs are lost one by one."""
         settings = self.settings
-        lost = (settings.law.snap[1] or settings.strongest[1]) if settings.is_toothed else 0.0
+        lost = (settings.law.snap[1] or settings.strongest[1]) if settings.has_several_maxima else 0.0
         return EDGES * lost * search.overshoot(search.best)
 
     @property

@@ -155,7 +155,7 @@ def _zero_load(branch: Trace) -> dict[str, Reading]:
 def early_loss(branch: Trace, peak: Peak, settings: Settings) -> float:
     """How far [LU] before its limit the force maximum may have been lost, in the move after it."""
     d = branch.displacement
-    return settings.let_go_early(float(d[peak.index] - d[min(peak.index + 1, len(d) - 1)]))
+    return settings.premature_detachment(float(d[peak.index] - d[min(peak.index + 1, len(d) - 1)]))
 
 
 def cut_short(branch: Trace, peak: Peak, settings: Settings) -> float:

@@ -168,7 +168,7 @@ class ModelBranch:
         top = int(np.argmin(self.model.held(every)))
         low, high = float(every[min(top + 1, every.size - 1)]), float(every[max(top - 1, 0)])
         step, place = 0.5 * (high - low) / BESIDE, float(every[top])
-        known = self.model.top
+        known = self.model.critical_displacement
         for _ in range(0 if self.settings.is_smooth or known is not None else ZOOMS):
             closer, width = np.linspace(high, low, FINE, retstep=True)
             place = float(closer[int(np.argmin(self.model.held(closer)))])

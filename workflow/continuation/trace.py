@@ -189,7 +189,7 @@ class Trace:
     def again(self, scene: Scene, settings: Settings, model: Particles) -> dict[str, Array]:
         """What is not prescribed of each state, on another model of the particles; a free motion is its own."""
         if self.given == "force":
-            return {"displacement": model.carrying(self.time, self.force)[0]}
+            return {"displacement": model.displacements_under(self.time, self.force)[0]}
         if self.given:
             return {"force": model.follow(Path(self.displacement, self.along, self.time)).total}
         assert isinstance(scene.experiment, Impact)

@@ -105,7 +105,7 @@ def _load_steps(scene: Scene) -> LoadHistory:
     # The sampling error goes with the square of the steps' width, and 70 in a leg meet a tolerance of 1e-3.
     count = given.steps or math.ceil(70 * math.sqrt(1e-3 / scene.accuracy.tolerance))
     directions = {1.0: "loading", -1.0: "unloading", 0.0: "holding"}
-    names, soonest = list[str](), law_of(scene).soonest(scene)
+    names, soonest = list[str](), law_of(scene).shortest_time(scene)
     times, wanted = [np.asarray(given.times[:1])], [np.asarray(values[:1])]
     for (before, after), (start, end) in zip(pairwise(given.times), pairwise(values), strict=True):
         parts = np.linspace(0.0, 1.0, count + 1)[1:]

@@ -234,7 +234,7 @@ def _theory(run: Run) -> list[tuple[str, Array, Array, Array]]:
     scene, half, case, pull_off = run.scene, run.scene.bodies.plane_radius, Case(run.scene, run.results), _pull_off(run)
     radius, work, forms = 2.0 * (half or 0.0), scene.work_of_adhesion, applying(case)
     body: PowerLaw | Ellipsoid
-    if not {"pressed", "interaction"} & {*case.law.beside}:  # no curve of a law without closed forms
+    if not {"pressed", "interaction"} & {*case.law.closed_forms}:  # no curve of a law without closed forms
         return []
     if half is not None:
         name = "JKR" if work else "Hertz"
