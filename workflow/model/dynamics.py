@@ -114,7 +114,7 @@ def motion_of(
     is_automatic = scene.damping == Damping(coefficient="auto")
     product = _product(scene, tolerance, still_step)
     beside = sum(effect.bond_drag(scene.bulk_stiffness) for effect in scene.present)
-    held = particles * scene.bulk_stiffness + scene.experiment.drawing_stiffness
+    held = particles * scene.bulk_stiffness + scene.experiment.retraction_stiffness
     if scene.cantilever:
         held += scene.cantilever.stiffness + particles * max(0.0, scene.tangential_stiffness - scene.bulk_stiffness)
     step = min(

@@ -88,7 +88,7 @@ def require_results(scene: Scene, outcome: Outcome) -> None:
 
     A path that the scene gives has its curve, whatever can be read off it.
     """
-    if scene.experiment.way_is_given:
+    if scene.experiment.history_is_given:
         return
     main = main_results(scene, outcome.results)
     if main and not main.keys() - unknown(scene, outcome).keys():

@@ -34,7 +34,7 @@ def refined(context: RunContext, outcome: Outcome) -> tuple[Deck, Outcome]:
     limit what is found. With noise a load goes on sampling until it is known well enough, which is its own refinement.
     """
     scene, deck = context.deck.scene, context.deck
-    if kind_of(scene).is_statistical or scene.experiment.way_is_given:
+    if kind_of(scene).is_statistical or scene.experiment.history_is_given:
         return deck, outcome
     wanted, count, ended = scene.accuracy.tolerance, 0, ""
     tolerance = wanted

@@ -10,7 +10,6 @@ from contact1d.workflow.scene.draft import (
     DIGITS,
     ELASTICITY,
     GIVE_SPACING,
-    LONGEST_CELL,
     PARTICLES,
     PLANE,
     WHOLE_NUMBER_ERROR,
@@ -30,7 +29,7 @@ from contact1d.workflow.scene.tables import (
 
 
 def punch(d: Draft) -> Rows:
-    """A flat punch, whose edge is half a spacing beyond its last particle."""
+    """Yield the rules of a flat punch, whose edge is half a spacing beyond its last particle."""
     radius, spacing = d["bodies.profile.radius"], d["bodies.spacing"]
     if d.profile != "flat_punch" or radius is None or spacing in (None, "auto"):
         return
@@ -49,7 +48,7 @@ def punch(d: Draft) -> Rows:
 
 
 def counter_body(d: Draft) -> Rows:
-    """The curved lower body of a parabola."""
+    """Yield the rules of the curved lower body of a parabola."""
     key = "bodies.profile.counter_radius"
     radius, counter = d["bodies.profile.radius"], d[key]
     if None in (radius, counter):
@@ -64,7 +63,7 @@ def counter_body(d: Draft) -> Rows:
 
 
 def reduction(d: Draft) -> Rows:
-    """What the paper's reduction makes of a body that it was not derived for."""
+    """Yield the rule that excludes the paper's reduction for a body for which it was not derived."""
     profile = d["bodies.profile"]
     if profile is None or profile["kind"] in SPHERES:
         return
@@ -78,7 +77,7 @@ def reduction(d: Draft) -> Rows:
 
 
 def periodic_lengths(d: Draft) -> Rows:
-    """Springs and lengths of two periodic chains, which close together."""
+    """Yield the rules of springs and lengths of two periodic chains, which have a common period."""
     if not d["bodies.periodic"]:
         return
     normal, tangential = d["bodies.bulk_stiffness"], d["bodies.bulk_stiffness_tangential"]
@@ -88,22 +87,23 @@ def periodic_lengths(d: Draft) -> Rows:
                "lower it: a larger one needs distant anchors along x, which a periodic body cannot have")
     count, spacing = d["bodies.particles"], d["bodies.spacing"]
     upper, pitch = (
-        d[path] if path in d else below  # noqa: SIM401 (a draft is no dict)
-        for path, below in (("bodies.upper_particles", count), ("bodies.upper_spacing", spacing))
+        d[path] if path in d else default  # noqa: SIM401 (a draft is no dict)
+        for path, default in (("bodies.upper_particles", count), ("bodies.upper_spacing", spacing))
     )
     if {None, "auto"} & {count, spacing, upper, pitch} or upper == 1:
         return
-    ratio = Fraction(pitch / spacing).limit_denominator(LONGEST_CELL)
+    longest = 1000  # particles in the period of a pair of chains that is suggested
+    ratio = Fraction(pitch / spacing).limit_denominator(longest)
     nearest = f"upper_spacing = {count * spacing / upper:.10g} with these numbers of particles"
-    if 0 < ratio.numerator <= LONGEST_CELL:
+    if 0 < ratio.numerator <= longest:
         cells = max(1, round(upper / ratio.denominator))
         nearest += (
             f", or particles = {cells * ratio.numerator} and upper_particles = {cells * ratio.denominator} with "
             f"upper_spacing = {ratio.numerator / ratio.denominator * spacing:.10g}"
         )
-    one, other = apart(spacing, pitch, DIGITS)
+    below, above = apart(spacing, pitch, DIGITS)
     yield ("bodies.upper_spacing", abs(count * spacing - upper * pitch) > WHOLE_NUMBER_ERROR * count * spacing,
-           f"the periodic chains differ in length: {count} · {one} LU below and {upper} · {other} LU above",
+           f"the periodic chains differ in length: {count} · {below} LU below and {upper} · {above} LU above",
            f"the nearest equal lengths: {nearest}")
 
 
@@ -155,15 +155,15 @@ BODY_RULES: tuple[Rule, ...] = (
      "must be a length (LU) with {tied}: masses, drags and springs between particles belong to one spacing",
      f"{GIVE_SPACING}, or remove {{tied}}"),
     punch,
-    # One elasticity, and one way to the units: given, or by F_A and a₀ of the run with γ and E*
+    # One elasticity, and units that are either given or follow from F_A and a₀ of the run with γ and E*
     ("bodies.bulk_stiffness", "bodies.bulk_stiffness=auto !elastic",
      "must be given (FU/LU): the scene has no elastic moduli from which it follows",
      f"give a number, or {ELASTICITY}"),
     ("material.contact_modulus", "material.upper|material.lower",
      "not together with upper or lower", "give E*, or E and ν of both bodies"),
-    *((f"material.{body}", f"judged !material.contact_modulus {other}",
+    *((f"material.{body}", f"judged !material.contact_modulus {condition}",
        "missing", "write upper and lower, each with youngs_modulus and poisson_ratio, or contact_modulus")
-      for body, other in (("upper", ""), ("lower", "material.upper"))),
+      for body, condition in (("upper", ""), ("lower", "material.upper"))),
     ("material.upper", "material.upper=rigid material.lower=rigid",
      "one of the two bodies must be elastic", 'give its E and ν, or its name, "steel"'),
     ("material.length_unit material.force_unit", "judged material.surface_energy",
