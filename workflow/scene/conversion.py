@@ -30,21 +30,21 @@ def convert(scene: Place) -> bool:
     Errors in them are reported. Their places, and those whose numbers are then unknown, are marked as not sound.
     """
     texts = [place for place in numbers_in(scene) if place.is_text and place.sound]
-    read = {place: value for place in texts if (value := _si(place)) is not None}
+    read = {place: value for place in texts if (value := _si_value(place)) is not None}
     for place, value in read.items():
         if not place.unit.bases:  # these give the sizes of LU, FU and MU
-            _put(place, value)
+            _put_number(place, value)
     in_model_units = [place for place in texts if place.unit.bases]
     scales = _scales(scene, in_model_units) if in_model_units else {}
     for place in in_model_units:
         if scales is None:
             place.doubt()
         elif place in read:
-            _put(place, read[place] / size(place.unit.name, scales))
+            _put_number(place, read[place] / size(place.unit.name, scales))
     return bool(texts)
 
 
-def _si(place: Place) -> Fraction | None:
+def _si_value(place: Place) -> Fraction | None:
     """Return the quantity of a text in SI, a temperature as k_B T; None, and reported, where it is none."""
     try:
         value, dimension = si_value(place.value, *place.unit.texts)
@@ -54,7 +54,7 @@ def _si(place: Place) -> Fraction | None:
     return value * BOLTZMANN if dimension == "K" else value
 
 
-def _put(place: Place, value: Fraction) -> None:
+def _put_number(place: Place, value: Fraction) -> None:
     """Replace a text by its number, and keep the text as the source."""
     text = copy(place)
     try:
@@ -76,10 +76,10 @@ def _scales(scene: Place, texts: list[Place]) -> dict[str, Fraction] | None:
         message = "LU and FU follow from the run (material.surface_energy), so that units are not known before it"
         first.fault(message, f"write a number in {first.unit.name}")
         return None
-    return _chosen(draft, texts)
+    return _chosen_scales(draft, texts)
 
 
-def _chosen(draft: Draft, texts: list[Place]) -> dict[str, Fraction] | None:
+def _chosen_scales(draft: Draft, texts: list[Place]) -> dict[str, Fraction] | None:
     """Return the sizes in SI of units that `texts` need; those that the scene leaves open are put into it.
 
     None, and reported, where plain numbers are mixed with units.

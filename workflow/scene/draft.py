@@ -15,7 +15,7 @@ from contact1d.workflow.scene.tables import EFFECT_TABLES, TIMED
 
 WHOLE_NUMBER_ERROR = 1e-9
 """Relative error of a quotient of two decimals up to which it counts as whole, or two lengths as equal."""
-TIED = ("neighbours", "damping", "noise", "plate")
+AT_ONE_SPACING = ("neighbours", "damping", "noise", "plate")
 """Effects whose stiffness, drag or mass is that of particles at one spacing."""
 DIGITS = 6
 """Smallest number of digits of a number in a message."""
@@ -32,12 +32,12 @@ TERMS = {
     "on_plane": "bodies.lower=rigid_plane",
     "on_chain": "bodies.lower=particles|bodies.lower=rigid_chain",
     # a rigid plane neither drags a slide nor holds a pull-off without adhesion
-    "touched": "on_plane !motion_is_result !experiment.kind=pull_off|adhesion",
-    "unattracted": "!on_plane|!adhesion on_plane|interaction on_plane|!interaction.attraction",
+    "plane_contact": "on_plane !motion_is_result !experiment.kind=pull_off|adhesion",
+    "no_attraction": "!on_plane|!adhesion on_plane|interaction on_plane|!interaction.attraction",
     "elastic": "material.upper|material.lower|material.contact_modulus",
-    # a material of nothing but units says nothing of the bodies
-    "judged": "material elastic|!bodies.bulk_stiffness=auto elastic|!material.length_unit|!material.force_unit|"
-    "material.surface_energy",
+    # a material with nothing but units does not describe the bodies
+    "describes_bodies": "material elastic|!bodies.bulk_stiffness=auto "
+    "elastic|!material.length_unit|!material.force_unit|material.surface_energy",
 }
 """Conditions with a name that other conditions use as a fact; each is made of those before it."""
 VALUES: Mapping[str, Any] = {"0": 0.0, "true": True, "false": False}
@@ -78,7 +78,9 @@ class Draft:
         self.facts = {
             "kind": self.kind,
             "in_time": self._first(TIMED, "with [{}]", "in time"),
-            "tied": self._first(() if self.experiment.is_massless else TIED, "[{}]", 'method = "dynamic"'),
+            "needs_spacing": self._first(
+                () if self.experiment.is_massless else AT_ONE_SPACING, "[{}]", 'method = "dynamic"'
+            ),
             "motion_is_result": self.experiment.motion_is_result,
             "goes_along": self.experiment.goes_along,
             "finds_pull_off": self.experiment.finds_pull_off,

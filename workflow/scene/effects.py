@@ -53,16 +53,16 @@ class Exponential(Table):
 
 
 class Effect(Table):
-    """A table that may be absent, and then adds nothing. Each declares what it needs and what it excludes.
+    """A table that may be absent, and then adds nothing to a deck. Each effect declares its needs and exclusions.
 
     Attributes:
-        timed: it exists in time only, so never in a quasistatic run.
-        how: how to write it, for a scene that lacks it.
-        excludes: effects that it cannot have beside it, and why.
-        needs_bonds: it acts on particles apart from their body, so that on a rigid plane each has a spring of its own;
-            where no effect does, particles are fixed in their body and the plane has their springs.
-        is_modelled: the reduced model has it, so that a plan on a rigid plane is that of the deck.
-        keeps_springs: the line load inside of a contact stays that of linear springs, q = E* (const − g).
+        timed: whether the effect exists in time only, so never in a quasistatic run.
+        how: how to write the table, for a scene that lacks it.
+        excludes: effects that are not possible together with this one, and why.
+        needs_bonds: whether the effect acts on particles separately from their body, so that on a rigid plane each has
+            its own spring; without such an effect particles are fixed in their body and the plane has their springs.
+        is_modelled: whether the reduced model has the effect, so that a plan on a rigid plane is that of the deck.
+        keeps_springs: whether the line load inside a contact remains that of linear springs, q = E* (const − g).
     """
 
     timed: ClassVar[bool] = False

@@ -345,7 +345,7 @@ class Impact(Kind):
     kind: Literal["impact"]
     """a body that hits the plane; always dynamic"""
     velocity: Velocity
-    """velocity at which it comes; its mass is plate.mass"""
+    """impact velocity; plate.mass is the mass of the body"""
 
 
 Experiment = Annotated[Load | Path | PullOff | Slide | Tangential | Hold | History | Impact, Discriminator("kind")]

@@ -39,7 +39,7 @@ class Piecewise(Shape):
 
         ∫ (p₀ + p₁ r + p₂ r²)/√(x² − r²) dr = (p₀ + p₂ x²/2) arcsin(r/x) − (p₁ + p₂ r/2) √(x² − r²).
         """
-        radii, p_0, p_1, p_2 = _slopes(self._curve())
+        radii, p_0, p_1, p_2 = _slope_polynomials(self._curve())
         flat = np.minimum(np.abs(np.ravel(x)), self.reach)
         g = np.zeros_like(flat)
         chunk = max(1, 1_000_000 // len(p_0))  # positions times points at once: it bounds the memory
@@ -74,7 +74,7 @@ class Points(Piecewise):
     @property
     def kinks(self) -> tuple[float, ...]:
         """Radii [LU] at which the points show that the slope jumps."""
-        x, _, corners = _points(self.r, self.z, self.sharp)
+        x, _, corners = _with_corners(self.r, self.z, self.sharp)
         return tuple(x[corners].tolist())
 
     @property
@@ -86,7 +86,7 @@ class Points(Piecewise):
         other point most.
         """
         bodies: list[Shape] = [kind.model_construct(r=self.r, z=self.z) for kind in (Chords, Corners)]
-        if digit := _digit(self.z):
+        if digit := _smallest_digit(self.z):
             bodies.append(Points.model_construct(r=self.r, z=(self.z[0] - 0.5 * digit, *self.z[1:])))
             for first in (1, 2):  # at the points between, too
                 z = [z + (digit * ((i + first) % 4 < 2) - 0.5 * digit) * (i > 0) for i, z in enumerate(self.z)]
@@ -108,7 +108,7 @@ class Chords(Points):
     """A measured profile that is straight between its points, where these show no smooth curve."""
 
     def _curve(self) -> Any:
-        return _angular(self.r, self.z, False)
+        return _rough_curve(self.r, self.z, False)
 
 
 class Corners(Points):
@@ -121,10 +121,10 @@ class Corners(Points):
     """Ratio of the curvatures at the four points around a cell beyond which they show no smooth curve."""
 
     def _curve(self) -> Any:
-        return _angular(self.r, self.z, True)
+        return _rough_curve(self.r, self.z, True)
 
 
-def _bends(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Array, Array, Array]:
+def _chord_slopes(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Array, Array, Array]:
     """Return radii, heights above the apex, slopes of the chords, and the changes of these per length.
 
     The body is even in x: the chords begin at the point on the other side of the axis, (n,), and their changes on the
@@ -136,7 +136,9 @@ def _bends(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Array, Ar
 
 
 @lru_cache(maxsize=8)
-def _points(r: tuple[float, ...], z: tuple[float, ...], sharpness: float = Points.sharp) -> tuple[Array, Array, Any]:
+def _with_corners(
+    r: tuple[float, ...], z: tuple[float, ...], sharpness: float = Points.sharp
+) -> tuple[Array, Array, Any]:
     """Return radii and heights, with a point at each jump of the slope between two points, and the indices of jumps.
 
     The slope jumps between two points whose curvatures are in sum `sharpness` times those of their neighbours: where
@@ -144,7 +146,7 @@ def _points(r: tuple[float, ...], z: tuple[float, ...], sharpness: float = Point
     """
     flank = 3  # points that determine the parabola of one side
     margin = 1e-3  # share of a cell at its ends, where a jump would have shown at the next points
-    x, y, slope, bend = _bends(r, z)
+    x, y, slope, bend = _chord_slopes(r, z)
     curvature = np.where(np.abs(np.diff(slope)) > LEAST_JUMP * np.abs(slope).max(), np.abs(bend), 0.0)
     excess = curvature[1:-2] + curvature[2:-1] - sharpness * np.maximum(curvature[:-3], curvature[3:])
     corners, used = dict[float, float](), set[int]()
@@ -166,14 +168,14 @@ def _points(r: tuple[float, ...], z: tuple[float, ...], sharpness: float = Point
     return np.asarray(radii), np.asarray([heights[radius] for radius in radii]), np.searchsorted(radii, sorted(corners))
 
 
-def _cornered(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Array]:
+def _with_chord_corners(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Array]:
     """Return radii and heights of the points, with a point in each cell in which the chords of both sides meet."""
-    x, y, slope, _ = _bends(r, z)
+    x, y, slope, _ = _chord_slopes(r, z)
     before, after, start, end = slope[1:-2], slope[3:], slice(1, -2), slice(2, -1)
     with np.errstate(divide="ignore", invalid="ignore"):
         meet = (y[end] - y[start] + before * x[start] - after * x[end]) / (before - after)
     # Beside a point that is a corner itself there is no other.
-    radii, _, corners = _points(r, z)
+    radii, _, corners = _with_corners(r, z)
     is_corner = np.isin(x, radii[corners])
     inside = (meet > x[start]) & (meet < x[end]) & ~is_corner[start] & ~is_corner[end]
     radii = np.append(x, meet[inside])
@@ -182,10 +184,10 @@ def _cornered(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Array]
     return radii[order], heights[order]
 
 
-def _digit(z: tuple[float, ...]) -> float:
+def _smallest_digit(z: tuple[float, ...]) -> float:
     """Return the power of ten of which all heights are whole multiples; 0 where it is below ten digits of the largest.
 
-    A quotient is whole up to 1e-4, beyond its round-off.
+    A multiple counts as whole within 1e-4.
     """
     heights = np.asarray(z)
     first = math.ceil(math.log10(np.abs(heights).max()))
@@ -197,10 +199,10 @@ def _digit(z: tuple[float, ...]) -> float:
 
 
 @lru_cache(maxsize=8)
-def _angular(r: tuple[float, ...], z: tuple[float, ...], corners: bool) -> Any:
+def _rough_curve(r: tuple[float, ...], z: tuple[float, ...], corners: bool) -> Any:
     """Return the curve through the points, straight in rough cells, or with a corner there."""
     spline = _spline(r, z)
-    x, y = _cornered(r, z) if corners else (np.asarray(r), np.asarray(z) - z[0])
+    x, y = _with_chord_corners(r, z) if corners else (np.asarray(r), np.asarray(z) - z[0])
     radii = np.union1d(spline.x, x)
     start = radii[:-1]
     smooth = [spline(start, k) / math.factorial(k) for k in (3, 2, 1, 0)]
@@ -215,7 +217,7 @@ def _is_rough(r: tuple[float, ...], z: tuple[float, ...]) -> NDArray[np.bool_]:
 
     That is one around which curvatures differ in sign, or by more than `Corners.sharp`.
     """
-    x, _, slope, bend = _bends(r, z)
+    x, _, slope, bend = _chord_slopes(r, z)
     bend = np.concatenate([bend[1:2], bend, bend[-1:], bend[-1:]])  # of the points from −1 to n
     around = np.lib.stride_tricks.sliding_window_view(bend, 4)
     low, high = around.min(axis=1), around.max(axis=1)
@@ -228,20 +230,20 @@ def _is_rough(r: tuple[float, ...], z: tuple[float, ...]) -> NDArray[np.bool_]:
 def _spline(r: tuple[float, ...], z: tuple[float, ...]) -> Any:
     """Return monotone cubics through the points, z(0) = 0; kept, since a search for a chain's length repeats the call.
 
-    Where the slope jumps, the cubics of each side have their own.
+    Where the slope jumps, the cubics of each side have their own slope.
     """
     least = 2  # points of a curve in addition to the one at which its slope jumps
-    x, y, corners = _points(r, z)
+    x, y, corners = _with_corners(r, z)
     ends = [0]
     for corner in corners:
         if corner - ends[-1] >= least and corner <= len(x) - 1 - least:
             ends.append(corner)
     ends.append(len(x) - 1)
-    pieces = [_cubics(x[first : last + 1], y[first : last + 1]) for first, last in pairwise(ends)]
+    pieces = [_cubic_coefficients(x[first : last + 1], y[first : last + 1]) for first, last in pairwise(ends)]
     return PPoly(np.concatenate(pieces, axis=1), x, extrapolate=False)
 
 
-def _cubics(x: Array, y: Array) -> Array:
+def _cubic_coefficients(x: Array, y: Array) -> Array:
     """Return the coefficients of monotone cubics through the points (x, y), (4, n − 1), as `PPoly` has them.
 
     The slope at a point is that of the parabola through it and its neighbours, so that a sphere's paraboloid is met
@@ -259,7 +261,7 @@ def _cubics(x: Array, y: Array) -> Array:
     return np.asarray(CubicHermiteSpline(x, y, slopes).c)
 
 
-def _slopes(curve: Any) -> tuple[Array, Array, Array, Array]:
+def _slope_polynomials(curve: Any) -> tuple[Array, Array, Array, Array]:
     """Return radii, shape (n,), and p₀, p₁, p₂ of the slope p₀ + p₁ r + p₂ r² between them, each of shape (n − 1,)."""
     square, linear, constant = curve.derivative().c
     start = curve.x[:-1]

@@ -21,7 +21,7 @@ from contact1d.workflow.scene.shapes import FEWEST_POINTS
 from contact1d.workflow.scene.si_text import UnitTextError, si_value
 
 RADII = ("r", "radius", "radii", "rho", "ρ", "rayon", "raggio", "radio")
-SIDES = (
+POSITIONS = (
     "x", "position", "distance", "lateral", "weg", "abstand", "strecke", "posizione", "distanza", "posición",
     "distancia",
 )  # fmt: skip
@@ -32,7 +32,7 @@ NAME = re.compile(r"([^\W_]+)(?:\s*[\[(/_]\s*|\sin\s+|\s*$)([^])]*)[])]?$", re.I
 MODEL = "LU"
 COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 """A number with a decimal comma."""
-STATED = re.compile(r":(\s|$)")
+LABEL = re.compile(r":(\s|$)")
 """A label of a line that an instrument adds, as in Date: 1.2.2026."""
 FORM = "name the radius r and the height z, with units if they have any (r [µm], z [µm])"
 
@@ -59,7 +59,7 @@ def take_points(scene: Place, folder: Path) -> dict[str, list[float]]:
             wrong = units
             if not scale.absent:
                 raise ValueError("not together with scale; remove it")
-            given, given_ratio = _sizes(units.value)
+            given, given_ratio = _unit_and_ratio(units.value)
             if unit and not _are_equal((unit, ratio), (given, abs(given_ratio))):
                 raise ValueError("not together with other units in the file's names; remove it")
             unit, ratio = given, given_ratio
@@ -79,7 +79,7 @@ def take_points(scene: Place, folder: Path) -> dict[str, list[float]]:
     return lists | {"z": [ratio * value for value in lists["z"]]}
 
 
-def _sizes(units: object) -> tuple[str, float]:
+def _unit_and_ratio(units: object) -> tuple[str, float]:
     """Return the unit of positions, "1 µm", and that of heights over it, negative with a minus. Raises ValueError."""
     try:
         along, up = map(str, units)  # type: ignore[call-overload]
@@ -128,7 +128,7 @@ def read_profile(path: Path, scan: bool) -> tuple[dict[str, list[float]], str | 
         return {"x": x, "z": z}, unit, 1.0
     rows = rows_in(read_text(path).splitlines())
     columns, of_numbers, ratio = _header(rows)
-    points = [_point(f"line {line}", cells, columns) for line, cells in rows]
+    points = [_radius_and_height(f"line {line}", cells, columns) for line, cells in rows]
     if not points:
         raise ProfileFileError("has no points")
     x, z = ([*column] for column in zip(*points, strict=True))
@@ -184,7 +184,7 @@ def _without_preamble(rows: list[Row]) -> None:
     start = next((i for i, (_, cells) in enumerate(rows) if sum(_number(cell) is not None for cell in cells) > 1), 0)
     names = [i for i, (_, cells) in enumerate(rows[:start]) if {*_words(cells)} & {*HEIGHTS} and len(cells) > 1]
     width = len(rows[start][1]) if rows else 0
-    alike = [i for i, (_, cells) in enumerate(rows[:start]) if len(cells) == width and not STATED.search(cells[0])]
+    alike = [i for i, (_, cells) in enumerate(rows[:start]) if len(cells) == width and not LABEL.search(cells[0])]
     del rows[: names[-1] if names else alike[0] if alike else start]
 
 
@@ -210,8 +210,8 @@ def _header(rows: list[Row]) -> tuple[Sequence[int], str | None, float]:
     if rows:
         require_names(*rows[0], names)
     words = _words(names)
-    sides = RADII if set(words) & set(RADII) else SIDES
-    columns = [_only(line, words, allowed) for allowed in (sides, HEIGHTS)]
+    sides = RADII if set(words) & set(RADII) else POSITIONS
+    columns = [_column_of(line, words, allowed) for allowed in (sides, HEIGHTS)]
     units, are_below = units_of(names, rows[0][1] if rows else [], columns)
     del rows[:are_below]
     sizes = []
@@ -247,7 +247,7 @@ def require_names(line: int, cells: list[str], names: list[str]) -> None:
         )
 
 
-def _only(line: int, words: list[str], allowed: tuple[str, ...]) -> int:
+def _column_of(line: int, words: list[str], allowed: tuple[str, ...]) -> int:
     """Return the index of the only column with an allowed name. Raises ProfileFileError."""
     matches = [i for i, word in enumerate(words) if word in allowed]
     if len(matches) == 1:
@@ -279,7 +279,7 @@ def _folded(x: list[float], z: list[float]) -> tuple[list[float], list[float]]:
     return [0.5 * (right - left) for right, left in positions], [0.5 * (right + left) for right, left in heights]
 
 
-def _point(line: str, cells: list[str], columns: Sequence[int]) -> list[float]:
+def _radius_and_height(line: str, cells: list[str], columns: Sequence[int]) -> list[float]:
     """Return radius and height of a line, which messages name. Raises ProfileFileError."""
     if len(cells) <= max(columns):
         count = "has one column" if len(cells) == 1 else f"has {len(cells)} columns"

@@ -57,12 +57,12 @@ class OutOfRange:
 class Table(BaseModel):
     """A table of a scene: immutable, no unknown keys, no conversion between types, finite numbers only.
 
-    The text below a key says what it is, to readers of this file, of the documentation and of the schema alike.
+    The text below a key is its description here, in the documentation and in the schema.
 
     Attributes:
-        as_list: it is written as a list of its values.
-        one_of: sets of keys of which exactly one must be there, with what to do otherwise.
-        by_name: tables that a name may stand for, each name as `problems.plain` has it.
+        as_list: whether the table is written as a list of its values.
+        one_of: sets of keys of which exactly one must be given, each with the suggested fix.
+        by_name: tables that a name may stand for, each name as `problems.plain` writes it.
     """
 
     model_config = ConfigDict(

@@ -213,7 +213,7 @@ def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -
 
 
 def _at_ends(scene: Scene) -> Iterator[Problem]:
-    """Yield the problems of a scene in which a number of a list is at an end of its ±: of times or shares, mostly."""
+    """Yield the problems of a scene with a number of a list at an end of its ±: falling times, or shares above 1."""
     for path, share in scene.shares.items():
         for factor in (1.0 - share, 1.0 + share) if "[" in path else ():
             end = Place(plain_data(scene.moved(path, factor)), WHOLE)

@@ -100,9 +100,9 @@ def _normal_loads(d: Draft) -> Rows:
 
 
 def _shares(d: Draft) -> Rows:
-    whole = math.fsum(term["share"] for term in d["viscoelasticity.terms"] or [])
-    yield ("viscoelasticity.terms", whole > 1.0 + WHOLE_NUMBER_ERROR,
-           f"the shares of the instantaneous modulus must add up to 1 at most, not {apart(whole, 1.0, DIGITS)[0]}",
+    total = math.fsum(term["share"] for term in d["viscoelasticity.terms"] or [])
+    yield ("viscoelasticity.terms", total > 1.0 + WHOLE_NUMBER_ERROR,
+           f"the shares of the instantaneous modulus must add up to 1 at most, not {apart(total, 1.0, DIGITS)[0]}",
            "lower one of them")
 
 
@@ -113,8 +113,8 @@ def _history(d: Draft) -> Rows:
         return
     key = f"experiment.{given[0]}"
     times, values = zip(*((point["time"], point[given[0]]) for point in d[key]), strict=True)
-    back = next((i for i in range(1, len(times)) if times[i] <= times[i - 1]), 0)
-    yield (key, back, f"times must rise; {times[back]:.6g} follows {times[back - 1]:.6g}",
+    wrong = next((i for i in range(1, len(times)) if times[i] <= times[i - 1]), 0)
+    yield (key, wrong, f"times must rise; {times[wrong]:.6g} follows {times[wrong - 1]:.6g}",
            "each point is later than the one before; a jump is a leg as short as you want")
     yield (key, max(values) <= 0.0, "must be greater than 0 somewhere, else the bodies never touch", "raise it")
     retarded, steps = d["viscoelasticity.retardation_time"], d["experiment.steps"]
@@ -135,11 +135,11 @@ def _excluded(d: Draft) -> Rows:
     """Yield the rules of effects that an experiment excludes, and of those that exclude each other on a rigid plane."""
     possible = (kind for kind, table in KINDS.items() if not table.excludes.keys() & {*d.effects})
     alternative = next((f', or use kind = "{kind}"' for kind in possible), "")
-    for name, why in d.experiment.excludes.items() if d.kind else ():
-        yield (name, True, f"not in a {d.kind}: {why}", f"remove it{alternative}")
+    for name, reason in d.experiment.excludes.items() if d.kind else ():
+        yield (name, True, f"not in a {d.kind}: {reason}", f"remove it{alternative}")
     for effect in d.effects if d.holds("on_plane") else ():
-        for name, why in EFFECT_TABLES[effect].excludes.items():
-            yield (name, True, f"not with [{effect}]: {why}", f"remove [{name}], or [{effect}]")
+        for name, reason in EFFECT_TABLES[effect].excludes.items():
+            yield (name, True, f"not with [{effect}]: {reason}", f"remove [{name}], or [{effect}]")
 
 
 def _methods(d: Draft) -> Rows:
@@ -147,17 +147,17 @@ def _methods(d: Draft) -> Rows:
     kind, experiment, given = d.kind, d.experiment, d["experiment.method"]
     if kind is None or (given is None and "experiment.method" in d):
         return
-    rest = tuple(name for name in d.effects if name not in experiment.excludes)
-    method = experiment.only_method or given or default_method(rest)
+    allowed = tuple(name for name in d.effects if name not in experiment.excludes)
+    method = experiment.only_method or given or default_method(allowed)
     for name in experiment.needs:
         yield _needed(name, f"a {kind}")
     if method == "dynamic" and experiment.only_method is None:
-        cause = "" if given else ", made dynamic by " + ", ".join(f"[{name}]" for name in rest if name in TIMED)
+        cause = "" if given else ", made dynamic by " + ", ".join(f"[{name}]" for name in allowed if name in TIMED)
         for name in experiment.needs_in_time:
-            also = " and by [noise]" if given and name == "damping" and "noise" in rest else ""
+            also = " and by [noise]" if given and name == "damping" and "noise" in allowed else ""
             yield _needed(name, f"a dynamic {kind}{cause}{also}")
     for name in TIMED:
-        yield (name, method == "quasistatic" and name in rest,
+        yield (name, method == "quasistatic" and name in allowed,
                f"not in a quasistatic {kind}, which does not depend on time",
                'remove it, or use experiment.method = "dynamic"')
 

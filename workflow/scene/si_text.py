@@ -190,7 +190,7 @@ def si_value(text: str, unit: str, *also: str) -> tuple[Fraction, str]:
             words += f': its tangent is {slope:.6g}; a cone may have half_angle = "{half:.6g}°" in place of this slope'
         raise UnitTextError(f"is {words}")
     except UnitTextError as error:
-        raise UnitTextError(f"must be {in_words(unit)}; {_quoted(text)} {error}{_meant(text, unit)}") from None
+        raise UnitTextError(f"must be {in_words(unit)}; {_quoted(text)} {error}{_other_unit(text, unit)}") from None
 
 
 def si_base(text: str) -> tuple[float, str]:
@@ -210,7 +210,7 @@ def _quoted(text: str) -> str:
     return "".join(c if c.isprintable() else "?" for c in short).strip() or "an empty text"
 
 
-def _meant(text: str, unit: str) -> str:
+def _other_unit(text: str, unit: str) -> str:
     """Return the question whether another unit was meant, 10 GPa for 10 gpa; no text where no other is likely."""
     try:
         number, given = split(text)
@@ -245,10 +245,10 @@ def _for_pint(unit: str) -> str:
 @cache
 def _unit(text: str) -> Unit:
     """Return the unit of a text. Raises UnitTextError."""
-    return _of_si(text) or _of_pint(text)
+    return _si_unit(text) or _pint_unit(text)
 
 
-def _of_si(text: str) -> Unit | None:
+def _si_unit(text: str) -> Unit | None:
     """Return a unit of symbols of SI with their prefixes, products and quotients; None where it has others."""
     factor, powers = Fraction(1), Counter[str]()
     for sign, name in re.findall("([·/])([^·/]*)", f"·{text}"):
@@ -263,7 +263,7 @@ def _of_si(text: str) -> Unit | None:
     return Unit(text, factor, {base: power for base, power in powers.items() if power})
 
 
-def _of_pint(text: str) -> Unit:
+def _pint_unit(text: str) -> Unit:
     """Return a unit with symbols that pint alone knows. Raises UnitTextError."""
     unit = re.sub("°(?![CF])", "deg", text)  # pint's parser knows the sign, and its names don't
     names = [part for part in re.split(r"[\s·*×/()]+", POWER.sub("", unit)) if part]

@@ -8,13 +8,13 @@ The stiffness per length of the layer that the two chains make together is E* wi
 of Geike and Popov (their Eq. 3: c_n = G/2(1 − ν), two equal spheres, E* = G/(1 − ν)). The tangential one is G*/E* of it
 (Cattaneo and Mindlin; physics of both: K. L. Johnson, Contact Mechanics, 1985).
 
-The paper's reduction takes the profile as drawn, z = c xⁿ, with the layer c_n. Under a force F it is wide
+The paper's reduction takes the profile as drawn, z = c xⁿ, with the layer c_n. Under a force F the half-width of this
+plane image, and the contact radius of the body with that profile on a plane (Galin; κ_n in `shapes`), are
 
-    a = [(n + 1) F/(n c E*)]^{1/(n+1)},     the body of that profile on a plane (Galin; κ_n in `profiles`) has
-    a = [(n + 1) F/(2 n κ_n c E*)]^{1/(n+1)}
+    a = [(n + 1) F/(n c E*)]^{1/(n+1)}     and     a = [(n + 1) F/(2 n κ_n c E*)]^{1/(n+1)}
 
 so that the image is (2κ_n)^{1/(n+1)} times as wide and has the inverse square of that as mean pressure. For two equal
-spheres, for which it was derived, force and displacement are theirs, and the image is 2 times as wide.
+spheres, for which it was derived, it has their force and displacement, and is 2 times as wide.
 """
 
 from __future__ import annotations
