@@ -16,7 +16,7 @@ from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.outcome import Outcome, Reading
 from contact1d.workflow.continuation.reduction import MARGIN
 from contact1d.workflow.continuation.trace import Trace
-from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
+from contact1d.workflow.experiments.experiment import Scripted, finer_spacing
 from contact1d.workflow.laws import law_of
 from contact1d.workflow.laws.path import History as LoadHistory
 from contact1d.workflow.model.settings import Settings
@@ -94,7 +94,7 @@ class HistoryExperiment(Scripted[History]):
 
     def advice(self, scene: Scene) -> str:
         """Return the advice to refine load steps and lattice, the sources of the uncertainty."""
-        return f"Use more experiment.steps, or {FINER_SPACING}"
+        return f"Use more experiment.steps, or {finer_spacing(scene)}"
 
 
 def _load_steps(scene: Scene) -> LoadHistory:

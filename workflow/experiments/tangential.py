@@ -29,7 +29,7 @@ from contact1d.workflow.continuation.trust import UntrustedError, doubts
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.lattice import places
 from contact1d.workflow.deck.steps import Phase
-from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
+from contact1d.workflow.experiments.experiment import Scripted, finer_spacing
 from contact1d.workflow.laws.friction import Sliders, SlidingSprings, Stop, sliders_of, stops, without_rests
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import Path
@@ -147,7 +147,7 @@ class TangentialExperiment(Scripted[Tangential]):
 
     def advice(self, scene: Scene) -> str:
         """Return the advice to refine the lattice: the load steps are exact."""
-        return f"Use {FINER_SPACING}"
+        return f"Use {finer_spacing(scene)}"
 
 
 @dataclass(frozen=True)
