@@ -166,7 +166,7 @@ def test_lists_and_tables_on_a_plane_take_texts() -> None:
     given = 'normal_force = ["10 N", "11 N"], displacements = ["0 nm", "0.2 µm"]'
     scene = read_scene(STEEL_ON_GLASS, [f'experiment={{ kind = "tangential", {given} }}', "friction.coefficient=0.3"])
     assert scene.experiment.compression == 11.0
-    assert scene.experiment.way == 2e-7
+    assert scene.experiment.excursion == 2e-7
     adhesive = read_scene(STEEL_ON_GLASS, ["adhesion.surface_energy=50 mJ/m²"]).adhesion
     assert adhesive is not None
     assert adhesive.work == 0.1

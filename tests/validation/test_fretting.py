@@ -115,7 +115,7 @@ def test_cycles_are_the_same_run_as_their_displacements(runs: dict[tuple[float, 
     listed = run(as_displacements(places.tolist()), tmp_path / "run", figures=False)
     experiment: Any = cycles.scene.experiment
     assert experiment.along() == pytest.approx(places, rel=SAME, abs=SAME * amplitude)
-    assert max(experiment.along()) == -min(experiment.along()) == experiment.way
+    assert max(experiment.along()) == -min(experiment.along()) == experiment.excursion
     for name in cycles.curve.units:
         column = cycles.curve[name]
         assert listed.curve[name] == pytest.approx(column, abs=STEADY * np.abs(column).max(), nan_ok=True)

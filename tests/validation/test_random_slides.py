@@ -153,10 +153,10 @@ def test_random_slides_are_those_of_the_integrator(tmp_path: Path) -> None:
 
 def longer(scene: Scene) -> Scene:
     """The same on a longer way, on a lower chain that is as much longer."""
-    assert scene.experiment.way > 0.0
-    changes: dict[str, object] = {"experiment.distance": LONGER * scene.experiment.way}
+    assert scene.experiment.excursion > 0.0
+    changes: dict[str, object] = {"experiment.distance": LONGER * scene.experiment.excursion}
     if not scene.bodies.periodic:
-        beside = math.ceil((LONGER - 1.0) * scene.experiment.way / scene.bodies.spacing)
+        beside = math.ceil((LONGER - 1.0) * scene.experiment.excursion / scene.bodies.spacing)
         changes["bodies.particles"] = settings_for(scene).chains.lower + 2 * beside
     return scene.with_(changes)
 

@@ -59,7 +59,7 @@ def test_every_shipped_sweep_of_slides_is_pinned() -> None:
 def test_a_point_of_a_shipped_sweep_gives_its_number(name: str, tmp_path: Path) -> None:
     place, quantity, value, _ = PINNED[name]
     scene = slides(name).scenes[place]
-    scene = scene.with_({"experiment.distance": SHORTER.get(name, scene.experiment.way)})
+    scene = scene.with_({"experiment.distance": SHORTER.get(name, scene.experiment.excursion)})
     found = run(scene, tmp_path / name, figures=False).results[quantity]
     chance = 0.0 if scene.noise is None else CHANCE * found.uncertainty
     assert found.value == pytest.approx(value, rel=DIGITS, abs=chance)

@@ -293,7 +293,7 @@ def _mindlin_values(case: Case) -> Values:
         "tangential_force": mindlin_path(positions, *contact)[-1],
         "contact_radius": edge,
         "stick_radius": mindlin_stick_path(positions, edge, contact[-1])[-1],
-        "dissipated_energy_per_cycle": mindlin_cycle_energy(experiment.way, *contact),
+        "dissipated_energy_per_cycle": mindlin_cycle_energy(experiment.excursion, *contact),
     }
     return values if experiment.normal_forces() else values | {"normal_force": contact[0]}
 

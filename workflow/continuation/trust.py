@@ -135,7 +135,7 @@ def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[
         )
     if slow := slowness(scene, settings):
         found["slow"] = slow
-    if settings.law.snaps and not scene.experiment.way_is_given:
+    if settings.law.snaps and not scene.experiment.history_is_given:
         found["snaps"] = (
             "the gradient of a pair's attraction exceeds the stiffness of its springs, so that pairs snap in and snap "
             "out: there are several equilibria under one load, and the loading history decides which one is reached. "

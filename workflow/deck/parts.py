@@ -127,7 +127,7 @@ def _method(scene: Scene, settings: Settings) -> Contribution:
 def margins(scene: Scene, settings: Settings) -> tuple[float, float, float]:
     """Return the free space along x, y and z [LU] between the bodies and the walls of the box."""
     spacing = scene.bodies.spacing
-    side = 20.0 * spacing + scene.experiment.way
+    side = 20.0 * spacing + scene.experiment.excursion
     head = 10.0 * max(spacing, settings.forces.cutoff) + 2 * abs(settings.largest_displacement)
     if scene.plate and (scene.noise or scene.experiment.motion_is_result):
         head *= 10.0  # a free plate may fly off between two measurements; under a held load LAMMPS stops it

@@ -124,7 +124,7 @@ def load_ramp(scene: Scene, settings: Settings, experiment: PullOff, increments:
     It has `increments` load steps up to the predicted pull-off force, or fewer, so that each has 10 timesteps.
     """
     estimate, step = settings.law, settings.motion.time_step
-    spring = (experiment.stiffness or estimate.stiffness_under(0.0)) if experiment.draws_off else 0.0
+    spring = (experiment.stiffness or estimate.stiffness_under(0.0)) if experiment.is_retracted else 0.0
     rate = experiment.loading_rate or spring * (experiment.velocity or 0.0)
     largest = estimate.pull_off_force()
     steps = max(10, round(largest / increments / rate / step))

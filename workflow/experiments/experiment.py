@@ -181,7 +181,7 @@ def driver_of(context: RunContext, meanwhile: Callable[[], object]) -> Branch | 
     scene = context.deck.scene
     if scene.method == "dynamic" and scene.experiment.compression is not None:
         return LoadBranch(context, meanwhile)
-    if scene.is_stepped and (scene.is_modelled or scene.experiment.way_is_given):
+    if scene.is_stepped and (scene.is_modelled or scene.experiment.history_is_given):
         return PlannedBranch(context, meanwhile)
     return (ReplayedBranch if context.deck.settings.snaps else Branch)(context, meanwhile)
 

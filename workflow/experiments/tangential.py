@@ -102,7 +102,7 @@ class TangentialExperiment(Scripted[Tangential]):
         last = rows[-1]
         strongest = max(row.carried for row in rows)
         error = round_off * len(rows) * strongest + _contact_error(scene, settings)
-        lost, force = error * scene.experiment.way, float(trace.force[last.state])
+        lost, force = error * scene.experiment.excursion, float(trace.force[last.state])
         is_unseen = last.dissipated <= lost
         unseen = _unseen_slip(rows, scene)[0] if is_unseen else 0.0
         radius = trace.radius(last.state) or 0.0

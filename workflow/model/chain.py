@@ -115,7 +115,7 @@ def chains_of(scene: Scene, estimate: Law, largest: float, share: float) -> tupl
     if bodies.particles != "auto":
         return bodies.upper_particles or bodies.particles, bodies.particles
     needed = chain_length(scene, estimate, largest, share)
-    additional = 2 * math.ceil((scene.experiment.way + abs(bodies.upper_offset or 0.0)) / bodies.spacing)
+    additional = 2 * math.ceil((scene.experiment.excursion + abs(bodies.upper_offset or 0.0)) / bodies.spacing)
     half = 0.5 * needed * bodies.own_spacing
     below = needed if bodies.upper_spacing is None else 2 * math.ceil(half / bodies.spacing)
     return bodies.upper_particles or needed, below + additional

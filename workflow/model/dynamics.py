@@ -136,7 +136,7 @@ def motion_of(
 
 def _plate_stiffness(scene: Scene, particles: int) -> float:
     """Return the stiffness [FU/LU] of all bonds of the plate: of its particles, its drive and its cantilever."""
-    stiffness = particles * scene.bulk_stiffness + scene.experiment.drawing_stiffness
+    stiffness = particles * scene.bulk_stiffness + scene.experiment.retraction_stiffness
     if scene.cantilever:
         lateral = max(0.0, scene.tangential_stiffness - scene.bulk_stiffness)
         stiffness += scene.cantilever.stiffness + particles * lateral

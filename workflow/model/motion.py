@@ -44,7 +44,7 @@ def require_way(scene: Scene, settings: Settings) -> None:
     bodies = scene.bodies
     if not isinstance(scene.experiment, Slide) or bodies.periodic:
         return
-    half, distance = contact_half_width(scene, settings), scene.experiment.way + abs(bodies.upper_offset or 0.0)
+    half, distance = contact_half_width(scene, settings), scene.experiment.excursion + abs(bodies.upper_offset or 0.0)
     end = 0.5 * settings.chains.lower * bodies.spacing
     if end < half + distance:
         needed = 2 * math.ceil((half + distance) / bodies.spacing)

@@ -88,7 +88,7 @@ def require_results(scene: Scene, outcome: Outcome) -> None:
 
     The result of a path that the scene gives is its curve, so that it passes.
     """
-    if scene.experiment.way_is_given:
+    if scene.experiment.history_is_given:
         return
     main = main_results(scene, outcome.results)
     if main and not main.keys() - unreported(scene, outcome).keys():

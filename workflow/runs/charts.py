@@ -85,7 +85,7 @@ def legs_of(run: Run, along: Array) -> list[tuple[str, NDArray[np.int64]]]:
     back and forth.
     """
     branch, kind = run.curve.branch, run.scene.experiment
-    if kind.way_is_given or kind.goes_along:
+    if kind.history_is_given or kind.goes_along:
         starts = [0, *np.flatnonzero(branch[1:] != branch[:-1]) + 1, branch.size]
         legs = [np.arange(max(start - 1, 0), end) for start, end in pairwise(starts)]
     else:
@@ -112,7 +112,7 @@ def _charts(run: Run) -> Iterator[tuple[str, Chart]]:
         name = "friction" if run.friction else f"{up}_{over}"
         yield name, path_chart(run, force=_ting(run, over) if up == "force" else [])
     if ("displacement" in (over, up) or isinstance(scene.experiment, History)) and (
-        not scene.noise or scene.experiment.way_is_given
+        not scene.noise or scene.experiment.history_is_given
     ):
         yield from _under_load(run)
     if all(profile.x.size > 1 for profile in profiles.values()):  # one particle has no pressure over x

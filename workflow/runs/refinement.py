@@ -29,7 +29,7 @@ def refined(context: RunContext, outcome: Outcome, ratio: float = 5.0, most: int
     until their standard errors are small.
     """
     scene, deck = context.deck.scene, context.deck
-    if kind_of(scene).is_statistical or scene.experiment.way_is_given:
+    if kind_of(scene).is_statistical or scene.experiment.history_is_given:
         return deck, outcome
     wanted, count, ended = scene.accuracy.tolerance, 0, ""
     tolerance = wanted

@@ -10,7 +10,6 @@ from contact1d.workflow.scene.draft import (
     DIGITS,
     ELASTICITY,
     GIVE_SPACING,
-    LONGEST_CELL,
     PARTICLES,
     PLANE,
     WHOLE_NUMBER_ERROR,
@@ -30,7 +29,7 @@ from contact1d.workflow.scene.tables import (
 
 
 def punch(d: Draft) -> Rows:
-    """A flat punch, whose edge is half a spacing beyond its last particle."""
+    """Yield the rules of a flat punch, whose edge is half a spacing beyond its last particle."""
     radius, spacing = d["bodies.profile.radius"], d["bodies.spacing"]
     if d.profile != "flat_punch" or radius is None or spacing in (None, "auto"):
         return
@@ -49,7 +48,7 @@ def punch(d: Draft) -> Rows:
 
 
 def counter_body(d: Draft) -> Rows:
-    """The curved lower body of a parabola."""
+    """Yield the rules of the curved lower body of a parabola."""
     key = "bodies.profile.counter_radius"
     radius, counter = d["bodies.profile.radius"], d[key]
     if None in (radius, counter):
@@ -64,7 +63,7 @@ def counter_body(d: Draft) -> Rows:
 
 
 def reduction(d: Draft) -> Rows:
-    """What the paper's reduction makes of a body that it was not derived for."""
+    """Yield the rule that excludes the paper's reduction for a body for which it was not derived."""
     profile = d["bodies.profile"]
     if profile is None or profile["kind"] in SPHERES:
         return
@@ -78,7 +77,7 @@ def reduction(d: Draft) -> Rows:
 
 
 def periodic_lengths(d: Draft) -> Rows:
-    """Springs and lengths of two periodic chains, which close together."""
+    """Yield the rules of springs and lengths of two periodic chains, which have a common period."""
     if not d["bodies.periodic"]:
         return
     normal, tangential = d["bodies.bulk_stiffness"], d["bodies.bulk_stiffness_tangential"]
@@ -88,22 +87,23 @@ def periodic_lengths(d: Draft) -> Rows:
                "lower it: a larger one needs distant anchors along x, which a periodic body cannot have")
     count, spacing = d["bodies.particles"], d["bodies.spacing"]
     upper, pitch = (
-        d[path] if path in d else below  # noqa: SIM401 (a draft is no dict)
-        for path, below in (("bodies.upper_particles", count), ("bodies.upper_spacing", spacing))
+        d[path] if path in d else default  # noqa: SIM401 (a draft is no dict)
+        for path, default in (("bodies.upper_particles", count), ("bodies.upper_spacing", spacing))
     )
     if {None, "auto"} & {count, spacing, upper, pitch} or upper == 1:
         return
-    ratio = Fraction(pitch / spacing).limit_denominator(LONGEST_CELL)
+    longest = 1000  # particles in the period of a pair of chains that is suggested
+    ratio = Fraction(pitch / spacing).limit_denominator(longest)
     nearest = f"upper_spacing = {count * spacing / upper:.10g} with these numbers of particles"
-    if 0 < ratio.numerator <= LONGEST_CELL:
+    if 0 < ratio.numerator <= longest:
         cells = max(1, round(upper / ratio.denominator))
         nearest += (
             f", or particles = {cells * ratio.numerator} and upper_particles = {cells * ratio.denominator} with "
             f"upper_spacing = {ratio.numerator / ratio.denominator * spacing:.10g}"
         )
-    one, other = apart(spacing, pitch, DIGITS)
+    below, above = apart(spacing, pitch, DIGITS)
     yield ("bodies.upper_spacing", abs(count * spacing - upper * pitch) > WHOLE_NUMBER_ERROR * count * spacing,
-           f"the periodic chains differ in length: {count} · {one} LU below and {upper} · {other} LU above",
+           f"the periodic chains differ in length: {count} · {below} LU below and {upper} · {above} LU above",
            f"the nearest equal lengths: {nearest}")
 
 
@@ -112,9 +112,9 @@ BODY_RULES: tuple[Rule, ...] = (
     # Where a rigid plane, a rigid chain or particles may be the lower body
     ("interaction", "on_chain",
      "missing, needed by a lower body of particles", f"add [interaction], or use {PLANE}"),
-    ("interaction", "touched",
+    ("interaction", "plane_contact",
      f"not with {PLANE}, which is touched directly", f"remove it, or use {PARTICLES}"),
-    ("horizontal", "touched horizontal",
+    ("horizontal", "plane_contact horizontal",
      "has no effect on a rigid plane, which exerts no tangential force on a particle",
      f"remove it, or use {PARTICLES}"),
     ("bodies.lower", "on_plane motion_is_result",
@@ -151,43 +151,43 @@ BODY_RULES: tuple[Rule, ...] = (
      f"remove it: it follows from ν of material.upper and lower; or {GIVE_SPACING}"),
     ("bodies.spacing", f"{OPEN} bodies.profile.kind=flat",
      "must be a length (LU) of a flat body without an edge", f'{GIVE_SPACING}, or use kind = "flat_punch"'),
-    ("bodies.spacing", f"{OPEN} tied",
-     "must be a length (LU) with {tied}: masses, drags and springs between particles belong to one spacing",
-     f"{GIVE_SPACING}, or remove {{tied}}"),
+    ("bodies.spacing", f"{OPEN} needs_spacing",
+     "must be a length (LU) with {needs_spacing}: masses, drags and springs between particles belong to one spacing",
+     f"{GIVE_SPACING}, or remove {{needs_spacing}}"),
     punch,
-    # One elasticity, and one way to the units: given, or by F_A and a₀ of the run with γ and E*
+    # One elasticity, and units that are either given or follow from F_A and a₀ of the run with γ and E*
     ("bodies.bulk_stiffness", "bodies.bulk_stiffness=auto !elastic",
      "must be given (FU/LU): the scene has no elastic moduli from which it follows",
      f"give a number, or {ELASTICITY}"),
     ("material.contact_modulus", "material.upper|material.lower",
      "not together with upper or lower", "give E*, or E and ν of both bodies"),
-    *((f"material.{body}", f"judged !material.contact_modulus {other}",
+    *((f"material.{body}", f"describes_bodies !material.contact_modulus {condition}",
        "missing", "write upper and lower, each with youngs_modulus and poisson_ratio, or contact_modulus")
-      for body, other in (("upper", ""), ("lower", "material.upper"))),
+      for body, condition in (("upper", ""), ("lower", "material.upper"))),
     ("material.upper", "material.upper=rigid material.lower=rigid",
      "one of the two bodies must be elastic", 'give its E and ν, or its name, "steel"'),
-    ("material.length_unit material.force_unit", "judged material.surface_energy",
+    ("material.length_unit material.force_unit", "describes_bodies material.surface_energy",
      "not together with surface_energy, with which both units follow from F_A and a₀ of the run",
      "remove one of the two"),
-    ("material.length_unit", "judged !material.surface_energy",
+    ("material.length_unit", "describes_bodies !material.surface_energy",
      "missing", "give one LU in metres, or surface_energy, from which a pull_off finds both units"),
     ("material.force_unit",
-     "judged !material.surface_energy bodies.bulk_stiffness !bodies.bulk_stiffness=auto",
+     "describes_bodies !material.surface_energy bodies.bulk_stiffness !bodies.bulk_stiffness=auto",
      "not together with a given bulk_stiffness, from which it follows",
      'remove it, or write bodies.bulk_stiffness = "auto"'),
-    ("material.force_unit", "judged !material.surface_energy bodies.bulk_stiffness=auto",
+    ("material.force_unit", "describes_bodies !material.surface_energy bodies.bulk_stiffness=auto",
      'missing, needed by bulk_stiffness = "auto"', "give one FU in newtons"),
-    ("bodies.bulk_stiffness", "judged material.surface_energy bodies.bulk_stiffness=auto",
+    ("bodies.bulk_stiffness", "describes_bodies material.surface_energy bodies.bulk_stiffness=auto",
      "must be a number: LU and FU are not known before the run",
      "give the stiffness (FU/LU), or length_unit and force_unit in place of surface_energy"),
-    ("material.surface_energy", "judged kind !finds_pull_off",
+    ("material.surface_energy", "describes_bodies kind !finds_pull_off",
      "not in this experiment, which finds no F_A and a₀",
      'use kind = "pull_off", whose results give length_unit and force_unit'),
-    ("material.surface_energy", "judged material.surface_energy experiment.kind=path unattracted",
+    ("material.surface_energy", "describes_bodies material.surface_energy experiment.kind=path no_attraction",
      "has no effect without attraction: there is no F_A and no a₀",
      'use length_unit, or lower = "particles" with an interaction.attraction'),
     ("material.surface_energy",
-     f"judged bodies.profile.kind=* {' '.join(f'!bodies.profile.kind={kind}' for kind in SPHERES)}",
+     f"describes_bodies bodies.profile.kind=* {' '.join(f'!bodies.profile.kind={kind}' for kind in SPHERES)}",
      "not with this profile: JKR is for a sphere", "use a parabola or a circle, or length_unit"),
     counter_body,
     reduction,

@@ -21,7 +21,7 @@ from contact1d.workflow.scene.tables import Tables
 
 
 def mend_words(scene: Place) -> None:
-    """Report and correct every word that is misspelt or unknown; put tables where names and lists stand for them."""
+    """Report and correct every misspelt or unknown word; replace names and lists by the tables that they stand for."""
     for place in chain((scene,), scene):
         _mend_word(place)
         value, table = place.value, place.allowed.table
@@ -32,7 +32,7 @@ def mend_words(scene: Place) -> None:
 
 
 def _mend_keys(place: Place, value: dict[str, Any]) -> None:
-    """The same of the keys of a table, and of its kind."""
+    """Report and correct the misspelt or unknown keys of a table, and its kind."""
     if place.allowed.kinds:
         for similar in [key for key in value if "kind" not in value and nearest(key, ["kind"])][:1]:
             _mend_key(place, ["kind"], similar)
@@ -41,7 +41,7 @@ def _mend_keys(place: Place, value: dict[str, Any]) -> None:
     unknown = [key for key in value if key not in keys_of(table)] if table else []
     for key in unknown[:MOST_PROBLEMS]:
         _mend_key(place, keys_of(table), key)
-    for key in unknown[MOST_PROBLEMS:]:  # they are counted only
+    for key in unknown[MOST_PROBLEMS:]:  # these are only counted
         del value[key]
         place.problems.append(Problem(path_of((*place.keys, key)), "unknown key"))
 
@@ -57,13 +57,13 @@ def _mend_word(place: Place) -> None:
 
 
 def _names(place: Place) -> str:
-    """The names that a table may have."""
+    """Return the names that a table may have, for a message; no text without any."""
     table = place.allowed.table
     return f" names: {', '.join(table.by_name)}" if table and table.by_name else ""
 
 
 def _mend_key(place: Place, known: Collection[str], key: str) -> None:
-    """Report a key that a table does not know, and take it away or put it where it was meant to be."""
+    """Report an unknown key of a table, and remove it or move its value to the key that was meant."""
     value, table, begin = place.value.pop(key), place.allowed.table_for(place.value), ""
     method = table.only_method if key == "method" and table and issubclass(table, Kind) else None
     if meant := nearest(key, known):
@@ -72,12 +72,12 @@ def _mend_key(place: Place, known: Collection[str], key: str) -> None:
         begin = f"a {place.value['kind']} is always {method}: remove it; "
     elif homes := _homes(key):
         begin = f"it belongs in {' or '.join(homes)}; "
-    what = "unknown table" if isinstance(value, dict) else "unknown key"
-    place.problems.append(Problem(path_of((*place.keys, key)), what, hint=begin + suggestion(key, known)))
+    message = "unknown table" if isinstance(value, dict) else "unknown key"
+    place.problems.append(Problem(path_of((*place.keys, key)), message, hint=begin + suggestion(key, known)))
 
 
 def _homes(key: str) -> list[str]:
-    """The tables of a scene that know the key `key`, as they are written in a file."""
+    """Return the tables of a scene that have the key `key`, as they are written in a file."""
     return [
         f"[{path}]" + (f' of kind = "{kind}"' if kind else "") if path else "the lines above the first table"
         for path, kind, table in tables_in(Tables)
@@ -86,10 +86,9 @@ def _homes(key: str) -> list[str]:
 
 
 def report_faults(scene: Place, error: ValidationError) -> None:
-    """Report each error of pydantic's once, and not at places that are doubted already."""
+    """Report each error of pydantic's once, and not at places that are already marked as not sound."""
     faults = [(_place(scene, details), details) for details in error.errors(include_url=False)]
-    # of a value that may be of several types each says what it is not: what is wrong inside comes first, and last that
-    # it is of another type
+    # a value that may be of several types has an error for each type: errors inside come first, a wrong type last
     faults.sort(key=lambda fault: (-len(fault[0].keys), fault[1]["type"].endswith("_type")))
     for place, details in faults:
         if place.sound:
@@ -97,7 +96,7 @@ def report_faults(scene: Place, error: ValidationError) -> None:
 
 
 def _place(scene: Place, details: ErrorDetails) -> Place:
-    """Where an error of pydantic's is, whose location names types as well."""
+    """Return the place of an error of pydantic's, whose location has names of types as well."""
     place = scene
     for step in (*details["loc"], "kind" if details["type"].startswith("union_tag") else ""):
         place = place.inside.get(step, place)
@@ -105,7 +104,7 @@ def _place(scene: Place, details: ErrorDetails) -> Place:
 
 
 def _report(place: Place, details: ErrorDetails) -> None:
-    """Report what an error of pydantic's at a place means for the person who wrote the scene."""
+    """Report an error of pydantic's at a place in the terms of the scene file."""
     kind, must, hint = details["type"], f"must be {statement(place.allowed)}", _hint(place)
     if place.absent:
         must, hint = "missing", must
@@ -123,7 +122,7 @@ def _report(place: Place, details: ErrorDetails) -> None:
 
 
 def _hint(place: Place) -> str:
-    """What to do about a value of the wrong type, where that can be known."""
+    """Return the suggested fix for a value of the wrong type; no text where none is known."""
     given, allowed, text = place.value, place.allowed, text_of(place.allowed)
     if isinstance(given, str) and allowed.type in (int, float):
         if any(map(str.isdigit, given)):

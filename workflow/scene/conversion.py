@@ -1,8 +1,8 @@
 """Numbers with units in a scene, "10 mm", as numbers in the scene's own units LU, FU, MU, TU = √(MU·LU/FU).
 
-What LU, FU and MU are stands in [material]; where it gives none and no plain number of the scene needs it, it is 1 m,
-1 N or 1 kg, so that the results' model units are those of SI. It is then written into [material], and the scene that
-is kept says what it means.
+[material] gives the sizes of LU, FU and MU; where it does not, and no plain number of the scene needs one, they are
+1 m, 1 N and 1 kg, so that the results' model units are those of SI. They are then written into [material], so that the
+scene that is kept has them.
 """
 
 from __future__ import annotations
@@ -21,33 +21,31 @@ from contact1d.workflow.units import SI
 BOLTZMANN = Fraction(1380649, 10**29)
 """k_B [J/K], exact since 2019."""
 UNIT_KEYS = {"LU": "length_unit", "FU": "force_unit", "MU": "mass_unit"}
-"""Keys of [material] that say what a unit of the model is in SI."""
-LISTED = 3
-"""Places that a message names before it counts the rest."""
+"""Keys of [material] that give the size of a unit of the model in SI."""
 
 
 def convert(scene: Place) -> bool:
-    """Put numbers in the place of the texts with units of a scene; whether it has any.
+    """Replace the texts with units of a scene by numbers, and return whether it has any.
 
-    What is wrong with them is reported. Their places, and those whose numbers are unknown by that, are then doubted.
+    Errors in them are reported. Their places, and those whose numbers are then unknown, are marked as not sound.
     """
     texts = [place for place in numbers_in(scene) if place.is_text and place.sound]
-    read = {place: value for place in texts if (value := _si(place)) is not None}
+    read = {place: value for place in texts if (value := _si_value(place)) is not None}
     for place, value in read.items():
-        if not place.unit.bases:  # these say what LU, FU and MU are
-            _put(place, value)
+        if not place.unit.bases:  # these give the sizes of LU, FU and MU
+            _put_number(place, value)
     in_model_units = [place for place in texts if place.unit.bases]
     scales = _scales(scene, in_model_units) if in_model_units else {}
     for place in in_model_units:
         if scales is None:
             place.doubt()
         elif place in read:
-            _put(place, read[place] / size(place.unit.name, scales))
+            _put_number(place, read[place] / size(place.unit.name, scales))
     return bool(texts)
 
 
-def _si(place: Place) -> Fraction | None:
-    """The quantity that the text says, in SI, a temperature as k_B T; None, and reported, where it is none."""
+def _si_value(place: Place) -> Fraction | None:
+    """Return the quantity of a text in SI, a temperature as k_B T; None, and reported, where it is none."""
     try:
         value, dimension = si_value(place.value, *place.unit.texts)
     except UnitTextError as error:
@@ -56,8 +54,8 @@ def _si(place: Place) -> Fraction | None:
     return value * BOLTZMANN if dimension == "K" else value
 
 
-def _put(place: Place, value: Fraction) -> None:
-    """Put the number in the text's place."""
+def _put_number(place: Place, value: Fraction) -> None:
+    """Replace a text by its number, and keep the text as the source."""
     text = copy(place)
     try:
         place.put(float(value))
@@ -67,7 +65,7 @@ def _put(place: Place, value: Fraction) -> None:
 
 
 def _scales(scene: Place, texts: list[Place]) -> dict[str, Fraction] | None:
-    """What LU, FU and MU are in SI, those that `texts` need. None, and reported, where they cannot be known."""
+    """Return the sizes in SI of LU, FU and MU that `texts` need. None, and reported, where they are unknown."""
     material = scene.inside["material"]
     if material.absent:
         material.put({})
@@ -78,13 +76,16 @@ def _scales(scene: Place, texts: list[Place]) -> dict[str, Fraction] | None:
         message = "LU and FU follow from the run (material.surface_energy), so that units are not known before it"
         first.fault(message, f"write a number in {first.unit.name}")
         return None
-    return _chosen(draft, texts)
+    return _chosen_scales(draft, texts)
 
 
-def _chosen(draft: Draft, texts: list[Place]) -> dict[str, Fraction] | None:
-    """The same, chosen and put into the scene where they are open."""
-    own, elastic = draft.scene.at("bodies.bulk_stiffness"), draft.holds("elastic")
-    stiffness = own if own and own.value != "auto" and elastic else None  # FU follows from it and the moduli
+def _chosen_scales(draft: Draft, texts: list[Place]) -> dict[str, Fraction] | None:
+    """Return the sizes in SI of units that `texts` need; those that the scene leaves open are put into it.
+
+    None, and reported, where plain numbers are mixed with units.
+    """
+    given, elastic = draft.scene.find("bodies.bulk_stiffness"), draft.holds("elastic")
+    stiffness = given if given and given.value != "auto" and elastic else None  # FU follows from it and the moduli
     needed = {base for place in texts for base in place.unit.bases}
     if not stiffness or "MU" in needed:
         needed |= {"LU", "FU"}
@@ -104,7 +105,7 @@ def _chosen(draft: Draft, texts: list[Place]) -> dict[str, Fraction] | None:
 
 
 def _plain_numbers(draft: Draft, bases: Collection[str]) -> list[Place]:
-    """The numbers without a unit that are in units made of one of these, but for a mass that matters nowhere."""
+    """Return the numbers without a unit that are in units made of these bases, except a mass that has no effect."""
     in_time = draft.experiment.only_method == "dynamic" or draft.facts["in_time"]
     without = "" if in_time and not draft.experiment.is_massless else "bodies.mass"
     numbers = (place for place in numbers_in(draft.scene) if place.is_number and place.path != without)
@@ -112,31 +113,32 @@ def _plain_numbers(draft: Draft, bases: Collection[str]) -> list[Place]:
 
 
 def _report_mixed(plain: list[Place], text: Place, chosen: Collection[str], elastic: bool) -> None:
-    """Plain numbers beside numbers with a unit, and nothing says what the units of the model are."""
+    """Report plain numbers beside numbers with a unit where the units of the model are unknown."""
     first = plain[0]
     unknown = {base for place in plain for base in place.unit.bases} | (set() if elastic else {"LU", "FU"})
     bases = [base for base in UNIT_KEYS if base in unknown and base in chosen]
-    what = f"what {' and '.join(bases)} stand{'s' * (len(bases) == 1)} for"
-    others = ", ".join(place.path for place in plain[1:LISTED])
-    more = f" and {len(plain) - LISTED} more" if len(plain) > LISTED else ""
+    meaning = f"what {' and '.join(bases)} stand{'s' * (len(bases) == 1)} for"
+    listed = 3  # keys that a message names before it counts the rest
+    further = ", ".join(place.path for place in plain[1:listed])
+    more = f" and {len(plain) - listed} more" if len(plain) > listed else ""
     unit = f'give it a unit as well, such as "{example(first.unit.texts[0])}"'
     if first.source and first.source.key == "file":
         unit = 'name its columns with their units, r [µm], z [µm], or write scale = "1 µm", or units = ["µm", "nm"]'
     first.report(
         f"is {'by default ' if first.absent else ''}in {first.unit.name}, while {text.path} = {text.given} has a unit, "
-        f"and nothing says {what}",
-        f"{unit}{f'; so too {others}{more}' if others else ''}; "
+        f"and nothing says {meaning}",
+        f"{unit}{f'; so too {further}{more}' if further else ''}; "
         f"or give {' and '.join(f'material.{UNIT_KEYS[base]}' for base in bases)}",
     )
 
 
 def is_positive(place: Place) -> bool:
-    """Whether a finite number greater than 0 stands there."""
+    """Return whether a place has a finite number greater than 0."""
     return place.is_number and 0.0 < place.value <= sys.float_info.max
 
 
 def size(unit: str, scales: Mapping[str, Fraction]) -> Fraction:
-    """One unit of the model in SI; exact where that is a fraction."""
+    """Return the size of a unit of the model in SI, exactly where it is a fraction."""
     square = math.prod((scales[base] ** int(2 * power) for base, power in SI[unit].powers.items()), start=Fraction(1))
     root = Fraction(math.isqrt(square.numerator), math.isqrt(square.denominator))
     return root if root**2 == square else Fraction(math.sqrt(square))

@@ -1,4 +1,4 @@
-"""A scene that is not checked yet, as its rules see it, and what a rule is."""
+"""A scene that is not checked yet, as its rules read it, and the type of a rule."""
 
 from __future__ import annotations
 
@@ -15,12 +15,10 @@ from contact1d.workflow.scene.tables import EFFECT_TABLES, TIMED
 
 WHOLE_NUMBER_ERROR = 1e-9
 """Relative error of a quotient of two decimals up to which it counts as whole, or two lengths as equal."""
-LONGEST_CELL = 1000
-"""Most particles of a pair of chains that is suggested in place of one that does not close."""
-TIED = ("neighbours", "damping", "noise", "plate")
+AT_ONE_SPACING = ("neighbours", "damping", "noise", "plate")
 """Effects whose stiffness, drag or mass is that of particles at one spacing."""
 DIGITS = 6
-"""Of a number in a message, at least."""
+"""Smallest number of digits of a number in a message."""
 PLANE = 'bodies.lower = "rigid_plane"'
 PARTICLES = 'bodies.lower = "particles"'
 GIVE_SPACING = "give bodies.spacing as a length (LU)"
@@ -34,45 +32,45 @@ TERMS = {
     "on_plane": "bodies.lower=rigid_plane",
     "on_chain": "bodies.lower=particles|bodies.lower=rigid_chain",
     # a rigid plane neither drags a slide nor holds a pull-off without adhesion
-    "touched": "on_plane !motion_is_result !experiment.kind=pull_off|adhesion",
-    "unattracted": "!on_plane|!adhesion on_plane|interaction on_plane|!interaction.attraction",
+    "plane_contact": "on_plane !motion_is_result !experiment.kind=pull_off|adhesion",
+    "no_attraction": "!on_plane|!adhesion on_plane|interaction on_plane|!interaction.attraction",
     "elastic": "material.upper|material.lower|material.contact_modulus",
-    # a material of nothing but units says nothing of the bodies
-    "judged": "material elastic|!bodies.bulk_stiffness=auto elastic|!material.length_unit|!material.force_unit|"
-    "material.surface_energy",
+    # a material with nothing but units does not describe the bodies
+    "describes_bodies": "material elastic|!bodies.bulk_stiffness=auto "
+    "elastic|!material.length_unit|!material.force_unit|material.surface_energy",
 }
-"""Conditions that have a word of their own in others: facts, each made of those before it."""
+"""Conditions with a name that other conditions use as a fact; each is made of those before it."""
 VALUES: Mapping[str, Any] = {"0": 0.0, "true": True, "false": False}
 """Values in a condition that are no text."""
 KNOWN = "*"
-"""Any value that can be relied on."""
+"""Stands for any value that is known."""
 
 
 @cache
 def _read(conditions: str) -> list[list[tuple[str, str | None, bool]]]:
-    """Alternatives of each condition: its word, the value that is wanted, and whether it must hold."""
-    found = []
+    """Return the alternatives of each condition: name, required value or None, and whether it must hold."""
+    alternatives = []
     for words in conditions.split():
         parts = [(word, *word.removeprefix("!").partition("=")) for word in words.split("|")]
-        found.append([(name, text if equal else None, word[0] != "!") for word, name, equal, text in parts])
-    return found
+        alternatives.append([(name, text if equal else None, word[0] != "!") for word, name, equal, text in parts])
+    return alternatives
 
 
 class Draft:
     """A scene that may have wrong values.
 
-    A dotted path is `in` it where anything stands, right or wrong. By a path it gives what stands there or counts where
-    nothing does, and None where that is not known or there is no such table.
+    A dotted path is `in` it if the scene has a value there, right or wrong. The item of a path is the value or the
+    default, and None where that is unknown or there is no such table.
 
     Attributes:
-        kind, lower, profile: what the experiment, the lower body and the profile are; None if that is not known.
-        experiment: the experiment's table, which declares what it needs; `Kind` if it is not known.
-        facts: what conditions call by a word and no path has, `TERMS` too; a text is that of messages.
-        effects: those whose tables are there.
+        kind, lower, profile: the kinds of the experiment, the lower body and the profile; None if unknown.
+        experiment: the experiment's table, which declares what it needs; `Kind` if unknown.
+        facts: conditions by a name that is no path, with `TERMS`; a text is that of messages.
+        effects: names of the effects whose tables the scene has.
     """
 
     def __init__(self, scene: Place) -> None:
-        """Keep the scene."""
+        """Read the kinds, effects and facts of a scene that may have wrong values."""
         self.scene = scene
         self.kind, self.lower, self.profile = self["experiment.kind"], self["bodies.lower"], self["bodies.profile.kind"]
         self.experiment = KINDS.get(str(self.kind), Kind)
@@ -80,7 +78,9 @@ class Draft:
         self.facts = {
             "kind": self.kind,
             "in_time": self._first(TIMED, "with [{}]", "in time"),
-            "tied": self._first(() if self.experiment.is_massless else TIED, "[{}]", 'method = "dynamic"'),
+            "needs_spacing": self._first(
+                () if self.experiment.is_massless else AT_ONE_SPACING, "[{}]", 'method = "dynamic"'
+            ),
             "motion_is_result": self.experiment.motion_is_result,
             "goes_along": self.experiment.goes_along,
             "finds_pull_off": self.experiment.finds_pull_off,
@@ -89,41 +89,41 @@ class Draft:
             self.facts[name] = self.holds(conditions)
 
     def _first(self, effects: Sequence[str], text: str, dynamic: str) -> str:
-        """The first of these effects that is there, else the method if that is dynamic, in words; else none."""
+        """Return the first of these effects that the scene has, else a dynamic method, in words; else no text."""
         named = (text.format(name) for name in effects if name in self)
         return next(named, dynamic if self["experiment.method"] == "dynamic" else "")
 
     def __contains__(self, path: str) -> bool:
-        """Whether something stands at `path`."""
-        place = self.scene.at(path)
+        """Return whether the scene has a value at `path`."""
+        place = self.scene.find(path)
         return place is not None and not place.absent
 
     def __getitem__(self, path: str) -> Any:
-        """See above."""
-        place = self.scene.at(path)
+        """Return the value at `path` or its default; None where it is unknown or there is no such table."""
+        place = self.scene.find(path)
         return place.value if place and place.sound else None
 
     def holds(self, conditions: str) -> bool:
-        """Whether all `conditions` hold, between blanks; of alternatives, between bars, one does.
+        """Return whether all `conditions`, between blanks, hold; of alternatives, between bars, at least one.
 
-        A condition is one of the `facts`, a path at which something stands, or a path with "=" and the value that is
-        known to be there or in the list there. With "!" before it, it must not hold.
+        A condition is one of the `facts`, a path that has a value, or a path with "=" and the value, or a value in the
+        list, that it must have. With "!" before it, it must not hold.
         """
-        return all(any(self._is(*one) for one in alternatives) for alternatives in _read(conditions))
+        return all(any(self._is(*condition) for condition in alternatives) for alternatives in _read(conditions))
 
     def _is(self, name: str, text: str | None, wanted: bool) -> bool:
         if text is not None:
             known, value = self[name], VALUES.get(text, text)
-            found = known is not None and (
+            is_true = known is not None and (
                 text == KNOWN or known == value or (isinstance(known, list | tuple) and value in known)
             )
         else:
-            found = bool(self.facts[name]) if name in self.facts else name in self
-        return found == wanted
+            is_true = bool(self.facts[name]) if name in self.facts else name in self
+        return is_true == wanted
 
     def written(self, path: str, number: float) -> float | str:
-        """A number for `path` to six digits, in the unit of the text that stands there."""
-        place = self.scene.at(path)
+        """Return a number for `path` to `DIGITS` digits, in the unit of the text that it replaces."""
+        place = self.scene.find(path)
         text = place.source.value if place and place.source and place.value else None
         if not isinstance(text, str):  # a number, or in Python a pair of it and its uncertainty
             return float(f"{number:.{DIGITS}g}")
@@ -136,5 +136,5 @@ Rule = Row | Callable[[Draft], Rows]
 
 
 def limit(value: float, of: float) -> str:
-    """The limit of a value that lies beyond it, as text that shows that."""
+    """Return the limit of a value that is beyond it, as text with digits that show the difference."""
     return apart(value, of, DIGITS)[1]

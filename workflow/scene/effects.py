@@ -40,11 +40,7 @@ REVERSED = (
     "to reverse or hold the drive give experiment.path = [[velocity, distance], …] in place of a distance: velocities "
     "there may be negative or 0"
 )
-"""What to do about a cantilever's velocity that is no positive number."""
-
-
-NOISE_BIAS = 0.4
-"""Relative error of ⟨u²⟩ over (ω Δt)² with `fix langevin` and `fix nve`, measured at ω Δt = 0.1: 0.4 %."""
+"""Suggested fix for a velocity of the cantilever that is not positive."""
 
 
 class Exponential(Table):
@@ -57,16 +53,16 @@ class Exponential(Table):
 
 
 class Effect(Table):
-    """A table that may be absent, and then adds nothing. Each declares what it needs and what it excludes.
+    """A table that may be absent, and then adds nothing to a deck. Each effect declares its needs and exclusions.
 
     Attributes:
-        timed: it exists in time only, so never in a quasistatic run.
-        how: how to write it, for a scene that lacks it.
-        excludes: effects that it cannot have beside it, and why.
-        needs_bonds: it acts on particles apart from their body, so that on a rigid plane each has a spring of its own;
-            where no effect does, particles are fixed in their body and the plane has their springs.
-        is_modelled: the reduced model has it, so that a plan on a rigid plane is that of the deck.
-        keeps_springs: the line load inside of a contact stays that of linear springs, q = E* (const − g).
+        timed: whether the effect exists in time only, so never in a quasistatic run.
+        how: how to write the table, for a scene that lacks it.
+        excludes: effects that are not possible together with this one, and why.
+        needs_bonds: whether the effect acts on particles separately from their body, so that on a rigid plane each has
+            its own spring; without such an effect particles are fixed in their body and the plane has their springs.
+        is_modelled: whether the reduced model has the effect, so that a plan on a rigid plane is that of the deck.
+        keeps_springs: whether the line load inside a contact remains that of linear springs, q = E* (const − g).
     """
 
     timed: ClassVar[bool] = False
@@ -78,15 +74,15 @@ class Effect(Table):
 
     @property
     def added_stiffness(self) -> float:
-        """Largest stiffness [FU/LU] that it adds to a particle: a time step follows it."""
+        """Largest stiffness [FU/LU] that the effect adds to a particle: a time step follows it."""
         return 0.0
 
     def bond_drag(self, stiffness: float) -> float:
-        """Drag [FU·TU/LU] that it puts beside a bulk spring of this stiffness [FU/LU]: a time step follows it."""
+        """Return the drag [FU·TU/LU] parallel to a bulk spring of this stiffness [FU/LU]: a time step follows it."""
         return 0.0
 
     def largest_phase(self, tolerance: float) -> float:
-        """Largest ω·Δt with which it is exact to a relative tolerance."""
+        """Return the largest ω·Δt with which the effect is exact to a relative tolerance."""
         return math.inf
 
 
@@ -115,7 +111,7 @@ class Neighbours(Effect):
 
     @property
     def added_stiffness(self) -> float:
-        """4 k_n, of neighbours that move against each other."""
+        """Stiffness 4 k_n [FU/LU] of neighbours that move against each other."""
         return 4.0 * self.stiffness
 
 
@@ -175,7 +171,7 @@ class Adhesion(Effect):
 
     @property
     def work(self) -> float:
-        """W [FU/LU]."""
+        """Work of adhesion W [FU/LU], given or twice the surface energy."""
         if self.work_of_adhesion is not None:
             return self.work_of_adhesion
         assert self.surface_energy is not None
@@ -217,7 +213,7 @@ class Viscoelasticity(Effect):
 
     @property
     def lasting(self) -> float:
-        """Share of the instantaneous modulus that stays; 1 of Kelvin and Voigt's."""
+        """Share of the instantaneous modulus that does not relax; 1 for a Kelvin-Voigt body."""
         return max(0.0, 1.0 - math.fsum(term.share for term in self.terms or ()))
 
     @property
@@ -227,7 +223,7 @@ class Viscoelasticity(Effect):
 
     @property
     def shortest_time(self) -> float:
-        """The shortest of its times [TU]."""
+        """The shortest relaxation time, or the retardation time [TU]."""
         return self.retardation_time or min(term.time for term in self.terms or ())
 
 
@@ -256,8 +252,9 @@ class Noise(Effect):
     """seed of the random forces"""
 
     def largest_phase(self, tolerance: float) -> float:
-        """√(tolerance/NOISE_BIAS)."""
-        return math.sqrt(tolerance / NOISE_BIAS)
+        """Return the largest ω·Δt with which ⟨u²⟩ is exact to a relative tolerance."""
+        bias = 0.4  # relative error of ⟨u²⟩ over (ω Δt)² with fix langevin and fix nve, measured at ω Δt = 0.1: 0.4 %
+        return math.sqrt(tolerance / bias)
 
 
 def _free_directions(free: tuple[str, ...]) -> tuple[str, ...]:

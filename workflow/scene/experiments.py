@@ -74,7 +74,7 @@ class Path(Kind):
     }
     needs_in_time = ("damping",)
     finds_pull_off = True
-    way_is_given = True
+    history_is_given = True
 
     kind: Literal["path"]
     """prescribed displacement, there and back"""
@@ -86,7 +86,7 @@ class Path(Kind):
     method: AnyMethod = None
 
     def places(self) -> list[float]:
-        """Displacements [LU] in the order in which they are visited, the turning point of a span once."""
+        """Return the displacements [LU] in the order in which they are visited, the turning point of a span once."""
         return _values(self.displacements)
 
 
@@ -115,13 +115,13 @@ class PullOff(Kind):
     method: AnyMethod = None
 
     @property
-    def draws_off(self) -> bool:
-        """Whether a velocity is given."""
+    def is_retracted(self) -> bool:
+        """Whether the plate is retracted at a given velocity."""
         return self.velocity is not None
 
     @property
-    def drawing_stiffness(self) -> float:
-        """Of the spring, where it is given."""
+    def retraction_stiffness(self) -> float:
+        """Stiffness [FU/LU] of the spring that retracts the plate; 0 where none is given."""
         return self.stiffness or 0.0
 
 
@@ -148,7 +148,7 @@ class Slide(Kind):
     }
     needs = ("horizontal", "damping", "plate", "cantilever")
     load_key = "normal_force"
-    way_is_given = True
+    history_is_given = True
     motion_is_result = True
 
     kind: Literal["slide"]
@@ -161,12 +161,12 @@ class Slide(Kind):
     """legs [velocity, distance] of the driven end in place of one distance"""
 
     def legs(self, velocity: float) -> tuple[Leg, ...]:
-        """The legs; `velocity` [LU/TU] is the cantilever's."""
+        """Return the legs of the path; `velocity` [LU/TU] is that of the cantilever."""
         return self.path or (Leg(velocity=velocity, distance=self.distance or 0.0),)
 
     @property
-    def way(self) -> float:
-        """Largest excursion of the driven end to one side."""
+    def excursion(self) -> float:
+        """Largest displacement [LU] of the driven end to one side."""
         ends = accumulate(leg.distance * ((leg.velocity > 0.0) - (leg.velocity < 0.0)) for leg in self.path or ())
         return max([self.distance or 0.0, *map(abs, ends)])
 
@@ -193,7 +193,7 @@ class Tangential(Kind):
         "cantilever": UNPULLED,
     }
     needs = ("friction",)
-    way_is_given = True
+    history_is_given = True
     goes_along = True
 
     kind: Literal["tangential"]
@@ -211,24 +211,24 @@ class Tangential(Kind):
 
     @property
     def compression(self) -> float | None:
-        """The largest normal force; None where displacements are given."""
+        """The largest normal force [FU]; None where displacements are given."""
         return max(_for_each(self.normal_force, 1), default=None)
 
     def places(self) -> list[float]:
-        """Normal displacements [LU] of the load steps, none where forces are given."""
+        """Return the normal displacements [LU] of the load steps, none where forces are given."""
         return _for_each(self.normal_displacement, len(self.along()))
 
     def along(self) -> list[float]:
-        """Displacements along x [LU] of the load steps."""
+        """Return the displacements along x [LU] of the load steps."""
         return _values(self.cycles or self.displacements or ())
 
     def normal_forces(self) -> list[float]:
-        """Normal forces [FU] of the load steps, none where displacements are given."""
+        """Return the normal forces [FU] of the load steps, none where displacements are given."""
         return _for_each(self.normal_force, len(self.along()))
 
     @property
-    def way(self) -> float:
-        """The farthest of the displacements."""
+    def excursion(self) -> float:
+        """Largest magnitude [LU] of the tangential displacements."""
         return max(map(abs, self.along()))
 
 
@@ -251,11 +251,11 @@ class Hold(Kind):
 
     @property
     def lasts(self) -> float:
-        """The duration."""
+        """The duration [TU] for which the displacement or force is held."""
         return self.duration
 
     def places(self) -> list[float]:
-        """The displacement, if it is given."""
+        """Return the displacement [LU] that is held, none where a force is."""
         return [] if self.displacement is None else [self.displacement]
 
 
@@ -296,7 +296,7 @@ class History(Kind):
         "noise": TIMELESS,
         "plate": "a history prescribes the plate's displacement or force, so the plate has no motion of its own",
     }
-    way_is_given = True
+    history_is_given = True
     is_massless = True
 
     kind: Literal["history"]
@@ -310,21 +310,21 @@ class History(Kind):
 
     @property
     def times(self) -> list[float]:
-        """Of the points [TU]."""
+        """Times [TU] of the points of the history."""
         return [point.time for point in self.displacement or self.force or ()]
 
     @property
     def lasts(self) -> float:
-        """From the first point to the last."""
+        """Duration [TU] from the first point to the last."""
         return self.times[-1] - self.times[0]
 
     @property
     def compression(self) -> float | None:
-        """The largest force; None where displacements are given."""
+        """The largest force [FU]; None where displacements are given."""
         return max((point.force for point in self.force or ()), default=None)
 
     def places(self) -> list[float]:
-        """Displacements [LU] of the points, none where forces are given."""
+        """Return the displacements [LU] of the points, none where forces are given."""
         return [point.displacement for point in self.displacement or ()]
 
 
@@ -339,13 +339,13 @@ class Impact(Kind):
         "damping": "nothing but the contact slows the body",
         "noise": "nothing but the contact slows the body",
     }
-    way_is_given = True
+    history_is_given = True
     is_massless = True
 
     kind: Literal["impact"]
     """a body that hits the plane; always dynamic"""
     velocity: Velocity
-    """velocity at which it comes; its mass is plate.mass"""
+    """impact velocity; plate.mass is the mass of the body"""
 
 
 Experiment = Annotated[Load | Path | PullOff | Slide | Tangential | Hold | History | Impact, Discriminator("kind")]
@@ -353,4 +353,4 @@ Experiment = Annotated[Load | Path | PullOff | Slide | Tangential | Hold | Histo
 KINDS: dict[str, type[Kind]] = {
     kind: table for kind, table in allowed_by(Experiment).kinds.items() if issubclass(table, Kind)
 }
-"""The experiments by their `kind`."""
+"""The tables of experiments by their `kind`."""

@@ -8,15 +8,15 @@ ENDINGS = frozenset({
     ".al3d", ".datx", ".frt", ".gwy", ".h5", ".ibw", ".jpk", ".mat", ".mi", ".nc", ".nid", ".nms", ".opd", ".opdx",
     ".os3d", ".plu", ".plux", ".spm", ".sur", ".vk3", ".vk4", ".vk6", ".x3p", ".zon",
 })  # fmt: skip
-"""Endings of files of instruments, which are no text."""
+"""Endings of the files of instruments, which are not text."""
 
 
 class ProfileFileError(ValueError):
-    """A file that is no profile; the message has the error, and the line of a text."""
+    """A file that is no profile; the message has the error, and the line in a text file."""
 
 
 def read_line(path: Path) -> tuple[list[float], list[float], str]:
-    """Positions and heights of the line through the highest point, along x, and their unit, "1 µm".
+    """Return positions and heights of the line along x through the highest point, and their unit, "1 µm".
 
     An instrument's heights grow out of the sample, those of a profile away from the plane: their sign is changed.
 

@@ -1,4 +1,4 @@
-"""What every kind of experiment says of itself, and the numbers that it may be given as a span."""
+"""The declarations of every kind of experiment, and displacements that a scene gives as a span or as cycles."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ UNPULLED = "only a slide is pulled through a spring"
 UNTIMED = "its states have no time, which a body that relaxes needs"
 UNMOVED = "it has no tangential displacement, so that friction has no effect"
 TIMELESS = "it is quasi-static, each load step in equilibrium"
-"""Why an experiment excludes an effect."""
+"""Reasons for which an experiment excludes an effect."""
 
 
 ANY_METHOD = (
@@ -49,11 +49,11 @@ class Span(Table):
         return self
 
     def values(self) -> list[float]:
-        """Displacements [LU] in order: steps + 1 on the path there, then `steps` back; the turning point once."""
+        """Return the displacements [LU] in order: steps + 1 forward, then `steps` back; the turning point once."""
         n = self.steps
         between = [(self.from_ * (n - i) + self.to * i) / n for i in range(1, n)]
-        there = [self.from_, *between, self.to]
-        return there + there[-2::-1] if self.return_ else there
+        forward = [self.from_, *between, self.to]
+        return forward + forward[-2::-1] if self.return_ else forward
 
 
 class Cycles(Table):
@@ -67,19 +67,22 @@ class Cycles(Table):
     """load steps in one cycle, a multiple of 4: a quarter of them is the initial loading"""
 
     def values(self) -> list[float]:
-        """Displacements [LU] in order: 0, points/4 steps to u_m, then `points` steps of each cycle; 0, ±u_m exactly."""
+        """Return the displacements [LU] in order: 0, points/4 steps to u_m, then `points` steps of each cycle.
+
+        0 and ±u_m are exact.
+        """
         n = self.points // 4
         steps = range(-n, self.number * self.points + 1)
         return [self.amplitude * (abs(i % self.points / n - 2.0) - 1.0) for i in steps]
 
 
 def _values(listed: Sequence[float] | Span | Cycles) -> list[float]:
-    """The displacements [LU] of a list, a span or cycles, in order."""
+    """Return the displacements [LU] of a list, a span or cycles, in order."""
     return list(listed) if isinstance(listed, Sequence) else listed.values()
 
 
 def _for_each(given: tuple[float, ...] | float | None, count: int) -> list[float]:
-    """What is given for each of `count` points, by a list or by one number for all; none where nothing is."""
+    """Return a value for each of `count` points, from a list or one number for all; none where nothing is given."""
     return [] if given is None else list(given) if isinstance(given, tuple) else [given] * count
 
 
@@ -87,17 +90,17 @@ class Kind(Table):
     """The experiment. Each kind declares the properties that other modules use.
 
     Attributes:
-        only_method: the one method that it has; None: the key `method` says it, or the effects do.
-        excludes: effects that it cannot have by any method, and why.
-        needs: effects that it cannot do without by any method.
-        needs_in_time: effects that a dynamic one cannot do without.
-        load_key: the key of its one normal force, which may be tensile (not a preload) if the bodies attract.
-        finds_pull_off: whether its results have F_A and a₀.
-        way_is_given: the scene prescribes the loading history, so that nothing is searched for and states are unique.
-        motion_is_result: the motion itself is examined, so that the scene exists in time only and its drag is its own.
-        draws_off: the plate is retracted through a spring along z.
-        is_massless: the mass of a particle matters nowhere; of a plate that moves it is all.
-        goes_along: the scene also prescribes places along x, on a plane, and has no other method.
+        only_method: the only method that is possible; None: the key `method` or the effects determine it.
+        excludes: effects that are not possible with any method, and why.
+        needs: effects that are necessary with any method.
+        needs_in_time: effects that are necessary with the dynamic method.
+        load_key: the key of the normal force, which may be tensile (not a preload) if the bodies attract.
+        finds_pull_off: whether the results have F_A and a₀.
+        history_is_given: the scene prescribes the loading history, so that there is no search and states are unique.
+        motion_is_result: the motion itself is examined, so that the scene exists in time only and gives the drag.
+        is_retracted: the plate is retracted through a spring along z.
+        is_massless: the mass of a particle has no effect; a plate that moves has all the mass.
+        goes_along: the scene also prescribes positions along x, on a plane, and has no other method.
     """
 
     only_method: ClassVar[Method | None] = None
@@ -108,7 +111,7 @@ class Kind(Table):
     needs_in_time: ClassVar[tuple[str, ...]] = ("damping", "plate")
     load_key: ClassVar[str | None] = None
     finds_pull_off: ClassVar[bool] = False
-    way_is_given: ClassVar[bool] = False
+    history_is_given: ClassVar[bool] = False
     motion_is_result: ClassVar[bool] = False
     is_massless: ClassVar[bool] = False
     goes_along: ClassVar[bool] = False
@@ -119,18 +122,18 @@ class Kind(Table):
         return self.only_method or getattr(self, "method", None)
 
     @property
-    def draws_off(self) -> bool:
-        """See above."""
+    def is_retracted(self) -> bool:
+        """Whether the plate is retracted through a spring along z, at a given velocity."""
         return False
 
     @property
-    def drawing_stiffness(self) -> float:
-        """Stiffness [FU/LU] of a spring that retracts the plate along z; 0 without one."""
+    def retraction_stiffness(self) -> float:
+        """Stiffness [FU/LU] of a spring that retracts the plate along z; 0 where none is given."""
         return 0.0
 
     @property
     def lasts(self) -> float | None:
-        """How long a motion lasts that the scene gives [TU]; None of what comes to rest, or of a drive."""
+        """Duration [TU] of a motion that the scene prescribes; None where the motion ends at rest or with a drive."""
         return None
 
     @property
@@ -140,10 +143,10 @@ class Kind(Table):
         return None if force is None else max(force, 0.0)
 
     def places(self) -> list[float]:
-        """Prescribed displacements [LU] in order, none where a force is prescribed."""
+        """Return the prescribed displacements [LU] in order, none where a force is prescribed."""
         return []
 
     @property
-    def way(self) -> float:
-        """How far [LU] the bodies are drawn along each other."""
+    def excursion(self) -> float:
+        """Largest tangential displacement [LU] of the bodies against each other; 0 without one."""
         return 0.0

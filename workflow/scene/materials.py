@@ -9,7 +9,7 @@ from typing import Any
 from contact1d.workflow.scene.problems import plain
 
 ELASTIC = ("youngs_modulus", "poisson_ratio")
-"""What a scene takes of a material."""
+"""The keys of a material that a scene needs."""
 MATERIALS: dict[str, dict[str, Any]] = tomllib.loads(
     Path(__file__).with_name("materials.toml").read_text(encoding="utf-8")
 )
@@ -19,4 +19,4 @@ BY_NAME = {
     for name, material in MATERIALS.items()
     for word in (name, *material.get("aliases", ()))
 }
-"""What a scene may have in place of each name and alias, these as `problems.plain` has them."""
+"""The table that each name and alias stands for in a scene, these as `problems.plain` writes them."""

@@ -1,4 +1,4 @@
-"""A measured profile: its points as they are, or what is taken of a scan of them (`analysis.scan`)."""
+"""A measured profile: its points as they are, or a curve that is fitted to them as a scan (`analysis.scan`)."""
 
 from __future__ import annotations
 
@@ -25,38 +25,37 @@ if TYPE_CHECKING:
 
 Coordinates = Annotated[tuple[SignedLength, ...], Field(strict=False), MinLen(FEWEST_POINTS)]
 CURVE_KEYS = {"smooth": None, "fit": "none"}
-"""Keys of a profile by which its points are given up for a curve, and what they are by default."""
+"""Keys of a profile by which a curve replaces its points, with their defaults."""
 SCAN_KEYS = {"centre": None, "level": False, **CURVE_KEYS}
-"""Keys that say how its points are read as a scan."""
+"""Keys of a profile that say how its points are read as a scan, with their defaults."""
 AS_A_SCAN = (
     'of a noisy scan, centre = "auto" with smooth = "auto" or fit = "parabola" takes the apex and a curve that rises'
 )
-"""The way out for points that are no profile by themselves."""
-GAP = 10.0
-"""A step of the radii counts as a gap beyond this many times the median step."""
+"""The suggested fix for points that are no profile by themselves."""
 
 
 def is_scan(profile: Mapping[str, Any], keys: Mapping[str, Any] = SCAN_KEYS) -> bool:
-    """Whether a profile's points are those of a scan: one of these keys says how they are read."""
+    """Return whether a profile's points are those of a scan: one of these keys says how they are read."""
     return any(profile.get(key, default) not in (default, "none") for key, default in keys.items())
 
 
 def fault_of(r: tuple[float, ...], z: tuple[float, ...]) -> str | None:
-    """What keeps the points (r, z) from being a profile, with what would do; None where nothing does."""
+    """Return why the points (r, z) are no profile, with the suggested fix; None if they are one."""
     if len(r) != len(z):
         return f"must have as many radii as heights, not {len(r)} and {len(z)}"
     steps = [after - before for before, after in pairwise(r)]
     if min(steps) <= 0.0:
-        at = next(at for at, step in enumerate(steps) if step <= 0.0)
-        return f"radii must increase; {r[at + 1]:.6g} follows {r[at]:.6g}"
+        i = next(i for i, step in enumerate(steps) if step <= 0.0)
+        return f"radii must increase; {r[i + 1]:.6g} follows {r[i]:.6g}"
     if r[0] != 0.0:
         return f"must begin at the radius 0, not {r[0]:.6g}: the transform needs the slope from the axis on"
-    middle = statistics.median(steps)
-    for at, step in enumerate(steps):
-        if step > GAP * middle:
+    median = statistics.median(steps)
+    largest = 10.0 * median
+    for i, step in enumerate(steps):
+        if step > largest:
             return (
-                f"has a gap from r = {r[at]:.6g} to {r[at + 1]:.6g}: the median step is {middle:.4g}, and "
-                f"the largest gap allowed {GAP * middle:.4g}; add points there"
+                f"has a gap from r = {r[i]:.6g} to {r[i + 1]:.6g}: the median step is {median:.4g}, and "
+                f"the largest gap allowed {largest:.4g}; add points there"
             )
     if z[0] - min(z) > max(z) - z[0]:
         return "has heights that decrease from the axis: heights are measured from the plane; change the sign"
@@ -115,7 +114,7 @@ class Measured(Shape):
         return self
 
     def _fault(self, along: tuple[float, ...], z: tuple[float, ...]) -> str | None:
-        """What keeps it from being a profile."""
+        """Return why the points are no profile; None if they are one."""
         if not self.is_scan:
             return fault_of(along, z) if self.x is None else f"positions x need to be read as a scan: {AS_A_SCAN}"
         if self.smooth not in (None, "none") and self.fit != "none":
@@ -131,17 +130,17 @@ class Measured(Shape):
 
     @property
     def is_scan(self) -> bool:
-        """Whether the profile is what is taken of the points, and not these themselves."""
+        """Whether the points are those of a scan, which is centred, levelled or fitted."""
         return is_scan(vars(self))
 
     @property
     def is_curve(self) -> bool:
-        """Whether the points are given up for a curve."""
+        """Whether a fitted curve replaces the points."""
         return is_scan(vars(self), CURVE_KEYS)
 
     @property
     def taken(self) -> Taken | None:
-        """What is taken of the scan, where there is one."""
+        """The curve that is fitted to the scan, with its parameters; None without a scan."""
         if not self.is_scan:
             return None
         along = self.r if self.x is None else self.x
@@ -150,7 +149,7 @@ class Measured(Shape):
         return _take(along or (), self.z or (), centre, self.level, length, None if self.fit == "none" else self.fit)
 
     def _from_the_axis(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Radii and heights of the points, of a scan the mean of its sides."""
+        """Return radii and heights of the points, of a scan the mean of its sides."""
         taken = self.taken
         if taken is None:
             return self.r or (), self.z or ()
@@ -159,7 +158,7 @@ class Measured(Shape):
 
     @property
     def body(self) -> Shape:
-        """The body that is taken."""
+        """The body through the points, or with the fitted curve."""
         from contact1d.workflow.scene.points import Points, curve_of  # it loads scipy as well
 
         if self.is_curve and (taken := self.taken):
@@ -168,26 +167,26 @@ class Measured(Shape):
         return Points.model_construct(r=r, z=z)
 
     def height(self, x: Array) -> Array:
-        """That of the body."""
+        """Return the height [LU] of the measured body."""
         return self.body.height(x)
 
     def transformed(self, x: Array) -> Array:
-        """That of the body."""
+        """Return the transformed height [LU] of the measured body."""
         return self.body.transformed(x)
 
     @property
     def reach(self) -> float:
-        """That of the body."""
+        """The half-width [LU] of the measured body."""
         return self.body.reach
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Those of the body."""
+        """Radii [LU] at which the slope of the measured body jumps."""
         return self.body.kinks
 
     @property
     def alternatives(self) -> tuple[Shape, ...]:
-        """Those of the points; of a curve with knots at a given distance that with half of it."""
+        """Other bodies through the points; of a curve with a given distance of its knots the curve with half of it."""
         if not self.is_curve:
             return self.body.alternatives
         finer = {"smooth": 0.5 * self.smooth} if isinstance(self.smooth, float | int) else {}
@@ -195,12 +194,12 @@ class Measured(Shape):
 
     @property
     def coarser(self) -> tuple[Shape, ...]:
-        """That of the points; a curve has none."""
+        """Bodies through fewer points; a curve has none."""
         return self.body.coarser
 
     @property
     def deviations(self) -> tuple[tuple[Shape, Shape], ...]:
-        """Curves that the noise of the scan allows as well."""
+        """Pairs of curves that differ by the uncertainty due to noise of the scan."""
         from contact1d.workflow.scene.points import curve_of
 
         if not self.is_curve or (taken := self.taken) is None:
@@ -209,10 +208,10 @@ class Measured(Shape):
 
 
 @lru_cache(maxsize=8)
-def _take(along: tuple[float, ...], z: tuple[float, ...], *how: Any) -> Taken:
-    """What is taken of a scan; kept, since every height is asked of it."""
+def _take(along: tuple[float, ...], z: tuple[float, ...], *settings: Any) -> Taken:
+    """Return the curve that is fitted to a scan; kept, since each height needs it."""
     import numpy as np
 
     from contact1d.analysis.scan import take
 
-    return take(np.asarray(along), np.asarray(z), *how)
+    return take(np.asarray(along), np.asarray(z), *settings)

@@ -11,20 +11,18 @@ from typing import Any
 from contact1d.workflow.errors import Contact1dError, SceneEdit
 
 SHOWN_LENGTH = 60
-"""Characters of a given value that a message shows."""
-LONGEST = 1000
-"""Characters of a path that a message shows."""
+"""Largest number of characters of a given value in a message."""
 BARE = re.compile(r"[A-Za-z0-9_-]+")
-"""A key that TOML has without quotes."""
+"""A key that TOML writes without quotes."""
 MOST_PROBLEMS = 20
-"""Most problems that are listed; the number of the others is added."""
+"""Largest number of problems that are listed; the number of the others is added."""
 
 
 @dataclass(frozen=True)
 class Problem:
     """One error: where (`path`), what was `given` (as TOML, or None), what is allowed, and what to do (`hint`).
 
-    `ways`: values by dotted keys, each set of which would make a scene of it, where the program can tell.
+    `ways`: sets of values by dotted keys, each of which makes the scene valid, where the program knows them.
     """
 
     path: str
@@ -37,7 +35,8 @@ class Problem:
         """One line: `path = given: message; hint`."""
         given = "" if self.given is None else f" = {self.given}"
         hint = f"; {self.hint}" if self.hint else ""
-        return f"{_cut(self.path, LONGEST)}{given}: {self.message}{hint}"
+        path = _cut(self.path, 1000)  # a key of a scene has any length
+        return f"{path}{given}: {self.message}{hint}"
 
 
 class SceneError(Contact1dError):
@@ -50,12 +49,12 @@ class SceneError(Contact1dError):
 
     @property
     def changes(self) -> tuple[SceneEdit, ...]:
-        """Every fix of the first problem, with the first fix of each other one; none where one problem has none."""
+        """Each fix of the first problem, with the first fix of every other problem; none where a problem has none."""
         if not all(problem.ways for problem in self.problems):
             return ()
-        first, *others = self.problems
-        common = {key: value for other in others for key, value in other.ways[0].items()}
-        return tuple(SceneEdit({**way, **common}) for way in first.ways)
+        first, *rest = self.problems
+        common = {key: value for problem in rest for key, value in problem.ways[0].items()}
+        return tuple(SceneEdit({**values, **common}) for values in first.ways)
 
     def __str__(self) -> str:
         """The first problems, one on each line, and how many more there are."""
@@ -64,9 +63,9 @@ class SceneError(Contact1dError):
 
 
 def as_toml(value: object) -> str:
-    """`value` as TOML text on one line: text, numbers, booleans, lists and tables (inline).
+    """Return `value` as TOML text on one line: text, numbers, booleans, lists and tables (inline).
 
-    Anything else, which a scene cannot hold, comes out as Python shows it.
+    Anything else, which a scene cannot hold, is written as Python shows it.
     """
     if isinstance(value, bool):
         return str(value).lower()
@@ -83,7 +82,7 @@ def as_toml(value: object) -> str:
 
 
 def shown(value: object) -> str:
-    """`value` as TOML, shortened to at most `SHOWN_LENGTH` characters: for messages."""
+    """Return `value` as TOML, shortened to at most `SHOWN_LENGTH` characters, for messages."""
     try:
         text = as_toml(value)
     except (ValueError, RecursionError):  # an integer of thousands of digits; nesting without end
@@ -96,12 +95,12 @@ def _cut(text: str, most: int) -> str:
 
 
 def as_key(key: str) -> str:
-    """`key` as TOML writes it: bare where it can be, else in quotes."""
+    """Return `key` as TOML writes it: without quotes where that is allowed, else in quotes."""
     return key if BARE.fullmatch(key) else as_toml(key)
 
 
 def tables_as_toml(tables: Mapping[str, Any]) -> str:
-    """The `tables` of a scene as a TOML file: one [table] each, nested ones inline."""
+    """Return the `tables` of a scene as a TOML file: one [table] each, nested ones inline."""
     inside = {f"[{name}]\n": table for name, table in tables.items() if isinstance(table, dict)}
     above = {key: value for key, value in tables.items() if not isinstance(value, dict)}
     return "\n".join(
@@ -111,7 +110,7 @@ def tables_as_toml(tables: Mapping[str, Any]) -> str:
 
 
 def path_of(keys: Iterable[str | int]) -> str:
-    """The dotted path of nested `keys`, list places in brackets: `experiment.displacements[2]`."""
+    """Return the dotted path of nested `keys`, indices in brackets: `experiment.displacements[2]`."""
     path = ""
     for key in keys:
         path += f"[{key}]" if isinstance(key, int) else ("." if path else "") + as_key(key)
@@ -119,12 +118,12 @@ def path_of(keys: Iterable[str | int]) -> str:
 
 
 def keys_in(path: str) -> list[str | int]:
-    """The keys of a dotted path, as `path_of` writes it."""
+    """Return the keys of a dotted path, as `path_of` writes it."""
     return [int(key) if key.isdecimal() else key for key in re.sub(r"\[(\d+)\]", r".\1", path).split(".")]
 
 
 def nearest(word: str, allowed: Iterable[str]) -> str | None:
-    """The one of `allowed` that a person who wrote `word` most likely meant, or None."""
+    """Return the word out of `allowed` that a person who wrote `word` most likely meant, or None."""
     known, meant = list(allowed), plain(word)
     starting = [name for name in known if len(meant) > 2 and name.startswith(meant)]
     if len(starting) == 1 or len(meant) > SHOWN_LENGTH:
@@ -132,15 +131,15 @@ def nearest(word: str, allowed: Iterable[str]) -> str | None:
     return next(iter(get_close_matches(meant, known, n=1, cutoff=0.7)), None)
 
 
-def suggestion(word: str, known: Collection[str], what: str = "allowed here") -> str:
-    """What to write in place of an unknown `word`: the one of the `known` that was meant, and all of these."""
+def suggestion(word: str, known: Collection[str], label: str = "allowed here") -> str:
+    """Return what to write in place of an unknown `word`: the word that was meant, and all that are `known`."""
     meant = nearest(word, known)
     begin = f'did you mean "{meant}"? ' if meant else ""
-    return f"{begin}{what}: {', '.join(known) or 'no keys'}"
+    return f"{begin}{label}: {', '.join(known) or 'no keys'}"
 
 
 def plain(word: str) -> str:
-    """`word` as keys are written: small letters, "_" in place of "-" and spaces."""
+    """Return `word` as keys are written: lower case, "_" in place of "-" and spaces."""
     return word.strip().lower().replace("-", "_").replace(" ", "_")
 
 

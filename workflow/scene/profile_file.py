@@ -21,37 +21,31 @@ from contact1d.workflow.scene.shapes import FEWEST_POINTS
 from contact1d.workflow.scene.si_text import UnitTextError, si_value
 
 RADII = ("r", "radius", "radii", "rho", "ρ", "rayon", "raggio", "radio")
-SIDES = (
+POSITIONS = (
     "x", "position", "distance", "lateral", "weg", "abstand", "strecke", "posizione", "distanza", "posición",
     "distancia",
 )  # fmt: skip
-"""Names of a position from one side to the other, which is read where no radius is there."""
+"""Names of a position from one side to the other, which is read if there is no radius."""
 HEIGHTS = ("z", "h", "height", "heights", "höhe", "hoehe", "hauteur", "altezza", "altura")
 NAME = re.compile(r"([^\W_]+)(?:\s*[\[(/_]\s*|\sin\s+|\s*$)([^])]*)[])]?$", re.IGNORECASE)
 """Name and unit of a column: r, r [µm], r (µm), r/µm, r_um, r in µm."""
 MODEL = "LU"
-MOST_LINES = 100_000
-"""Lines of a file: a scene with as many points takes ten seconds to run."""
 COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 """A number with a decimal comma."""
-STATED = re.compile(r":(\s|$)")
-"""What a line of an instrument has, as Date: 1.2.2026."""
+LABEL = re.compile(r":(\s|$)")
+"""A label of a line that an instrument adds, as in Date: 1.2.2026."""
 FORM = "name the radius r and the height z, with units if they have any (r [µm], z [µm])"
-PLACE_DIFFERENCE = 1e-3
-"""Places left and right count as the same up to this share of the mean step."""
-HEIGHT_DIFFERENCE = 0.05
-"""Largest difference of both sides of a profile that are averaged, over its height."""
 
 Row = tuple[int, list[str]]
 """A line of a file: its number and its cells."""
 
 
 def take_points(scene: Place, folder: Path) -> dict[str, list[float]]:
-    """The points of the file, looked up in `folder`, that the profile of a scene names; none without one, or reported.
+    """Return the points of the file in `folder` that the profile of a scene names; none without one, or if reported.
 
-    Its scale is a quantity of the scene like any other: where none is given, the unit of the numbers stands there.
+    The scale of the file is a quantity of the scene like any other: where none is given, it is the unit of the numbers.
     """
-    profile, file, scale, units = (scene.at(f"bodies.profile{key}") for key in ("", ".file", ".scale", ".units"))
+    profile, file, scale, units = (scene.find(f"bodies.profile{key}") for key in ("", ".file", ".scale", ".units"))
     if not profile or not file or not scale or not units or not isinstance(file.value, str):
         return {}
     if not {"r", "x", "z"}.isdisjoint(profile.value):
@@ -65,10 +59,10 @@ def take_points(scene: Place, folder: Path) -> dict[str, list[float]]:
             wrong = units
             if not scale.absent:
                 raise ValueError("not together with scale; remove it")
-            given, over = _sizes(units.value)
-            if unit and not _same((unit, ratio), (given, abs(over))):
+            given, given_ratio = _unit_and_ratio(units.value)
+            if unit and not _are_equal((unit, ratio), (given, abs(given_ratio))):
                 raise ValueError("not together with other units in the file's names; remove it")
-            unit, ratio = given, over
+            unit, ratio = given, given_ratio
         if scale.absent:
             scale.put(unit or 1.0)
             scale.source = file
@@ -85,8 +79,8 @@ def take_points(scene: Place, folder: Path) -> dict[str, list[float]]:
     return lists | {"z": [ratio * value for value in lists["z"]]}
 
 
-def _sizes(units: object) -> tuple[str, float]:
-    """Unit of the positions, "1 µm", and that of the heights over it, negative with a minus. Raises ValueError."""
+def _unit_and_ratio(units: object) -> tuple[str, float]:
+    """Return the unit of positions, "1 µm", and that of heights over it, negative with a minus. Raises ValueError."""
     try:
         along, up = map(str, units)  # type: ignore[call-overload]
         size = si_value(f"1 {up.lstrip('-−')}", MODEL)[0] / si_value(f"1 {along}", MODEL)[0]
@@ -95,15 +89,15 @@ def _sizes(units: object) -> tuple[str, float]:
     return f"1 {along}", float(-size if up[0] in "-−" else size)
 
 
-def _same(one: tuple[str, float], other: tuple[str, float]) -> bool:
-    """Whether two pairs of a unit of positions and of that of heights over it are the same."""
-    along, wanted = (si_value(unit, MODEL)[0] for unit, _ in (one, other))
-    return along == wanted and math.isclose(one[1], other[1], rel_tol=1e-12)
+def _are_equal(first: tuple[str, float], second: tuple[str, float]) -> bool:
+    """Return whether two pairs of a unit of positions and the ratio of that of heights to it are equal."""
+    sizes = {si_value(unit, MODEL)[0] for unit, _ in (first, second)}
+    return len(sizes) == 1 and math.isclose(first[1], second[1], rel_tol=1e-12)
 
 
 def put_points(scene: Place, lists: dict[str, list[float]]) -> None:
-    """Put the points of a file in its place in a scene, whose scale is a number by now."""
-    profile = scene.at("bodies.profile")
+    """Replace the file of a profile by its points, once its scale is a number."""
+    profile = scene.find("bodies.profile")
     if not lists or not profile or not profile.sound:
         return
     scale = profile.inside["scale"]
@@ -117,24 +111,24 @@ def put_points(scene: Place, lists: dict[str, list[float]]) -> None:
 
 
 def read_profile(path: Path, scan: bool) -> tuple[dict[str, list[float]], str | None, float]:
-    """The lists r and z of a measured profile, from the axis out; the unit of r, "1 µm", and that of z over it.
+    """Return the lists r and z of a measured profile, from the axis out; the unit of r, "1 µm"; and that of z over it.
 
     Without units the second is None, LU. Messages name lines and never quote them: a path in a scene may point at any
-    file. Lines that begin with # and empty ones are skipped, and lines before the table that are none of it. Columns of
-    other names are ignored. Points may come from the edge in; those from −x to x are folded into the mean of both
-    sides. Of a `scan` all are kept, in their order, as x and z.
+    file. Lines that begin with #, empty lines and lines before the table are skipped. Columns of other names are
+    ignored. Points may begin at the edge; those from −x to x are folded into the mean of both sides. Of a `scan` all
+    points are kept, in their order, as x and z.
 
     Raises:
         UnreadableError: if there is no such file, or it is no text.
-        ProfileFileError: if it has more than MOST_LINES, a cell is empty or no number, a line has one column, there
-            are fewer than FEWEST_POINTS points, names are not known, or the two sides of a profile are not the same.
+        ProfileFileError: if it has more lines than `rows_in` allows, a cell is empty or no number, a line has one
+            column, there are fewer than FEWEST_POINTS points, names are not known, or the two sides differ.
     """
     if path.suffix.lower() in ENDINGS:
         x, z, unit = read_line(path)
         return {"x": x, "z": z}, unit, 1.0
     rows = rows_in(read_text(path).splitlines())
     columns, of_numbers, ratio = _header(rows)
-    points = [_point(f"line {line}", cells, columns) for line, cells in rows]
+    points = [_radius_and_height(f"line {line}", cells, columns) for line, cells in rows]
     if not points:
         raise ProfileFileError("has no points")
     x, z = ([*column] for column in zip(*points, strict=True))
@@ -142,7 +136,7 @@ def read_profile(path: Path, scan: bool) -> tuple[dict[str, list[float]], str | 
 
 
 def _from_the_axis(r: list[float], z: list[float]) -> dict[str, list[float]]:
-    """Radii and heights, (n,), of points that are one side of a profile, or both."""
+    """Return radii and heights, (n,), of points that are one side of a profile, or both."""
     if _rising(r[::-1]):
         r, z = r[::-1], z[::-1]
     if not _rising(r) and (_rising(z) or _rising(z[::-1])):
@@ -156,10 +150,15 @@ def _from_the_axis(r: list[float], z: list[float]) -> dict[str, list[float]]:
     return {"r": r, "z": z}
 
 
-def rows_in(lines: list[str]) -> list[Row]:
-    """The lines that have content, each with its number, as cells with decimal points."""
-    if len(lines) > MOST_LINES:
-        raise ProfileFileError(f"has {len(lines)} lines, at most {MOST_LINES} are allowed; use fewer points")
+def rows_in(lines: list[str], most: int = 100_000) -> list[Row]:
+    """Return the lines that have content, each with its number, as cells with decimal points.
+
+    Args:
+        lines: of the file.
+        most: lines that are allowed; a scene with as many points takes ten seconds to run.
+    """
+    if len(lines) > most:
+        raise ProfileFileError(f"has {len(lines)} lines, at most {most} are allowed; use fewer points")
     full = [(i, line) for i, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
     if full and re.fullmatch(r"sep=.", full[0][1].strip()):
         del full[0]
@@ -170,49 +169,49 @@ def rows_in(lines: list[str]) -> list[Row]:
 
 
 def _cells(line: str) -> list[str]:
-    """The cells of a line; a comma between blanks may be that of a number."""
-    part = next((one for one in ";\t," if one in line), None)
-    if part == "," and len(words := line.split()) > 1 and all(map(COMMA.fullmatch, words)):
+    """Return the cells of a line; a comma between blanks may be a decimal comma."""
+    separator = next((character for character in ";\t," if character in line), None)
+    if separator == "," and len(words := line.split()) > 1 and all(map(COMMA.fullmatch, words)):
         return words
-    return [cell.strip() for cell in line.split(part)]
+    return [cell.strip() for cell in line.split(separator)]
 
 
 def _without_preamble(rows: list[Row]) -> None:
-    """Take from the rows those before the names, or of a table without names before the numbers, which are none of it.
+    """Remove the rows before the names of the columns, or before the numbers of a table without names.
 
-    A line before the numbers that has as many cells as they have are their names, whether these are known or not.
+    A line before the numbers with as many cells as these counts as their names, whether these are known or not.
     """
     start = next((i for i, (_, cells) in enumerate(rows) if sum(_number(cell) is not None for cell in cells) > 1), 0)
     names = [i for i, (_, cells) in enumerate(rows[:start]) if {*_words(cells)} & {*HEIGHTS} and len(cells) > 1]
     width = len(rows[start][1]) if rows else 0
-    alike = [i for i, (_, cells) in enumerate(rows[:start]) if len(cells) == width and not STATED.search(cells[0])]
+    alike = [i for i, (_, cells) in enumerate(rows[:start]) if len(cells) == width and not LABEL.search(cells[0])]
     del rows[: names[-1] if names else alike[0] if alike else start]
 
 
 def _words(names: list[str]) -> list[str]:
-    """The columns' names without their units."""
-    found = [NAME.match(name.strip('" ')) for name in names]
-    return [match[1].lower() if match else "" for match in found]
+    """Return the names of the columns in lower case, without their units."""
+    matches = [NAME.match(name.strip('" ')) for name in names]
+    return [match[1].lower() if match else "" for match in matches]
 
 
 def _header(rows: list[Row]) -> tuple[Sequence[int], str | None, float]:
-    """The columns of radius and height, the unit of the radii, and that of the heights over it, where there are units.
+    """Return the columns of radius and height, the unit of radii, and that of heights over it, where there are units.
 
-    Takes the lines of names and units, and what is before them, from the rows.
+    The lines of names and units, and all lines before them, are removed from the rows.
     """
     _without_preamble(rows)
     line, names = rows[0] if rows else (0, ["0"])
     if any(_number(name) is not None for name in names):
-        many = sum(bool(cell) for cell in names)
-        if many > 2:
-            raise ProfileFileError(f"has {many} columns without names; {FORM}")
+        count = sum(bool(cell) for cell in names)
+        if count > 2:
+            raise ProfileFileError(f"has {count} columns without names; {FORM}")
         return (0, 1), None, 1.0
     del rows[0]
     if rows:
         require_names(*rows[0], names)
     words = _words(names)
-    sides = RADII if set(words) & set(RADII) else SIDES
-    columns = [_only(line, words, allowed) for allowed in (sides, HEIGHTS)]
+    sides = RADII if set(words) & set(RADII) else POSITIONS
+    columns = [_column_of(line, words, allowed) for allowed in (sides, HEIGHTS)]
     units, are_below = units_of(names, rows[0][1] if rows else [], columns)
     del rows[:are_below]
     sizes = []
@@ -221,16 +220,16 @@ def _header(rows: list[Row]) -> tuple[Sequence[int], str | None, float]:
             try:
                 sizes.append(si_value(f"1 {unit}", MODEL)[0])
             except UnitTextError:
-                what = "the unit in the names is not a known length, such as µm"
-                raise ProfileFileError(f"line {line}: {what}; {FORM}; convert volts to lengths first") from None
+                problem = "the unit in the names is not a known length, such as µm"
+                raise ProfileFileError(f"line {line}: {problem}; {FORM}; convert volts to lengths first") from None
     if len(sizes) == 1:
-        what = "only one of radius and height has a unit"
-        raise ProfileFileError(f"line {line}: {what}; give both the same way, r [µm], z [µm]")
+        problem = "only one of radius and height has a unit"
+        raise ProfileFileError(f"line {line}: {problem}; give both the same way, r [µm], z [µm]")
     return columns, *((f"1 {units[0]}", float(sizes[1] / sizes[0])) if sizes else (None, 1.0))
 
 
 def units_of(names: list[str], below: list[str], columns: Sequence[int]) -> tuple[list[str], bool]:
-    """The units of columns by their names, "" without one, or else by the cells below; whether they are those."""
+    """Return the units of columns by their names, "" without one, or else by the cells below; whether by these."""
     units = [match[2].strip() if (match := NAME.match(names[column].strip('" '))) else "" for column in columns]
     words = len(below) == len(names) and all(cell and not any(map(str.isdigit, cell)) for cell in below)
     if any(units) or not words:
@@ -239,24 +238,24 @@ def units_of(names: list[str], below: list[str], columns: Sequence[int]) -> tupl
 
 
 def require_names(line: int, cells: list[str], names: list[str]) -> None:
-    """Refuse whole numbers that are more than the names above them: commas of numbers between commas of columns."""
-    many = sum(bool(cell) for cell in cells)
-    if many > len(names) and all(re.fullmatch(r"[+-]?\d*", cell) for cell in cells):
+    """Refuse more whole numbers than names above them: decimal commas between commas that separate columns."""
+    count = sum(bool(cell) for cell in cells)
+    if count > len(names) and all(re.fullmatch(r"[+-]?\d*", cell) for cell in cells):
         raise ProfileFileError(
-            f"line {line}: has {many} numbers under {len(names)} names; where numbers have a decimal comma, separate "
+            f"line {line}: has {count} numbers under {len(names)} names; where numbers have a decimal comma, separate "
             "the columns by a semicolon"
         )
 
 
-def _only(line: int, words: list[str], allowed: tuple[str, ...]) -> int:
-    """Where the one column of an allowed name is."""
-    found = [i for i, word in enumerate(words) if word in allowed]
-    if len(found) == 1:
-        return found[0]
-    what = f"{len(found)} columns match {allowed[0]}; give this name to one of them"
-    if not found:
-        what = f"the names of its {len(words)} columns are not known; {FORM}, or leave them out"
-    raise ProfileFileError(f"line {line}: {what}")
+def _column_of(line: int, words: list[str], allowed: tuple[str, ...]) -> int:
+    """Return the index of the only column with an allowed name. Raises ProfileFileError."""
+    matches = [i for i, word in enumerate(words) if word in allowed]
+    if len(matches) == 1:
+        return matches[0]
+    problem = f"{len(matches)} columns match {allowed[0]}; give this name to one of them"
+    if not matches:
+        problem = f"the names of its {len(words)} columns are not known; {FORM}, or leave them out"
+    raise ProfileFileError(f"line {line}: {problem}")
 
 
 def _rising(values: list[float]) -> bool:
@@ -264,34 +263,35 @@ def _rising(values: list[float]) -> bool:
 
 
 def _folded(x: list[float], z: list[float]) -> tuple[list[float], list[float]]:
-    """The mean of both sides of a profile from −x to x. Raises ProfileFileError where they are not the same."""
-    places, heights = (list(zip(values, values[::-1], strict=True))[len(x) // 2 :] for values in (x, z))
-    apart, height, what = max(abs(right - left) for right, left in heights), max(z) - min(z), ""
-    if max(abs(right + left) for right, left in places) > PLACE_DIFFERENCE * (x[-1] - x[0]) / (len(x) - 1):
-        what = "their positions differ"
-    elif apart > HEIGHT_DIFFERENCE * height:
-        what = f"these differ by {apart / height:.0%} of its height, but the model is a body of revolution"
-    if what:
+    """Return the mean of both sides of a profile from −x to x. Raises ProfileFileError where they differ."""
+    positions, heights = (list(zip(values, values[::-1], strict=True))[len(x) // 2 :] for values in (x, z))
+    difference, height, problem = max(abs(right - left) for right, left in heights), max(z) - min(z), ""
+    mean_step = (x[-1] - x[0]) / (len(x) - 1)
+    if max(abs(right + left) for right, left in positions) > 1e-3 * mean_step:  # less counts as equal
+        problem = "their positions differ"
+    elif difference > 0.05 * height:  # sides that differ by less are averaged
+        problem = f"these differ by {difference / height:.0%} of its height, but the model is a body of revolution"
+    if problem:
         raise ProfileFileError(
-            f"has both sides of 0, and {what}; shift it so that the apex is at 0, or give one side, r from 0 on; of a "
-            'scan, write centre = "auto" with smooth = "auto" or a fit, and level = true where it is tilted'
+            f"has both sides of 0, and {problem}; shift it so that the apex is at 0, or give one side, r from 0 on; of "
+            'a scan, write centre = "auto" with smooth = "auto" or a fit, and level = true where it is tilted'
         )
-    return [0.5 * (right - left) for right, left in places], [0.5 * (right + left) for right, left in heights]
+    return [0.5 * (right - left) for right, left in positions], [0.5 * (right + left) for right, left in heights]
 
 
-def _point(at: str, cells: list[str], columns: Sequence[int]) -> list[float]:
-    """Radius and height of one line."""
+def _radius_and_height(line: str, cells: list[str], columns: Sequence[int]) -> list[float]:
+    """Return radius and height of a line, which messages name. Raises ProfileFileError."""
     if len(cells) <= max(columns):
-        many = "has one column" if len(cells) == 1 else f"has {len(cells)} columns"
-        raise ProfileFileError(f"{at}: {many}; r and z are needed")
+        count = "has one column" if len(cells) == 1 else f"has {len(cells)} columns"
+        raise ProfileFileError(f"{line}: {count}; r and z are needed")
     values = []
     for name, cell in zip("rz", (cells[column] for column in columns), strict=True):
         value, hint = _number(cell), "leave out a line that has no value, or interpolate it"
         if value is None and _number(cell.replace(",", ".")) is not None:
             hint = "write it with a decimal point"
         if value is None or not math.isfinite(value):
-            what = "empty" if not cell.strip() else "not a number" if value is None else value
-            raise ProfileFileError(f"{at}: {name} is {what}; {hint}")
+            problem = "empty" if not cell.strip() else "not a number" if value is None else value
+            raise ProfileFileError(f"{line}: {name} is {problem}; {hint}")
         values.append(value)
     return values
 

@@ -1,9 +1,9 @@
-"""Types of the values in a scene, each with its range and its unit in one name, and what follows from them.
+"""Types of the values in a scene, each with its range and unit in one name, and the tree of places of a scene.
 
 Model units: length LU (the spacing), force FU, mass MU, time TU = √(MU·LU/FU), temperature as energy k_BT in FU·LU.
 
-`keys_of` is the one reader of the tables' types, and a tree of `Place`s the one way through a scene: reading, checking,
-conversion between units and rules ask it what stands at a key and what may stand there.
+Only `keys_of` reads the types of the tables, and every module goes through a scene by a tree of `Place`s: reading,
+checking, conversion between units and rules ask it for the value at a key and the values that are allowed there.
 """
 
 from __future__ import annotations
@@ -38,18 +38,18 @@ class Unit:
 
     @property
     def texts(self) -> tuple[str, ...]:
-        """The dimensions that a text may have, each by a unit; the first is the one that messages name."""
+        """The dimensions that a text may have, each by a unit; messages name the first."""
         return self.text or (self.name,)
 
     @property
     def bases(self) -> frozenset[str]:
-        """Which of LU, FU and MU must be known for its size in SI; none of a unit of SI."""
+        """Those of LU, FU and MU that determine its size in SI; none for a unit of SI."""
         return frozenset(SI[self.name].powers) if self.name in SI else frozenset()
 
 
 @dataclass(frozen=True, slots=True)
 class OutOfRange:
-    """What to do about a number that is not in its range, as metadata of its type."""
+    """The suggested fix for a number that is out of its range, as metadata of its type."""
 
     hint: str
 
@@ -57,12 +57,12 @@ class OutOfRange:
 class Table(BaseModel):
     """A table of a scene: immutable, no unknown keys, no conversion between types, finite numbers only.
 
-    The text below a key says what it is, to readers of this file, of the documentation and of the schema alike.
+    The text below a key is its description here, in the documentation and in the schema.
 
     Attributes:
-        as_list: it is written as a list of its values.
-        one_of: sets of keys of which exactly one must be there, with what to do otherwise.
-        by_name: tables that a name may stand for, each name as `problems.plain` has it.
+        as_list: whether the table is written as a list of its values.
+        one_of: sets of keys of which exactly one must be given, each with the suggested fix.
+        by_name: tables that a name may stand for, each name as `problems.plain` writes it.
     """
 
     model_config = ConfigDict(
@@ -74,7 +74,7 @@ class Table(BaseModel):
     by_name: ClassVar[Mapping[str, Mapping[str, Any]]] = {}
 
     def __dir__(self) -> list[str]:
-        """Names for completion: keys and what can be asked, without those of pydantic."""
+        """Return the names for completion: keys, properties and methods, without those of pydantic."""
         return [name for name in super().__dir__() if name[0] != "_" and name not in vars(BaseModel)]
 
 
@@ -129,14 +129,14 @@ OneOrMore = Annotated[T | Listed[Other], Field()]
 
 @dataclass(frozen=True)
 class Allowed:
-    """What may stand at a key: a plain value, a list, a table, or a word; where it is several of these, any one.
+    """The values that a key allows: a plain value, a list, a table, or a word; where several are given, any of these.
 
     Attributes:
-        type: of a plain value: bool, str, int or float.
-        marks: what `Annotated` says of the value or the list.
-        items: what may stand in the list.
-        tables: by their `kind`; a table that has none by "".
-        words: those that are allowed.
+        type: type of a plain value: bool, str, int or float.
+        marks: metadata in `Annotated` of the value or the list.
+        items: values that the list allows.
+        tables: tables by their `kind`; a table without one by "".
+        words: words that are allowed.
     """
 
     type: Any = None
@@ -145,15 +145,15 @@ class Allowed:
     tables: Mapping[str, type[Table]] = field(default_factory=dict)
     words: tuple[str, ...] = ()
 
-    def __or__(self, other: Allowed) -> Allowed:
-        """Either of the two."""
-        tables = {**self.tables, **other.tables}
-        marks, words = self.marks + other.marks, self.words + other.words
-        return Allowed(self.type or other.type, marks, self.items or other.items, tables, words)
+    def __or__(self, second: Allowed) -> Allowed:
+        """Return the values that at least one of the two allows."""
+        tables = {**self.tables, **second.tables}
+        marks, words = self.marks + second.marks, self.words + second.words
+        return Allowed(self.type or second.type, marks, self.items or second.items, tables, words)
 
     @cached_property
     def table(self) -> type[Table] | None:
-        """The table that it must be, None if there are others or none."""
+        """The table that the value must be; None if several or none are allowed."""
         return None if self.items else self.tables.get("")
 
     @property
@@ -164,23 +164,23 @@ class Allowed:
     @cached_property
     def unit(self) -> Unit | None:
         """The unit of a number, or of the items of a list of numbers."""
-        own = (mark for mark in self.marks if isinstance(mark, Unit))
-        return next(own, self.items.unit if self.items else None)
+        units = (mark for mark in self.marks if isinstance(mark, Unit))
+        return next(units, self.items.unit if self.items else None)
 
     @cached_property
     def quantity(self) -> Unit | None:
-        """The unit of a number that may have a dimension: counts have none."""
+        """The unit of a number that may have a dimension; None for counts."""
         return self.unit if self.type is float else None
 
     def table_for(self, value: Mapping[str, Any]) -> type[Table] | None:
-        """The table that `value` is meant to be, by its kind where there are several."""
+        """Return the table that `value` is meant to be, by its kind where several are allowed."""
         alone = len(self.tables) == 1
         return next((table for kind, table in self.tables.items() if alone or kind == value.get("kind")), None)
 
 
 @dataclass(frozen=True)
 class Key:
-    """A key of a table: its field in Python, allowed values, default (None: none), and what it is."""
+    """A key of a table: its field in Python, allowed values, default (None: none), and description."""
 
     field: str
     allowed: Allowed
@@ -190,7 +190,7 @@ class Key:
 
 @cache
 def keys_of(table: type[Table]) -> dict[str, Key]:
-    """Every key allowed in `table`, as written in TOML, in order; cached, since every scene needs some tens."""
+    """Return every key allowed in `table`, as written in TOML, in order; cached, since a scene needs some tens."""
     keys = {}
     for name, given in table.model_fields.items():
         allowed, text = allowed_by(given.annotation, (*given.metadata,)), " ".join(str(given.description).split())
@@ -199,7 +199,7 @@ def keys_of(table: type[Table]) -> dict[str, Key]:
 
 
 def allowed_by(annotation: Any, marks: tuple[Any, ...] = ()) -> Allowed:
-    """What a type allows, without None: a key that may be absent has it."""
+    """Return the values that a type allows, without None, which is the type of an absent key."""
     origin, arguments = get_origin(annotation), get_args(annotation)
     if origin is Annotated:
         return allowed_by(arguments[0], (*arguments[1:], *marks))
@@ -217,19 +217,19 @@ def allowed_by(annotation: Any, marks: tuple[Any, ...] = ()) -> Allowed:
 
 @dataclass(slots=True, eq=False)
 class Place:
-    """A position in a scene: a key of a table or an item of a list, the value there, and what may stand there.
+    """A place in a scene: a key of a table or an item of a list, with its value and the allowed values.
 
-    A scene is a tree of them, and what reads it asks this tree: spelling, units, types and rules alike.
+    A scene is a tree of places, which all checks read: of spelling, units, types and rules.
 
     Attributes:
-        value: what stands there; where nothing does, the default.
-        allowed: what may stand there.
+        value: the value in the scene; without one, the default.
+        allowed: the values that are allowed.
         key: the last of its `keys`.
-        above: the table or list that it is in; None of the whole of something.
-        absent: whether nothing stands there.
-        sound: whether its value, and all in it, can be relied on.
-        source: what was written, where the value follows from that: a text with a unit, or the name of a file.
-        problems: what is wrong in the scene.
+        above: the place of the table or list that contains it; None for the whole.
+        absent: whether the scene has no value here.
+        sound: whether its value, and all values in it, are free of errors.
+        source: the place as written, where the value follows from a text with a unit or the name of a file.
+        problems: the problems of the scene.
     """
 
     value: Any
@@ -243,11 +243,11 @@ class Place:
     _inside: dict[Any, Place] | None = None
 
     def __post_init__(self) -> None:
-        """All places of a scene share its problems."""
+        """Share the list of problems with all places of the scene."""
         self.problems = self.above.problems if self.above else []
 
     def __iter__(self) -> Iterator[Place]:
-        """All places in it, a table before its content, which may be corrected meanwhile; absent keys, too."""
+        """Yield all places inside, a table before its content, which may be corrected meanwhile; also absent keys."""
         for place in self.inside.values():
             yield place
             if place.inside:
@@ -255,7 +255,7 @@ class Place:
 
     @property
     def inside(self) -> dict[Any, Place]:
-        """The places of its keys or items; of a table whose kind is not known that of the kind alone."""
+        """The places of its keys or items; only that of the kind in a table whose kind is unknown."""
         if self._inside is None:
             value, allowed = self.value, self.allowed
             self._inside = {}
@@ -273,7 +273,7 @@ class Place:
 
     @property
     def kind(self) -> Place:
-        """The place that says which one of several tables it is."""
+        """The place of the key that selects a table out of several."""
         return Place(
             self.value.get("kind"), Allowed(words=(*self.allowed.kinds,)), "kind", self, "kind" not in self.value
         )
@@ -283,15 +283,15 @@ class Place:
         """The keys from the top of the scene down to it."""
         return (*self.above.keys, self.key) if self.above else ()
 
-    def at(self, path: str) -> Place | None:
-        """The place at a dotted path from here; None where nothing may stand."""
+    def find(self, path: str) -> Place | None:
+        """Return the place at a dotted path from here; None if there is no such key."""
         place: Place | None = self
         for key in path.split("."):
             place = place.inside.get(key) if place else None
         return place
 
     def put(self, value: object) -> None:
-        """Put a value there."""
+        """Put a value at this place in the scene."""
         assert self.above is not None
         self.above.value[self.key] = self.value = value
         self.absent, self._inside = False, None
@@ -305,57 +305,57 @@ class Place:
 
     @property
     def is_text(self) -> bool:
-        """Whether it is a text that can only have meant a number with a unit: one with digits, and no plain number."""
+        """Whether the value is a text that must mean a number with a unit: it has digits, and is no plain number."""
         value = self.value
         digits = isinstance(value, str) and value not in self.allowed.words and any(map(str.isdigit, value))
         return digits and not NUMBER.fullmatch(value.strip())
 
     @property
     def is_number(self) -> bool:
-        """Whether it is a number other than 0, which is the same in all units."""
+        """Whether the value is a number other than 0, which is the same in all units."""
         return isinstance(self.value, int | float) and not isinstance(self.value, bool) and self.value != 0
 
     @property
     def path(self) -> str:
-        """The dotted path of what was written."""
+        """The dotted path of the place as written in the scene."""
         return path_of((self.source or self).keys)
 
     @property
     def given(self) -> str | None:
-        """What was written, or a number by default, as TOML; None where there is neither."""
+        """The value as written, or a default number, as TOML; None if there is neither."""
         return None if self.absent and not self.is_number else shown((self.source or self).value)
 
     def report(self, message: str, hint: str = "") -> None:
-        """Add what is wrong with it to the problems."""
+        """Add a problem of this place to those of the scene."""
         self.problems.append(Problem(self.path, message, self.given, hint))
 
     def doubt(self) -> None:
-        """Take its value for no basis of anything else."""
+        """Mark this place, and all that contain it, as not sound, so that no other check depends on its value."""
         self.sound = False
         if self.above:
             self.above.doubt()
 
     def fault(self, message: str, hint: str = "") -> None:
-        """Doubt it, and report what is wrong."""
+        """Mark this place as not sound, and report a problem of it."""
         self.doubt()
         self.report(message, hint)
 
 
 def places(table: type[Table], data: Mapping[str, Any]) -> Iterator[Place]:
-    """The places of all numbers in `data`, a table of this type with the keys of a scene file: see `numbers_in`."""
+    """Return the places of all numbers in `data`, a table of this type with the keys of a scene file."""
     return numbers_in(Place(data, allowed_by(table)))
 
 
 def numbers_in(whole: Place) -> Iterator[Place]:
-    """Every place of a number, or of what stands there in its stead; an absent key where it is a number by default."""
+    """Yield every place of a number, or of a value in place of one; an absent key where a number is its default."""
     for place in whole:
         if place.allowed.quantity and not place.inside and (isinstance(place.value, float) or not place.absent):
             yield place
 
 
 def tables_in(table: type[Table], path: str = "", kind: str = "") -> Iterator[tuple[str, str, type[Table]]]:
-    """Every table inside `table`, that itself first and each kind of a union: dotted path, kind and type."""
+    """Yield every table inside `table`, itself first, and each kind of a union: dotted path, kind and type."""
     yield path, kind, table
     for name, key in keys_of(table).items():
-        for one, inner in key.allowed.tables.items():
-            yield from tables_in(inner, f"{path}.{name}" if path else name, one)
+        for inner_kind, inner in key.allowed.tables.items():
+            yield from tables_in(inner, f"{path}.{name}" if path else name, inner_kind)

@@ -27,10 +27,10 @@ from contact1d.workflow.scene.uncertain import moved, take_shares, with_shares
 from contact1d.workflow.units import Scales
 
 DEEPEST = 100
-"""Levels of tables and lists in a scene."""
+"""Largest number of levels of tables and lists in a scene."""
 TOO_DEEP = f"tables or lists are nested more than {DEEPEST} deep; check for an extra dot or bracket"
 LONG_KEY = re.compile(rf"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')\s*+\.\s*+){{{DEEPEST}}}""")
-"""A dotted key that is deeper: tomllib takes minutes for it."""
+"""A dotted key with more levels: tomllib takes minutes for it."""
 MEANING = {
     "Cannot overwrite a value": "this key is given twice",
     "Cannot declare": "this table is given twice",
@@ -46,7 +46,7 @@ MEANING = {
     "Unclosed inline table": "an inline table { … } must be closed on the same line",
     "Exceeds the limit": "a whole number has thousands of digits",
 }
-"""What the messages of tomllib, by their beginnings, mean to a person."""
+"""Messages for the user by the beginnings of those of tomllib."""
 
 HINTS = {
     "Unclosed inline table": 'a number with a unit stands in quotes, "10 mm"',
@@ -75,15 +75,15 @@ class Scene(Tables):
 
     @property
     def given(self) -> dict[str, Any]:
-        """The same without what follows from the other keys, to be changed."""
+        """The tables of the scene file, with ±, without values that follow from other keys, which may then change."""
         return with_shares(plain_data(self), self._shares)
 
     def __str__(self) -> str:
-        """The scene file."""
+        """Return the scene as a TOML file."""
         return tables_as_toml(self.tables)
 
     def moved(self, key: str, factor: float) -> Scene:
-        """The scene with the number at a dotted key times a factor; a punch keeps its number of particles."""
+        """Return the scene with the number at a dotted key times a factor; a punch keeps its number of particles."""
         bodies = self.bodies
         scene: Scene = moved(self, keys_in(key), factor)
         if key == "bodies.profile.radius" and bodies.profile.has_edge and bodies.given_spacing != "auto":
@@ -99,12 +99,12 @@ class Scene(Tables):
             scene.with_(bodies__profile__radius=2000.0, accuracy__tolerance=1e-4)
 
         Args:
-            changes: values by dotted keys, as in a scene file; a table is a dict, None takes a key or table away.
+            changes: values by dotted keys, as in a scene file; a table is a dict, None removes a key or table.
             without: effects whose tables are removed.
             keywords: more changes, the keys' dots written as two underscores.
 
         Raises:
-            SceneError: the scene that would be is none; with every problem at once.
+            SceneError: the changed scene is not valid; with every problem at once.
         """
         given: object = {} if changes is None else changes
         if not isinstance(given, Mapping):
@@ -117,16 +117,16 @@ class Scene(Tables):
         return _checked(plain_data(data), problems, FilePath())
 
     def with_profile(self, profile: Shape) -> Scene:
-        """The scene with another body, which is not checked."""
+        """Return the scene with another body, which is not checked."""
         return self.model_copy(update={"bodies": self.bodies.model_copy(update={"profile": profile})})
 
 
 AnyScene = Scene | str | PathLike[str] | Mapping[str, Any]
-"""What `read_scene` makes a scene of."""
+"""The types of a source from which `read_scene` makes a scene."""
 
 
 def read_scene(source: AnyScene, overrides: Iterable[str] = (), without: Iterable[str] = ()) -> Scene:
-    """The scene that `source` describes, checked.
+    """Return the scene that `source` describes, checked.
 
     Args:
         source: a TOML file, by its path; or TOML text, which is a `str` with a line break or "=" in it; or a mapping
@@ -144,12 +144,12 @@ def read_scene(source: AnyScene, overrides: Iterable[str] = (), without: Iterabl
 
 
 def scene_to_toml(scene: Scene) -> str:
-    """The whole `scene` as a TOML file, with defaults written out, that reads back as an equal scene."""
+    """Return the whole `scene` as a TOML file, with defaults written out, that reads back as an equal scene."""
     return str(scene)
 
 
 def read_tables(source: str | PathLike[str]) -> dict[str, Any]:
-    """The tables of a TOML file, by its path, or of TOML text, unchecked. Raises SceneError with one problem."""
+    """Return the tables of a TOML file, by its path, or of TOML text, unchecked. Raises SceneError with one problem."""
     if not isinstance(source, str | PathLike):
         given = type(source).__name__
         raise SceneError([Problem("scene", f"must be a path, TOML text, tables or a Scene, not {given}")])
@@ -171,9 +171,9 @@ def scene_from_dict(
     without: Iterable[str] = (),
     folder: str | PathLike[str] = ".",
 ) -> Scene:
-    """The scene that `data` (keys as in a scene file; None counts as absent) describes. `data` is left as it is.
+    """Return the scene that `data` (keys as in a scene file; None counts as absent) describes; `data` is not changed.
 
-    A profile's file is looked up in `folder` and read into the scene, which then needs it no more. `overrides` are
+    A profile's file is read from `folder` into the scene, which then does not need it any more. `overrides` are
     strings "table.key=value", applied in order, the value read as TOML or else as bare text; `without` has names of
     effects whose tables are then removed. Raises SceneError with every problem at once.
     """
@@ -185,7 +185,7 @@ def scene_from_dict(
 
 
 def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -> Scene:
-    """The scene of `plain`, which is corrected meanwhile; `problems` are those found so far."""
+    """Return the scene of `plain`, which is corrected in place; `problems` are those that are known already."""
     tables = Place(plain, WHOLE)
     mend_words(tables)
     points = take_points(tables, folder)
@@ -202,8 +202,8 @@ def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -
         scene._shares.update(shares)
         if scene.noise or scene.experiment.motion_is_result:
             path = next(iter(shares))
-            known = "a result over time has no uncertainty from its inputs: write the value alone"
-            tables.problems.append(Problem(path, known))
+            message = "a result over time has no uncertainty from its inputs: write the value alone"
+            tables.problems.append(Problem(path, message))
         if not tables.problems:
             tables.problems += _at_ends(scene)
     problems += sorted(_in_si(tables, has_texts), key=_rank)
@@ -213,32 +213,34 @@ def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -
 
 
 def _at_ends(scene: Scene) -> Iterator[Problem]:
-    """What is wrong where a number with ± in a list is at an end of it: times must rise, shares add up to 1 there."""
+    """Yield the problems of a scene with a number of a list at an end of its ±: falling times, or shares above 1."""
     for path, share in scene.shares.items():
-        for way in (-1.0, 1.0) if "[" in path else ():
-            end = Place(plain_data(scene.moved(path, 1.0 + way * share)), WHOLE)
+        for factor in (1.0 - share, 1.0 + share) if "[" in path else ():
+            end = Place(plain_data(scene.moved(path, factor)), WHOLE)
             check_fit(end)
-            for one in end.problems[:1]:
-                yield Problem(path, f"at an end of its ±: {one.message}", hint=one.hint)
+            for problem in end.problems[:1]:
+                yield Problem(path, f"at an end of its ±: {problem.message}", hint=problem.hint)
 
 
 def _in_si(tables: Place, has_texts: bool) -> list[Problem]:
-    """The problems of a scene with SI in place of LU, FU and MU, where its numbers are written in it."""
+    """Return the problems of a scene, with SI in place of LU, FU and MU where its numbers are written in SI."""
     draft = Draft(tables)
     length, force, mass = (draft[f"material.{key}"] for key in UNIT_KEYS.values())
     if not (length and force and (has_texts or length == force == 1.0)):
         return tables.problems
     words = Scales(length, force, mass=mass).in_words
     return [
-        one if MODEL_UNITS in one.message else replace(one, message=words(one.message), hint=words(one.hint))
-        for one in tables.problems
+        problem
+        if MODEL_UNITS in problem.message
+        else replace(problem, message=words(problem.message), hint=words(problem.hint))
+        for problem in tables.problems
     ]
 
 
 def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> list[Problem]:
-    """Set each of `overrides` in `data`, in order; returns the problems of invalid ones.
+    """Set each of `overrides` in `data`, in order, and return the problems of those that are invalid.
 
-    A value is read as TOML, or as bare text where it is not TOML; absent tables are made.
+    A value is read as TOML, or as bare text where it is not TOML; absent tables are added.
     """
     form = "write table.key=value, for example experiment.method=dynamic"
     problems = []
@@ -258,20 +260,20 @@ def set_values(
     where: str = "",
     form: str = "write table.key, for example experiment.method",
 ) -> list[Problem]:
-    """Set the value of each dotted key in `data`; None removes the key. Returns the problems, by `where` they are from.
+    """Set the value of each dotted key in `data`; None removes the key. Return the problems, with their origin `where`.
 
-    `form`: what to write instead of what is no path of keys.
+    `form`: the suggested fix for a path that is not a path of keys.
     """
     problems = []
     for path, value in values.items():
-        table, at, keys = data, where or f"set {path}", [key.strip() for key in str(path).split(".")]
+        table, origin, keys = data, where or f"set {path}", [key.strip() for key in str(path).split(".")]
         if len(keys) > DEEPEST or not all(map(BARE.fullmatch, keys)):
-            problems.append(Problem(at, "not a path of keys", hint=form))
+            problems.append(Problem(origin, "not a path of keys", hint=form))
             continue
         for depth, key in enumerate(keys[:-1], start=1):
             table = table.setdefault(key, {})
             if not isinstance(table, dict):
-                problems.append(Problem(at, f"{'.'.join(keys[:depth])} is not a table", hint="set it as a whole"))
+                problems.append(Problem(origin, f"{'.'.join(keys[:depth])} is not a table", hint="set it as a whole"))
                 break
         else:
             table[keys[-1]] = value
@@ -279,14 +281,14 @@ def set_values(
 
 
 def remove_effects(data: dict[str, Any], names: Iterable[str]) -> list[Problem]:
-    """Remove from `data` the table of each effect in `names`; returns the problems of those that cannot be removed."""
+    """Remove from `data` the table of each effect in `names`; return the problems of those that cannot be removed."""
     problems = []
     for name in dict.fromkeys(names):
-        there = [effect for effect in EFFECTS if effect in data]
-        if name in there:
+        present = [effect for effect in EFFECTS if effect in data]
+        if name in present:
             del data[name]
         elif name in EFFECTS:
-            hint = f"effects there: {', '.join(there) or 'none'}"
+            hint = f"effects there: {', '.join(present) or 'none'}"
             problems.append(Problem(f"without {name}", "the scene has no such table", hint=hint))
         else:
             hint = suggestion(name, EFFECTS, "effects")
@@ -303,16 +305,16 @@ def _toml_value(text: str) -> Any:
 
 
 def _listed(words: Iterable[str]) -> list[str]:
-    """`words` as a list; one string alone is one word."""
+    """Return `words` as a list; a single string is one word."""
     return [words] if isinstance(words, str) else list(words)
 
 
 def plain_data(value: Any, levels: int = DEEPEST) -> Any:
-    """A copy of `value` in dicts and lists, without keys that are None. Raises SceneError below `levels`."""
+    """Return a copy of `value` in dicts and lists, without keys that are None. Raises SceneError below `levels`."""
     if not levels:
         raise SceneError([Problem("scene", TOO_DEEP)])
     if isinstance(value, Table):
-        chosen = {"reduction"} - value.model_fields_set  # anew: what changes may change it
+        chosen = {"reduction"} - value.model_fields_set  # chosen again, since changes of a scene may change it
         value = {name: getattr(value, key.field) for name, key in keys_of(type(value)).items() if name not in chosen}
     if isinstance(value, Mapping):
         return {str(key): plain_data(item, levels - 1) for key, item in value.items() if item is not None}
@@ -324,13 +326,13 @@ def plain_data(value: Any, levels: int = DEEPEST) -> Any:
 
 
 def _rank(problem: Problem) -> int:
-    """Place of a problem in a report: the tables in the order of a scene, then what is unknown."""
+    """Return the position of a problem in a report: the tables in the order of a scene, then unknown ones."""
     order, table = list(Scene.model_fields), keys_in(problem.path)[0]
     return order.index(table) if table in order else len(order)
 
 
 def _tables(text: str, path: str) -> dict[str, Any]:
-    """TOML text as a dict; `path` is where it is from. Raises SceneError with one problem."""
+    """Return TOML text as a dict; `path` is its origin. Raises SceneError with one problem."""
     try:
         if not LONG_KEY.search(text):
             return dict(plain_data(tomllib.loads(text)))
@@ -342,13 +344,13 @@ def _tables(text: str, path: str) -> dict[str, Any]:
 
 
 def _syntax_problem(path: str, text: str, reason: str) -> Problem:
-    """A mistake in the TOML itself: the line and its text, and what is wrong with it."""
+    """Return an error in the TOML itself, with the line and its text."""
     begin = next((begin for begin in MEANING if reason.startswith(begin)), "")
-    what = MEANING.get(begin, reason)
-    found = re.search(r"\(at line (\d+), column (\d+)\)$", reason)
-    if found is None:
-        return Problem(f"{path}, at its end" if "end of document" in reason else path, what)
-    line = text.split("\n")[int(found[1]) - 1].strip()
+    message = MEANING.get(begin, reason)
+    match = re.search(r"\(at line (\d+), column (\d+)\)$", reason)
+    if match is None:
+        return Problem(f"{path}, at its end" if "end of document" in reason else path, message)
+    line = text.split("\n")[int(match[1]) - 1].strip()
     if line.count("{") > line.count("}"):
-        what = MEANING["Unclosed inline table"]
-    return Problem(f"{path}, line {found[1]}, column {found[2]}", f"{what}: {line[:80]}", hint=HINTS.get(begin, ""))
+        message = MEANING["Unclosed inline table"]
+    return Problem(f"{path}, line {match[1]}, column {match[2]}", f"{message}: {line[:80]}", hint=HINTS.get(begin, ""))

@@ -1,11 +1,12 @@
 """Rules across the tables of a scene, by subject, and one evaluation that reports every violation at once.
 
-A rule is a row: the key that it speaks of, whether it is broken, what is wrong, what to do, and at times the changes by
-dotted keys that would each make a scene of it. What an experiment or an effect needs and excludes is declared beside
-its keys (`experiments`, `effects`), and read here for all of them alike.
+A rule is a row: its key, whether it is broken, what is wrong, what to do, and at times the changes by dotted keys each
+of which makes the scene valid. What an experiment or an effect needs and excludes is declared with its keys
+(`experiments`, `effects`), and read here for all of them.
 
-Two bodies touch in one way only if the force f(r) = (A/a) exp(−r/a) − (B/b) exp(−r/b) repels at contact,
-A/a > B/b, and attracts far off, b > a. It then vanishes once, at r₀ = ln(A b / (B a)) a b / (b − a).
+Two bodies have a single equilibrium distance only if the force f(r) = (A/a) exp(−r/a) − (B/b) exp(−r/b) repels at
+contact, A/a > B/b, and attracts at large distances, b > a. It then vanishes once, at
+r₀ = ln(A b / (B a)) a b / (b − a).
 Two periodic chains of n and m particles close together only if n·s_lower = m·s_upper.
 """
 
@@ -67,7 +68,7 @@ def _interaction(d: Draft) -> Rows:
 
 
 def _tension(d: Draft) -> Rows:
-    """A force that does not press needs bodies that attract each other."""
+    """Yield the rule that a force that is not compressive needs attraction between the bodies."""
     force = d[f"experiment.{d.experiment.load_key}"]
     adheres = "adhesion" in d and "adhesion" not in d.experiment.excludes
     broken = force is not None and force <= 0.0 and not adheres and "interaction.attraction" not in d
@@ -99,21 +100,21 @@ def _normal_loads(d: Draft) -> Rows:
 
 
 def _shares(d: Draft) -> Rows:
-    whole = math.fsum(term["share"] for term in d["viscoelasticity.terms"] or [])
-    yield ("viscoelasticity.terms", whole > 1.0 + WHOLE_NUMBER_ERROR,
-           f"the shares of the instantaneous modulus must add up to 1 at most, not {apart(whole, 1.0, DIGITS)[0]}",
+    total = math.fsum(term["share"] for term in d["viscoelasticity.terms"] or [])
+    yield ("viscoelasticity.terms", total > 1.0 + WHOLE_NUMBER_ERROR,
+           f"the shares of the instantaneous modulus must add up to 1 at most, not {apart(total, 1.0, DIGITS)[0]}",
            "lower one of them")
 
 
 def _history(d: Draft) -> Rows:
-    """Times that rise, and load steps that a body that relaxes can follow."""
+    """Yield the rules of a history: times rise, and load steps are short enough for a viscoelastic body."""
     given = [key for key in ("displacement", "force") if d.kind == "history" and d[f"experiment.{key}"]]
     if not given:
         return
     key = f"experiment.{given[0]}"
     times, values = zip(*((point["time"], point[given[0]]) for point in d[key]), strict=True)
-    back = next((i for i in range(1, len(times)) if times[i] <= times[i - 1]), 0)
-    yield (key, back, f"times must rise; {times[back]:.6g} follows {times[back - 1]:.6g}",
+    wrong = next((i for i in range(1, len(times)) if times[i] <= times[i - 1]), 0)
+    yield (key, wrong, f"times must rise; {times[wrong]:.6g} follows {times[wrong - 1]:.6g}",
            "each point is later than the one before; a jump is a leg as short as you want")
     yield (key, max(values) <= 0.0, "must be greater than 0 somewhere, else the bodies never touch", "raise it")
     retarded, steps = d["viscoelasticity.retardation_time"], d["experiment.steps"]
@@ -131,38 +132,38 @@ def _needed(name: str, by: str) -> Row:
 
 
 def _excluded(d: Draft) -> Rows:
-    """Effects that an experiment cannot have, and those that another one cannot have beside it on a rigid plane."""
-    others = (one for one, table in KINDS.items() if not table.excludes.keys() & {*d.effects})
-    other = next((f', or use kind = "{one}"' for one in others), "")
-    for name, why in d.experiment.excludes.items() if d.kind else ():
-        yield (name, True, f"not in a {d.kind}: {why}", f"remove it{other}")
+    """Yield the rules of effects that an experiment excludes, and of those that exclude each other on a rigid plane."""
+    possible = (kind for kind, table in KINDS.items() if not table.excludes.keys() & {*d.effects})
+    alternative = next((f', or use kind = "{kind}"' for kind in possible), "")
+    for name, reason in d.experiment.excludes.items() if d.kind else ():
+        yield (name, True, f"not in a {d.kind}: {reason}", f"remove it{alternative}")
     for effect in d.effects if d.holds("on_plane") else ():
-        for name, why in EFFECT_TABLES[effect].excludes.items():
-            yield (name, True, f"not with [{effect}]: {why}", f"remove [{name}], or [{effect}]")
+        for name, reason in EFFECT_TABLES[effect].excludes.items():
+            yield (name, True, f"not with [{effect}]: {reason}", f"remove [{name}], or [{effect}]")
 
 
 def _methods(d: Draft) -> Rows:
-    """Each experiment and method has effects that it needs, and a quasi-static one has none in time."""
+    """Yield the rules of effects that an experiment and its method need; a quasi-static one has none in time."""
     kind, experiment, given = d.kind, d.experiment, d["experiment.method"]
     if kind is None or (given is None and "experiment.method" in d):
         return
-    rest = tuple(name for name in d.effects if name not in experiment.excludes)
-    method = experiment.only_method or given or default_method(rest)
+    allowed = tuple(name for name in d.effects if name not in experiment.excludes)
+    method = experiment.only_method or given or default_method(allowed)
     for name in experiment.needs:
         yield _needed(name, f"a {kind}")
     if method == "dynamic" and experiment.only_method is None:
-        cause = "" if given else ", made dynamic by " + ", ".join(f"[{name}]" for name in rest if name in TIMED)
+        cause = "" if given else ", made dynamic by " + ", ".join(f"[{name}]" for name in allowed if name in TIMED)
         for name in experiment.needs_in_time:
-            also = " and by [noise]" if given and name == "damping" and "noise" in rest else ""
+            also = " and by [noise]" if given and name == "damping" and "noise" in allowed else ""
             yield _needed(name, f"a dynamic {kind}{cause}{also}")
     for name in TIMED:
-        yield (name, method == "quasistatic" and name in rest,
+        yield (name, method == "quasistatic" and name in allowed,
                f"not in a quasistatic {kind}, which does not depend on time",
                'remove it, or use experiment.method = "dynamic"')
 
 
 def _declared_keys(d: Draft) -> Rows:
-    """Of some keys exactly one is there."""
+    """Yield the rules of keys of which exactly one must be given."""
     effects = {name: EFFECT_TABLES[name] for name in d.effects if d[name] is not None}
     profile = keys_of(Bodies)["profile"].allowed.kinds.get(d.profile, Table)
     for name, table in {**effects, "experiment": d.experiment, "bodies.profile": profile}.items():
@@ -259,30 +260,31 @@ RULES: tuple[Rule, ...] = (
 # fmt: on
 
 
-SAID_OF = {"miss": True, "not ": False, "only": False}
-"""Whether messages that begin so are about a key that is absent; others may be about any."""
+ABOUT_ABSENT = {"miss": True, "not ": False, "only": False}
+"""Whether messages that begin with these letters are about an absent key; others may be about any."""
 
 
 def check_fit(scene: Place) -> None:
-    """Report every violation of a rule across the tables of a scene that does not depend on values that are doubted."""
+    """Report every violation of a rule across the tables of a scene, unless it depends on values that are not sound."""
     draft = Draft(scene)
     for rule in RULES:
         for row in rule(draft) if callable(rule) else [rule]:
             _check(draft, *row)
 
 
-def _check(draft: Draft, keys: str, broken: object, message: str, fix: str, *ways: Mapping[str, float]) -> None:
-    """Report a rule that is broken, at each of its keys that may stand there."""
+def _check(draft: Draft, keys: str, broken: object, message: str, fix: str, *edits: Mapping[str, float]) -> None:
+    """Report a rule that is broken, at each of its keys that the scene may have."""
     if not (draft.holds(broken) if isinstance(broken, str) else broken):
         return
     if isinstance(broken, str):
         message, fix = (text.format_map(draft.facts) for text in (message, fix))
-    changes = tuple({path: draft.written(path, number)} for way in ways for path, number in way.items())
-    if ways:
-        texts = (f"{one:g}" if isinstance(one, float) else one for way in changes for one in way.values())
+    changes = tuple({path: draft.written(path, number)} for edit in edits for path, number in edit.items())
+    if edits:
+        values = (value for change in changes for value in change.values())
+        texts = (f"{value:g}" if isinstance(value, float) else value for value in values)
         fix = fix.format(*texts)
     for key in keys.split():
-        place = draft.scene.at(key)
-        if place and SAID_OF.get(message[:4], place.absent) == place.absent:
+        place = draft.scene.find(key)
+        if place and ABOUT_ABSENT.get(message[:4], place.absent) == place.absent:
             given = None if isinstance(place.value, Mapping) else place.given
             draft.scene.problems.append(Problem(key, message, given, fix, changes))

@@ -26,12 +26,12 @@ RANGES = {Gt: "exclusiveMinimum", Ge: "minimum", Le: "maximum"}
 IN_WORDS = {"exclusiveMinimum": "greater than", "minimum": "of at least", "maximum": "at most"}
 LENGTHS = {MinLen: "minItems"}
 TEXT_PATTERN = r"^[ \t]*[+\-−]?[0-9]*\.?[0-9]+.*[A-Za-zµμÅ°%]"
-"""Of a text that is a number with a unit."""
+"""The pattern of a text that is a number with a unit."""
 Node = dict[str, Any]
 
 
 def statement(allowed: Allowed) -> str:
-    """The allowed values as text: "a number greater than 0 (LU), or "auto"", continues "must be"."""
+    """Return the allowed values as text that follows "must be": "a number greater than 0 (LU), or "auto""."""
     parts = []
     if allowed.type:
         unit = allowed.unit
@@ -52,36 +52,36 @@ def statement(allowed: Allowed) -> str:
 
 
 def text_of(allowed: Allowed) -> str:
-    """An example of a text with a unit that a number may be, "10 mm"; nothing where it has no unit."""
+    """Return an example of a text with a unit in place of a number, "10 mm"; no text where it has no unit."""
     unit = allowed.quantity or (allowed.items and allowed.items.quantity)
     return example(unit.texts[0]) if unit and unit.name != "1" else ""
 
 
 def described(allowed: Allowed) -> str:
-    """`statement`, and for a number that has a unit that it may as well be text: "…, or text such as "10 mm""."""
+    """Return `statement`, and for a number with a unit also an example of text: "…, or text such as "10 mm""."""
     text = text_of(allowed)
     return statement(allowed) + (f", or text such as {as_toml(text)}" if text else "")
 
 
 def meaning(table: type[Table], name: str) -> str:
-    """What a key of `table` is and must be: "displacement of the driven end; must be a number greater than 0 …"."""
+    """Return description and allowed values of a key: "displacement of the driven end; must be a number greater …"."""
     key = keys_of(table)[name]
     return f"{key.description}; must be {described(key.allowed)}"
 
 
 def scene_schema() -> Node:
-    """The JSON schema of a scene file."""
+    """Return the JSON schema of a scene file."""
     named = {"title": "contact1d scene", "description": "A scene of contact1d."}
     return {"$schema": DIALECT} | _table(Tables) | named
 
 
 def schema_text() -> str:
-    """The JSON schema of a scene file, as text."""
+    """Return the JSON schema of a scene file, as text."""
     return json.dumps(scene_schema(), indent=1, ensure_ascii=False) + "\n"
 
 
 def _nodes(allowed: Allowed) -> Node:
-    """The schema of what a key allows."""
+    """Return the schema of the values that a key allows."""
     nodes = [_table(table) for table in allowed.tables.values()]
     if allowed.items:
         nodes.insert(0, {"type": "array", "items": _nodes(allowed.items)} | _bounds(allowed, LENGTHS))
@@ -118,8 +118,8 @@ def _table(table: type[Table]) -> Node:
 
 
 def _either(words: tuple[str, ...]) -> str:
-    *others, last = (as_toml(word) for word in words)
-    return f"{', '.join(others)} or {last}" if others else last
+    *first, last = (as_toml(word) for word in words)
+    return f"{', '.join(first)} or {last}" if first else last
 
 
 def _range(allowed: Allowed) -> str:

@@ -33,16 +33,14 @@ if TYPE_CHECKING:
 
 Exponent = Annotated[float, Ge(1.0), Unit("1")]
 FEWEST_POINTS = 4
-"""Points of a measured profile."""
-LAST_SHARE = 1.0 - 1e-12
-"""The transform of a circle grows without end at its edge, and is taken up to this share of the radius."""
+"""Smallest number of points of a measured profile."""
 
 
 class Shape(Table):
-    """What all profiles can do; a kind overrides what differs.
+    """The base class of all profiles; each kind overrides what differs.
 
-    `has_edge`: the body ends at its `reach` by a flank, so that its chain is as long as it is wide and the contact is
-    too; others rise, and the contact ends on them.
+    `has_edge`: the body ends at its `reach` by a flank, so that its chain and the contact are as wide as the body;
+    other bodies rise, and the contact ends on them.
     """
 
     has_edge: ClassVar[bool] = False
@@ -51,11 +49,11 @@ class Shape(Table):
 
     @abstractmethod
     def height(self, x: Array) -> Array:
-        """Height z(x) = f(|x|) [LU] above the apex as drawn, at the places `x` [LU]; same shape."""
+        """Return the height z(x) = f(|x|) [LU] above the apex as drawn, at the positions `x` [LU]; same shape."""
 
     @abstractmethod
     def transformed(self, x: Array) -> Array:
-        """Height g(x) [LU] above the apex after the MDR's transform, at the places `x` [LU]; same shape."""
+        """Return the height g(x) [LU] above the apex after the transform, at the positions `x` [LU]; same shape."""
 
     @property
     def reach(self) -> float:
@@ -74,12 +72,12 @@ class Shape(Table):
 
     @property
     def alternatives(self) -> tuple[Shape, ...]:
-        """What the body may be instead, by all that is known of it; a formula leaves nothing open."""
+        """Other bodies that agree with all that is known of this one; a formula has none."""
         return ()
 
     @property
     def coarser(self) -> tuple[Shape, ...]:
-        """The same with less known of it, in place of an alternative that is no contact."""
+        """Bodies through fewer points, in place of an alternative that is no contact."""
         return ()
 
     @property
@@ -89,12 +87,12 @@ class Shape(Table):
 
     @property
     def taken(self) -> Taken | None:
-        """What is taken of a scan; None of a shape that is given."""
+        """The curve that is fitted to a scan, with its parameters; None for a shape that is given."""
         return None
 
     @property
     def steepest(self) -> Self:
-        """The steeper one of the two bodies, whose slope and size limit the theory: this one on a plane."""
+        """The steeper of the two bodies, whose slope and size limit the theory: this one on a plane."""
         return self
 
 
@@ -111,16 +109,16 @@ class Parabola(Shape):
     """
 
     def height(self, x: Array) -> Array:
-        """z = x²/2R."""
+        """Return the height z = x²/2R [LU], of two curved bodies their gap."""
         return x**2 / (2 * self.curvature_radius)
 
     def transformed(self, x: Array) -> Array:
-        """g = x²/R."""
+        """Return the transformed height g = x²/R [LU]."""
         return x**2 / self.curvature_radius
 
     @property
     def curvature_radius(self) -> float:
-        """R, the effective one of both bodies: R₁/(1 + R₁/R₂)."""
+        """The effective radius R [LU] of both bodies: R₁/(1 + R₁/R₂)."""
         return self.radius / (1.0 + self.radius / (self.counter_radius or math.inf))
 
     @property
@@ -139,24 +137,25 @@ class Circle(Shape):
     """radius R"""
 
     def height(self, x: Array) -> Array:
-        """z = R − √(R² − x²), written without the difference of large numbers."""
+        """Return the height z = R − √(R² − x²) [LU], calculated without the difference of large numbers."""
         return x**2 / (self.radius + ((self.radius - x) * (self.radius + x)) ** 0.5)
 
     def transformed(self, x: Array) -> Array:
-        """g = x artanh(x/R)."""
+        """Return the transformed height g = x artanh(x/R) [LU], which grows without bound towards the edge."""
         import numpy as np
 
-        share = np.clip(x / self.radius, -LAST_SHARE, LAST_SHARE)
+        last = 1.0 - 1e-12  # share of the radius up to which g is finite
+        share = np.clip(x / self.radius, -last, last)
         return np.asarray(x * np.arctanh(share))
 
     @property
     def reach(self) -> float:
-        """R."""
+        """The radius R [LU] of the circle."""
         return self.radius
 
     @property
     def curvature_radius(self) -> float:
-        """R."""
+        """The radius R [LU] of the circle."""
         return self.radius
 
 
@@ -171,31 +170,31 @@ class Ellipsoid(Shape):
     """half axis b along the load"""
 
     def height(self, x: Array) -> Array:
-        """z = b − b √(1 − x²/c²), of the sphere of radius c times b/c."""
+        """Return the height z = b − b √(1 − x²/c²) [LU], that of a sphere of radius c times b/c."""
         return self.half_axis / self.radius * self._sphere.height(x)
 
     def transformed(self, x: Array) -> Array:
-        """g = (b/c) x artanh(x/c)."""
+        """Return the transformed height g = (b/c) x artanh(x/c) [LU]."""
         return self.half_axis / self.radius * self._sphere.transformed(x)
 
     @property
     def _sphere(self) -> Circle:
-        """That of radius c."""
+        """The sphere with the half axis c across the load as its radius."""
         return Circle.model_construct(radius=self.radius)
 
     @property
     def reach(self) -> float:
-        """c."""
+        """The half axis c [LU] across the load."""
         return self.radius
 
     @property
     def curvature_radius(self) -> float:
-        """c²/b."""
+        """The radius of curvature c²/b [LU] at the apex."""
         return self.radius**2 / self.half_axis
 
 
 def _half_angle(text: object) -> object:
-    """The text as it is, where it is a half angle. Raises PydanticCustomError."""
+    """Return the text unchanged if it is a half angle. Raises PydanticCustomError."""
     problem = 'must be text with a unit, greater than 0° and less than 90°, from the axis to the flank: write "80°"'
     try:
         if isinstance(text, str) and "±" in text:
@@ -223,15 +222,15 @@ class Cone(Shape):
 
     @property
     def rise(self) -> float:
-        """s."""
+        """The slope s of the flank, given or the cotangent of the half angle."""
         return self.slope or 1.0 / math.tan(si_value(self.half_angle or "", "rad")[0])
 
     def height(self, x: Array) -> Array:
-        """z = s |x|."""
+        """Return the height z = s |x| [LU]."""
         return self.rise * abs(x)
 
     def transformed(self, x: Array) -> Array:
-        """g = (π/2) s |x|."""
+        """Return the transformed height g = (π/2) s |x| [LU]."""
         return 0.5 * math.pi * self.rise * abs(x)
 
 
@@ -241,11 +240,11 @@ class Level(Shape):
     has_edge = True
 
     def height(self, x: Array) -> Array:
-        """z = 0."""
+        """Return the height 0 [LU] at all positions."""
         return 0.0 * abs(x)
 
     def transformed(self, x: Array) -> Array:
-        """g = 0."""
+        """Return the transformed height 0 [LU] at all positions."""
         return 0.0 * abs(x)
 
 
@@ -266,7 +265,7 @@ class FlatPunch(Level):
 
     @property
     def reach(self) -> float:
-        """The radius."""
+        """The radius [LU] of the punch."""
         return self.radius
 
 
@@ -283,11 +282,11 @@ class Power(Shape):
     """height h at that radius"""
 
     def height(self, x: Array) -> Array:
-        """z = h (|x|/a)ⁿ."""
+        """Return the height z = h (|x|/a)ⁿ [LU]."""
         return self.height_there * abs(x / self.radius) ** self.exponent
 
     def transformed(self, x: Array) -> Array:
-        """g = κ_n z."""
+        """Return the transformed height g = κ_n z [LU]."""
         from contact1d.analysis.theory.indenters import galin_factor  # it loads numpy, which a scene can do without
 
         return galin_factor(self.exponent) * self.height(x)

@@ -8,13 +8,13 @@ The stiffness per length of the layer that the two chains make together is E* wi
 of Geike and Popov (their Eq. 3: c_n = G/2(1 − ν), two equal spheres, E* = G/(1 − ν)). The tangential one is G*/E* of it
 (Cattaneo and Mindlin; physics of both: K. L. Johnson, Contact Mechanics, 1985).
 
-The paper's reduction takes the profile as drawn, z = c xⁿ, with the layer c_n. Under a force F it is wide
+The paper's reduction takes the profile as drawn, z = c xⁿ, with the layer c_n. Under a force F the half-width of this
+plane image, and the contact radius of the body with that profile on a plane (Galin; κ_n in `shapes`), are
 
-    a = [(n + 1) F/(n c E*)]^{1/(n+1)},     the body of that profile on a plane (Galin; κ_n in `profiles`) has
-    a = [(n + 1) F/(2 n κ_n c E*)]^{1/(n+1)}
+    a = [(n + 1) F/(n c E*)]^{1/(n+1)}     and     a = [(n + 1) F/(2 n κ_n c E*)]^{1/(n+1)}
 
 so that the image is (2κ_n)^{1/(n+1)} times as wide and has the inverse square of that as mean pressure. For two equal
-spheres, for which it was derived, force and displacement are theirs, and the image is 2 times as wide.
+spheres, for which it was derived, it has their force and displacement, and is 2 times as wide.
 """
 
 from __future__ import annotations
@@ -72,8 +72,6 @@ if TYPE_CHECKING:
 
 
 Reduction = Literal["geike_popov", "mdr"]
-LAYER_SHARE = {"geike_popov": 0.5, "mdr": 1.0}
-"""Stiffness per length of the layer over E*."""
 PARABOLA_SHARE = {"geike_popov": 1.0, "mdr": 0.5}
 """Radius of the plane parabola x²/2R₁ over that of the body that it represents: the MDR takes x²/2R to x²/R."""
 
@@ -102,12 +100,12 @@ class Elastic(Table):
 
     @property
     def compliance(self) -> float:
-        """(1 − ν²)/E [1/Pa]."""
+        """Plane-strain compliance (1 − ν²)/E [1/Pa]."""
         return (1.0 - self.poisson_ratio**2) / self.youngs_modulus
 
     @property
     def tangential_compliance(self) -> float:
-        """(2 − ν)/4G = (2 − ν)(1 + ν)/2E [1/Pa]."""
+        """Tangential compliance (2 − ν)/4G = (2 − ν)(1 + ν)/2E [1/Pa]."""
         return (2.0 - self.poisson_ratio) * (1.0 + self.poisson_ratio) / (2.0 * self.youngs_modulus)
 
 
@@ -131,32 +129,32 @@ class Material(Table):
 
     @property
     def elastic(self) -> dict[str, Elastic]:
-        """Those of the two bodies that are given and not rigid, which alone have a compliance, by name."""
+        """The given bodies that are not rigid, and so have a compliance, by name."""
         bodies = {"upper": self.upper, "lower": self.lower}
         return {name: body for name, body in bodies.items() if isinstance(body, Elastic)}
 
     def effective_modulus(self) -> float:
-        """E* [Pa]."""
+        """Return the contact modulus E* [Pa], given or of both bodies."""
         return self.contact_modulus or 1.0 / sum(body.compliance for body in self.elastic.values())
 
     def tangential_share(self) -> float:
-        """G*/E*; 1 where only E* is known, so that the bulk springs are the same in both directions."""
+        """Return G*/E*, or 1 if only E* is known, so that bulk springs are equally stiff in both directions."""
         bodies = self.elastic.values()
         tangential = sum(body.tangential_compliance for body in bodies)
         return sum(body.compliance for body in bodies) / tangential if bodies else 1.0
 
     def layer_stiffness(self, reduction: Reduction) -> float:
-        """Stiffness per length of the layer that both chains make [Pa]."""
-        return LAYER_SHARE[reduction] * self.effective_modulus()
+        """Return the stiffness per length [Pa] of the layer of both chains, E* or by the paper's reduction E*/2."""
+        return (0.5 if reduction == "geike_popov" else 1.0) * self.effective_modulus()
 
 
 def default_reduction(has_material: bool, lower: str, profile: str) -> Reduction:
-    """The reduction of a scene that names none: the paper's for its own plane model alone."""
+    """Return the reduction of a scene that names none: the paper's for its own plane model alone."""
     return "mdr" if has_material or lower == "rigid_plane" or profile != "parabola" else "geike_popov"
 
 
 def wider_than_body(profile: Mapping[str, Any]) -> float | None:
-    """Half-width of the paper's image over the contact radius of that body on a plane, under the same force.
+    """Return the half-width of the paper's image over the contact radius of the body on a plane under the same force.
 
     Args:
         profile: with the keys of a scene file. Of a circle or an ellipsoid the factor is that of its parabola.
@@ -210,7 +208,7 @@ class Bodies(Table):
     """
 
     def height(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Height [LU] of the upper chain above its apex at the positions `x` [LU], by its reduction."""
+        """Return the height [LU] of the upper chain above its apex at the positions `x` [LU], by its reduction."""
         return self.profile.transformed(x) if self.reduction == "mdr" else self.profile.height(x)
 
     @property
@@ -223,12 +221,12 @@ class Bodies(Table):
 
     @property
     def own_count(self) -> int | None:
-        """Particles of the upper chain that its shape decides: a body with an edge is as wide as its chain."""
+        """Particles of the upper chain of a body with an edge, which is as wide as its chain; None for other bodies."""
         return round(2.0 * self.reach / self.own_spacing) if self.profile.has_edge else None
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Positions [LU] beside the apex at which the slope of the profile jumps."""
+        """Radii [LU] off the axis at which the slope of the profile jumps."""
         return self.profile.kinks
 
     @property
@@ -244,7 +242,7 @@ class Bodies(Table):
 
     @property
     def plane_radius(self) -> float | None:
-        """Radius R₁ [LU] of the plane parabola x²/2R₁ that represents R, R or with the MDR R/2; else None."""
+        """Radius R₁ [LU] of the plane parabola x²/2R₁ that represents R: R, or with the MDR R/2; else None."""
         profile = self.profile
         return PARABOLA_SHARE[self.reduction] * profile.curvature_radius if isinstance(profile, Parabola) else None
 
@@ -257,7 +255,7 @@ class Accuracy(Table):
 
 
 class Output(Table):
-    """Additional output."""
+    """Additional output of a run."""
 
     states: AllOr[StateCount]
     """number of states in states.lammpstrj, evenly among the load steps of curve.csv, or "all" of these; each has the
@@ -331,21 +329,21 @@ class Tables(Table):
 
     @property
     def present(self) -> tuple[Effect, ...]:
-        """These effects."""
+        """The tables of the effects that this scene has, in deck order."""
         return tuple(getattr(self, name) for name in self.effects)
 
     @property
     def is_modelled(self) -> bool:
-        """Whether the reduced model has all of them."""
+        """Whether the reduced model has all effects of this scene."""
         return all(effect.is_modelled for effect in self.present)
 
     @property
     def keeps_springs(self) -> bool:
-        """Whether the line load inside of a contact is that of linear springs, whatever happens at its edge."""
+        """Whether the line load inside a contact is that of linear springs, regardless of its edge."""
         return all(effect.keeps_springs for effect in self.present)
 
     def the(self, kind: type[E]) -> E:
-        """The effect of this kind, which a rule or the experiment needs."""
+        """Return the effect of this kind, which a rule or the experiment needs."""
         return next(effect for effect in self.present if isinstance(effect, kind))
 
     @property
@@ -360,7 +358,7 @@ class Tables(Table):
 
     @property
     def bulk_stiffness(self) -> float:
-        """Stiffness k [FU/LU] of each particle to its bulk: the given one, else the material's.
+        """Stiffness k [FU/LU] of each particle to its bulk: given, else that of the material.
 
         Two chains in series, or one on a rigid plane, make the layer c: k = 2 c h or c h, with the spacing h.
         """
@@ -375,7 +373,7 @@ class Tables(Table):
 
     @property
     def tangential_stiffness(self) -> float:
-        """Stiffness [FU/LU] of each particle to its bulk along x: the given one, else G*/E* of the normal one."""
+        """Stiffness [FU/LU] of each particle to its bulk along x: given, else G*/E* times the normal stiffness."""
         given = self.bodies.bulk_stiffness_tangential
         if given is not None:
             return given
@@ -383,7 +381,7 @@ class Tables(Table):
 
     @property
     def chains(self) -> int:
-        """How many chains share the deformation: two, or one on a rigid plane or a rigid chain."""
+        """Number of chains that share the deformation: two, or one on a rigid plane or a rigid chain."""
         return 2 if self.bodies.lower == "particles" else 1
 
     @property
@@ -398,12 +396,12 @@ class Tables(Table):
 
     @property
     def method(self) -> Method:
-        """The method given, else "dynamic" if a plate, damping or noise is there, else "quasistatic"."""
+        """The given method, else "dynamic" with a plate, damping or noise, else "quasistatic"."""
         return self.experiment.given_method or default_method(self.effects)
 
 
 WHOLE = allowed_by(Tables)
-"""What a scene is."""
+"""The values that a scene may have at its keys."""
 EFFECT_TABLES: dict[str, type[Effect]] = {
     name: table for name, key in keys_of(Tables).items() if (table := key.allowed.table) and issubclass(table, Effect)
 }
@@ -415,5 +413,5 @@ TIMED = tuple(name for name, kind in EFFECT_TABLES.items() if kind.timed)
 
 
 def default_method(effects: tuple[str, ...]) -> Method:
-    """Method of a scene that names none and has these `effects`; a slide is always dynamic besides."""
+    """Return the method of a scene that names none and has these `effects`; a slide is always dynamic."""
     return "dynamic" if set(TIMED) & set(effects) else "quasistatic"

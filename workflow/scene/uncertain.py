@@ -1,4 +1,4 @@
-"""Numbers of a scene that are known to within something: "10 ± 0.1 mm", "70 GPa ± 5 %", at a coverage of 95 %.
+"""Numbers of a scene with an uncertainty: "10 ± 0.1 mm", "70 GPa ± 5 %", at a coverage of 95 %.
 
 What follows ± is kept as a share of the value, which no change of units alters. The model is run with the value alone;
 the error budget then moves each such number both ways (`continuation.budget`).
@@ -19,9 +19,7 @@ from contact1d.workflow.scene.si_text import NUMBER, UnitTextError, quantity, si
 
 SIGN = re.compile(r"\s*(?:±|\+/?-)\s*")
 TOGETHER = re.compile(r"\((.*)\)(.*)")
-"""(10 ± 0.1) mm"""
-LARGEST = Fraction(1, 2)
-"""Of a value, from which on it may as well be another one."""
+"""Value and uncertainty with one unit: (10 ± 0.1) mm."""
 EXACT = (
     "accuracy.tolerance", "bodies.spacing", "bodies.upper_spacing", "bodies.upper_offset", "interaction.cutoff",
     "material.length_unit", "material.force_unit", "material.mass_unit", "bodies.profile.scale",
@@ -30,9 +28,9 @@ EXACT = (
 
 
 def take_shares(scene: Place) -> dict[str, float]:
-    """The 95 % half-width of each number with ± over its value, by dotted key; the value stays in its place.
+    """Return the 95 % half-width of each number with ± over its value, by dotted key; the scene keeps the value.
 
-    In Python a number may be a pair of value and half-width, each a text or a number. What is wrong is reported.
+    In Python a number may be a pair of value and half-width, each a text or a number. Errors are reported.
     """
     shares = {}
     for place in numbers_in(scene):
@@ -48,23 +46,23 @@ def take_shares(scene: Place) -> dict[str, float]:
         place.put(value)
         if isinstance(place.keys[-1], int) or path in EXACT:
             place.fault("has no uncertainty", "write the value alone")
-        elif not 0 < share < LARGEST:
+        elif not 0 < 2 * share < 1:
             place.fault("must have an uncertainty greater than 0 and less than half of its value")
         shares[path] = float(share)
     return shares
 
 
 def _parts(value: object) -> tuple[Any, Any] | None:
-    """Value and half-width of a text or a pair; None of anything else."""
-    if isinstance(value, str) and len(halves := SIGN.split(value)) == 2 and halves[0]:
-        if found := TOGETHER.fullmatch(value.strip()):
-            halves = [f"{one}{found[2]}" for one in SIGN.split(found[1])]
-        return halves[0], halves[1]
+    """Return value and half-width of a text or a pair; None for anything else."""
+    if isinstance(value, str) and len(parts := SIGN.split(value)) == 2 and parts[0]:
+        if match := TOGETHER.fullmatch(value.strip()):
+            parts = [f"{part}{match[2]}" for part in SIGN.split(match[1])]
+        return parts[0], parts[1]
     return (value[0], value[1]) if isinstance(value, list) and len(value) == 2 else None
 
 
 def _read(place: Place, value: Any, spread: Any) -> tuple[Any, Fraction]:
-    """The value as a scene has it, and the half-width over it. Raises UnitTextError."""
+    """Return the value as a scene has it, and the half-width over it. Raises UnitTextError."""
     number, half, text, units = _plain(value), _plain(spread), str(spread).strip(), place.unit.texts
     if not any(map(str.isdigit, text)):
         raise UnitTextError('must have a number behind ±, as in "10 ± 0.1 mm" or "10 mm ± 1 %"')
@@ -86,7 +84,7 @@ def _read(place: Place, value: Any, spread: Any) -> tuple[Any, Fraction]:
 
 
 def _plain(value: Any) -> Fraction | None:
-    """The number, or that of a text that is one; None of anything else."""
+    """Return a number, or that of a text without a unit, as a fraction; None for anything else."""
     if isinstance(value, int | float) and not isinstance(value, bool):
         return Fraction(repr(value)) if value - value == 0 else None
     plain = str(value).strip().replace("−", "-")
@@ -94,24 +92,24 @@ def _plain(value: Any) -> Fraction | None:
 
 
 def with_shares(tables: dict[str, Any], shares: Mapping[str, float]) -> dict[str, Any]:
-    """The tables of a scene with ± at these keys, in units of the model, as `take_shares` reads them; in place."""
+    """Add ± to the numbers at these keys, as `take_shares` reads it, and return the tables, changed in place."""
     for path, share in shares.items():
         *above, key = keys_in(path)
         table: Any = tables
         with suppress(LookupError):
-            for one in above:
-                table = table[one]
+            for name in above:
+                table = table[name]
             table[key] = f"{table[key]!r} ± {100.0 * share!r} %"
     return tables
 
 
 def moved(part: Any, keys: Sequence[Any], factor: float) -> Any:
-    """The table, list of tables or number with the number at these keys times a factor."""
+    """Return a table, list of tables or number with the number at these keys times a factor."""
     if not keys:
         return factor * part
     first, *rest = keys
     if isinstance(part, tuple):
-        return tuple(moved(one, rest, factor) if i == first else one for i, one in enumerate(part))
+        return tuple(moved(entry, rest, factor) if i == first else entry for i, entry in enumerate(part))
     kind: type[Table] = type(part)
     field = keys_of(kind)[first].field
     return part.model_copy(update={field: moved(getattr(part, field), rest, factor)})

@@ -14,7 +14,7 @@ def plate(scene: Scene, settings: Settings) -> Contribution:
     drag = 0.0 if scene.noise else settings.motion.plate_damping
     variables = {"plate_damping_per_anchor": number(drag / anchors), "plate_free_x": free["x" in scene.the(Plate).free]}
     fragments: tuple[str, ...] = ("plate_alone" if alone else "plate",)
-    if scene.experiment.draws_off:
+    if scene.experiment.is_retracted:
         fragments = ("drawn", *fragments)
     width = 2.0 * STAGGER_SHARE * settings.chains.upper * scene.bodies.own_spacing
     wide_bin = width / MOST_BINS_ACROSS
