@@ -174,12 +174,13 @@ def _with_chord_corners(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Arr
     before, after, start, end = slope[1:-2], slope[3:], slice(1, -2), slice(2, -1)
     with np.errstate(divide="ignore", invalid="ignore"):
         meet = (y[end] - y[start] + before * x[start] - after * x[end]) / (before - after)
+        level = y[start] + before * (meet - x[start])
     # Beside a point that is a corner itself there is no other.
     radii, _, corners = _with_corners(r, z)
     is_corner = np.isin(x, radii[corners])
     inside = (meet > x[start]) & (meet < x[end]) & ~is_corner[start] & ~is_corner[end]
     radii = np.append(x, meet[inside])
-    heights = np.append(y, (y[start] + before * (meet - x[start]))[inside])
+    heights = np.append(y, level[inside])
     order = np.argsort(radii)
     return radii[order], heights[order]
 
