@@ -10,10 +10,10 @@ With q a polynomial between neighbouring positions, q′ = c₀ + c₁ x + c₂ 
     ∫ q′/√(x² − r²) dx = (c₀ + c₂ r²/2) arcosh(x/r) + (c₁ + c₂ x/2) √(x² − r²)
 
 and where q ends at the edge a by a jump q(a), as under a flat punch or in JKR, that adds q(a)/π√(a² − r²). So the root
-at Hertz's edge, the pole at a punch's and the logarithm at a cone's tip are exact, not resolved by a grid.
+at Hertz's edge, the pole at that of a punch and the logarithm at a cone's tip are exact, without a fine grid.
 
-Independent springs on a plane have the body's own shape, q(x) = c (d − h(x)), whose x^n no polynomial follows at the
-axis unless n is even. There polynomials are put through q + c h alone, and
+Independent springs on a plane have the shape of the body, q(x) = c (d − h(x)), and its x^n is no even polynomial at the
+axis unless n is even. Polynomials then go through q + c h, and
 
     p(r) = … + (c/π) ∫ dh/t,   x² = r² + t²,  0 < t < √(a² − r²)
 
@@ -157,7 +157,7 @@ def _of_body(body: Body, distances: bytes, borders: Sequence[float]) -> Array:
         return np.asarray(np.sum((height(t) @ _differences().T) / t, axis=-1))
 
     total = np.sum(integral(graded[..., :-1], graded[..., 1:]), axis=(1, 2))
-    # Up to the first interval of a piece h rises as a root at most, which 1/t knows nothing of but at the axis.
+    # Below the first interval of a piece h rises as a root at most; 1/t is singular at the axis only.
     first = graded[..., 0]
     rise = height(first) - height(ends[:, :-1])
     total += np.sum(rise[:, 1:] / first[:, 1:], axis=1)

@@ -1,7 +1,7 @@
-"""What a chart shows, apart from how it is drawn: axes with units, and series in panels one below the other.
+"""Descriptions of charts: axes with units, and series in panels one below the other.
 
-A description is arrays and words, and costs no drawing. `analysis.plots` draws it by matplotlib, for files and Python;
-`workflow.report.charts` by plotly, for a page. Both draw what `Chart.written` gives.
+A description has arrays and texts, and needs no drawing library. `analysis.plots` draws it by matplotlib, for files and
+Python; `workflow.report.charts` by plotly, for a page. Both draw what `Chart.written` returns.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ ENDLESS = np.asarray([-math.inf, math.inf])
 
 @dataclass(frozen=True)
 class Axis:
-    """What is measured along an axis.
+    """An axis of a chart, with the measured quantity.
 
     Attributes:
         name, unit, remark: `force`, `FU`, `, compression positive`; the unit "1" is that of a number.
         zero: whether 0 is shown, with a line.
         log: whether it is logarithmic.
-        ticks: words in place of numbers, by their positions.
-        view: its ends, as the numbers of a chart have them.
+        ticks: labels in place of numbers, by their positions.
+        view: ends of the axis, in the unit of the numbers.
     """
 
     name: str
@@ -77,7 +77,7 @@ class Series:
 
     Attributes:
         x, y: arrays (n,); NaN is a gap, ±∞ the end of the axis. In a chart that moves either may be (m, n), m states.
-        name: in the legend; a name that several have is there once.
+        name: in the legend; a name of several series appears once.
         colour, look, width, opacity: see FILL.
         dx, dy: uncertainties, which points show as bars.
     """
@@ -95,12 +95,12 @@ class Series:
 
 @dataclass(frozen=True)
 class Panel:
-    """What is drawn over one pair of axes.
+    """A panel of a chart: all that is drawn over one pair of axes.
 
     Attributes:
-        y: the axis upwards; along x a chart has one for all its panels.
-        series: in the order in which they are drawn. Theories, by their colour, do not widen the view.
-        title, note: above; the note has numbers of one run.
+        y: the axis upwards; all panels of a chart share the axis along x.
+        series: in the order in which they are drawn. Theories, marked by their colour, do not widen the view.
+        title, note: above the panel; the note has numbers of one run.
         height: [inch].
     """
 

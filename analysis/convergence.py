@@ -16,7 +16,7 @@ def extrapolated(coarse: Numbers, fine: Numbers, finest: Numbers) -> Array:
     """Return |v_h − v_{h/2}|/(1 − q), with the observed ratio q = 2⁻ᵖ of the differences of three spacings h, h/2, h/4.
 
     For v_h = v + c hᵖ it is |v_h − v|. Where the second difference is the larger one, the first is small by accident,
-    and later ones are taken to halve.
+    and later ones are assumed to halve.
     """
     first, second = np.abs(np.subtract(coarse, fine)), np.abs(np.subtract(fine, finest))
     share = np.minimum(second, SLOWEST * first) / np.maximum(first, TINY)

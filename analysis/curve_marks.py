@@ -53,7 +53,7 @@ def largest_tension(displacement: Sequence[float], force: Sequence[float]) -> Pe
     jump_ratio = 3.0  # a drop after the maximum over the rise before it, above which it is an instability
     if even[1] > jump_ratio * even[0] + jump_ratio * abs(_bend(d, tension, i)):
         return Peak(i, top, float(even[0] * (d[i] - d[i + 1])), top, float(d[i]), 0.0)
-    # A search that has come back to the maximum leaves points so near to it that no polynomial goes through both.
+    # A search that returns to the maximum leaves points too near to it for a polynomial.
     d, tension, highest = _apart_from(d, tension, i)
     compared, coarse = vertex(d, tension, highest, 1)
     if not 2 <= highest < len(d) - 2:

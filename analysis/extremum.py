@@ -1,4 +1,4 @@
-"""The minimum between samples: that of a polynomial, dP/dx = 0, with its uncertainty.
+"""The minimum between samples, that of a polynomial, dP/dx = 0, with its uncertainty.
 
 Measured on the closed form of independent pairs, p(x) = f(r), x^2 / 2R + G_0 = r - 2 f(r) / k, f two exponentials, with
 R = 1000, ranges 0.2 … 2, radii to 80 and random lattice offsets (542 cases without, 578 with particles that snap; error
@@ -31,7 +31,7 @@ SIDE_COUNTS = (3, 5, 10)
 
 
 @dataclass(frozen=True)
-class Place:
+class EstimatedPosition:
     """A position with its estimated uncertainty; at_end: at the first or last sample, so it may lie beyond."""
 
     position: float
@@ -39,30 +39,30 @@ class Place:
     at_end: bool = False
 
 
-def place_of_minimum(x: Array, y: Array, candidates: NDArray[np.intp]) -> Place:
-    """Return where y(x) is least near the lowest of the candidate samples.
+def position_of_minimum(x: Array, y: Array, candidates: NDArray[np.intp]) -> EstimatedPosition:
+    """Return the position of the minimum of y(x) near the lowest of the candidate samples.
 
-    x: positions, ascending, (n,), n >= 3; y: values, (n,); candidates: indices, ascending, in which to look.
+    x: positions, ascending, (n,), n >= 3; y: values, (n,); candidates: indices, ascending.
     The uncertainty covers the error in at least 95 % of random closed-form cases (see the module), without noise and
-    with white noise of up to 1 % of the depth, and of skewed dips from 0.3 spacings wide on;
-    where y jumps, the minimum is anywhere between two samples.
+    with white noise of up to 1 % of the depth, and of skewed dips at least 0.3 spacings wide; where y jumps, the
+    minimum is anywhere between two samples.
     """
     last = len(x) - 1
     index = int(candidates[np.argmin(y[candidates])])
     if index in (0, last):
-        return Place(float(x[index]), spacing_of(x), True)
+        return EstimatedPosition(float(x[index]), spacing_of(x), True)
     noise = _noise(y, index)
     likely = candidates[y[candidates] <= y[index] + 5.0 * noise]  # each of these may be the lowest one, but for noise
     first, final = int(likely[0]), int(likely[-1])
     extent = float(x[final] - x[first])
     if final - first < 4:  # interpolation bridges up to five samples
-        place = _converging(x, y, index, noise) or _interpolated(x, y, index, noise)
+        minimum = _converging(x, y, index, noise) or _interpolated(x, y, index, noise)
     else:
-        place = _fitted(x, y, first, final, noise)
+        minimum = _fitted(x, y, first, final, noise)
     open_towards_others = (first == candidates[0] and first > 0) or (final == candidates[-1] and final < last)
-    inside = 0.25 * extent if final - first > 1 else 0.0  # two neighbours that tie are what interpolation is for
+    inside = 0.25 * extent if final - first > 1 else 0.0  # interpolation resolves two neighbours that tie
     spread = extent if open_towards_others else inside
-    return Place(place.position, max(place.uncertainty, spread), first == 0 or final == last)
+    return EstimatedPosition(minimum.position, max(minimum.uncertainty, spread), first == 0 or final == last)
 
 
 def _noise(y: Array, index: int, reach: int = 20, highest_order: int = 12) -> float:
@@ -101,7 +101,7 @@ def _smoothest(x: Array, y: Array, index: int, size: int) -> list[slice]:
     return [slice(lows[i], lows[i] + size) for i in np.argsort(costs, kind="stable")]
 
 
-def _converging(x: Array, y: Array, index: int, noise: float) -> Place | None:
+def _converging(x: Array, y: Array, index: int, noise: float) -> EstimatedPosition | None:
     """Return the minimum of the polynomial through as many samples on each side of `index` as reduce its uncertainty.
 
     On even samples of a smooth function it converges with the degree; those of lower degree show how fast. None where
@@ -111,7 +111,7 @@ def _converging(x: Array, y: Array, index: int, noise: float) -> Place | None:
     if room < SIDE_COUNTS[1] or not _is_smooth(x, y, index, noise):
         return None
     low, high = float(x[index - 1]), float(x[index + 1])
-    best: Place | None = None
+    best: EstimatedPosition | None = None
     before: float | None = None
     change = 0.0
     for count in (count for count in SIDE_COUNTS if count <= room):
@@ -121,10 +121,10 @@ def _converging(x: Array, y: Array, index: int, noise: float) -> Place | None:
         if before is not None:
             change = max(abs(position - before), 0.2 * change)  # no faster convergence than that is assumed
             # Twice the change covers 99 % of the cases without snaps, with noise or without.
-            place = Place(position, 2.0 * change + 2.0 * noise * shift)
-            if best is not None and place.uncertainty >= best.uncertainty:
+            minimum = EstimatedPosition(position, 2.0 * change + 2.0 * noise * shift)
+            if best is not None and minimum.uncertainty >= best.uncertainty:
                 break
-            best = place
+            best = minimum
         before = position
     return best
 
@@ -146,7 +146,7 @@ def _is_smooth(x: Array, y: Array, index: int, noise: float, decay: float = 0.6,
     return True
 
 
-def _interpolated(x: Array, y: Array, index: int, noise: float) -> Place:
+def _interpolated(x: Array, y: Array, index: int, noise: float) -> EstimatedPosition:
     """Return the minimum of the polynomial through seven samples about `index`, compared with two others.
 
     These go through five samples, and through the seven that are next in smoothness.
@@ -157,13 +157,13 @@ def _interpolated(x: Array, y: Array, index: int, noise: float) -> Place:
     position, shift = best
     if math.isnan(position):  # y jumps: halfway across the larger of the two steps next to the lowest sample
         side = index + (1 if abs(y[index + 1] - y[index]) > abs(y[index - 1] - y[index]) else -1)
-        return Place(0.5 * float(x[index] + x[side]), 0.5 * (high - low))
+        return EstimatedPosition(0.5 * float(x[index] + x[side]), 0.5 * (high - low))
     differences = [high - low if math.isnan(minimum) else abs(position - minimum) for minimum, _ in compared]
     # A dip of one sample may lie anywhere up to its neighbours, and polynomials through it agree by chance. Of skewed
     # dips twice the steepness covers 95 %; once would be 89 % of those nearly a spacing wide, without it 61 %.
     unresolved = _steepness(y, index) * (high - low)
     unresolved = min(unresolved, max(high - position, position - low))
-    return Place(position, max(max(differences) + 2.0 * noise * shift, unresolved))
+    return EstimatedPosition(position, max(max(differences) + 2.0 * noise * shift, unresolved))
 
 
 def _steepness(y: Array, index: int) -> float:
@@ -173,7 +173,7 @@ def _steepness(y: Array, index: int) -> float:
     return min(1.0, rise / depth) if depth > 0.0 else 1.0
 
 
-def _fitted(x: Array, y: Array, first: int, last: int, noise: float, degree: int = 4) -> Place:
+def _fitted(x: Array, y: Array, first: int, last: int, noise: float, degree: int = 4) -> EstimatedPosition:
     """Return the minimum of a least-squares quartic over samples first … last, any of which may be the lowest.
 
     Of three windows (wider to the right, to both sides, to the left) it is the one that fits best.
@@ -190,10 +190,10 @@ def _fitted(x: Array, y: Array, first: int, last: int, noise: float, degree: int
     lower, _ = _minimum(x, y, window, low_x, high_x, degree - 1)
     extent = high_x - low_x
     if math.isnan(position):
-        return Place(0.5 * (low_x + high_x), 0.5 * extent)
+        return EstimatedPosition(0.5 * (low_x + high_x), 0.5 * extent)
     difference = 0.5 * extent if math.isnan(lower) else abs(position - lower)
     jump = extent if misfits[best] > 2.0 * noise else 0.0
-    return Place(position, max(difference + 2.0 * noise * shift, jump))
+    return EstimatedPosition(position, max(difference + 2.0 * noise * shift, jump))
 
 
 def _misfit(x: Array, y: Array, window: slice, degree: int) -> float:
@@ -210,8 +210,8 @@ def _minimum(
 ) -> tuple[float, float]:
     """Return the position of the lowest minimum, between low and high, of the polynomial over samples.
 
-    With it comes its shift per noise in y; (NaN, NaN) without a minimum. The polynomial goes through all samples unless
-    its `degree` is less. A minimum that is expected `near` a position is found from there.
+    The second number is its shift per noise in y; (NaN, NaN) without a minimum. The polynomial goes through all samples
+    unless its `degree` is lower. A minimum that is expected `near` a position is sought from there.
     """
     points, values = x[under], y[under]
     origin, width, depth = float(points.sum()) / len(points), float(np.ptp(points)), float(np.abs(values).max())

@@ -1,7 +1,7 @@
 """What each figure of a run shows: line load (the paper's Fig. 4), force over displacement and over radius (Fig. 8).
 
 Each function returns the description of a chart, in the units of its numbers. Reference: JKR, F̃ = 4ã³ − 4ã^{3/2}
-(Eq. 8), scaled on the run's own F_A and a₀, so that only the shapes are compared. A theory is its name with the values
+(Eq. 8), scaled by F_A and a₀ of the run, so that only the shapes are compared. A theory is its name with the values
 along x and y.
 """
 

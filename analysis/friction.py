@@ -153,36 +153,38 @@ def student(freedom: int) -> float:
 
 
 def slips(
-    time: Array, place: Array, spacing: float, velocity: float, faster: float = 2.0, least: float = 0.45
+    time: Array, position: Array, spacing: float, velocity: float, faster: float = 2.0, least: float = 0.45
 ) -> list[Slip]:
     """Return the slips of a plate: across a barrier, or from a barrier into a minimum.
 
     At high drag the plate slows down on the barrier itself, wherever that is: a slip has no given position.
 
     Args:
-        time, place: of the plate, shape (n,) [TU], [LU].
+        time, position: of the plate, shape (n,) [TU], [LU].
         spacing: of the other body [LU].
         velocity: of the drive [LU/TU].
         faster: velocity of the plate over that of the drive, at least.
         least: length of a slip over the spacing; at the threshold of stick-slip the plate passes a barrier as fast over
             0.33 of it.
     """
-    quick = np.abs(np.diff(place)) > faster * abs(velocity) * np.diff(time)
+    quick = np.abs(np.diff(position)) > faster * abs(velocity) * np.diff(time)
     borders = np.flatnonzero(np.diff(quick.astype(int), prepend=0, append=0)).reshape(-1, 2)
-    moves = (Slip(float(time[end]), float(place[start]), float(place[end] - place[start])) for start, end in borders)
+    moves = (
+        Slip(float(time[end]), float(position[start]), float(position[end] - position[start])) for start, end in borders
+    )
     return [slip for slip in moves if abs(slip.size) > least * spacing]
 
 
-def largest_before(friction: Array, place: Array, spacing: float) -> tuple[float, float]:
+def largest_before(friction: Array, position: Array, spacing: float) -> tuple[float, float]:
     """Return (largest friction [FU] until the plate has moved by one period, its sampling error [FU]).
 
     The friction rises smoothly until the plate slips: the sampling error is less than the rise from the point before.
     Over the top of a barrier that the plate passes without a slip it is a smooth function of the position: its maximum
     is that of the polynomial through five points, with the difference to that through three as its error.
     """
-    before = place - place[0] < spacing
+    before = position - position[0] < spacing
     top = int(np.argmax(np.where(before, friction, -np.inf)))
-    if (summit := _summit(friction, place, top)) is not None:
+    if (summit := _summit(friction, position, top)) is not None:
         return summit
     missed = float(friction[top] - friction[top - 1]) if top > 0 else 0.0
     if 1 < top < friction.size - 1:
@@ -191,7 +193,7 @@ def largest_before(friction: Array, place: Array, spacing: float) -> tuple[float
 
 
 def _summit(
-    friction: Array, place: Array, top: int, neighbours: int = 2, largest_ratio: float = 2.0
+    friction: Array, position: Array, top: int, neighbours: int = 2, largest_ratio: float = 2.0
 ) -> tuple[float, float] | None:
     """Return (friction at a smooth maximum near the point `top`, its uncertainty); None where it is not smooth.
 
@@ -199,11 +201,11 @@ def _summit(
     the ratio of the largest to the smallest curvature of friction over position is many times as large as the limit.
     """
     near = slice(top - neighbours, top + neighbours + 1)
-    x, y = place[near], friction[near]
+    x, y = position[near], friction[near]
     if top < neighbours or x.size < 2 * neighbours + 1 or not (np.diff(x) > 0.0).all():
         return None
     _, bends, *_ = divided(x, y)
     if bends.min() < largest_ratio * bends.max():  # or one of them is not below 0
         return None
-    (_, largest), (_, coarse) = (vertex(place, friction, top, count) for count in (neighbours, neighbours - 1))
+    (_, largest), (_, coarse) = (vertex(position, friction, top, count) for count in (neighbours, neighbours - 1))
     return largest, abs(largest - coarse)

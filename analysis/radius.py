@@ -1,12 +1,12 @@
 """Contact radius from a pressure profile: with tension dp/dx = 0 at a, where p is least; without it p(a) = 0.
 
-A row of springs that are held up to an edge, where the pressure jumps to zero, is JKR's contact, reduced. The last
+Springs under tension up to an edge, where the pressure jumps to 0, are the reduced model of JKR's contact. The last
 particle that carries represents the share φ of its cell, x ± s/2, that lies within the edge: with p(x) the pressure
-inside, continued to the middle of that share,
+inside, extrapolated to the middle of that share,
 
     p_last = φ p(x_last − (1 − φ) s/2),    a = x_last − s/2 + φ s
 
-p is the parabola through the three particles before it, whose cells lie within the edge as a whole.
+p is the parabola through the three particles before it, whose cells lie within the edge.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.extremum import Place, place_of_minimum
+from contact1d.analysis.extremum import EstimatedPosition, position_of_minimum
 from contact1d.analysis.pressure import Array, Profile, spacing_of
 
 NEGLIGIBLE = 1e-12
@@ -130,7 +130,7 @@ def _centre(x: Array, p: Array) -> float:
     return float(np.average(x, weights=np.abs(p)))
 
 
-def _edge(x: Array, p: Array, centre: float, outwards: float) -> Place:
+def _edge(x: Array, p: Array, centre: float, outwards: float) -> EstimatedPosition:
     """Return the force maximum on one side of the centre; outwards: the spacing, negative for the left side [LU].
 
     A particle just beyond the centre belongs to both sides, so that both find a single spot. A maximum more than a
@@ -139,11 +139,11 @@ def _edge(x: Array, p: Array, centre: float, outwards: float) -> Place:
     """
     away = (x - centre) / outwards
     reach, inside = np.flatnonzero(away >= -0.5), np.flatnonzero(away >= 0.0)
-    place, residual = place_of_minimum(x, p, reach), 1e-5 * float(np.abs(p).max())
-    across = (place.position - centre) / outwards < -0.25
+    minimum, residual = position_of_minimum(x, p, reach), 1e-5 * float(np.abs(p).max())
+    across = (minimum.position - centre) / outwards < -0.25
     if across and inside.size and float(p[inside].min()) <= float(p[reach].min()) + residual:
-        return place_of_minimum(x, p, inside)
-    return place
+        return position_of_minimum(x, p, inside)
+    return minimum
 
 
 def _extremes(profile: Profile) -> tuple[float, float]:
@@ -156,14 +156,17 @@ def _extremes(profile: Profile) -> tuple[float, float]:
     return extremes
 
 
-def _between(left: Place, right: Place) -> ContactRadius:
+def _between(left: EstimatedPosition, right: EstimatedPosition) -> ContactRadius:
     value = max(0.0, 0.5 * (right.position - left.position))
     uncertainty = 0.5 * (left.uncertainty + right.uncertainty)
     return ContactRadius(value, uncertainty, left.position, right.position, left.at_end or right.at_end)
 
 
 def _of_edges(
-    x: Array, p: Array, carries: NDArray[np.bool_], edge: Callable[[list[float], list[float], int, int], Place]
+    x: Array,
+    p: Array,
+    carries: NDArray[np.bool_],
+    edge: Callable[[list[float], list[float], int, int], EstimatedPosition],
 ) -> ContactRadius:
     """Return the radius between the right `edge` of the particles that carry, and that of their mirror image.
 
@@ -183,13 +186,13 @@ def _of_edges(
         near = slice(low, most + 2)
         edges.append(edge(positions[near].tolist(), pressures[near].tolist(), least - low, most - low))
     right, mirrored = edges[0], edges[-1]
-    return _between(Place(-mirrored.position, mirrored.uncertainty, mirrored.at_end), right)
+    return _between(EstimatedPosition(-mirrored.position, mirrored.uncertainty, mirrored.at_end), right)
 
 
-def _zero(x: list[float], p: list[float], first: int, last: int, residual: float) -> Place:
+def _zero(x: list[float], p: list[float], first: int, last: int, residual: float) -> EstimatedPosition:
     """Return the right edge of a contact whose loaded particles are first … last; p and residual over the largest p."""
     if last == len(x) - 1:
-        return Place(x[last], x[last] - x[last - 1], True)
+        return EstimatedPosition(x[last], x[last] - x[last - 1], True)
     inner, outer = x[last], x[last + 1]
     zero, compared = (
         _parabola_zero(x[end - 2 : end + 1], p[end - 2 : end + 1], inner, outer, residual)
@@ -198,13 +201,17 @@ def _zero(x: list[float], p: list[float], first: int, last: int, residual: float
         for end in (last, last - 1)
     )
     if zero is None:
-        return Place(0.5 * (inner + outer), 0.5 * (outer - inner))
+        return EstimatedPosition(0.5 * (inner + outer), 0.5 * (outer - inner))
     if compared is None:
-        return Place(zero.position, max(outer - zero.position, zero.position - inner))
-    return Place(zero.position, min(abs(zero.position - compared.position) + zero.uncertainty, outer - inner))
+        return EstimatedPosition(zero.position, max(outer - zero.position, zero.position - inner))
+    return EstimatedPosition(
+        zero.position, min(abs(zero.position - compared.position) + zero.uncertainty, outer - inner)
+    )
 
 
-def _parabola_zero(x: list[float], p: list[float], inner: float, outer: float, residual: float) -> Place | None:
+def _parabola_zero(
+    x: list[float], p: list[float], inner: float, outer: float, residual: float
+) -> EstimatedPosition | None:
     """Return the falling zero, between inner and outer, of the parabola through three particles; None without one.
 
     c + b t + a t^2 falls with the slope -sqrt(D), D = b^2 - 4ac, at t = c/q for b < 0 and else at q/a, where
@@ -226,13 +233,13 @@ def _parabola_zero(x: list[float], p: list[float], inner: float, outer: float, r
     moved = residual / falling  # the outermost pressure may be lost in the residual
     if not -NEGLIGIBLE - moved <= zero <= 1.0 + NEGLIGIBLE + moved:
         return None
-    return Place(inner + width * zero, NEGLIGIBLE * (abs(inner) + width) + width * moved)
+    return EstimatedPosition(inner + width * zero, NEGLIGIBLE * (abs(inner) + width) + width * moved)
 
 
-def _held_edge(x: list[float], p: list[float], first: int, last: int) -> Place:
+def _held_edge(x: list[float], p: list[float], first: int, last: int) -> EstimatedPosition:
     """Return the right edge of a contact whose pressure jumps to 0 at it; the particles first … last carry."""
     spacing = (x[-1] - x[0]) / (len(x) - 1)
-    somewhere = Place(x[last], 0.5 * spacing, last == len(x) - 1)
+    somewhere = EstimatedPosition(x[last], 0.5 * spacing, last == len(x) - 1)
     if last - first <= PARABOLA_POINTS:  # the parabola would include the other edge
         return somewhere
     *inner, carried = p[last - PARABOLA_POINTS : last + 1]
@@ -241,7 +248,7 @@ def _held_edge(x: list[float], p: list[float], first: int, last: int) -> Place:
         return somewhere
     share = min(max(parabola, 0.0), 1.0)
     off = min(0.5, abs(parabola - straight)) * spacing
-    return Place(x[last] + (share - 0.5) * spacing, off, somewhere.at_end)
+    return EstimatedPosition(x[last] + (share - 0.5) * spacing, off, somewhere.at_end)
 
 
 def _share(carried: float, inner: list[float], steps: int = 10) -> float:

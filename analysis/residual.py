@@ -1,4 +1,4 @@
-"""Noise in the residual of a fit, and least squares with bounds: their solution, and by how much it may be off.
+"""Noise in the residual of a fit, and least squares with bounds: their solution and its uncertainty.
 
 The noise may be correlated: n points are worth n/τ independent ones, τ = 1 + 2 Σ ρ_k of the residual's autocorrelation.
 """

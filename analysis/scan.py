@@ -7,8 +7,8 @@ named shape, or of a smooth curve the slopes f′ ≥ 0 at knots, linear between
 together by least squares, so that both sides of a scan determine f, and their covariance is known. The noise may be
 correlated: n points are worth n/τ independent ones, τ = 1 + 2 Σ ρ_k of the residual's autocorrelation ρ. The knots of
 a smooth curve are added one by one, each that lowers the residual most by halving an interval, and removed again where
-they have become needless, as the extended Bayesian information criterion says (J. Chen, Z. Chen, Biometrika 95 (2008)
-759) under a noise that is read off the difference of both sides, which knows nothing of the shape.
+they have become needless, by the extended Bayesian information criterion (J. Chen, Z. Chen, Biometrika 95 (2008)
+759) under a noise from the difference of both sides, which does not depend on the shape.
 
 Lengths have any one unit.
 """

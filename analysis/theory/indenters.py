@@ -5,7 +5,7 @@ A contact of radius a has, with the power-law profile z = c r^n and kappa_n = (s
     d = kappa_n c a^n - sqrt(2 pi W a/E*),    F = 2n/(n+1) kappa_n c E* a^(n+1) - sqrt(8 pi E* W a^3)
 
 For n = 2, c = 1/2R that is Hertz and, with the work of adhesion W, JKR; for n = 1 Sneddon's cone, with W that of Maugis
-and Barquins. What W adds is a flat punch's tension at the same a. W = 2 gamma is the work of adhesion of two equal
+and Barquins. W adds the tension of a flat punch of the same a. W = 2 gamma is the work of adhesion of two equal
 surfaces, gamma the surface energy of one of them; Geike and Popov (2007) call gamma the work of adhesion. Forces are
 positive in compression. Valid for small slopes, a frictionless half space and, with W, a Tabor parameter well above 1.
 Sources: I. N. Sneddon, Int. J. Engng Sci. 3 (1965) 47; L. A. Galin (1953); K. L. Johnson, K. Kendall, A. D. Roberts,
@@ -235,17 +235,17 @@ class PowerLaw(Indenter):
         """Return the largest p [stress]: for n <= 2 p(0); for n > 2 it is off the axis, and has no closed form: NaN."""
         return self.central_pressure(contact_radius) if self.exponent <= 2.0 else math.nan
 
-    def pressure(self, place: Floats, contact_radius: float) -> Floats:
+    def pressure(self, r: Floats, contact_radius: float) -> Floats:
         """Return p(r) [stress], positive in compression, of a cone or a paraboloid; 0 from the edge on.
 
         (E* c/2) arcosh(a/r) or (2 E* a/pi R) sqrt(1 - r^2/a^2), less sqrt(2 E* W/pi a)/sqrt(1 - r^2/a^2).
 
         Args:
-            place: r >= 0 [length], any shape.
+            r: distances from the axis >= 0 [length], any shape.
             contact_radius: a >= 0 [length].
         """
-        pressure, inside = np.zeros_like(place), place < contact_radius
-        ratio, scale = place[inside] / contact_radius, self.contact_modulus * self.coefficient
+        pressure, inside = np.zeros_like(r), r < contact_radius
+        ratio, scale = r[inside] / contact_radius, self.contact_modulus * self.coefficient
         root = np.sqrt(1.0 - ratio**2)
         with np.errstate(divide="ignore"):
             cone = 0.5 * scale * np.arccosh(1.0 / ratio)
@@ -344,10 +344,10 @@ class FlatPunch:
         """The contact stiffness F/d = 2 E* a [force/length]."""
         return 2.0 * self.contact_modulus * self.radius
 
-    def pressure(self, place: Floats | float, displacement: float) -> Floats:
-        """Return p(r) = (E* d/pi) (a^2 - r^2)^(-1/2) [stress], shape of `place` 0 <= r < a [length]; d [length]."""
-        r = np.asarray(place, dtype=np.float64)
-        return np.asarray(self.contact_modulus * displacement / (math.pi * np.sqrt(self.radius**2 - r**2)))
+    def pressure(self, r: Floats | float, displacement: float) -> Floats:
+        """Return p(r) = (E* d/pi) (a^2 - r^2)^(-1/2) [stress] at 0 <= r < a [length], any shape; d [length]."""
+        root = np.sqrt(self.radius**2 - np.asarray(r, dtype=np.float64) ** 2)
+        return np.asarray(self.contact_modulus * displacement / (math.pi * root))
 
     def pull_off_force(self) -> float:
         """Return Kendall's F_A = sqrt(8 pi E* W a^3), a positive magnitude [force]."""

@@ -23,7 +23,7 @@ def sliding_displacement(friction: float, ratio: float, displacement: float) -> 
     return friction * displacement / ratio
 
 
-def _amplitudes(places: Sequence[float]) -> list[list[float]]:
+def _amplitudes(positions: Sequence[float]) -> list[list[float]]:
     """Return at each position the first remembered turn, or the position without one, and half of each later distance.
 
     These are the distances from turn to turn and from the last turn to the position [length]. A turn is forgotten where
@@ -31,7 +31,7 @@ def _amplitudes(places: Sequence[float]) -> list[list[float]]:
     """
     turns: list[float] = []
     current, direction, amplitudes = 0.0, 0.0, []
-    for position in places:
+    for position in positions:
         if position != current:
             onwards = math.copysign(1.0, position - current)
             if direction and onwards != direction:
@@ -44,13 +44,13 @@ def _amplitudes(places: Sequence[float]) -> list[list[float]]:
     return amplitudes
 
 
-def mindlin_path(places: Sequence[float], normal_force: float, friction: float, sliding: float) -> list[float]:
+def mindlin_path(positions: Sequence[float], normal_force: float, friction: float, sliding: float) -> list[float]:
     """Return F_x [force] at each of the positions, reached one after the other from 0 under a constant load.
 
     From turn to turn T(u_1) + 2 T((u_2 - u_1)/2) + ..., T the force of the initial loading.
 
     Args:
-        places: u [length].
+        positions: u [length].
         normal_force: N [force].
         friction: mu.
         sliding: u* [length].
@@ -60,7 +60,7 @@ def mindlin_path(places: Sequence[float], normal_force: float, friction: float, 
         left = max(1.0 - abs(distance) / sliding, 0.0)
         return friction * normal_force * math.copysign(1.0 - left**1.5, distance)
 
-    return [force(first) + sum(2.0 * force(half) for half in later) for first, *later in _amplitudes(places)]
+    return [force(first) + sum(2.0 * force(half) for half in later) for first, *later in _amplitudes(positions)]
 
 
 def mindlin_cycle_energy(amplitude: float, normal_force: float, friction: float, sliding: float) -> float:
@@ -94,12 +94,12 @@ def mindlin_cycle_energy(amplitude: float, normal_force: float, friction: float,
     return friction * normal_force * (partial + 4.0 * max(amplitude - sliding, 0.0))
 
 
-def mindlin_stick_path(places: Sequence[float], contact_radius: float, sliding: float) -> list[float]:
+def mindlin_stick_path(positions: Sequence[float], contact_radius: float, sliding: float) -> list[float]:
     """Return c [length] at each of the positions of a path as of `mindlin_path`; after a reversal all sticks again.
 
     Args:
-        places: u [length].
+        positions: u [length].
         contact_radius: a [length].
         sliding: u* [length].
     """
-    return [contact_radius * math.sqrt(max(1.0 - abs(half[-1]) / sliding, 0.0)) for half in _amplitudes(places)]
+    return [contact_radius * math.sqrt(max(1.0 - abs(half[-1]) / sliding, 0.0)) for half in _amplitudes(positions)]
