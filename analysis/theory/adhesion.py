@@ -27,6 +27,8 @@ from contact1d.digits import apart
 
 LENNARD_JONES_STRESS = 16.0 / (9.0 * math.sqrt(3.0))
 """1.026: the force maximum of the 9-3 surface law of Lennard-Jones over W/z_0; taken as sigma_0, z_0 is 1.026 h_0."""
+LAMBDA_OVER_TABOR = 2.0 * math.cbrt(9.0 / (16.0 * math.pi))
+"""Maugis' parameter lambda over the Tabor parameter mu, 1.127."""
 JKR_TABOR = 5.0
 """Tabor parameter above which JKR holds: the edge is stretched by Delta_l = sqrt(2 pi a W/E*), 3.9 mu h_0 at F = 0,
 which is 20 h_0: the range is negligible. A convention."""
@@ -125,7 +127,7 @@ class MaugisDugdale(Dmt):
     @property
     def transition(self) -> float:
         """The parameter lambda = 1.127 mu of Maugis."""
-        return 2.0 * math.cbrt(9.0 / (16.0 * math.pi)) * self.tabor
+        return LAMBDA_OVER_TABOR * self.tabor
 
     @property
     def theories(self) -> dict[Theory, Contact]:
