@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 DUMP = "states.lammpstrj"
 BODY = ("", "lower", "upper", "lower", "upper", "lower", "upper", "upper")
 ROLE = ("", "particle", "particle", "anchor", "anchor", "far anchor", "far anchor", "driver")
-"""What a LAMMPS atom type, from 1 on, is part of."""
+"""Body and role of each LAMMPS atom type, from 1 on."""
 COLUMNS = ("id", "type", "x", "y", "z", "opposite_fx", "opposite_fz")
-"""What is read of the dump."""
+"""Columns of the dump that are read."""
 
 
 def atoms(folder: str | Path, state: int = -1) -> Atoms:
@@ -24,14 +24,15 @@ def atoms(folder: str | Path, state: int = -1) -> Atoms:
 
     Args:
         folder: the run folder.
-        state: index among the states of states.lammpstrj, in the order in which they were passed (a pull-off has the
-            zero-load state and then the critical one, or with `[output] states` its whole way); negative from the end.
+        state: index among the states of states.lammpstrj, in the order of the loading (a pull-off has the
+            zero-load state and then the critical one, or with `[output] states` all of its states); negative from the
+            end.
 
     Returns:
         Atoms of the placeholder species X (the model has no chemistry), in the order of the LAMMPS ids, with the arrays
-        "id", "type", "body" ("lower", "upper"), "role" ("particle", "anchor", "far anchor", "driver": a
-        cantilever's far end) and "opposite_force", shape
-        (n, 3) [FU]; info["timestep"]. The paper's z is z; y is out of the plane.
+        "id", "type", "body" ("lower", "upper"), "role" ("particle", "anchor", "far anchor", "driver": the
+        far end of a cantilever) and "opposite_force", shape (n, 3) [FU]; info["timestep"]. The paper's z is z; y is
+        out of the plane.
 
     Raises:
         FileNotFoundError: the folder holds no states: no run, or one that failed.
@@ -48,29 +49,29 @@ def atoms(folder: str | Path, state: int = -1) -> Atoms:
         raise IndexError(f"{path} holds {len(frames)} states, so there is no state {state}")
     timestep, columns = _frame(frames[state], f"{path}, state {state}")
     kinds = columns["type"].astype(int)
-    found = Atoms(f"X{len(kinds)}", positions=np.column_stack([columns[axis] for axis in "xyz"]), pbc=False)
-    found.info["timestep"] = timestep
-    found.arrays["id"] = columns["id"].astype(int)
-    found.arrays["type"] = kinds
-    found.arrays["body"] = np.asarray(BODY)[kinds]
-    found.arrays["role"] = np.asarray(ROLE)[kinds]
+    frame = Atoms(f"X{len(kinds)}", positions=np.column_stack([columns[axis] for axis in "xyz"]), pbc=False)
+    frame.info["timestep"] = timestep
+    frame.arrays["id"] = columns["id"].astype(int)
+    frame.arrays["type"] = kinds
+    frame.arrays["body"] = np.asarray(BODY)[kinds]
+    frame.arrays["role"] = np.asarray(ROLE)[kinds]
     zero = np.zeros(len(kinds))
-    found.arrays["opposite_force"] = np.column_stack([columns["opposite_fx"], zero, columns["opposite_fz"]])
-    return found
+    frame.arrays["opposite_force"] = np.column_stack([columns["opposite_fx"], zero, columns["opposite_fz"]])
+    return frame
 
 
 def _frame(text: str, where: str) -> tuple[int, dict[str, NDArray[np.float64]]]:
-    """Timestep and columns of one frame, from the line after ITEM: TIMESTEP on."""
+    """Return timestep and columns of one frame, the text after ITEM: TIMESTEP."""
     head, _, body = text.partition("ITEM: ATOMS ")
     names, _, rows = body.partition("\n")
     words, lines = head.split(), rows.splitlines()
     promised = int(words[words.index("ATOMS") + 1]) if "BOUNDS" in words else None
     if len(lines) != promised or not rows.endswith("\n"):
         raise ValueError(f"{where}: the dump is cut short, the run did not finish writing it")
-    if "fy" in names.split():  # where the whole way is kept, forces are called as programs that show atoms know them
+    if "fy" in names.split():  # where all states are kept, forces have the names that viewers of atoms know
         names = names.replace("fx", "opposite_fx").replace("fz", "opposite_fz")
-    there = names.split()
-    if missing := [name for name in COLUMNS if name not in there]:
+    header = names.split()
+    if missing := [name for name in COLUMNS if name not in header]:
         raise ValueError(f"{where}: no column {', '.join(missing)}")
-    values = np.loadtxt(lines, usecols=[there.index(name) for name in COLUMNS], ndmin=2)
+    values = np.loadtxt(lines, usecols=[header.index(name) for name in COLUMNS], ndmin=2)
     return int(words[0]), dict(zip(COLUMNS, values[np.argsort(values[:, 0])].T, strict=True))

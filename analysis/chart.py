@@ -1,7 +1,7 @@
-"""What a chart shows, apart from how it is drawn: axes with units, and series in panels one below the other.
+"""Descriptions of charts: axes with units, and series in panels one below the other.
 
-A description is arrays and words, and costs no drawing. `analysis.plots` draws it by matplotlib, for files and Python;
-`workflow.report.charts` by plotly, for a page. Both draw what `Chart.written` gives.
+A description has arrays and texts, and needs no drawing library. `analysis.plots` draws it by matplotlib, for files and
+Python; `workflow.report.charts` by plotly, for a page. Both draw what `Chart.written` returns.
 """
 
 from __future__ import annotations
@@ -16,32 +16,27 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.floating[Any]]
 UnitOf = Callable[[float, str], tuple[float, str]]
-"""Of the largest number and its unit the factor to the unit in which it is written, and that unit."""
+"""Maps the largest number and its unit to the factor to the unit in which it is written, and that unit."""
 COMPRESSION, TENSION, LOADING, UNLOADING, THEORY = "#0072B2", "#D55E00", "#56B4E9", "#0072B2", "#555555"
 """Okabe and Ito's colours, which the colour-blind can tell apart; theories are grey."""
 BLACK = "#000000"
-"""Of marks and bounds, which no run has for its own."""
+"""The colour of marks and bounds, which belong to no run."""
 FILL = "fill"
 """The look of a series that is the outline of an area; other looks are matplotlib's: "-", "--", "o", "o-"."""
-MARGIN = 0.05
-"""Between the numbers and the end of an axis, over their span."""
-SAME = 1e-9
-"""Span over size below which numbers are one: what is held is not magnified."""
-MOST_NAMES = 7
-"""Names in a legend; of more, the ends."""
 ENDLESS = np.asarray([-math.inf, math.inf])
+"""From one end of an axis to the other."""
 
 
 @dataclass(frozen=True)
 class Axis:
-    """What is measured along an axis.
+    """An axis of a chart, with the measured quantity.
 
     Attributes:
         name, unit, remark: `force`, `FU`, `, compression positive`; the unit "1" is that of a number.
         zero: whether 0 is shown, with a line.
         log: whether it is logarithmic.
-        ticks: words in place of numbers, by their positions.
-        view: its ends, as the numbers of a chart have them.
+        ticks: labels in place of numbers, by their positions.
+        view: ends of the axis, in the unit of the numbers.
     """
 
     name: str
@@ -54,22 +49,23 @@ class Axis:
 
     @property
     def label(self) -> str:
-        """`force (FU), compression positive`."""
+        """Name, unit and remark, as in `force (FU), compression positive`."""
         return f"{self.name}{'' if self.unit == '1' else f' ({self.unit})'}{self.remark}"
 
     def ended(self, values: Array) -> Array:
-        """The values, ±∞ at the ends of the axis."""
+        """Return the values, (…), with ±∞ replaced by the ends of the axis."""
         return np.nan_to_num(values, nan=math.nan, neginf=self.view[0], posinf=self.view[1])
 
     def written(self, numbers: Sequence[Array], unit_of: UnitOf) -> tuple[float, Axis]:
-        """The factor to the unit that fits the numbers, and the axis in it, its ends around them."""
+        """Return the factor to the unit that fits the numbers, and the axis in that unit, with its ends around them."""
         shown = np.concatenate([[0.0] * self.zero, *map(np.ravel, numbers)])
         shown = shown[np.isfinite(shown) & ((shown > 0.0) | (not self.log))]
         low, high = (shown.min(), shown.max()) if shown.size else (0.0, 0.0)
         factor, unit = unit_of(max(abs(low), abs(high)), self.unit)
         ends = np.log([low, high]) if self.log else np.asarray([low, high])
         span, size = np.ptp(ends), np.abs(ends).max()
-        margin = MARGIN * (span if span > SAME * size else size or 1.0)
+        constant = not span > 1e-9 * size  # whose round-off is not magnified
+        margin = 0.05 * ((size or 1.0) if constant else span)
         low, high = ends[0] - margin, ends[1] + margin
         view = (math.exp(low), math.exp(high)) if self.log else (low, high)
         return factor, replace(self, unit=unit, view=(factor * view[0], factor * view[1]))
@@ -81,7 +77,7 @@ class Series:
 
     Attributes:
         x, y: arrays (n,); NaN is a gap, ±∞ the end of the axis. In a chart that moves either may be (m, n), m states.
-        name: in the legend; a name that several have is there once.
+        name: in the legend; a name of several series appears once.
         colour, look, width, opacity: see FILL.
         dx, dy: uncertainties, which points show as bars.
     """
@@ -99,12 +95,12 @@ class Series:
 
 @dataclass(frozen=True)
 class Panel:
-    """What is drawn over one pair of axes.
+    """A panel of a chart: all that is drawn over one pair of axes.
 
     Attributes:
-        y: the axis upwards; along x a chart has one for all its panels.
-        series: in the order in which they are drawn. Theories, by their colour, do not widen the view.
-        title, note: above; the note has numbers of one run.
+        y: the axis upwards; all panels of a chart share the axis along x.
+        series: in the order in which they are drawn. Theories, marked by their colour, do not widen the view.
+        title, note: above the panel; the note has numbers of one run.
         height: [inch].
     """
 
@@ -116,53 +112,54 @@ class Panel:
 
     @property
     def heading(self) -> str:
-        """Title and note."""
+        """The title and the note of a panel, where it has them."""
         return ", ".join(filter(None, [self.title, self.note]))
 
     @property
     def legend(self) -> list[str]:
-        """The names that the legend has room for."""
-        names = list(dict.fromkeys(one.name for one in self.series if one.name))
-        return names if len(names) <= MOST_NAMES else names[: MOST_NAMES // 2] + names[-(MOST_NAMES // 2) :]
+        """The names in the legend: all up to seven; of more the first and the last three."""
+        names, most = list(dict.fromkeys(series.name for series in self.series if series.name)), 7
+        return names if len(names) <= most else names[: most // 2] + names[-(most // 2) :]
 
 
 @dataclass(frozen=True)
 class Chart:
-    """Panels one below the other, over one axis, and what stands above them."""
+    """Panels one below the other over one axis, and their title."""
 
     x: Axis
     panels: Sequence[Panel]
     title: str = ""
 
     def written(self, unit_of: UnitOf, words: Callable[[str], str] = str) -> Chart:
-        """The chart as it is drawn: every axis has its ends, and the unit that fits its numbers.
+        """Return the chart as it is drawn: every axis with its ends, and in the unit that fits its numbers.
 
         Args:
-            unit_of: what a unit is written in.
-            words: writes the numbers of a text so.
+            unit_of: the unit in which a number is written.
+            words: puts the numbers of a text into these units.
         """
-        decisive = [[one for one in panel.series if one.colour != THEORY] or panel.series for panel in self.panels]
-        along, x = self.x.written([one.x + side * one.dx for own in decisive for one in own for side in SIDES], unit_of)
+        decisive = [[line for line in panel.series if line.colour != THEORY] or panel.series for panel in self.panels]
+        signs = (-1.0, 1.0)  # both ends of an uncertainty
+        ends = [line.x + sign * line.dx for lines in decisive for line in lines for sign in signs]
+        along, x = self.x.written(ends, unit_of)
         panels = []
-        for panel, own in zip(self.panels, decisive, strict=True):
-            up, y = panel.y.written([one.y + side * one.dy for one in own for side in SIDES], unit_of)
+        for panel, lines in zip(self.panels, decisive, strict=True):
+            up, y = panel.y.written([line.y + sign * line.dy for line in lines for sign in signs], unit_of)
             series = [
-                replace(one, x=one.x * along, dx=one.dx * along, y=one.y * up, dy=one.dy * up, name=words(one.name))
-                for one in panel.series
+                replace(
+                    line, x=line.x * along, dx=line.dx * along, y=line.y * up, dy=line.dy * up, name=words(line.name)
+                )
+                for line in panel.series
             ]
             panels.append(replace(panel, y=y, series=series, title=words(panel.title), note=words(panel.note)))
         return replace(self, x=x, panels=panels)
 
 
-SIDES = (-1.0, 1.0)
-
-
-def upright(*places: float, **look: Any) -> Series:
-    """Dashed lines across a panel at these positions along x."""
-    x, y = np.repeat(places, 3), np.tile([*ENDLESS, math.nan], len(places))
+def upright(*positions: float, **look: Any) -> Series:
+    """Return dashed lines across a panel at positions along x."""
+    x, y = np.repeat(positions, 3), np.tile([*ENDLESS, math.nan], len(positions))
     return Series(x, y, **{"colour": BLACK, "look": "--", "width": 1.0, **look})
 
 
 def area(x: Any, y: Any, **look: Any) -> Series:
-    """The rectangle between the two ends along x and along y."""
+    """Return the rectangle between two ends along x and two along y."""
     return Series(np.repeat(x, 2), np.asarray([*y, *y[::-1]]), look=FILL, **look)

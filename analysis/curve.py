@@ -18,8 +18,6 @@ from contact1d.analysis.pressure import Array, Profile
 from contact1d.files import whole
 
 Column = Sequence[float] | Sequence[str] | Array
-CHUNK = 100_000
-"""Rows that are turned into text at a time."""
 
 
 class Columns(Named[Any]):
@@ -43,15 +41,15 @@ DETACHMENTS = "detachments"
 SAMPLE_TABLE = "samples"
 """Name of the table, and of the figure, of a contact with noise."""
 HEADER = re.compile(r"(.+) \[(.+)\]")
-"""Of a column with a unit: `force [N]`."""
+"""The header of a column with a unit, `force [N]`."""
 WORDS = ("branch", "state", "input")
-"""Columns that are no numbers."""
+"""Columns of texts."""
 FIRST = "=+@\t\r\n\uff1d\uff0b\uff0d\uff20-"
-"""With which a text begins that a spreadsheet takes for a formula; four are the wide ones of an Asian font."""
+"""Characters at the beginning of a text that a spreadsheet takes for a formula; four are wide ones of Asian fonts."""
 FORMULA = re.compile(rf"(?![+-][\d.]+(?:[eE][+-]?\d+)?$)'*[{FIRST}]")
-"""Of a text that begins so, after any apostrophes, and is no number."""
+"""A text that begins so, after any apostrophes, and is no number."""
 MARKED = f"^'('*[{FIRST}])"
-"""Of such a text as a cell: with one apostrophe more, by which a spreadsheet knows a text."""
+"""Such a text as a cell: with one apostrophe more, which marks it as a text for a spreadsheet."""
 
 
 def write_columns(path: Path, columns: Mapping[str, Column], units: Mapping[str, str] | None = None) -> None:
@@ -61,31 +59,34 @@ def write_columns(path: Path, columns: Mapping[str, Column], units: Mapping[str,
 
 
 def put_columns(file: TextIO, columns: Mapping[str, Column], units: Mapping[str, str]) -> None:
-    """Write columns to an open file; see `write_columns`."""
-    writer = csv.writer(file, lineterminator="\n")
+    """Write columns to an open file as CSV, in the format of `write_columns`."""
+    writer, chunk = csv.writer(file, lineterminator="\n"), 100_000  # rows that are turned into text at a time
     writer.writerow(headed(columns, units))
-    for start in range(0, max(map(len, columns.values()), default=0), CHUNK):
-        cells = [_cells(column[start : start + CHUNK]) for column in columns.values()]
+    for start in range(0, max(map(len, columns.values()), default=0), chunk):
+        cells = [_cells(column[start : start + chunk]) for column in columns.values()]
         writer.writerows(zip(*cells, strict=True))
 
 
 def headed(names: Iterable[str], units: Mapping[str, str]) -> list[str]:
-    """Names of columns with their units: `force [N]`."""
+    """Return the names of columns with their units, as in `force [N]`."""
     return [f"{name} [{units[name]}]" if name in units else name for name in names]
 
 
 def as_text(cell: Any) -> Any:
-    """A text as a cell that no spreadsheet takes for a formula, `'=1+1`; others as they are. `plain` takes it back."""
+    """Return a text as a cell that no spreadsheet takes for a formula, `'=1+1`; other cells as they are.
+
+    `plain` is the inverse.
+    """
     return f"'{cell}" if isinstance(cell, str) and FORMULA.match(cell) else cell
 
 
 def plain(cell: str) -> str:
-    """The text that `as_text` made a cell of."""
+    """Return the text of a cell that `as_text` made."""
     return re.sub(MARKED, r"\1", cell)
 
 
 def _cells(column: Column) -> Sequence[str]:
-    """The cells of a column; one `%` operation for all numbers."""
+    """Return the cells of a column; all numbers are formatted by one `%` operation."""
     if len(column) and isinstance(column[0], str):
         return [*map(cache(as_text), map(str, column))]  # a few words, over and over
     numbers = np.asarray(column, dtype=np.float64).tolist()
@@ -94,7 +95,7 @@ def _cells(column: Column) -> Sequence[str]:
 
 
 def read_columns(path: Path, needed: Iterable[str] = ()) -> Columns:
-    """Read the columns of a table, as `write_columns` has them.
+    """Return the columns of a table that `write_columns` wrote.
 
     Raises:
         ValueError: if one of those `needed` is missing, or a cell is no number.
@@ -103,7 +104,7 @@ def read_columns(path: Path, needed: Iterable[str] = ()) -> Columns:
         header, *rows = [*csv.reader(file)] or [[]]
     if needed and not rows:
         raise ValueError(f"{path}: no rows")
-    parts = [found.groups() if (found := HEADER.fullmatch(name)) else (name, "") for name in header]
+    parts = [match.groups() if (match := HEADER.fullmatch(name)) else (name, "") for name in header]
     if missing := sorted({*needed} - {name for name, _ in parts}):
         raise ValueError(f"{path}: no column {', '.join(missing)}")
     columns = zip((name for name, _ in parts), zip(*rows, strict=True) if rows else [()] * len(header), strict=True)
@@ -125,7 +126,7 @@ def profile_columns(profiles: Mapping[str, Profile]) -> dict[str, Any]:
 
 
 def by_state(columns: Columns) -> dict[str, Columns]:
-    """The columns of each state, whose name the column `state` has; the rest of the columns."""
+    """Return the columns of each state, by the names in the column `state`, without that column."""
     if "state" not in columns:
         return {}
     states, numbers = columns.state, {name: column for name, column in columns.items() if name != "state"}
@@ -136,13 +137,11 @@ def by_state(columns: Columns) -> dict[str, Columns]:
 
 
 Floats = NDArray[np.float32]
-MOST_NUMBERS = 200_000
-"""Numbers of one kind that are kept: 100 states of 2000 particles. More are thinned, evenly."""
 
 
 @dataclass(frozen=True, eq=False)
 class States:
-    """Profiles of m states at n particles, in seven digits: for the eye.
+    """Profiles of m states at n particles, in seven digits, for animations.
 
     rows: which row of curve.csv each state is, (m,); x, z_lower, z_upper [LU], pressure and shear [FU/LU], (m, n).
     """
@@ -155,15 +154,16 @@ class States:
     shear: Floats
 
 
-def states_of(profiles: Sequence[Profile], kept: Sequence[int] | None = None) -> States:
-    """The states of a curve, thinned where they are too many; the first and the last one stay, and the outer particles.
+def states_of(profiles: Sequence[Profile], kept: Sequence[int] | None = None, most_numbers: int = 200_000) -> States:
+    """Return the states of a curve, thinned evenly; the first and the last one stay, and the outer particles.
 
     Args:
         profiles: of each row of the curve, all with the same number of particles.
-        kept: the rows whose states are wanted, however many they are; None: as many as is sensible.
+        kept: the rows whose states are kept, however many they are; None: as many as most_numbers allows.
+        most_numbers: numbers of one kind that are kept: 100 states of 2000 particles.
     """
-    particles = _spread(len(profiles[0].x), MOST_NUMBERS // 2)
-    rows = _spread(len(profiles), MOST_NUMBERS // len(particles)) if kept is None else np.asarray(kept, dtype=np.int64)
+    particles = _spread(len(profiles[0].x), most_numbers // 2)
+    rows = _spread(len(profiles), most_numbers // len(particles)) if kept is None else np.asarray(kept, dtype=np.int64)
     columns = {
         name: np.asarray([getattr(profiles[row], name)[particles] for row in rows], dtype=np.float32)
         for name in PROFILE_COLUMNS
@@ -172,18 +172,18 @@ def states_of(profiles: Sequence[Profile], kept: Sequence[int] | None = None) ->
 
 
 def _spread(count: int, most: int) -> NDArray[np.int64]:
-    """At most `most` of the indices below `count`, evenly, both ends among them."""
+    """Return at most `most` of the indices below `count`, evenly spread, with both ends."""
     return np.linspace(0, count - 1, min(count, most)).round().astype(np.int64)
 
 
 def write_states(path: Path, states: States) -> None:
-    """Write states.npz."""
+    """Write the arrays of the states to the file states.npz."""
     with whole(path) as part, part.open("wb") as file:
         np.savez(file, allow_pickle=False, **vars(states))
 
 
 def read_states(path: Path) -> States:
-    """Read states.npz. Raises OSError or ValueError where it is not one."""
+    """Return the states in the file states.npz. Raises OSError or ValueError where it is no such file."""
     with np.load(path, allow_pickle=False) as kept:
         missing = [field.name for field in fields(States) if field.name not in kept]
         if missing:

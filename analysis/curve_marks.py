@@ -1,4 +1,4 @@
-"""Marks of a curve F(d): its crossing of a force, its force maximum, the hysteresis of a closed one."""
+"""Marks of a curve F(d): its crossings of a force, its force maximum, and the hysteresis of a closed path."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ class Peak:
     """The force maximum of a sampled curve.
 
     Attributes:
-        index: of the sampled point.
-        tension: there [FU], positive.
-        uncertainty: of `smooth`: how much the sampling may have missed [FU].
+        index: the highest sampled point.
+        tension: at that point [FU], positive.
+        uncertainty: the sampling error of `smooth` [FU].
         smooth: the tension at the vertex of the polynomial through the point and its neighbours [FU].
-        position: the vertex's displacement [LU]; the sampled point's where the curve jumps there.
-        misplaced: of `position` [LU]: how far it lies from the vertex of another polynomial; 0 where the curve jumps.
+        position: the displacement of the vertex [LU]; of the sampled point where the curve jumps there.
+        misplaced: distance of `position` from the vertex of another polynomial [LU]; 0 where the curve jumps.
     """
 
     index: int
@@ -31,24 +31,17 @@ class Peak:
     misplaced: float
 
 
-LEAST_SEPARATION = 1e-5
-"""Distance of two positions over that of the outermost ones below which no polynomial is put through them."""
-AS_HIGH = 1e-3
-"""Distance from the highest sample over the width of the widest polynomial within which another one is ignored: the
-residual of both, ε, would be a slope of ε over their distance, and that over the width 1000 ε at least."""
 WIDEST_REACH = 3
 """Samples on either side of the highest one under the widest polynomial."""
-JUMP_RATIO = 3.0
-"""A drop after the maximum over the rise before it, above which it is an instability."""
 
 
 def largest_tension(displacement: Sequence[float], force: Sequence[float]) -> Peak:
-    """The largest −F of an unloading branch (displacements falling).
+    """Return the largest −F of an unloading branch (displacements falling).
 
-    Between samples a smooth curve exceeds the sampled maximum by what the polynomial through five points says; that
-    through three estimates its error, and that through seven the error of its position. Where a particle
-    snaps after the maximum, tension rises right up to the snap, no faster than before the sampled point: that is
-    then the position, and the rise up to the next point what is missed at most.
+    Between samples the maximum of a smooth curve is that of the polynomial through five points; the polynomial through
+    three estimates its error, and the one through seven the error of its position. Where a particle snaps after the
+    maximum, tension rises right up to the snap, no faster than before the sampled point: the sampled point is then the
+    position, and the rise up to the next point the largest sampling error.
     """
     d, tension = np.asarray(displacement), -np.asarray(force)
     i = int(np.argmax(tension))
@@ -57,100 +50,105 @@ def largest_tension(displacement: Sequence[float], force: Sequence[float]) -> Pe
         return Peak(i, top, abs(top), top, float(d[i]), 0.0)
     rise, fall = top - tension[i - 1], top - tension[i + 1]
     even = rise / max(d[i - 1] - d[i], 1e-300), fall / max(d[i] - d[i + 1], 1e-300)
-    if even[1] > JUMP_RATIO * even[0] + JUMP_RATIO * abs(_bend(d, tension, i)):
+    jump_ratio = 3.0  # a drop after the maximum over the rise before it, above which it is an instability
+    if even[1] > jump_ratio * even[0] + jump_ratio * abs(_bend(d, tension, i)):
         return Peak(i, top, float(even[0] * (d[i] - d[i + 1])), top, float(d[i]), 0.0)
-    # A search that has come back to the maximum leaves rows beside it that no polynomial tells apart.
-    d, tension, at = _apart_from(d, tension, i)
-    place, coarse = vertex(d, tension, at, 1)
-    if not 2 <= at < len(d) - 2:
-        return Peak(i, top, abs(coarse - top), coarse, place, abs(place - float(d[at])))
-    position, smooth = vertex(d, tension, at, 2)
-    if WIDEST_REACH <= at < len(d) - WIDEST_REACH:
-        place, _ = vertex(d, tension, at, WIDEST_REACH)
-    return Peak(i, top, abs(smooth - coarse), smooth, position, abs(position - place))
+    # A search that returns to the maximum leaves points too near to it for a polynomial.
+    d, tension, highest = _apart_from(d, tension, i)
+    compared, coarse = vertex(d, tension, highest, 1)
+    if not 2 <= highest < len(d) - 2:
+        return Peak(i, top, abs(coarse - top), coarse, compared, abs(compared - float(d[highest])))
+    position, smooth = vertex(d, tension, highest, 2)
+    if WIDEST_REACH <= highest < len(d) - WIDEST_REACH:
+        compared, _ = vertex(d, tension, highest, WIDEST_REACH)
+    return Peak(i, top, abs(smooth - coarse), smooth, position, abs(position - compared))
 
 
 def _apart_from(d: Array, tension: Array, i: int) -> tuple[Array, Array, int]:
-    """The samples without those that lie as good as on the inner sample i, and its new index; two neighbours stay."""
+    """Return the samples without those that nearly coincide with the inner sample i, and its new index.
+
+    The first and the last sample stay. The residual ε of two samples makes a slope of ε over their distance: over the
+    width of the widest polynomial 1000 ε at most.
+    """
     width = float(d[max(i - WIDEST_REACH, 0)] - d[min(i + WIDEST_REACH, len(d) - 1)])
-    kept = np.abs(d - d[i]) > AS_HIGH * width
+    kept = np.abs(d - d[i]) > 1e-3 * width
     kept[[0, i, -1]] = True
     return d[kept], tension[kept], int(kept[:i].sum())
 
 
-def _about(x: Array, y: Array, middle: int, beside: int) -> tuple[float, Array] | None:
-    """Width of samples, so many on either side of one, and the polynomial through them less it, of x over the width.
+def _about(x: Array, y: Array, middle: int, neighbours: int) -> tuple[float, Array] | None:
+    """Return the width of the samples about one, and the polynomial through them; None where they lie too close.
 
-    None where they lie too near to each other.
+    Its variable is x − x[middle] over the width, its value y − y[middle]. There are so many neighbours on each side.
     """
-    near = slice(max(middle - beside, 0), middle + beside + 1)
+    near = slice(max(middle - neighbours, 0), middle + neighbours + 1)
     if not are_apart(x[near]):
         return None
     width = float(np.ptp(x[near]))
     return width, through((x[near] - x[middle]) / width, y[near] - y[middle])
 
 
-def vertex(x: Array, y: Array, highest: int, beside: int) -> tuple[float, float]:
-    """Position and value of the maximum of the polynomial through the highest of samples and its neighbours.
+def vertex(x: Array, y: Array, highest: int, neighbours: int) -> tuple[float, float]:
+    """Return position and value of the maximum of the polynomial through the highest of samples and its neighbours.
 
     It lies between the next two; where these are too near, it is the sample itself.
 
     Args:
         x, y: positions, rising or falling, and values, (n,).
         highest: index of the highest sample.
-        beside: how many on either side are under the polynomial.
+        neighbours: samples on either side that the polynomial goes through.
     """
-    place, top = float(x[highest]), float(y[highest])
-    if (found := _about(x, y, highest, beside)) is None:
-        return place, top
-    width, rise = found
+    position, top = float(x[highest]), float(y[highest])
+    if (polynomial := _about(x, y, highest, neighbours)) is None:
+        return position, top
+    width, rise = polynomial
     low, high = sorted(float(x[highest + side] - x[highest]) / width for side in (-1, 1))
     best, _ = lowest_minimum(-rise, low, high)
     above = value(rise, best)
-    return (place + width * best, top + above) if above > 0.0 else (place, top)
+    return (position + width * best, top + above) if above > 0.0 else (position, top)
 
 
-def promised(displacement: Sequence[float], force: Sequence[float], places: Sequence[float]) -> Array:
-    """Tension [FU] at `places` [LU] near the force maximum, by the polynomial through it and two points on each side.
+def promised(displacement: Sequence[float], force: Sequence[float], positions: Sequence[float]) -> Array:
+    """Return the tension [FU] at positions [LU] near the force maximum, (m,).
 
-    NaN where there are no such rows.
+    It is that of the polynomial through the maximum and two points on each side; NaN where there are none.
     """
     d, tension = np.asarray(displacement), -np.asarray(force)
     i = int(np.argmax(tension))
     if 0 < i < len(d) - 1:
-        d, tension, at = _apart_from(d, tension, i)
-        if (found := _about(d, tension, at, 2)) is not None:
-            width, rise = found
-            return np.asarray([tension[at] + value(rise, (place - d[at]) / width) for place in places])
-    return np.full(len(places), np.nan)
+        d, tension, highest = _apart_from(d, tension, i)
+        if (polynomial := _about(d, tension, highest, 2)) is not None:
+            width, rise = polynomial
+            return np.asarray([tension[highest] + value(rise, (x - d[highest]) / width) for x in positions])
+    return np.full(len(positions), np.nan)
 
 
 def rivals(displacement: Sequence[float], force: Sequence[float], peak: Peak) -> dict[int, float]:
-    """The other maxima of a sawtooth, by their highest rows: how much each may be higher than the peak [FU], or lower.
+    """Return by how much each other maximum of a sawtooth may exceed the peak [FU], by the index of its highest point.
 
-    Beyond its highest row the tension rises no faster than it did up to there, and no further than to the next
-    row; between that row and the one before, no faster than up to the latter. Displacements fall.
+    Beyond its highest point the tension rises no faster than up to it, and at most as far as the next point; between
+    the highest point and the one before, no faster than up to the latter. Displacements fall.
     """
     d, tension = np.asarray(displacement), -np.asarray(force)
     inner = np.arange(1, len(tension) - 1)
     teeth = inner[(tension[inner] > tension[inner - 1]) & (tension[inner] >= tension[inner + 1])]
     rise = np.diff(tension) / -np.diff(d)
-    found = {}
+    excess = {}
     for i in teeth[teeth != peak.index]:
         top = tension[i] + rise[i - 1] * (d[i] - d[i + 1])
         if i > 1:
             top = max(top, tension[i - 1] + rise[i - 2] * (d[i - 1] - d[i]))
-        found[int(i)] = float(top) - peak.smooth
-    return found
+        excess[int(i)] = float(top) - peak.smooth
+    return excess
 
 
 def are_apart(d: Array) -> bool:
-    """Whether neighbouring displacements are far enough from each other for a polynomial through them."""
-    return float(np.abs(np.diff(d)).min()) > LEAST_SEPARATION * float(np.ptp(d))
+    """Return whether neighbouring displacements are far enough from each other for a polynomial through them."""
+    return float(np.abs(np.diff(d)).min()) > 1e-5 * float(np.ptp(d))
 
 
 def _bend(d: Array, tension: Array, i: int) -> float:
-    """Change of slope that a smooth curve makes over the increments around point i, from the increments before."""
+    """Return the change of slope of a smooth curve over both increments about point i, from the increments before."""
     if i < 2 or d[i - 2] == d[i - 1]:
         return 0.0
     before = slice(i - 2, i + 1)
@@ -159,7 +157,7 @@ def _bend(d: Array, tension: Array, i: int) -> float:
 
 
 def crossing(displacement: Sequence[float], force: Sequence[float], level: float) -> tuple[int, float]:
-    """(index i, displacement) of the first crossing of `level` [FU] between points i and i + 1, linear in between.
+    """Return (i, displacement [LU]) of the first crossing of `level` [FU], linear between points i and i + 1.
 
     Raises:
         ValueError: if the curve never crosses the level.
@@ -174,57 +172,55 @@ def crossing(displacement: Sequence[float], force: Sequence[float], level: float
 
 
 def smooth_crossing(displacement: Sequence[float], force: Sequence[float], level: float) -> float:
-    """Displacement of the first crossing of `level` [FU] on the cubic through the two points on each side of it.
+    """Return the displacement [LU] of the first crossing of `level` [FU].
 
-    At an end of the curve, and where the cubic does not cross between the two points, as beside a jump, it is the
-    straight line's.
+    It is that of the cubic through two points on each side; at an end of the curve, and where the cubic does not cross
+    between the two inner points, as near a jump, that of the straight line.
 
     Raises:
         ValueError: if the curve never crosses the level.
     """
-    index, place = crossing(displacement, force, level)
+    index, linear = crossing(displacement, force, level)
     if not 1 <= index < len(force) - 2:
-        return place
+        return linear
     d = np.asarray(displacement[index - 1 : index + 3])
     if not are_apart(d):
-        return place
+        return linear
     over = np.asarray(force[index - 1 : index + 3]) - level
     x = (d - d[1]) / (d[2] - d[1])
     inside = real_roots(through(x, over), 0.0, 1.0)
-    return float(d[1] + inside[0] * (d[2] - d[1])) if len(inside) == 1 else place
+    return float(d[1] + inside[0] * (d[2] - d[1])) if len(inside) == 1 else linear
 
 
 def tops(tension: list[float], fall: float) -> list[int]:
-    """Indices of maxima after each of which values fall by more than `fall` before they rise by more than that."""
-    found: list[int] = []
+    """Return the indices of maxima after which values fall by more than `fall` before they rise by more than that."""
+    maxima: list[int] = []
     high = low = 0
-    for i, here in enumerate(tension):
-        if here > tension[high]:
+    for i, force in enumerate(tension):
+        if force > tension[high]:
             high = low = i
-        elif here < tension[low]:
+        elif force < tension[low]:
             low = i
-            if tension[high] - here > fall and (not found or found[-1] != high):
-                found.append(high)
-        elif found and found[-1] == high and here - tension[low] > fall:
+            if tension[high] - force > fall and (not maxima or maxima[-1] != high):
+                maxima.append(high)
+        elif maxima and maxima[-1] == high and force - tension[low] > fall:
             high = low = i
-    return found
+    return maxima
 
 
 CLOSURE = 1e-9
-"""Distance of two displacements over the width of the path up to which they are one: round-off."""
-SAME_FORCE = 1e-6
-"""Difference of two forces over the largest of a path up to which they are one: minimisers leave less."""
+"""Difference of two displacements over the width of the path up to which they are equal: round-off."""
 
 
 @dataclass(frozen=True)
 class Work:
-    """Work along a path.
+    """The work along a path.
 
     Attributes:
-        area: ∫ F dd [FU·LU], by the trapezoidal rule; of a closed path what it dissipates.
-        uncertainty: of it, by interpolation of F between load steps [FU·LU].
-        whole: ∫ |F| |dd| [FU·LU]: of all that is done on the path.
-        length: ∫ |dd| [LU].
+        area: ∫ F dd [FU·LU], by the trapezoidal rule; of a closed path the dissipated energy.
+        uncertainty: of the area, by interpolation of F between load steps [FU·LU].
+        whole: ∫ |F| |dd| [FU·LU].
+        length: of the path, ∫ |dd| [LU].
     """
 
     area: float
@@ -234,20 +230,20 @@ class Work:
 
 
 def work_of(displacement: Sequence[float], force: Sequence[float]) -> Work | None:
-    """The work along a path through points, (n,) [LU] and (n,) [FU]; None where it stays in place.
+    """Return the work along a path through points, (n,) [LU] and (n,) [FU]; None where nothing moves.
 
     Between two points a smooth curve departs from its chord by h³F″/12, F″ from the chords before and after. Where the
-    chord's own slope is not the mean of these two, the force may have jumped, anywhere between the points: that part of
-    its change may count for half of the increment h more or less. An unloading through the same displacements misses as
-    much of the same curve as the loading, so that there the difference of the two is what counts.
+    chord's slope is not the mean of these two, the force may have jumped, anywhere between the points: that part of its
+    change may count for half of the increment h more or less. An unloading through the same displacements has the same
+    error as the loading, so that only the difference of the two counts.
     """
     d, f = np.asarray(displacement, dtype=np.float64), np.asarray(force, dtype=np.float64)
-    same = CLOSURE * float(np.ptp(d))
-    if same == 0.0 or len(d) < 3:
+    round_off = CLOSURE * float(np.ptp(d))
+    if round_off == 0.0 or len(d) < 3:
         return None
     h, mean = np.diff(d), 0.5 * (f[1:] + f[:-1])
     half = len(d) // 2
-    if np.abs(d - d[::-1]).max() <= same and (np.diff(np.sign(h)) != 0.0).sum() == 1:
+    if np.abs(d - d[::-1]).max() <= round_off and (np.diff(np.sign(h)) != 0.0).sum() == 1:
         uncertainty = _missed(np.abs(h[:half]), np.diff(f[: half + 1] - f[half:][::-1]))
     else:
         turns = np.flatnonzero(np.diff(np.sign(h)) != 0.0) + 1
@@ -257,17 +253,18 @@ def work_of(displacement: Sequence[float], force: Sequence[float]) -> Work | Non
 
 
 def closes(displacement: Sequence[float], force: Sequence[float], tolerance: float) -> bool:
-    """Whether a path ends in the state that it began in: at the same displacement, under the same force.
+    """Return whether a path ends in the state in which it began: at the same displacement, under the same force.
 
-    `tolerance`: relative, of the forces at both ends; SAME_FORCE of the largest is none.
+    `tolerance`: relative, of the forces at both ends.
     """
     d, f = np.asarray(displacement), np.asarray(force)
-    ends = tolerance * max(abs(f[0]), abs(f[-1])) + SAME_FORCE * np.abs(f).max()
+    residual = 1e-6 * np.abs(f).max()  # minimisers leave less
+    ends = tolerance * max(abs(f[0]), abs(f[-1])) + residual
     return bool(abs(d[-1] - d[0]) <= CLOSURE * np.ptp(d) and abs(f[-1] - f[0]) <= ends)
 
 
 def _missed(h: Array, rise: Array) -> float:
-    """What the trapezoidal rule may miss on a leg of increments h > 0 with these changes of the force."""
+    """Return the error bound [FU·LU] of the trapezoidal rule on a leg of increments h > 0 with changes of the force."""
     if len(h) < 2:
         return float(0.5 * h @ np.abs(rise))
     last, slope = len(h) - 1, rise / h

@@ -1,4 +1,4 @@
-"""The minimum between samples: that of a polynomial, dP/dx = 0, with its uncertainty.
+"""The minimum between samples, that of a polynomial, dP/dx = 0, with its uncertainty.
 
 Measured on the closed form of independent pairs, p(x) = f(r), x^2 / 2R + G_0 = r - 2 f(r) / k, f two exponentials, with
 R = 1000, ranges 0.2 … 2, radii to 80 and random lattice offsets (542 cases without, 578 with particles that snap; error
@@ -26,212 +26,192 @@ from numpy.typing import NDArray
 from contact1d.analysis.polynomial import divided, fitting, lowest_minimum
 from contact1d.analysis.pressure import Array, spacing_of
 
-INTERPOLANT_SIZES = (7, 5)
-"""Samples under the interpolating polynomial, and under the lower one that it is compared with."""
-SIDEWAYS_COST = 3.0
-"""A stencil one sample off the middle has to be smoother by this factor to be preferred."""
-FIT_DEGREE = 4
-"""Degree of the least-squares polynomial where noise hides which sample is lowest."""
 SIDE_COUNTS = (3, 5, 10)
 """Samples on each side of the lowest one under the polynomials of growing degree."""
-SMOOTH_ORDERS = (2, 4, 6, 8)
-"""Orders of the differences that show whether samples are smooth."""
-DECAY_OF_DIFFERENCES = 0.6
-"""Differences of one even order over those of the order before, each over that of a sawtooth of height 1, up to which
-samples count as smooth: across a jump, and of noise, the ratio is near 1."""
-LEAST_CONVERGENCE = 0.2
-"""Least part of a position's change from one polynomial to the next that is believed to be left at the one after."""
-CLAIM_FACTOR = 2.0
-"""Uncertainty of a position over that. The cases without snaps are covered in 99 %, with noise or without."""
-STEEPNESS_FACTOR = 2.0
-"""Least uncertainty of an interpolated position over the spacing and the steepness of the dip: what the lowest sample's
-higher neighbour has risen, over the depth below the lower shoulder. A dip of one sample may lie anywhere up to the
-samples beside it, and polynomials through it agree by chance. Of skewed dips it covers 95 %, with 1 it would be 89 % of
-those nearly a spacing wide, with 0 61 %."""
-CANDIDATE_SIGMAS = 5.0
-"""Samples within this many standard deviations of the lowest one may be the lowest one."""
-BRIDGED_SAMPLES = 5
-"""Up to this many samples that noise do not determine it apart are bridged by interpolation."""
-NOISE_REACH = 20
-"""Samples on each side from which the noise is estimated."""
-NOISE_ORDER = 12
-"""Highest difference of samples that is examined for noise: of a smooth function it is the least."""
-MEDIAN_TO_SIGMA = 0.6745
-"""Median of |n| over the standard deviation of a normal n."""
 
 
 @dataclass(frozen=True)
-class Place:
-    """A position with its estimated uncertainty; at_end: at the first or last sample, the true one may be beyond."""
+class EstimatedPosition:
+    """A position with its estimated uncertainty; at_end: at the first or last sample, so it may lie beyond."""
 
     position: float
     uncertainty: float
     at_end: bool = False
 
 
-def place_of_minimum(x: Array, y: Array, candidates: NDArray[np.intp]) -> Place:
-    """Return where y(x) is least near the lowest of the candidate samples.
+def position_of_minimum(x: Array, y: Array, candidates: NDArray[np.intp]) -> EstimatedPosition:
+    """Return the position of the minimum of y(x) near the lowest of the candidate samples.
 
-    x: positions, ascending, (n,), n >= 3; y: values, (n,); candidates: indices, ascending, in which to look.
+    x: positions, ascending, (n,), n >= 3; y: values, (n,); candidates: indices, ascending.
     The uncertainty covers the error in at least 95 % of random closed-form cases (see the module), without noise and
-    with white noise of up to 1 % of the depth, and of skewed dips from 0.3 spacings wide on;
-    where y jumps, the minimum is anywhere between two samples.
+    with white noise of up to 1 % of the depth, and of skewed dips at least 0.3 spacings wide; where y jumps, the
+    minimum is anywhere between two samples.
     """
     last = len(x) - 1
     index = int(candidates[np.argmin(y[candidates])])
     if index in (0, last):
-        return Place(float(x[index]), spacing_of(x), True)
+        return EstimatedPosition(float(x[index]), spacing_of(x), True)
     noise = _noise(y, index)
-    likely = candidates[y[candidates] <= y[index] + CANDIDATE_SIGMAS * noise]
+    likely = candidates[y[candidates] <= y[index] + 5.0 * noise]  # each of these may be the lowest one, but for noise
     first, final = int(likely[0]), int(likely[-1])
     extent = float(x[final] - x[first])
-    if final - first < BRIDGED_SAMPLES - 1:
-        place = _converging(x, y, index, noise) or _interpolated(x, y, index, noise)
+    if final - first < 4:  # interpolation bridges up to five samples
+        minimum = _converging(x, y, index, noise) or _interpolated(x, y, index, noise)
     else:
-        place = _fitted(x, y, first, final, noise)
+        minimum = _fitted(x, y, first, final, noise)
     open_towards_others = (first == candidates[0] and first > 0) or (final == candidates[-1] and final < last)
-    inside = 0.25 * extent if final - first > 1 else 0.0  # two neighbours that tie are what interpolation is for
+    inside = 0.25 * extent if final - first > 1 else 0.0  # interpolation resolves two neighbours that tie
     spread = extent if open_towards_others else inside
-    return Place(place.position, max(place.uncertainty, spread), first == 0 or final == last)
+    return EstimatedPosition(minimum.position, max(minimum.uncertainty, spread), first == 0 or final == last)
 
 
-def _noise(y: Array, index: int) -> float:
-    """Standard deviation of the noise about sample `index`, from differences of the order that sees least signal.
+def _noise(y: Array, index: int, reach: int = 20, highest_order: int = 12) -> float:
+    """Return the standard deviation of the noise in the samples up to a reach from `index`.
 
-    The d-th difference of white noise has the variance (2d over d) sigma^2; that of a smooth function falls with d.
+    The d-th difference of white noise has the variance (2d over d) sigma^2; that of a smooth function falls with d. The
+    smallest estimate up to the highest order has least of the signal.
     """
-    difference = y[max(0, index - NOISE_REACH) : index + NOISE_REACH + 1]
+    difference, median_to_sigma = y[max(0, index - reach) : index + reach + 1], 0.6745  # of |n|, n normal
     least = math.inf
-    for d in range(1, min(NOISE_ORDER + 1, len(difference))):
+    for d in range(1, min(highest_order + 1, len(difference))):
         difference = difference[1:] - difference[:-1]
         if d > 1:
-            least = min(least, _median(np.abs(difference)) / (MEDIAN_TO_SIGMA * math.sqrt(math.comb(2 * d, d))))
+            least = min(least, _median(np.abs(difference)) / (median_to_sigma * math.sqrt(math.comb(2 * d, d))))
     return least if least < math.inf else 0.0
 
 
 def _median(values: Array) -> float:
-    """The middle of a few finite values: `numpy.median` takes five times as long for what it makes sure of first."""
+    """Return the median of a few finite values; `numpy.median` with its checks takes five times as long."""
     ordered = np.sort(values)
     return 0.5 * float(ordered[(len(ordered) - 1) // 2] + ordered[len(ordered) // 2])
 
 
 def _smoothest(x: Array, y: Array, index: int, size: int) -> list[slice]:
-    """Slices of `size` samples around `index`, smoothest first: their highest divided difference is least.
+    """Return the slices of `size` samples around `index`, smoothest first: with the least highest divided difference.
 
     Where y jumps, a polynomial across the jump oscillates (the choice of essentially non-oscillatory schemes).
+    A slice one sample off the middle has to be smoother by a factor of three to be preferred.
     """
     lows = range(max(0, index - size + 1), min(index, len(x) - size) + 1)
     near = slice(lows[0], lows[-1] + size)
     *_, difference = islice(divided(x[near], y[near]), size - 1)
     costs = [
-        abs(slope) * SIDEWAYS_COST ** abs(low + size // 2 - index)
-        for low, slope in zip(lows, difference.tolist(), strict=True)
+        abs(slope) * 3.0 ** abs(low + size // 2 - index) for low, slope in zip(lows, difference.tolist(), strict=True)
     ]
     return [slice(lows[i], lows[i] + size) for i in np.argsort(costs, kind="stable")]
 
 
-def _converging(x: Array, y: Array, index: int, noise: float) -> Place | None:
-    """Minimum of the polynomial through as many samples on each side of `index` as make it more certain.
+def _converging(x: Array, y: Array, index: int, noise: float) -> EstimatedPosition | None:
+    """Return the minimum of the polynomial through as many samples on each side of `index` as reduce its uncertainty.
 
-    On even samples of a smooth function it converges with the degree; those of lower degree say how fast. None where
+    On even samples of a smooth function it converges with the degree; those of lower degree show how fast. None where
     the samples are not smooth, or too few.
     """
     room = min(index, len(x) - 1 - index)
     if room < SIDE_COUNTS[1] or not _is_smooth(x, y, index, noise):
         return None
     low, high = float(x[index - 1]), float(x[index + 1])
-    best: Place | None = None
+    best: EstimatedPosition | None = None
     before: float | None = None
     change = 0.0
-    for beside in (b for b in SIDE_COUNTS if b <= room):
-        position, shift = _minimum(x, y, slice(index - beside, index + beside + 1), low, high, near=before)
+    for count in (count for count in SIDE_COUNTS if count <= room):
+        position, shift = _minimum(x, y, slice(index - count, index + count + 1), low, high, near=before)
         if math.isnan(position):
             break
         if before is not None:
-            change = max(abs(position - before), LEAST_CONVERGENCE * change)
-            place = Place(position, CLAIM_FACTOR * change + 2.0 * noise * shift)
-            if best is not None and place.uncertainty >= best.uncertainty:
+            change = max(abs(position - before), 0.2 * change)  # no faster convergence than that is assumed
+            # Twice the change covers 99 % of the cases without snaps, with noise or without.
+            minimum = EstimatedPosition(position, 2.0 * change + 2.0 * noise * shift)
+            if best is not None and minimum.uncertainty >= best.uncertainty:
                 break
-            best = place
+            best = minimum
         before = position
     return best
 
 
-def _is_smooth(x: Array, y: Array, index: int, noise: float) -> bool:
-    """Whether, up to noise, the differences about a sample are DECAY_OF_DIFFERENCES with every even order."""
+def _is_smooth(x: Array, y: Array, index: int, noise: float, decay: float = 0.6, highest_order: int = 8) -> bool:
+    """Return whether the differences of samples about `index` fall to `decay`, up to noise, with every even order.
+
+    Each is taken over that of a sawtooth of height 1: across a jump, and of noise, the ratio of two orders is near 1.
+    """
     near = slice(max(0, index - SIDE_COUNTS[-1]), index + SIDE_COUNTS[-1] + 1)
     spacing, before = spacing_of(x[near]), math.inf
-    for order, difference in zip(range(1, SMOOTH_ORDERS[-1] + 1), divided(x[near], y[near]), strict=False):
-        if order in SMOOTH_ORDERS:
+    for order, difference in zip(range(1, highest_order + 1), divided(x[near], y[near]), strict=False):
+        if order % 2 == 0:
             undivided = math.factorial(order) * spacing**order * float(np.abs(difference).max())
             rough = undivided / math.comb(order, order // 2)
-            if rough > max(DECAY_OF_DIFFERENCES * before, 2.0 * noise):
+            if rough > max(decay * before, 2.0 * noise):
                 return False
             before = rough
     return True
 
 
-def _interpolated(x: Array, y: Array, index: int, noise: float) -> Place:
-    """Minimum of the polynomial through the samples about `index`, compared with three through other samples."""
+def _interpolated(x: Array, y: Array, index: int, noise: float) -> EstimatedPosition:
+    """Return the minimum of the polynomial through seven samples about `index`, compared with two others.
+
+    These go through five samples, and through the seven that are next in smoothness.
+    """
     low, high = float(x[index - 1]), float(x[index + 1])
-    trials = [_smoothest(x, y, index, min(size, len(x)))[:2] for size in INTERPOLANT_SIZES]
-    best, *others = (_minimum(x, y, under, low, high) for under in (trials[0][0], trials[1][0], *trials[0][1:]))
+    seven, five = (_smoothest(x, y, index, min(size, len(x)))[:2] for size in (7, 5))
+    best, *compared = (_minimum(x, y, under, low, high) for under in (seven[0], five[0], *seven[1:]))
     position, shift = best
-    if math.isnan(position):  # y jumps: halfway across the larger of the two steps beside the lowest sample
+    if math.isnan(position):  # y jumps: halfway across the larger of the two steps next to the lowest sample
         side = index + (1 if abs(y[index + 1] - y[index]) > abs(y[index - 1] - y[index]) else -1)
-        return Place(0.5 * float(x[index] + x[side]), 0.5 * (high - low))
-    differences = [high - low if math.isnan(other) else abs(position - other) for other, _ in others]
-    unresolved = 0.5 * STEEPNESS_FACTOR * _steepness(y, index) * (high - low)
+        return EstimatedPosition(0.5 * float(x[index] + x[side]), 0.5 * (high - low))
+    differences = [high - low if math.isnan(minimum) else abs(position - minimum) for minimum, _ in compared]
+    # A dip of one sample may lie anywhere up to its neighbours, and polynomials through it agree by chance. Of skewed
+    # dips twice the steepness covers 95 %; once would be 89 % of those nearly a spacing wide, without it 61 %.
+    unresolved = _steepness(y, index) * (high - low)
     unresolved = min(unresolved, max(high - position, position - low))
-    return Place(position, max(max(differences) + 2.0 * noise * shift, unresolved))
+    return EstimatedPosition(position, max(max(differences) + 2.0 * noise * shift, unresolved))
 
 
 def _steepness(y: Array, index: int) -> float:
-    """Rise from the lowest sample to the higher one beside it over the depth below the lower shoulder, at most 1."""
+    """Return the rise from the lowest sample to its higher neighbour over the depth below the lower shoulder, ≤ 1."""
     depth = min(float(y[:index].max()), float(y[index:].max())) - float(y[index])
     rise = max(float(y[index - 1]), float(y[index + 1])) - float(y[index])
     return min(1.0, rise / depth) if depth > 0.0 else 1.0
 
 
-def _fitted(x: Array, y: Array, first: int, last: int, noise: float) -> Place:
-    """Minimum of a least-squares quartic over samples first … last, any of which noise may have made the lowest.
+def _fitted(x: Array, y: Array, first: int, last: int, noise: float, degree: int = 4) -> EstimatedPosition:
+    """Return the minimum of a least-squares quartic over samples first … last, any of which may be the lowest.
 
-    Of three windows (wider to the right, to both sides, to the left) the one that fits best.
+    Of three windows (wider to the right, to both sides, to the left) it is the one that fits best.
     """
     margin = max(2, (last - first + 1) // 2)
     windows = []
     for before in (0, margin, 2 * margin):
         low = max(0, first - before)
         windows.append(slice(low, min(len(x), last + 1 + 2 * margin - before)))
-    misfits = [_misfit(x, y, window) for window in windows]
+    misfits = [_misfit(x, y, window, degree) for window in windows]
     best = int(np.argmin(misfits))
     window, low_x, high_x = windows[best], float(x[first]), float(x[last])
-    position, shift = _minimum(x, y, window, low_x, high_x, FIT_DEGREE)
-    other, _ = _minimum(x, y, window, low_x, high_x, FIT_DEGREE - 1)
+    position, shift = _minimum(x, y, window, low_x, high_x, degree)
+    lower, _ = _minimum(x, y, window, low_x, high_x, degree - 1)
     extent = high_x - low_x
     if math.isnan(position):
-        return Place(0.5 * (low_x + high_x), 0.5 * extent)
-    difference = 0.5 * extent if math.isnan(other) else abs(position - other)
+        return EstimatedPosition(0.5 * (low_x + high_x), 0.5 * extent)
+    difference = 0.5 * extent if math.isnan(lower) else abs(position - lower)
     jump = extent if misfits[best] > 2.0 * noise else 0.0
-    return Place(position, max(difference + 2.0 * noise * shift, jump))
+    return EstimatedPosition(position, max(difference + 2.0 * noise * shift, jump))
 
 
-def _misfit(x: Array, y: Array, window: slice) -> float:
-    """Root mean square of what the polynomial leaves, per degree of freedom."""
+def _misfit(x: Array, y: Array, window: slice, degree: int) -> float:
+    """Return the root mean square residual of a polynomial of that degree, per degree of freedom."""
     points, values = x[window], y[window]
     t = (points - points[0]) / float(np.ptp(points))
-    coefficients = fitting(t, FIT_DEGREE) @ values
+    coefficients = fitting(t, degree) @ values
     residual = values - np.vander(t, len(coefficients), increasing=True) @ coefficients
-    return math.sqrt(float(np.sum(residual**2)) / max(1, len(t) - FIT_DEGREE - 1))
+    return math.sqrt(float(np.sum(residual**2)) / max(1, len(t) - degree - 1))
 
 
 def _minimum(
     x: Array, y: Array, under: slice, low: float, high: float, degree: int | None = None, near: float | None = None
 ) -> tuple[float, float]:
-    """Position of the lowest minimum between low and high of the polynomial over samples, its shift per noise in y.
+    """Return the position of the lowest minimum, between low and high, of the polynomial over samples.
 
-    It goes through all of them unless its `degree` is less. Without a minimum there (NaN, NaN); where one is
-    expected `near` a position, it is found from there.
+    The second number is its shift per noise in y; (NaN, NaN) without a minimum. The polynomial goes through all samples
+    unless its `degree` is lower. A minimum that is expected `near` a position is sought from there.
     """
     points, values = x[under], y[under]
     origin, width, depth = float(points.sum()) / len(points), float(np.ptp(points)), float(np.abs(values).max())

@@ -1,4 +1,4 @@
-"""Shapes f(r; θ) of a body of revolution, with the derivatives that a fit asks for: named ones, and a smooth curve."""
+"""Shapes f(r; θ) of a body of revolution, with the derivatives that a fit needs: named ones, and a smooth curve."""
 
 from __future__ import annotations
 
@@ -11,10 +11,6 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 ShapeName = Literal["parabola", "circle", "power"]
-FLATTEST = 1e-6
-"""1 − r²/R² of a circle at least, while its radius is sought."""
-TINY = 1e-300
-"""In place of 0 in a logarithm."""
 
 
 @dataclass(frozen=True)
@@ -28,9 +24,9 @@ class Form:
         gradient: ∂f/∂θ, (n, k).
         start: θ, (k,), to begin with.
         least: lower bounds of θ, (k,).
-        powers: of a length in θ, (k,).
+        powers: exponents of length in the unit of each θ, (k,).
         knots: of a smooth curve, (k + 1,), from 0.
-        convex: whether θ of a smooth curve is by how much the slope rises from knot to knot, and not the slope itself.
+        convex: whether θ of a smooth curve are the increments of the slope from knot to knot, and not the slopes.
     """
 
     name: str
@@ -44,19 +40,20 @@ class Form:
     convex: bool = False
 
     def shown(self, theta: Array) -> Array:
-        """θ, (…, k), within its bounds, as slopes."""
+        """Return θ, (…, k), within its bounds; of a smooth curve as slopes at the knots."""
         theta = np.maximum(theta, self.least)
         return np.cumsum(theta, axis=-1) if self.convex else theta
 
 
 def named(shape: ShapeName, curvature: float) -> Form:
-    """A named shape: θ = (1/R), or (h, n) of h rⁿ."""
+    """Return a named shape: θ = (1/R), or (h, n) of h rⁿ."""
+    tiny = 1e-300  # in place of 0 in a logarithm
     if shape == "power":
         return Form(
             shape,
             lambda r, p: p[0] * r ** p[1],
             lambda r, p: p[0] * p[1] * r ** (p[1] - 1.0),
-            lambda r, p: np.stack([r ** p[1], p[0] * r ** p[1] * np.log(np.maximum(r, TINY))], axis=1),
+            lambda r, p: np.stack([r ** p[1], p[0] * r ** p[1] * np.log(np.maximum(r, tiny))], axis=1),
             np.asarray([0.5 * curvature, 2.0]),
             np.asarray([0.0, 1.0]),
             np.asarray([1.0, 0.0]),
@@ -64,8 +61,8 @@ def named(shape: ShapeName, curvature: float) -> Form:
     bend = 0.0 if shape == "parabola" else 1.0
 
     def root(r: Array, p: Array) -> Array:
-        """√(1 − r²/R²) of a circle, 1 of a parabola."""
-        return np.asarray(np.sqrt(np.maximum(1.0 - bend * (p[0] * r) ** 2, FLATTEST)))
+        """Return √(1 − r²/R²) of a circle, bounded from below for a trial radius R < r, and 1 of a parabola."""
+        return np.asarray(np.sqrt(np.maximum(1.0 - bend * (p[0] * r) ** 2, 1e-6)))
 
     return Form(
         shape,
@@ -79,7 +76,7 @@ def named(shape: ShapeName, curvature: float) -> Form:
 
 
 def smooth(knots: Array, convex: bool) -> Form:
-    """A smooth curve: θ are the slopes at the knots but that on the axis, where it is 0, or their increments."""
+    """Return a smooth curve: θ are the slopes at the knots, or their increments; on the axis the slope is 0."""
     from scipy.interpolate import make_interp_spline  # which takes longer to import than a small run
 
     many = len(knots) - 1

@@ -8,19 +8,19 @@ T = TypeVar("T")
 
 
 class Named(dict[str, T]):
-    """Values by name: `curve.force` is `curve["force"]`."""
+    """A dictionary whose values are also attributes: `curve.force` is `curve["force"]`."""
 
     def __missing__(self, name: str) -> T:
-        """Say what there is. Raises KeyError."""
+        """Raise KeyError with the names that there are."""
         raise KeyError(f"there is no {name}, there are {', '.join(self) or 'none'}")
 
     def __getattr__(self, name: str) -> T:
-        """Return the value of that name."""
+        """Return the value of that name. Raises AttributeError without one."""
         try:
             return self[name]
         except KeyError as error:
             raise AttributeError(error.args[0]) from None
 
     def __dir__(self) -> list[str]:
-        """Names for completion, those of the values among them."""
+        """Return the names for completion, with those of the values."""
         return [*super().__dir__(), *self]

@@ -1,4 +1,4 @@
-"""How matplotlib draws a chart, and what a figure needs besides: its size, its frame, its file."""
+"""Charts drawn by matplotlib, with the size, the frame and the file of a figure."""
 
 from __future__ import annotations
 
@@ -18,77 +18,73 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-WIDTH, BESIDE = 6.4, 1.0
-"""Of a figure, and the height of title and axis that its panels leave [inch]."""
-DPI = 120
-"""Of a figure, points of an image [1/inch]."""
-TITLE, HEADING = 11.0, 10.0
-"""Sizes of what stands above a figure and above a panel [pt]."""
-LINE, DIGIT, TICK, PAD = 13.0, 6.4, 10.0, 6.0
-"""A line of text, a digit of it, a tick with the room around it, and that around what stands above [pt]."""
-FEW_DECADES = 1e3
-"""Span of a logarithmic axis up to which 2 and 5 of each decade have numbers."""
+WIDTH, DPI = 6.4, 120
+"""Width of a figure [inch], and its resolution [1/inch]."""
+PAD = 6.0
+"""Margin around titles and labels [pt]."""
 
 
 def draw(chart: Chart) -> Figure:
-    """Draw a chart; numbers and units are as they are described."""
+    """Return the figure of a chart, with the numbers and units of its description."""
     heights = [panel.height for panel in chart.panels]
-    figure = _figure_class()(figsize=(WIDTH, BESIDE + sum(heights)), dpi=DPI)
+    figure = _figure_class()(figsize=(WIDTH, 1.0 + sum(heights)), dpi=DPI)  # with an inch for title and axis
     axes = figure.subplots(len(heights), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
     legend: list[str] = []
-    for one, panel in zip(axes, chart.panels, strict=True):
-        draw_panel(one, chart.x, panel, panel.legend != legend)
-        one.label_outer()
+    for ax, panel in zip(axes, chart.panels, strict=True):
+        draw_panel(ax, chart.x, panel, panel.legend != legend)
+        ax.label_outer()
         legend = panel.legend
-    figure.suptitle(chart.title, fontsize=TITLE, y=1.0 - PAD / (72.0 * figure.get_figheight()))
+    figure.suptitle(chart.title, fontsize=11.0, y=1.0 - PAD / (72.0 * figure.get_figheight()))
     _arrange(plain_axes(figure), list(axes), chart)
     return figure
 
 
 def _arrange(figure: Figure, axes: Sequence[Axes], chart: Chart) -> None:
-    """Give panels, one below the other, and their labels the room that these take [pt].
+    """Arrange panels one below the other, with room for their labels [pt].
 
-    A constrained layout measures every text for it, several times, and takes longer than the drawing.
+    A constrained layout measures every text several times, and takes longer than the drawing.
     """
-    ticks = [one.yaxis.get_major_formatter().format_ticks(one.yaxis.get_majorticklocs().tolist()) for one in axes]
-    beside, under = TICK + DIGIT * max(len(text) for texts in ticks for text in texts), TICK + LINE
-    above = [LINE + PAD if panel.heading else 0.0 for panel in chart.panels]
-    title, gap, more = 1.1 * LINE * len(chart.title.splitlines()), TICK + max(above[1:], default=0.0), len(axes) - 1
-    left, right, bottom, top = PAD + LINE + beside, 2.0 * PAD, PAD + LINE + under, 2.0 * PAD + title + above[0]
+    line, digit, tick = 13.0, 6.4, 10.0  # a line of text, a digit of it, and a tick with the room around it
+    ticks = [ax.yaxis.get_major_formatter().format_ticks(ax.yaxis.get_majorticklocs().tolist()) for ax in axes]
+    aside, under = tick + digit * max(len(text) for texts in ticks for text in texts), tick + line
+    above = [line + PAD if panel.heading else 0.0 for panel in chart.panels]
+    title, gap, more = 1.1 * line * len(chart.title.splitlines()), tick + max(above[1:], default=0.0), len(axes) - 1
+    left, right, bottom, top = PAD + line + aside, 2.0 * PAD, PAD + line + under, 2.0 * PAD + title + above[0]
     width, height = 72.0 * figure.get_size_inches()
     inside = height - top - bottom - more * gap
     figure.subplots_adjust(
         left / width, bottom / height, 1.0 - right / width, 1.0 - top / height, hspace=(more + 1) * gap / inside
     )
-    for one in axes:
-        one.yaxis.set_label_coords(-beside / (width - left - right), 0.5)
-        one.xaxis.set_label_coords(0.5, -under / (one.get_position().height * height))
+    for ax in axes:
+        ax.yaxis.set_label_coords(-aside / (width - left - right), 0.5)
+        ax.xaxis.set_label_coords(0.5, -under / (ax.get_position().height * height))
 
 
 def draw_panel(axes: Axes, x: Axis, panel: Panel, legend: bool = True) -> None:
-    """Draw a panel of a chart over its axis along x."""
+    """Draw a panel of a chart over its axis along x, with a legend or without."""
     from matplotlib.ticker import LogLocator
 
-    for one in panel.series:
-        along, up = x.ended(one.x), panel.y.ended(one.y)
-        look: dict[str, Any] = {"color": one.colour, "alpha": one.opacity, "linewidth": one.width, "label": one.name}
-        if one.look == FILL:
+    for series in panel.series:
+        along, up = x.ended(series.x), panel.y.ended(series.y)
+        look: dict[str, Any] = {"color": series.colour, "alpha": series.opacity, "linewidth": series.width}
+        look["label"] = series.name
+        if series.look == FILL:
             axes.fill(along, up, **look | {"linewidth": 0.0})
             continue
-        axes.plot(along, up, one.look, markersize=3.0 + one.width / 2.0, **look)
-        for dx, dy in ((one.dx, 0.0), (0.0, one.dy)):
+        axes.plot(along, up, series.look, markersize=3.0 + series.width / 2.0, **look)
+        for dx, dy in ((series.dx, 0.0), (0.0, series.dy)):
             if np.any(dx) or np.any(dy):
-                bars = (np.ravel([at - d, at + d, math.nan * at], order="F") for at, d in ((along, dx), (up, dy)))
-                axes.plot(*bars, color=one.colour, alpha=0.3)
-    for key, axis, own in (("x", x, axes.xaxis), ("y", panel.y, axes.yaxis)):
+                bars = (np.ravel([v - d, v + d, math.nan * v], order="F") for v, d in ((along, dx), (up, dy)))
+                axes.plot(*bars, color=series.colour, alpha=0.3)
+    for key, axis, drawn in (("x", x, axes.xaxis), ("y", panel.y, axes.yaxis)):
         axes.set(**{f"{key}scale": "log" if axis.log else "linear", f"{key}lim": axis.view})
         if axis.log:
-            few = axis.view[1] < FEW_DECADES * axis.view[0]
-            own.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if few else (1.0,)))
-            own.set_major_formatter("{x:g}")
-            own.set_minor_formatter("")
+            few_decades = axis.view[1] < 1e3 * axis.view[0]
+            drawn.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if few_decades else (1.0,)))
+            drawn.set_major_formatter("{x:g}")
+            drawn.set_minor_formatter("")
         if axis.ticks:
-            own.set_ticks([*axis.ticks], labels=[*axis.ticks.values()])
+            drawn.set_ticks([*axis.ticks], labels=[*axis.ticks.values()])
     describe(axes, x.label, panel.y.label, panel.heading, panel.y.zero)
     handles, names = axes.get_legend_handles_labels()
     if shown := panel.legend if legend else []:
@@ -96,11 +92,11 @@ def draw_panel(axes: Axes, x: Axis, panel: Panel, legend: bool = True) -> None:
 
 
 def describe(axes: Axes, x: str = "", y: str = "", title: str = "", zero: bool = True) -> None:
-    """Write what is drawn; where `zero`, a line is drawn there."""
+    """Write the labels of both axes and the title; where `zero`, draw a line at y = 0."""
     if zero:
         axes.axhline(0.0, color=BLACK, linewidth=0.8)
     axes.set(xlabel=x, ylabel=y)
-    axes.set_title(title, loc="left", fontsize=HEADING, y=1.0)  # without a y it is measured how high labels reach
+    axes.set_title(title, loc="left", fontsize=10.0, y=1.0)  # without y matplotlib measures the labels
 
 
 def new_figure(size: tuple[float, float]) -> Figure:
@@ -114,7 +110,7 @@ def _figure_class() -> type[Figure]:
 
     class ShownFigure(Figure):
         def _repr_png_(self) -> bytes:
-            """A notebook asks for it; a plain Figure is shown only where pyplot was imported."""
+            """Return the image for a notebook, which shows a plain Figure only where pyplot was imported."""
             shown = io.BytesIO()
             self.savefig(shown, format="png")
             return shown.getvalue()
@@ -123,14 +119,14 @@ def _figure_class() -> type[Figure]:
 
 
 def plain_axes(figure: Figure) -> Figure:
-    """Take away the lines above and to the right of each axis; returns the figure."""
+    """Hide the lines above and to the right of each axis, and return the figure."""
     for axis in figure.axes:
         axis.spines[["top", "right"]].set_visible(False)
     return figure
 
 
 def save_figure(figure: Figure, path: Path) -> None:
-    """Save in the format that the name ends on (png, svg, pdf), whole or not at all."""
+    """Save a figure in the format of the file's suffix (png, svg, pdf), atomically."""
     if layout := plain_axes(figure).get_layout_engine():
         layout.execute(figure)
         figure.set_layout_engine(None)  # savefig would draw it twice, to find the layout again

@@ -35,7 +35,7 @@ class Profile:
     shear: Array
 
     def __post_init__(self) -> None:
-        """Check shapes and order."""
+        """Raise ValueError for arrays of unequal shapes or not sorted by x."""
         shapes = {array.shape for array in (self.x, self.z_lower, self.z_upper, self.pressure, self.shear)}
         if [len(shape) for shape in shapes] != [1]:
             raise ValueError(f"the arrays of a profile must be 1-D and equally long, got shapes {sorted(shapes)}")
@@ -45,11 +45,11 @@ class Profile:
 
 @dataclass(frozen=True, eq=False)
 class ZonedProfile(Profile):
-    """A profile of which it is known where the contact ends.
+    """A profile with a known contact edge.
 
-    edge: contact radius a [LU]; reach: how far an attraction with a range goes beyond, c [LU]; jump: the line load just
-    inside of a without what it is just outside [FU/LU]; doubt: how far a may be off [LU]; layer: what the line load may
-    rise by just inside of a, on less than the spacing [FU/LU].
+    edge: contact radius a [LU]; reach: outer radius c of an attraction with a range [LU]; jump: the line load just
+    inside of a less that just outside [FU/LU]; doubt: uncertainty of a [LU]; layer: possible rise of the line load just
+    inside of a, over less than the spacing [FU/LU].
     """
 
     edge: float
@@ -63,8 +63,8 @@ def zoned(
     profile: Profile, edge: float, reach: float, jump: float, doubt: float = 0.0, layer: float = 0.0
 ) -> ZonedProfile:
     """Return a profile whose contact ends at an edge [LU] by a jump [FU/LU]."""
-    own = profile.x, profile.z_lower, profile.z_upper, profile.pressure, profile.shear
-    return ZonedProfile(*own, edge, reach, jump, doubt, layer)
+    columns = profile.x, profile.z_lower, profile.z_upper, profile.pressure, profile.shear
+    return ZonedProfile(*columns, edge, reach, jump, doubt, layer)
 
 
 def pressure_profile(
@@ -108,11 +108,11 @@ def mean_pressure(profile: Profile, spacing: float, radius: float) -> float:
 
 
 def penetration_depth(x_upper: ArrayLike, z_upper: ArrayLike, x_lower: ArrayLike, z_lower: ArrayLike) -> float:
-    """Return how far the lowest of the upper particles is below the straight-line lower surface [LU]; 0 for none.
+    """Return the largest depth of an upper particle below the lower surface of straight lines [LU]; 0 for none.
 
     x_upper, z_upper: upper particles [LU], (n,); x_lower, z_lower: lower particles in any order [LU], (m,), m >= 1.
-    Particles beyond the ends of the lower body do not count. The paper names
-    interpenetration as the limit of a model of one layer (Section 5).
+    Particles beyond the ends of the lower body do not count. The paper names interpenetration as the limit of a model
+    of one layer (Section 5).
     """
     surface = np.interp(np.asarray(x_upper), *_sorted_by_x(x_lower, z_lower), left=-np.inf, right=-np.inf)
     return float(np.max(surface - np.asarray(z_upper), initial=0.0))
@@ -122,27 +122,28 @@ def smallest_distance(x_upper: ArrayLike, z_upper: ArrayLike, x_lower: ArrayLike
     """Return min_ij |r_i - r_j| [LU] over upper particles i and lower particles j.
 
     x_upper, z_upper [LU], (n,); x_lower, z_lower [LU], (m,). Raises ValueError where a body has no particle or a
-    position is not finite. The lower particle next to the position above which each upper one stands gives a first
-    distance, and no other pair is examined but those that are within it along x: for chains a few.
+    position is not finite. The next lower particle along x gives a first distance for each upper one, and only pairs
+    within it along x are examined: for chains a few.
     """
     (across, height), (x, z) = _sorted_by_x(x_upper, z_upper), _sorted_by_x(x_lower, z_lower)
     if not (across.size and x.size):
         raise ValueError("a distance between the bodies needs a particle in each of them")
     if not all(np.isfinite(row).all() for row in (across, height, x, z)):
         raise ValueError("the positions of particles must be finite")
-    next_one = np.searchsorted(x, across)
-    least = float(np.hypot(across - x.take(next_one, mode="clip"), height - z.take(next_one, mode="clip")).min())
-    near = np.maximum(height - z.max(), z.min() - height) < least  # of no other one a lower particle is nearer
+    following = np.searchsorted(x, across)
+    least = float(np.hypot(across - x.take(following, mode="clip"), height - z.take(following, mode="clip")).min())
+    near = np.maximum(height - z.max(), z.min() - height) < least  # no other one can have a smaller distance
     across, height = across[near], height[near]
     first, end = np.searchsorted(x, across - least), np.searchsorted(x, across + least, side="right")
     for step in range(int((end - first).max(initial=0))):
-        at = first + step
-        least = min(least, float(np.hypot(across - x.take(at, mode="clip"), height - z.take(at, mode="clip")).min()))
+        lower = first + step
+        distances = np.hypot(across - x.take(lower, mode="clip"), height - z.take(lower, mode="clip"))
+        least = min(least, float(distances.min()))
     return least
 
 
 def _sorted_by_x(x: ArrayLike, z: ArrayLike) -> tuple[Array, Array]:
-    """Both with rising x."""
+    """Return positions x and heights z, (n,) each, sorted by x."""
     x, z = np.asarray(x, dtype=np.float64), np.asarray(z, dtype=np.float64)
     rising = np.argsort(x, kind="stable")
     return x[rising], z[rising]
@@ -158,20 +159,16 @@ def end_pressure_share(profile: Profile) -> float:
 
 
 def spacing_of(x: Array) -> float:
-    """The mean distance of neighbours [length], of rising positions x, (n,), n >= 1; 0 for one."""
+    """Return the mean distance of neighbours [length] of rising positions x, (n,), n >= 1; 0 for one."""
     return float(np.ptp(x)) / max(x.size - 1, 1)
 
 
-TAIL_REACH = 5.0
-"""Ranges of the law beyond the cutoff up to which its tail is summed: all but a share exp(-5) of it."""
-
-
 def left_out(law: DoubleExponential, table: Table, profile: Profile) -> float:
-    """Σ |F_table(r) - f(r)| |z|/r [FU]: the truncation and table error of an interaction in a state.
+    """Return Σ |F_table(r) - f(r)| |z|/r [FU], the truncation and table error of an interaction in a state.
 
     Summed offset by offset along the chain: memory for one row of pairs.
     """
-    reach = table.cutoff + TAIL_REACH * law.longest_range
+    reach = table.cutoff + 5.0 * law.longest_range  # with all but a share exp(-5) of the tail
     x, lower, upper = profile.x, profile.z_lower, profile.z_upper
     spacing = spacing_of(x)
     near = np.flatnonzero(upper - lower < reach)

@@ -1,12 +1,12 @@
 """Contact radius from a pressure profile: with tension dp/dx = 0 at a, where p is least; without it p(a) = 0.
 
-A row of springs that are held up to an edge, where the pressure jumps to zero, is JKR's contact, reduced. The last
+Springs under tension up to an edge, where the pressure jumps to 0, are the reduced model of JKR's contact. The last
 particle that carries represents the share φ of its cell, x ± s/2, that lies within the edge: with p(x) the pressure
-inside, continued to the middle of that share,
+inside, extrapolated to the middle of that share,
 
     p_last = φ p(x_last − (1 − φ) s/2),    a = x_last − s/2 + φ s
 
-p is the parabola through the three particles before it, whose cells lie within the edge as a whole.
+p is the parabola through the three particles before it, whose cells lie within the edge.
 """
 
 from __future__ import annotations
@@ -19,30 +19,13 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.extremum import Place, place_of_minimum
+from contact1d.analysis.extremum import EstimatedPosition, position_of_minimum
 from contact1d.analysis.pressure import Array, Profile, spacing_of
 
 NEGLIGIBLE = 1e-12
 """Tension or pressure below this share of the largest |p| is round-off."""
 PARABOLA_POINTS = 3
-"""Particles that fix a pressure parabolic in x."""
-SHARES = 10
-"""Steps in which the share of a cell has settled: each leaves a small part of the error, (φ − 1) s p′/2p."""
-OUTSIDE = 0.05
-"""By how much a share may seem to lie outside of 0…1."""
-SPOT, TOLD = 1.2, 3.0
-"""Error of a radius of 0 under tension, and radius from which on particles tell the contact's two edges from each other
-as well as the interpolation says, both over the spacing.
-
-Between them it is taken as a straight line. Over 6900 random contacts of independent pairs in closed form, with bodies
-as sharp as two spacings, it covers at least 94 % of the errors of every size of contact; without, 85 to 90 %.
-"""
-MIRROR_DISTANCE = 0.25
-"""Distance beyond the centre, over the spacing, from which on a force maximum is that of the other side."""
-TIE_DIFFERENCE = 1e-5
-"""Difference of two pressures over the largest |p| that a minimiser leaves between mirror images."""
-SAME_PLACE = 1e-9
-"""Distance of two edges over the spacing below which they are one and the same minimum: round-off."""
+"""Particles that determine a pressure parabolic in x."""
 
 
 @dataclass(frozen=True)
@@ -65,9 +48,10 @@ def tensile_radius(profile: Profile) -> ContactRadius:
     """Return the radius of maximum tensile stress, between the particles: p(a) = min p on each side of the centre.
 
     profile: a pressure profile of one contact, n >= 3 particles. The centre is the mean of x weighted with |p|. A
-    contact that has shrunk to one tensile spot has radius 0, both sides finding the same minimum. See
-    `analysis.extremum` for the interpolation and its measured accuracy: a median error of 3e-4 spacings, 0.04 where
-    particles snap. A radius a below TOLD spacings s is uncertain by SPOT (s - a/TOLD) at least.
+    contact that has shrunk to one tensile spot has radius 0: the minimum is the same on both sides. The interpolation
+    of `analysis.extremum` has a median error of 3e-4 spacings s, 0.04 where particles snap. A radius a below 3 s is
+    uncertain by 1.2 (s - a/3) at least: over 6900 random contacts of independent pairs in closed form, with bodies as
+    sharp as two spacings, that covers at least 94 % of the errors of every size of contact; without, 85 to 90 %.
     Source: Geike and Popov 2007, Section 3.2 and Fig. 4, after Greenwood.
     Raises ValueError where no particle carries tension (use `compressive_radius`), and for fewer than 3 particles.
     """
@@ -78,9 +62,9 @@ def tensile_radius(profile: Profile) -> ContactRadius:
     centre = _centre(x, p)
     spacing = spacing_of(x)
     left, right = (_edge(x, p, centre, side * spacing) for side in (-1, 1))
-    found = _between(left, right)
-    value = found.value if found.value > SAME_PLACE * spacing else 0.0
-    return replace(found, value=value, uncertainty=max(found.uncertainty, SPOT * (spacing - value / TOLD)))
+    radius = _between(left, right)
+    value = radius.value if radius.value > 1e-9 * spacing else 0.0  # by more than round-off
+    return replace(radius, value=value, uncertainty=max(radius.uncertainty, 1.2 * (spacing - value / 3.0)))
 
 
 def compressive_radius(profile: Profile, residual: float = 0.0) -> ContactRadius:
@@ -90,9 +74,9 @@ def compressive_radius(profile: Profile, residual: float = 0.0) -> ContactRadius
     a parabola in x, so the parabola through the three outermost loaded particles is extended to p = 0: exact there (to
     round-off), where a straight line through two overshoots by up to s^2/a with the spacing s. The edge is kept between
     the outermost loaded particle and the next. Where the parabola has no zero there (few particles, a load
-    concentrated at the edge, a soft law's tail) it is halfway, give or take half a spacing.
-    residual: error of each pressure, as a minimiser leaves it, over the largest one; it moves the edge by itself over
-    the slope dp/dx there, in the same unit.
+    concentrated at the edge, a soft law's tail) it is halfway, within half a spacing.
+    residual: error of each pressure that a minimiser leaves, over the largest one; it moves the edge by that error over
+    the slope dp/dx at the edge.
     No load at all: radius 0 at the middle of the chain, uncertain by half a spacing.
     Raises ValueError for fewer than 3 particles, and where a particle carries tension (use `tensile_radius`).
     """
@@ -106,10 +90,11 @@ def compressive_radius(profile: Profile, residual: float = 0.0) -> ContactRadius
 
 
 def held_radius(profile: Profile) -> ContactRadius:
-    """The radius of a contact that is held up to its edges; 0 where nothing carries.
+    """Return the radius of a contact whose pressure jumps to 0 at its edges, as JKR's does; 0 where nothing carries.
 
-    profile: of a chain of evenly spaced particles, n >= 3. Where fewer than three particles lie before the last one, as
-    in a contact a few spacings wide, the edge is somewhere in its cell. See the module's docstring.
+    profile: of a chain of evenly spaced particles, n >= 3. The share of the last cell that lies inside the edge follows
+    from the pressure of the last particle and the parabola through the three before it. Where there are fewer, as in a
+    contact a few spacings wide, the edge is somewhere in the cell.
     Raises ValueError for fewer than 3 particles.
     """
     _extremes(profile)
@@ -117,8 +102,9 @@ def held_radius(profile: Profile) -> ContactRadius:
 
 
 def whole_cells(profile: Profile, radius: ContactRadius) -> Array:
-    """Pressures [FU/LU], (n,), with that of the inside at the particles at both edges, in place of a cell's share; 0
-    where they stand outside of the edge, `radius`.
+    """Return the pressures [FU/LU], (n,), with those of whole cells at the particles at both edges.
+
+    There the pressure inside is extrapolated; it is 0 for a particle outside the edge of the contact `radius`.
     """
     x, p = profile.x, profile.pressure.copy()
     held = np.flatnonzero(p != 0.0)
@@ -132,7 +118,7 @@ def whole_cells(profile: Profile, radius: ContactRadius) -> Array:
 
 
 def moved_centre(profile: Profile) -> float:
-    """Where a contact that was drawn along x has its centre [LU]; 0 for one that is within a spacing of its place."""
+    """Return the centre of a contact that was displaced along x [LU]; 0 if by less than a spacing."""
     if profile.x.size < 2 or not np.any(profile.pressure):
         return 0.0
     centre = _centre(profile.x, profile.pressure)
@@ -140,47 +126,52 @@ def moved_centre(profile: Profile) -> float:
 
 
 def _centre(x: Array, p: Array) -> float:
-    """Mean of x weighted with |p| [LU]."""
+    """Return the mean of x weighted with |p| [LU]."""
     return float(np.average(x, weights=np.abs(p)))
 
 
-def _edge(x: Array, p: Array, centre: float, outwards: float) -> Place:
-    """The force maximum on one side of the centre; outwards: the spacing, negative for the left side [LU].
+def _edge(x: Array, p: Array, centre: float, outwards: float) -> EstimatedPosition:
+    """Return the force maximum on one side of the centre; outwards: the spacing, negative for the left side [LU].
 
-    A particle just beyond the centre belongs to both sides, so that a single spot is found by both. Where it is no spot
-    at the centre but ties with its mirror image, the mirror image counts.
+    A particle just beyond the centre belongs to both sides, so that both find a single spot. A maximum more than a
+    quarter of a spacing beyond the centre is that of the other side; where it is as high as its mirror image, but for
+    the residual of a minimiser, the mirror image counts.
     """
     away = (x - centre) / outwards
-    reach, own = np.flatnonzero(away >= -0.5), np.flatnonzero(away >= 0.0)
-    place = place_of_minimum(x, p, reach)
-    across = (place.position - centre) / outwards < -MIRROR_DISTANCE
-    if across and own.size and float(p[own].min()) <= float(p[reach].min()) + TIE_DIFFERENCE * float(np.abs(p).max()):
-        return place_of_minimum(x, p, own)
-    return place
+    reach, inside = np.flatnonzero(away >= -0.5), np.flatnonzero(away >= 0.0)
+    minimum, residual = position_of_minimum(x, p, reach), 1e-5 * float(np.abs(p).max())
+    across = (minimum.position - centre) / outwards < -0.25
+    if across and inside.size and float(p[inside].min()) <= float(p[reach].min()) + residual:
+        return position_of_minimum(x, p, inside)
+    return minimum
 
 
 def _extremes(profile: Profile) -> tuple[float, float]:
-    """The smallest and the largest pressure."""
+    """Return the smallest and the largest pressure [FU/LU]; ValueError for too few particles or one not finite."""
     if len(profile.x) < PARABOLA_POINTS:
         raise ValueError(f"a contact radius needs at least {PARABOLA_POINTS} particles, got {len(profile.x)}")
-    found = float(profile.pressure.min()), float(profile.pressure.max())
-    if not all(map(math.isfinite, found)):
+    extremes = float(profile.pressure.min()), float(profile.pressure.max())
+    if not all(map(math.isfinite, extremes)):
         raise ValueError("a contact radius needs a finite pressure on every particle")
-    return found
+    return extremes
 
 
-def _between(left: Place, right: Place) -> ContactRadius:
+def _between(left: EstimatedPosition, right: EstimatedPosition) -> ContactRadius:
     value = max(0.0, 0.5 * (right.position - left.position))
     uncertainty = 0.5 * (left.uncertainty + right.uncertainty)
     return ContactRadius(value, uncertainty, left.position, right.position, left.at_end or right.at_end)
 
 
 def _of_edges(
-    x: Array, p: Array, carries: NDArray[np.bool_], edge: Callable[[list[float], list[float], int, int], Place]
+    x: Array,
+    p: Array,
+    carries: NDArray[np.bool_],
+    edge: Callable[[list[float], list[float], int, int], EstimatedPosition],
 ) -> ContactRadius:
-    """Between the right `edge` of the particles that carry, first … last, and that of the mirror image.
+    """Return the radius between the right `edge` of the particles that carry, and that of their mirror image.
 
-    An edge has x and p of the last ones alone, PARABOLA_POINTS and one more, and of the next particle if there is one.
+    `edge` takes x and p of the last PARABOLA_POINTS + 1 that carry and of the next particle, if there is one, and the
+    indices of the first and the last that carry.
     """
     carrying, end = np.flatnonzero(carries), len(x) - 1
     if carrying.size == 0:
@@ -188,43 +179,47 @@ def _of_edges(
         return ContactRadius(0.0, 0.5 * spacing_of(x), middle, middle, False)
     first, last = int(carrying[0]), int(carrying[-1])
     sides = [(x, p, first, last), (-x[::-1], p[::-1], end - last, end - first)]
-    found = []
-    # A contact that is the same on both sides has one edge.
-    for places, pressures, least, most in sides[: 1 if x[0] == -x[-1] and (p == p[::-1]).all() else 2]:
+    edges = []
+    # A symmetric contact has the same edge on both sides.
+    for positions, pressures, least, most in sides[: 1 if x[0] == -x[-1] and (p == p[::-1]).all() else 2]:
         low = max(0, most - PARABOLA_POINTS)
         near = slice(low, most + 2)
-        found.append(edge(places[near].tolist(), pressures[near].tolist(), least - low, most - low))
-    right, mirrored = found[0], found[-1]
-    return _between(Place(-mirrored.position, mirrored.uncertainty, mirrored.at_end), right)
+        edges.append(edge(positions[near].tolist(), pressures[near].tolist(), least - low, most - low))
+    right, mirrored = edges[0], edges[-1]
+    return _between(EstimatedPosition(-mirrored.position, mirrored.uncertainty, mirrored.at_end), right)
 
 
-def _zero(x: list[float], p: list[float], first: int, last: int, residual: float) -> Place:
-    """Right edge of a contact whose loaded particles are first … last; pressures over the largest one."""
+def _zero(x: list[float], p: list[float], first: int, last: int, residual: float) -> EstimatedPosition:
+    """Return the right edge of a contact whose loaded particles are first … last; p and residual over the largest p."""
     if last == len(x) - 1:
-        return Place(x[last], x[last] - x[last - 1], True)
+        return EstimatedPosition(x[last], x[last] - x[last - 1], True)
     inner, outer = x[last], x[last + 1]
-    zero, other = (
+    zero, compared = (
         _parabola_zero(x[end - 2 : end + 1], p[end - 2 : end + 1], inner, outer, residual)
         if end - PARABOLA_POINTS >= first - 1
         else None
         for end in (last, last - 1)
     )
     if zero is None:
-        return Place(0.5 * (inner + outer), 0.5 * (outer - inner))
-    if other is None:
-        return Place(zero.position, max(outer - zero.position, zero.position - inner))
-    return Place(zero.position, min(abs(zero.position - other.position) + zero.uncertainty, outer - inner))
+        return EstimatedPosition(0.5 * (inner + outer), 0.5 * (outer - inner))
+    if compared is None:
+        return EstimatedPosition(zero.position, max(outer - zero.position, zero.position - inner))
+    return EstimatedPosition(
+        zero.position, min(abs(zero.position - compared.position) + zero.uncertainty, outer - inner)
+    )
 
 
-def _parabola_zero(x: list[float], p: list[float], inner: float, outer: float, residual: float) -> Place | None:
-    """Falling zero, between inner and outer, of the parabola through three particles; None if there is none.
+def _parabola_zero(
+    x: list[float], p: list[float], inner: float, outer: float, residual: float
+) -> EstimatedPosition | None:
+    """Return the falling zero, between inner and outer, of the parabola through three particles; None without one.
 
     c + b t + a t^2 falls with the slope -sqrt(D), D = b^2 - 4ac, at t = c/q for b < 0 and else at q/a, where
     q = -(b + sign(b) sqrt(D))/2: no difference of near numbers, so that a straight line (a cone's pressure) is no
     special case.
     """
     width = outer - inner
-    (first, second, third), (high, middle, low) = ((place - inner) / width for place in x), p
+    (first, second, third), (high, middle, low) = ((position - inner) / width for position in x), p
     chord, slope = (low - high) / (third - first), (low - middle) / (third - second)
     a = (slope - chord) / (second - first)
     b = slope - a * (second + third)
@@ -234,34 +229,37 @@ def _parabola_zero(x: list[float], p: list[float], inner: float, outer: float, r
         return None
     falling = math.sqrt(square)
     q = -0.5 * (b + math.copysign(falling, b))
-    place = c / q if b < 0.0 else q / a
-    moved = residual / falling  # a pressure that is lost in the residual may have been the outermost
-    if not -NEGLIGIBLE - moved <= place <= 1.0 + NEGLIGIBLE + moved:
+    zero = c / q if b < 0.0 else q / a
+    moved = residual / falling  # the outermost pressure may be lost in the residual
+    if not -NEGLIGIBLE - moved <= zero <= 1.0 + NEGLIGIBLE + moved:
         return None
-    return Place(inner + width * place, NEGLIGIBLE * (abs(inner) + width) + width * moved)
+    return EstimatedPosition(inner + width * zero, NEGLIGIBLE * (abs(inner) + width) + width * moved)
 
 
-def _held_edge(x: list[float], p: list[float], first: int, last: int) -> Place:
-    """Right edge of a contact that is held from the particle first to last."""
+def _held_edge(x: list[float], p: list[float], first: int, last: int) -> EstimatedPosition:
+    """Return the right edge of a contact whose pressure jumps to 0 at it; the particles first … last carry."""
     spacing = (x[-1] - x[0]) / (len(x) - 1)
-    somewhere = Place(x[last], 0.5 * spacing, last == len(x) - 1)
-    if last - first <= PARABOLA_POINTS:  # the last one of them is at the other edge
+    somewhere = EstimatedPosition(x[last], 0.5 * spacing, last == len(x) - 1)
+    if last - first <= PARABOLA_POINTS:  # the parabola would include the other edge
         return somewhere
     *inner, carried = p[last - PARABOLA_POINTS : last + 1]
-    found, straight = _share(carried, inner), _share(carried, [2.0 * inner[1] - inner[2], inner[1], inner[2]])
-    if not -OUTSIDE <= found <= 1.0 + OUTSIDE:
+    parabola, straight = _share(carried, inner), _share(carried, [2.0 * inner[1] - inner[2], inner[1], inner[2]])
+    if not -0.05 <= parabola <= 1.05:  # 0 … 1 within the error of the extrapolation
         return somewhere
-    share = min(max(found, 0.0), 1.0)
-    off = min(0.5, abs(found - straight)) * spacing
-    return Place(x[last] + (share - 0.5) * spacing, off, somewhere.at_end)
+    share = min(max(parabola, 0.0), 1.0)
+    off = min(0.5, abs(parabola - straight)) * spacing
+    return EstimatedPosition(x[last] + (share - 0.5) * spacing, off, somewhere.at_end)
 
 
-def _share(carried: float, inner: list[float]) -> float:
-    """φ of the last particle by the parabola through the pressures of three before it, NaN where it has none."""
+def _share(carried: float, inner: list[float], steps: int = 10) -> float:
+    """Return φ of the last particle by the parabola through the pressures of three before it, NaN where it is 0.
+
+    Each step of the iteration leaves a small part of the error, (φ − 1) s p′/2p.
+    """
     bend = inner[2] - 2.0 * inner[1] + inner[0]
     slope = inner[2] - inner[1] + 0.5 * bend
     share = 1.0
-    for _ in range(SHARES):
+    for _ in range(steps):
         t = 1.0 - 0.5 * (1.0 - share)  # from the particle before, in spacings
         inside = inner[2] + slope * t + 0.5 * bend * t * t
         if inside == 0.0:

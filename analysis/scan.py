@@ -1,14 +1,14 @@
-"""A scan of a body of revolution: what is removed of its points, the curve that is taken, and how far off it may be.
+"""The profile fitted to a scan of a body of revolution, with its tilt, offset and apex, and its uncertainty.
 
     z(x) = f(|x − c|; θ) + t (x − c) + z₀ + noise
 
 with the apex at c, the tilt t and the offset z₀. The shape f has f(0) = 0 and rises. Its parameters θ are those of a
-named shape, or of a smooth curve the slopes f′ ≥ 0 at knots, linear between them and 0 on the axis. All are found
-together by least squares, so that both sides of a scan say what f is, and their covariance is known. The noise may be
+named shape, or of a smooth curve the slopes f′ ≥ 0 at knots, linear between them and 0 on the axis. All are fitted
+together by least squares, so that both sides of a scan determine f, and their covariance is known. The noise may be
 correlated: n points are worth n/τ independent ones, τ = 1 + 2 Σ ρ_k of the residual's autocorrelation ρ. The knots of
 a smooth curve are added one by one, each that lowers the residual most by halving an interval, and removed again where
-they have become needless, as the extended Bayesian information criterion says (J. Chen, Z. Chen, Biometrika 95 (2008)
-759) under a noise that is read off the difference of both sides, which knows nothing of the shape.
+they have become needless, by the extended Bayesian information criterion (J. Chen, Z. Chen, Biometrika 95 (2008)
+759) under a noise from the difference of both sides, which does not depend on the shape.
 
 Lengths have any one unit.
 """
@@ -25,64 +25,38 @@ from numpy.typing import NDArray
 from contact1d.analysis.form import Array, Form, ShapeName, named, smooth
 from contact1d.analysis.residual import Noise, autocovariance, bounded, drawn, independent, noise_by, noise_in
 
-COVERAGE = 0.95
 FEWEST = 8
-"""Points of a scan."""
-ROUNDS = 30
-"""Gauss-Newton steps at most: a few suffice."""
-STEP = 0.05
-"""Of the position of the apex, over the width, and of the tilt: the largest change at once."""
-CONVERGED = 1e-10
-"""Relative change of the fitted curve from which on it counts as found."""
-SIDE = 0.05
-"""Share of a scan's width that must be on either side of an apex that is looked for."""
+"""Points that a scan needs."""
 PER_KNOT = 4
-"""Points in an interval between two knots at least."""
+"""Points that an interval between two knots needs."""
 FIRST_KNOTS = 24
 """Intervals of the curve whose residual is the first estimate of the noise: more than any shape needs off its kinks."""
-BLOCKS = 12
-"""Parts of a residual of one side, whose median autocovariance a kink in one of them leaves as it is."""
-LARGEST_SELECTED = 4000
-"""Points from which the knots are chosen: of more, means of neighbours."""
-MOST_KNOTS = 40
-"""Of a curve that is as detailed as the noise allows: of a scan without noise."""
-NEEDLESS = 3.0
-"""Increase of the squares of the residual by all removed knots together, over σ²τ, at most.
-
-Of 1, 2, 3 and 4 it has the fewest rows beyond their bounds for the worn balls of the study `scans`, on the same seeds.
-"""
-ALIKE = 0.9999
-"""Correlation of what a tilt and a moved apex do to heights from which on they cannot be distinguished."""
-GRID = 200
-"""Radii at which heights decide which deviations count."""
-TINY = 1e-300
-"""In place of 0 below a fraction."""
 ASPERITY = 2.0
 """Standard deviations of the noise above the lowest point up to which patches are counted."""
 
 
 class ScanError(ValueError):
-    """Points of which no profile can be taken; the message says why, and what to do."""
+    """An error for points that are no profile; the message says why, and what to do."""
 
 
 @dataclass(frozen=True)
 class Taken:
-    """What was taken of a scan.
+    """The fitted profile of a scan.
 
     Attributes:
-        shape: "smooth", or the name of what was fitted.
+        shape: "smooth", or the name of the fitted shape.
         parameters: θ, (k,): 1/R; h and n of h (r/w)ⁿ, w the width of the scan; the slopes at the knots.
         knots: of a smooth curve, (k + 1,), from 0.
-        deviations: pairs of θ, (m, 2, k): half of the difference of what follows from the two of each is independent of
-            the others, at 95 %.
-        centre, tilt, offset: position of the apex, slope and height there; each with its uncertainty at 95 %, 0 of
-            what was given.
+        deviations: pairs of θ, (m, 2, k): half of the difference of a result between the two of a pair is its
+            uncertainty at 95 %, independent of the other pairs.
+        centre, tilt, offset: position of the apex, slope and height there; each with its uncertainty at 95 %, 0 where
+            it was given.
         reach: largest distance of a point from the apex.
         noise, correlation: standard deviation of the residual, and its correlation length, Σ ρ_k of the points' pitch.
         x: positions of the points from the apex, rising, (n,).
         heights, residual: without tilt and offset, and without the curve, too, (n,).
         autocorrelation: ρ_k of the residual.
-        missed: RMS of what a fitted shape leaves beyond the noise; 0 of a smooth curve.
+        missed: RMS residual of a named shape beyond the noise; 0 of a smooth curve.
         patches: parts in which the measured points would touch a plane ASPERITY σ above the lowest one.
     """
 
@@ -105,47 +79,48 @@ class Taken:
 
     @property
     def pitch(self) -> float:
-        """Distance of neighbouring points."""
+        """The median distance of neighbouring points."""
         return float(np.median(np.diff(self.x)))
 
     @property
     def both_sides(self) -> bool:
-        """Whether points are on both sides of the apex."""
+        """Whether the scan has points on both sides of the apex."""
         return is_two_sided(self.x)
 
     def folded(self) -> tuple[Array, Array]:
-        """Radii and heights (n,) of the points themselves: the mean of both sides where there are two, z(0) = 0."""
+        """Return radii and heights, (n,) each, of the points: the mean of both sides where there are two, z(0) = 0."""
         from scipy.interpolate import PchipInterpolator  # which takes longer to import than a small run
 
-        sides = [PchipInterpolator(*_rising(side * self.x, self.heights)) for side in (1.0, -1.0)]
+        sides = [PchipInterpolator(*_rising(sign * self.x, self.heights)) for sign in (1.0, -1.0)]
         end = float(min(self.x[-1], -self.x[0])) if self.both_sides else float(self.x[-1])
         r = np.linspace(0.0, end, 1 + round(end / self.pitch))
-        z = np.mean([one(r) for one in sides[: 1 + self.both_sides]], axis=0)
+        z = np.mean([side(r) for side in sides[: 1 + self.both_sides]], axis=0)
         return r, z - z[0]
 
 
 def is_two_sided(x: Array) -> bool:
-    """Whether rising positions have points on both sides of 0."""
-    return float(min(-x[0], x[-1])) > SIDE * float(x[-1] - x[0])
+    """Return whether rising positions have 5 % of their width at least on each side of 0."""
+    return float(min(-x[0], x[-1])) > 0.05 * float(x[-1] - x[0])
 
 
 def _rising(x: Array, z: Array) -> tuple[Array, Array]:
-    """The points by their positions; of several at one their mean."""
-    at, which, counts = np.unique(x, return_inverse=True, return_counts=True)
-    return at, np.bincount(which, z) / counts
+    """Return the points sorted by position; of several at the same position their mean."""
+    positions, index, counts = np.unique(x, return_inverse=True, return_counts=True)
+    return positions, np.bincount(index, z) / counts
 
 
 def one_pass(x: Array, z: Array) -> tuple[Array, Array]:
-    """The points in rising x; a scan that goes forth and back as the mean of both, on the positions of the first."""
+    """Return the points in rising x; of a scan forth and back the mean of the passes, at the positions of the first."""
     steps = np.flatnonzero(np.diff(x))
     turns = steps[np.flatnonzero(np.diff(np.sign(np.diff(x)[steps])))] + 1
     ends = [0, *turns.tolist(), len(x) - 1]
     passes = [_rising(x[first : last + 1], z[first : last + 1]) for first, last in pairwise(ends)]
-    passes = [one for one in passes if len(one[0]) > 0.5 * max(len(one[0]) for one in passes)]
-    low, high = max(one[0][0] for one in passes), min(one[0][-1] for one in passes)
-    at = passes[0][0]
-    at = at[(at >= low) & (at <= high)]
-    return at, np.mean([np.interp(at, *one) for one in passes], axis=0)
+    longest = max(len(along) for along, _ in passes)
+    passes = [(along, heights) for along, heights in passes if len(along) > 0.5 * longest]
+    low, high = max(along[0] for along, _ in passes), min(along[-1] for along, _ in passes)
+    positions = passes[0][0]
+    positions = positions[(positions >= low) & (positions <= high)]
+    return positions, np.mean([np.interp(positions, along, heights) for along, heights in passes], axis=0)
 
 
 def take(
@@ -156,17 +131,17 @@ def take(
     length: float | None = None,
     shape: ShapeName | None = None,
 ) -> Taken:
-    """What is taken of the points of a scan.
+    """Return the profile fitted to the points of a scan.
 
     Args:
         x, z: positions and heights, (n,), growing away from the plane; a scan may go forth and back.
-        centre: position of the apex; None: it is looked for.
+        centre: position of the apex; None: it is fitted.
         level: whether a tilt is removed.
         length: distance of the knots of a smooth curve; None: by the noise.
         shape: the named shape that is fitted, in place of a smooth curve.
 
     Raises:
-        ScanError: the points are no such profile.
+        ScanError: too few points, a flat or inverted profile, or an apex or tilt that the points do not determine.
     """
     x, z = one_pass(x, z)
     if len(x) < FEWEST:
@@ -181,7 +156,10 @@ def take(
 
 @dataclass(frozen=True)
 class _Fit:
-    """Points of a scan whose width is 1, from the given apex or the first one; what is looked for; its own lengths."""
+    """Points of a scan over its width, from the given apex or the first point on; what is fitted; the true lengths.
+
+    moves, tilts: whether the apex and a tilt are fitted; size: the width; origin, base: position and height of 0.
+    """
 
     x: Array
     z: Array
@@ -192,7 +170,7 @@ class _Fit:
     base: float
 
     def of(self, shape: ShapeName | None, length: float | None) -> Taken:
-        """The points by a named shape, or a smooth curve."""
+        """Return the fit of a named shape, or of a smooth curve."""
         square, linear, _ = np.polyfit(self.x, self.z, 2)
         start = -0.5 * linear / square if self.moves else 0.0
         if square <= 0.0 and float(np.median(self.z)) > 0.5 * float(self.z.max()):
@@ -210,67 +188,77 @@ class _Fit:
             return self.judged(solved, self.excess(solved, free))
         return self.judged(free, 0.0)
 
-    def excess(self, one: _Solved, other: _Solved) -> float:
-        """RMS of the residual that a fit has more than another one has, 0 where that may be chance."""
-        more = one.squares - other.squares
-        price = self.noise_of(other).price(len(self.x), len(other.form.start))
-        return math.sqrt(more / len(self.x)) if more > price * len(other.form.start) else 0.0
+    def excess(self, shape: _Solved, smooth_curve: _Solved) -> float:
+        """Return the RMS residual of a named shape beyond that of a smooth curve, 0 where it may be chance."""
+        more, knots = shape.squares - smooth_curve.squares, len(smooth_curve.form.start)
+        price = self.noise_of(smooth_curve).price(len(self.x), knots)
+        return math.sqrt(more / len(self.x)) if more > price * knots else 0.0
 
     def require_flat_part(self, reach: float, start: float) -> None:
-        """Refuse a tilt beside an unknown apex where both do the same to all heights."""
+        """Raise ScanError where a tilt and a moved apex have the same effect on all heights: a correlation near 1."""
         curve = replace(self, tilts=False).solve(smooth(np.linspace(0.0, reach, FIRST_KNOTS), True), start)
-        if abs(np.corrcoef(curve.columns[:, -1], self.x)[0, 1]) > ALIKE:
+        if abs(np.corrcoef(curve.columns[:, -1], self.x)[0, 1]) > 0.9999:
             raise ScanError(
                 "its tilt and the position of its apex cannot be distinguished: a tilt of a parabola only moves the "
                 "apex; remove level = true"
             )
 
     def smoothed(self, reach: float, start: float, length: float | None) -> _Solved:
-        """A smooth curve whose slope rises from the apex on, unless the scan shows that it falls somewhere."""
+        """Return a smooth curve whose slope rises from the apex on, unless the scan shows that it falls somewhere."""
 
         def curve(convex: bool) -> _Solved:
             if length is None:
                 return self.adapted(reach, start, convex)
             return self.solve(smooth(np.linspace(0.0, reach, 1 + max(1, round(reach / length))), convex), start)
 
-        one, other = curve(True), curve(False)
-        price = self.noise_of(other).price(len(self.x), len(other.form.start))
-        return other if one.squares - other.squares > price else one
+        convex, free = curve(True), curve(False)
+        price = self.noise_of(free).price(len(self.x), len(free.form.start))
+        return free if convex.squares - free.squares > price else convex
 
-    def looked_for(self, form: Form) -> NDArray[np.bool_]:
-        """Which of all parameters are: θ and z₀ always, c and t if they are asked for."""
+    def fitted(self, form: Form) -> NDArray[np.bool_]:
+        """Return which of all parameters are fitted: θ and z₀ always, c and t where required."""
         return np.array([True] * (len(form.start) + 1) + [self.moves, self.tilts])
 
-    def design(self, form: Form, found: Array) -> tuple[Array, Array]:
-        """The curve at the points, (n,), and its derivatives by all parameters: θ, z₀, c and t."""
-        many = len(form.start)
-        theta, (offset, centre, tilt) = found[:many], found[many:]
+    def design(self, form: Form, parameters: Array) -> tuple[Array, Array]:
+        """Return the curve at the points, (n,), and its derivatives by all parameters, θ, z₀, c and t, (n, k)."""
+        count = len(form.start)
+        theta, (offset, centre, tilt) = parameters[:count], parameters[count:]
         away = self.x - centre
         r, side = np.abs(away), np.sign(away)
         columns = [form.gradient(r, theta), np.ones_like(r), -side * form.slope(r, theta) - tilt, away]
         return form.value(r, theta) + offset + tilt * away, np.column_stack(columns)
 
-    def solve(self, form: Form, centre: float) -> _Solved:
-        """Least squares by Gauss and Newton, with the bounds of θ in each step."""
-        many = len(form.start)
-        found = np.concatenate([form.start, [0.0, centre, 0.0]])
+    def solve(
+        self, form: Form, centre: float, iterations: int = 30, largest_step: float = 0.05, tolerance: float = 1e-10
+    ) -> _Solved:
+        """Return the least squares by Gauss-Newton steps, with the bounds of θ in each; a few iterations suffice.
+
+        Args:
+            form: the shape.
+            centre: position of the apex to begin with.
+            iterations: at most.
+            largest_step: of the position of the apex and of the tilt.
+            tolerance: relative change of the curve in the last step.
+        """
+        count = len(form.start)
+        parameters = np.concatenate([form.start, [0.0, centre, 0.0]])
         before = np.full_like(self.z, math.inf)
-        for step in range(ROUNDS):
-            curve, columns = self.design(form, found)
-            if np.abs(curve - before).max() < CONVERGED * self.z.max():
+        for iteration in range(iterations):
+            curve, columns = self.design(form, parameters)
+            if np.abs(curve - before).max() < tolerance * self.z.max():
                 break
-            before, now = curve, self.looked_for(form)
-            now[many + 1 :] &= step > 0  # the shape first: its slope says how the apex moves heights
-            columns = columns[:, now]
-            moved = bounded(columns, self.z - curve + columns @ found[now], form.least) - found[now]
-            moved[many + 1 :] = np.clip(moved[many + 1 :], -STEP, STEP)
-            found[now] += moved
-            found[many + 1] = min(max(found[many + 1], float(self.x[0])), float(self.x[-1]))
-        curve, columns = self.design(form, found)
-        return _Solved(form, found, columns[:, self.looked_for(form)], self.z - curve)
+            before, free = curve, self.fitted(form)
+            free[count + 1 :] &= iteration > 0  # the shape first: its slope is how the apex moves heights
+            columns = columns[:, free]
+            step = bounded(columns, self.z - curve + columns @ parameters[free], form.least) - parameters[free]
+            step[count + 1 :] = np.clip(step[count + 1 :], -largest_step, largest_step)
+            parameters[free] += step
+            parameters[count + 1] = min(max(parameters[count + 1], float(self.x[0])), float(self.x[-1]))
+        curve, columns = self.design(form, parameters)
+        return _Solved(form, parameters, columns[:, self.fitted(form)], self.z - curve)
 
     def adapted(self, reach: float, centre: float, convex: bool) -> _Solved:
-        """A smooth curve with as many knots as the noise allows."""
+        """Return a smooth curve with as many knots as the noise allows."""
         pitch = float(np.median(np.diff(self.x)))
         first = min(FIRST_KNOTS, max(2, round(reach / pitch / PER_KNOT)))
         solved = self.solve(smooth(np.linspace(0.0, reach, first + 1), convex), centre)
@@ -282,22 +270,28 @@ class _Fit:
         return solved
 
     def noise_of(self, solved: _Solved) -> Noise:
-        """The noise, by the difference of both sides; of one side by the residual in blocks, whose median counts."""
+        """Return the noise by the difference of both sides; for one side by the residual in blocks.
+
+        These are twelve: a kink in one of them does not change the median of their autocovariances.
+        """
         x, residual = self.x - solved.centre, solved.residual
         if is_two_sided(x):
             right = x > 0.0
             left = np.interp(x[right], -x[::-1], residual[::-1], right=math.nan)
             odd = (residual[right] - left) / math.sqrt(2.0)
             return noise_in(odd[np.isfinite(odd)])
-        size = max(FEWEST, len(x) // BLOCKS)
+        size = max(FEWEST, len(x) // 12)
         blocks = [residual[i : i + size] for i in range(0, len(x) - size + 1, size)]
-        spectrum = np.median([autocovariance(one) for one in blocks], axis=0)
+        spectrum = np.median([autocovariance(block) for block in blocks], axis=0)
         return noise_by(spectrum, len(x))
 
-    def selected(self, solved: _Solved, noise: Noise) -> Array:
-        """The knots: intervals are halved, that first which lowers the residual most, while the criterion falls."""
+    def selected(self, solved: _Solved, noise: Noise, most_points: int = 4000, most_knots: int = 40) -> Array:
+        """Return the knots: intervals are halved, first the one that lowers the residual most, as the criterion says.
+
+        Of more than most_points the knots are selected on means of neighbours. A scan without noise has most_knots.
+        """
         away = np.abs(self.x - solved.centre)
-        reach, group = float(away.max()), -(-len(away) // LARGEST_SELECTED)
+        reach, group = float(away.max()), -(-len(away) // most_points)
         order = np.argsort(away)[: len(away) // group * group].reshape(-1, group)
         columns = solved.columns[:, len(solved.form.start) :]
         r, rest, z = away[order].mean(axis=1), columns[order].mean(axis=1), self.z[order].mean(axis=1)
@@ -306,7 +300,7 @@ class _Fit:
         def columns_of(knots: Array) -> Array:
             return np.hstack([smooth(knots, False).gradient(r, knots), rest])
 
-        while len(knots) < MOST_KNOTS:
+        while len(knots) < most_knots:
             q, _ = np.linalg.qr(columns_of(knots))
             halved = np.sort(np.append(knots, 0.5 * (knots[1:] + knots[:-1])))
             new = smooth(halved, False).gradient(r, halved)[:, ::2]
@@ -317,50 +311,39 @@ class _Fit:
             if gain[best] <= noise.price(len(away), len(knots)) / group:
                 break
             knots = np.insert(knots, best + 1, halved[2 * best + 1])
-        _, upper = np.linalg.qr(np.column_stack([columns_of(knots), z]))
+        # Of 1, 2, 3 and 4 σ²τ for all removed knots, 3 leaves the fewest rows beyond their bounds for the worn balls of
+        # the study `scans`, on the same seeds.
+        return _needed(knots, np.column_stack([columns_of(knots), z]), convex, 3.0 * noise.power / group)
 
-        def squares_of(fewer: Array) -> float:
-            """Of the residual of a curve that rises, which all knots have exactly."""
-            form = smooth(fewer, convex)
-            by_theta = form.slope(knots[1:], np.eye(len(form.start)))
-            one = np.hstack([upper[:, : len(knots) - 1] @ by_theta, upper[:, len(knots) - 1 : -1]])
-            return float(np.sum((upper[:, -1] - one @ bounded(one, upper[:, -1], form.least)) ** 2))
+    def errors(self, solved: _Solved, noise: Noise) -> tuple[Array, float]:
+        """Return drawn errors of the fitted parameters, (n, k), and the factor from a deviation of them to 95 %."""
+        from scipy.special import stdtrit
 
-        own, kept = squares_of(knots), knots
-        while len(kept) > 2:
-            fewer = [np.delete(kept, i) for i in range(1, len(kept) - 1)]
-            squares = [squares_of(one) for one in fewer]
-            best = int(np.argmin(squares))
-            if squares[best] > own + NEEDLESS * noise.power / group:
-                break
-            kept = fewer[best]
-        return kept
+        points = len(self.x) / noise.together
+        free = max(1.0, points - solved.columns.shape[1])
+        deviation = math.sqrt(noise.power * max(1.0, points / free))
+        exact = solved.parameters[self.fitted(solved.form)]
+        return drawn(solved.columns, exact, solved.form.least, deviation), float(stdtrit(free, 0.975))
 
     def judged(self, solved: _Solved, missed: float) -> Taken:
-        """What was found with its uncertainties, and the deviations of the shape; `missed` by a fitted one."""
-        form, found, many = solved.form, solved.found, len(solved.form.start)
+        """Return the fitted profile with its uncertainties at 95 %; `missed`: excess residual of a named shape."""
+        form, parameters, count = solved.form, solved.parameters, len(solved.form.start)
         x, points, size = self.x - solved.centre, len(self.x), self.size
         if self.moves and not is_two_sided(x):
             raise ScanError(
                 'its apex would be at the edge of the scan or outside: centre = "auto" needs points on both sides '
                 "of it; give centre as a length, or a wider scan"
             )
-        noise, looked_for = noise_in(solved.residual), self.looked_for(form)
-        free = max(1.0, points / noise.together - solved.columns.shape[1])
-        deviation = math.sqrt(noise.power * max(1.0, points / noise.together / free))
-        off = drawn(solved.columns, found[looked_for], form.least, deviation)
-        from scipy.special import stdtrit
-
-        reach, factor = float(np.abs(x).max()), float(stdtrit(free, 0.5 + 0.5 * COVERAGE))
-        spread = np.zeros(3)
-        spread[looked_for[many:]] = factor * np.sqrt(np.mean(off[:, many:] ** 2, axis=0))
-        theta, (offset, centre, tilt) = found[:many], found[many:].tolist()
+        noise, reach, spread = noise_in(solved.residual), float(np.abs(x).max()), np.zeros(3)
+        off, factor = self.errors(solved, noise)
+        spread[self.fitted(form)[count:]] = factor * np.sqrt(np.mean(off[:, count:] ** 2, axis=0))
+        theta, (offset, centre, tilt) = parameters[:count], parameters[count:].tolist()
         heights = self.z - offset - tilt * x
         touching = heights < heights.min() + ASPERITY * noise.deviation
-        grid = np.linspace(0.0, reach, GRID)
-        # Bounds make the mean of a sample other than what is true: a deviation, too, from 0 to twice of it.
-        bias = np.stack([np.zeros(many), 2.0 * off[:, :many].mean(axis=0)])
-        changes = np.concatenate([[bias], factor * independent(off[:, :many], form.gradient(grid, theta))])
+        grid = np.linspace(0.0, reach, 200)  # radii whose heights decide which deviations count
+        # Bounds bias the mean of a sample: a deviation, too, from 0 to twice the bias.
+        bias = np.stack([np.zeros(count), 2.0 * off[:, :count].mean(axis=0)])
+        changes = np.concatenate([[bias], factor * independent(off[:, :count], form.gradient(grid, theta))])
         return Taken(
             shape=form.name,
             parameters=form.shown(theta) * size**form.powers,
@@ -375,25 +358,53 @@ class _Fit:
             x=size * x,
             heights=size * heights,
             residual=size * solved.residual,
-            autocorrelation=autocovariance(solved.residual)[: points // 4] / max(noise.deviation**2, TINY),
+            autocorrelation=autocovariance(solved.residual)[: points // 4] / max(noise.deviation**2, 1e-300),
             patches=int(np.count_nonzero(np.diff(np.append(0, touching.astype(int))) > 0)),
             missed=size * missed,
         )
 
 
+def _needed(knots: Array, columns: Array, convex: bool, increase: float) -> Array:
+    """Return the knots without needless ones, which are removed one by one.
+
+    columns: derivatives of the heights by the slopes at all knots and by other parameters, and the heights, (n, k);
+    increase: of the squared residual by all removed knots together, at most.
+    """
+    _, upper = np.linalg.qr(columns)
+
+    def squares_of(fewer: Array) -> float:
+        """Return the squared residual of a rising curve with fewer knots, which all knots represent exactly."""
+        form = smooth(fewer, convex)
+        by_theta = form.slope(knots[1:], np.eye(len(form.start)))
+        design = np.hstack([upper[:, : len(knots) - 1] @ by_theta, upper[:, len(knots) - 1 : -1]])
+        return float(np.sum((upper[:, -1] - design @ bounded(design, upper[:, -1], form.least)) ** 2))
+
+    allowed, kept = squares_of(knots) + increase, knots
+    while len(kept) > 2:
+        fewer = [np.delete(kept, i) for i in range(1, len(kept) - 1)]
+        squares = [squares_of(candidate) for candidate in fewer]
+        best = int(np.argmin(squares))
+        if squares[best] > allowed:
+            break
+        kept = fewer[best]
+    return kept
+
+
 @dataclass(frozen=True)
 class _Solved:
-    """A fitted form: θ, z₀, c and t, the derivatives by those looked for, and the residual (n,)."""
+    """A fitted form: θ, z₀, c and t, the derivatives of the curve by the fitted ones, (n, k), the residual, (n,)."""
 
     form: Form
-    found: Array
+    parameters: Array
     columns: Array
     residual: Array
 
     @property
     def centre(self) -> float:
-        return float(self.found[-2])
+        """The position of the apex c."""
+        return float(self.parameters[-2])
 
     @property
     def squares(self) -> float:
+        """The sum of the squares of the residual."""
         return float(np.sum(self.residual**2))

@@ -23,9 +23,7 @@ from contact1d.analysis.pressure import Array, Profile
 from contact1d.analysis.radius import ContactRadius, compressive_radius
 
 ROUND_OFF = 1e-10
-"""Remaining μ f over the largest μ f below which there is none: a history is a sum over all rows."""
-NEAR = 1e-6
-"""Of a spacing: a particle closer to a kink than that belongs to it."""
+"""Remaining μ f over the largest μ f that counts as 0: a history is a sum over all load steps."""
 
 
 def stick_margin(profile: Profile, coefficient: float, direction: int) -> Array:
@@ -34,7 +32,7 @@ def stick_margin(profile: Profile, coefficient: float, direction: int) -> Array:
     Args:
         profile: pressure p, and shear of the lower body on the upper one, which is against the motion [FU/LU].
         coefficient: μ.
-        direction: of the body along x, 1 or -1; 0 where it has not moved, and what is left to either side counts.
+        direction: of the body along x, 1 or -1; 0 where it has not moved, and |shear| counts.
     """
     limit = coefficient * np.maximum(profile.pressure, 0.0)
     shear = np.abs(profile.shear) if direction == 0 else -direction * profile.shear
@@ -43,25 +41,26 @@ def stick_margin(profile: Profile, coefficient: float, direction: int) -> Array:
 
 
 def stick_radius(profile: Profile, coefficient: float, direction: int) -> ContactRadius:
-    """Return the half-width c of the zone that sticks [LU]: out to where nothing of μ p is left; 0 where all slips.
+    """Return the half-width c of the stick zone [LU]: out to where the margin of μ p vanishes; 0 where all slips.
 
-    As a pressure without attraction that margin is a smooth function of x inside the zone and 0 outside, and its zero
-    is found in the same way (`analysis.radius.compressive_radius`). Arguments as of `stick_margin`.
+    As a pressure without attraction, the margin is a smooth function of x inside the zone and 0 outside, and so is its
+    zero that of `analysis.radius.compressive_radius`. The arguments are those of `stick_margin`.
     """
     margin = stick_margin(profile, coefficient, direction)
-    found = compressive_radius(replace(profile, pressure=margin), ROUND_OFF)
-    return found if margin.any() else replace(found, uncertainty=0.0)
+    radius = compressive_radius(replace(profile, pressure=margin), ROUND_OFF)
+    return radius if margin.any() else replace(radius, uncertainty=0.0)
 
 
 @dataclass(frozen=True)
 class Slip:
-    """Changes of particles in contact during a whole load step: arrays (…, n).
+    """Changes of particles in contact during a load step: arrays (…, n).
 
-    force: tangential force after it [FU]; way: by how much each slipped [LU]; work: that it took [FU·LU].
+    force: tangential force after the step [FU]; distance: signed slip of each particle [LU]; work: dissipated by the
+    slip [FU·LU].
     """
 
     force: Array
-    way: Array
+    distance: Array
     work: Array
 
 
@@ -70,8 +69,8 @@ def slip(force: Array, pushed: Array, limit: Array, next_limit: Array, stiffness
 
         s₁ = clip(s₀ + k Δu, ±B₁)
 
-    With a straight way and a limit B that changes evenly along it this is exact: a force that reaches its limit stays
-    there. It slips by (s₀ + k Δu − s₁)/k, from where s₀ + k Δu t = ±B(t), under the mean of B from there on.
+    For a straight path and a limit B that changes evenly along it this is exact: a force that reaches its limit stays
+    at it. The slip is (s₀ + k Δu − s₁)/k, from s₀ + k Δu t = ±B(t) on, under the mean of B from there on.
 
     Args:
         force: s₀ [FU], (…, n), |s₀| ≤ B₀.
@@ -81,33 +80,33 @@ def slip(force: Array, pushed: Array, limit: Array, next_limit: Array, stiffness
     """
     wanted = force + pushed
     after = np.minimum(np.maximum(wanted, -next_limit), next_limit)
-    way = (wanted - after) / stiffness
-    side = np.sign(way)
+    distance = (wanted - after) / stiffness
+    side = np.sign(distance)
     faster = pushed - side * (next_limit - limit)
-    with np.errstate(over="ignore"):  # of a move that is next to nothing
+    with np.errstate(over="ignore"):  # of a tiny displacement
         begins = np.divide(side * limit - force, faster, out=np.zeros_like(force), where=faster != 0.0)
     at_begin = limit + np.clip(begins, 0.0, 1.0) * (next_limit - limit)
-    return Slip(after, way, np.abs(way) * 0.5 * (at_begin + next_limit))
+    return Slip(after, distance, np.abs(distance) * 0.5 * (at_begin + next_limit))
 
 
 def kinks_of(stick: Sequence[float], contact: Sequence[float]) -> list[list[float]]:
     """Return the kinks of the line shear after each load step, inside the contact edge, ascending [length].
 
-    The edge c of what sticks is one. Where c grows, at a turn or with the load, the old one stays behind, and so does
-    the old edge of a contact that grows; where c comes back to a kink, that is gone.
+    The edge c of the stick zone is a kink. Where c grows, at a turn or with the load, the old edge remains as a kink,
+    and so does the old edge of a growing contact; a kink that c reaches again vanishes.
 
     Args:
-        stick: c after each row [length].
-        contact: a after each row [length].
+        stick: c after each load step [length].
+        contact: a after each load step [length].
     """
-    found: list[list[float]] = []
+    kinks: list[list[float]] = []
     kept: list[float] = []
     before, edge = 0.0, 0.0
     for c, a in zip(stick, contact, strict=True):
         kept = sorted({old for old in (*kept, before, edge) if 0.0 < old < c})
-        found.append([*kept, c] if 0.0 < c < a else list(kept))
+        kinks.append([*kept, c] if 0.0 < c < a else list(kept))
         before, edge = c, a
-    return found
+    return kinks
 
 
 def shear_load(
@@ -115,26 +114,27 @@ def shear_load(
 ) -> LineLoad:
     """Return the even line shear through values at positions: a cubic spline in each zone between kinks, 0 at the edge.
 
-    At a kink it is the mean of what the zones on both sides come to there. A kink is left out that would leave fewer
-    than FEWEST positions on one side of it.
+    At a kink it is the mean of the values extrapolated from the zones on both sides. A kink that leaves fewer than
+    FEWEST positions on one side of it is left out.
 
     Args:
         x: positions, rising and the same on both sides of 0, shape (n,) [length].
-        shear: there, shape (n,) [force/length].
-        edge: a, beyond which there is none [length].
-        kinks: inside of it [length].
-        apex: whether the body has one at x = 0, so that a slope there is meant.
+        shear: line shear at these positions, shape (n,) [force/length].
+        edge: contact radius a [length].
+        kinks: inside of the edge [length].
+        apex: whether the body has an apex at x = 0, so that the line shear may have a slope there.
 
     Raises:
-        ValueError: fewer than FEWEST places on a side within the edge, or places that are not the same on both sides.
+        ValueError: fewer than FEWEST positions on a side within the edge, or positions that differ between both sides.
     """
     right, mean, spacing = of_both_sides(x, shear)
-    near = NEAR * spacing
+    near = 1e-6 * spacing  # a particle that is closer to a kink belongs to it
     count = int(np.searchsorted(right, edge - near))
     right, mean = right[:count], mean[:count]
     if count < FEWEST:
         raise ValueError(f"a shear traction needs {FEWEST} positions on each side of the axis, got {count}")
-    borders = [(count, count, edge, 0.0)]  # first place that is not within, first one beyond, where, the height there
+    # Of each border the indices of the first position that is not within it and the first beyond it, then x and height.
+    borders = [(count, count, edge, 0.0)]
     for kink in sorted(kinks, reverse=True):
         within, beyond = (int(i) for i in np.searchsorted(right, [kink - near, kink + near]))
         if min(within, borders[0][0] - beyond) >= FEWEST:
@@ -150,22 +150,22 @@ def shear_load(
 
 
 def _height(x: Array, y: Array, within: int, beyond: int, kink: float) -> float:
-    """The mean of the parabolas through the FEWEST positions before index `within`, and those from `beyond` on."""
+    """Return the mean at a kink of two parabolas, through FEWEST positions before `within` and from `beyond` on."""
     sides = [slice(start, start + FEWEST) for start in (within - FEWEST, beyond)]
     return float(np.mean([np.polynomial.Polynomial.fit(x[side], y[side], FEWEST - 1)(kink) for side in sides]))
 
 
 def _spline(
-    places: Array, values: Array, low: tuple[float, float], high: tuple[float, float], first: bool, apex: bool
+    positions: Array, values: Array, low: tuple[float, float], high: tuple[float, float], first: bool, apex: bool
 ) -> tuple[Array, Array]:
-    """Where each cubic of a zone but the first begins, and the coefficients of all in powers of x, shape (4, n).
+    """Return where each cubic of a zone but the first begins, and the coefficients of all in powers of x, (4, n).
 
-    low, high: the zone's borders and the heights there. The `first` zone is mirrored at the axis, unless the body has
-    an `apex` there.
+    low, high: the borders of the zone with their heights. The `first` zone is mirrored at the axis, unless the body has
+    an `apex`.
     """
     from scipy.interpolate import CubicSpline
 
-    x, y = np.append(places, high[0]), np.append(values, high[1])
+    x, y = np.append(positions, high[0]), np.append(values, high[1])
     if not first:
         x, y = np.insert(x, 0, low[0]), np.insert(y, 0, low[1])
     elif not apex:

@@ -1,4 +1,5 @@
 """Closed forms for comparison with the results: contact with adhesion, other shapes, friction, the map of adhesion.
 
-`indenters` (Hertz, JKR and other shapes), `adhesion` (DMT, Maugis and Dugdale, which theory is valid), `mindlin`.
+`indenters` (Hertz, JKR and other shapes), `adhesion` (DMT, Maugis-Dugdale, the map of adhesion), `mindlin`, `relaxing`
+(a viscoelastic half-space).
 """

@@ -28,28 +28,25 @@ from contact1d.digits import apart
 LENNARD_JONES_STRESS = 16.0 / (9.0 * math.sqrt(3.0))
 """1.026: the force maximum of the 9-3 surface law of Lennard-Jones over W/z_0; taken as sigma_0, z_0 is 1.026 h_0."""
 LAMBDA_OVER_TABOR = 2.0 * math.cbrt(9.0 / (16.0 * math.pi))
-"""1.127: lambda over the Tabor parameter mu."""
-LARGEST_CRITICAL_RADIUS = 1.5
-"""A above that of every pull-off: JKR's, the largest, is (3/2)^(1/3) = 1.145."""
-ROOT = 4.0 * np.finfo(np.float64).eps
-"""Relative tolerance of a root: the least that the root finder takes."""
-FLAT_MINIMUM = 1e-9
-"""Absolute, in A: how near the search for a lowest value comes; its error there is the square of this."""
+"""Maugis' parameter lambda over the Tabor parameter mu, 1.127."""
 JKR_TABOR = 5.0
-"""JKR above: the edge is stretched by Delta_l = sqrt(2 pi a W/E*), 3.9 mu h_0 at F = 0, which is 20 h_0: the range is
-negligible. A convention."""
+"""Tabor parameter above which JKR holds: the edge is stretched by Delta_l = sqrt(2 pi a W/E*), 3.9 mu h_0 at F = 0,
+which is 20 h_0: the range is negligible. A convention."""
 DMT_TABOR = 0.1
-"""DMT below: the same stretch, for DMT's a, is less than h_0/3 at F = 0: attraction deforms little. A convention."""
+"""Tabor parameter below which DMT holds: that stretch, for DMT's a, is less than h_0/3 at F = 0, so that attraction
+deforms little. A convention."""
 RIGID_COMPRESSION = 0.05
-"""Rigid (Bradley) below: Hertz's compression under F + 2 pi W R over h_0. The 5 % is a convention."""
+"""Hertz's compression under F + 2 pi W R over h_0 below which the sphere is rigid (Bradley). A convention."""
 HERTZ_ADHESION_SHARE = 0.05
-"""Hertz below: the load that attraction adds, (4 E* a^3/3R - F)/F. The 5 % is a convention. For DMT it means
-F/(pi W R) > 40, for JKR F/(pi W R) > 2520: its attraction grows with the contact. A radius is then 1.6 % off."""
+"""Load that attraction adds, (4 E* a^3/3R - F)/F, below which Hertz holds. A convention: for DMT it means
+F/(pi W R) > 40, for JKR, whose attraction grows with the contact, F/(pi W R) > 2520. A radius is then 1.6 % off."""
 
 
 @dataclass(frozen=True)
 class Dmt(Contact):
-    """DMT: a stiff sphere that adheres to a flat, F(a) = 4 E* a^3/3R - 2 pi W R: Hertz, pressed by attraction outside.
+    """The DMT theory of a stiff sphere that adheres to a flat, F(a) = 4 E* a^3/3R - 2 pi W R.
+
+    The contact is that of Hertz, under the load and the attraction outside of it.
 
     Valid for a Tabor parameter below about 0.1. Source: B. V. Derjaguin, V. M. Muller, Yu. P. Toporov, J. Colloid
     Interface Sci. 53 (1975) 314, in the form of D. Maugis, J. Colloid Interface Sci. 150 (1992) 243.
@@ -68,17 +65,17 @@ class Dmt(Contact):
     work_of_adhesion: float
 
     def __post_init__(self) -> None:
-        """Check the signs."""
+        """Raise ValueError for a parameter that is not positive and finite."""
         require_positive(**vars(self))
 
     @property
     def _load(self) -> float:
-        """pi W R [force], the unit of N."""
+        """The unit of N, pi W R [force]."""
         return math.pi * self.work_of_adhesion * self.radius
 
     @property
     def _length(self) -> float:
-        """(pi W R^2/K)^(1/3) [length], the unit of A."""
+        """The unit of A, (pi W R^2/K)^(1/3) [length]."""
         return math.cbrt(0.75 * self._load * self.radius / self.contact_modulus)
 
     def force(self, contact_radius: float) -> float:
@@ -92,7 +89,7 @@ class Dmt(Contact):
 
 @dataclass(frozen=True)
 class MaugisDugdale(Dmt):
-    """Maugis-Dugdale: a sphere whose attraction is a constant stress sigma_0 in a ring a < r < c; from DMT to JKR.
+    """The Maugis-Dugdale theory of a sphere with a constant stress sigma_0 in a ring a < r < c; from DMT to JKR.
 
     With K = 4E*/3, in the units of Maugis: A = a/(pi W R^2/K)^(1/3), C = c in the same unit, N = F/(pi W R),
     D = d/(pi^2 W^2 R/K^2)^(1/3), lambda = 2 sigma_0 (R/(pi W K^2))^(1/3), S = sqrt(C^2-A^2), phi = arccos(A/C):
@@ -118,25 +115,25 @@ class MaugisDugdale(Dmt):
 
     @classmethod
     def reduced(cls, tabor: float) -> MaugisDugdale:
-        """The contact of one `tabor` number mu > 0 in the units of Maugis: a is A, F is N, d is D."""
+        """Return the contact of a `tabor` parameter mu > 0 in the units of Maugis: a is A, F is N, d is D."""
         return cls(1.0, 0.75, 1.0 / math.pi, math.cbrt((0.75 * math.pi) ** -2) / tabor)
 
     @property
     def tabor(self) -> float:
-        """mu = (R W^2/(E*^2 h_0^3))^(1/3)."""
+        """The Tabor parameter mu = (R W^2/(E*^2 h_0^3))^(1/3)."""
         ratio = self.work_of_adhesion / self.contact_modulus
         return math.cbrt(self.radius * ratio**2 / self.range_of_attraction**3)
 
     @property
     def transition(self) -> float:
-        """lambda = 1.127 mu."""
+        """The parameter lambda = 1.127 mu of Maugis."""
         return LAMBDA_OVER_TABOR * self.tabor
 
     @property
     def theories(self) -> dict[Theory, Contact]:
-        """The contact by JKR and DMT, which know no range, and by this one."""
-        pair = self.radius, self.contact_modulus, self.work_of_adhesion
-        return {Theory.JKR: PowerLaw.sphere(*pair), Theory.DMT: Dmt(*pair), Theory.MAUGIS: self}
+        """The contact by JKR and DMT, which have no range, and by Maugis-Dugdale."""
+        sphere = self.radius, self.contact_modulus, self.work_of_adhesion
+        return {Theory.JKR: PowerLaw.sphere(*sphere), Theory.DMT: Dmt(*sphere), Theory.MAUGIS: self}
 
     def ring_width(self, contact_radius: float) -> float:
         """Return c - a, the root of the adhesion equation [length]; a >= 0 [length]."""
@@ -160,7 +157,7 @@ class MaugisDugdale(Dmt):
 
 
 def _reduced(transition: float, a: float) -> tuple[float, float]:
-    """N and D at A."""
+    """Return N and D at the reduced contact radius A, by lambda."""
     u = _ring_width(transition, a)
     s = math.sqrt(u * (2.0 * a + u))
     return a**3 - transition * (a * s + (a + u) ** 2 * math.atan2(s, a)), a**2 - 4.0 / 3.0 * transition * s
@@ -188,24 +185,28 @@ def _ring_width(transition: float, a: float) -> float:
     if a == 0.0:
         return widest
     high = widest * (1.0 + 1e-9)  # above the root by more than round-off
-    return float(brentq(lambda u: _adhesion_excess(transition, a, u), 0.0, high, xtol=1e-300, rtol=ROOT))
+    least = 4.0 * np.finfo(np.float64).eps  # relative tolerance that brentq accepts
+    return float(brentq(lambda u: _adhesion_excess(transition, a, u), 0.0, high, xtol=1e-300, rtol=least))
 
 
 @lru_cache(maxsize=256)
-def _lowest(transition: float, which: int) -> float:
-    """Return A of the lowest N or D of one lambda; the search is on 0..1.5, and the end A = 0 is compared."""
+def _lowest(transition: float, component: int) -> float:
+    """Return A of the lowest N (component 0) or D (1) of one lambda, between 0 and 1.5.
+
+    The largest such A is JKR's, (3/2)^(1/3) = 1.145. The end A = 0 is compared with the minimum that the search finds.
+    """
     from scipy.optimize import minimize_scalar
 
     def curve(a: float) -> float:
-        return _reduced(transition, a)[which]
+        return _reduced(transition, a)[component]
 
-    bounds, options = (0.0, LARGEST_CRITICAL_RADIUS), {"xatol": FLAT_MINIMUM}
-    found = minimize_scalar(curve, bounds=bounds, method="bounded", options=options)
-    return float(found.x) if found.fun < curve(0.0) else 0.0
+    options = {"xatol": 1e-9}  # of A; the lowest value is off by the square of it
+    minimum = minimize_scalar(curve, bounds=(0.0, 1.5), method="bounded", options=options)
+    return float(minimum.x) if minimum.fun < curve(0.0) else 0.0
 
 
 class Theory(StrEnum):
-    """The zones of the map."""
+    """The zones of the map of adhesion, by the name of the theory."""
 
     APART = "no contact"
     RIGID = "rigid sphere (Bradley)"
@@ -217,11 +218,11 @@ class Theory(StrEnum):
 
 @dataclass(frozen=True)
 class Verdict:
-    """A zone of the map and why.
+    """A zone of the map with the reason.
 
     Args:
-        theory: which theory holds.
-        reason: one sentence with the number that decided.
+        theory: the theory that holds.
+        reason: one sentence with the deciding number.
     """
 
     theory: Theory
@@ -229,14 +230,14 @@ class Verdict:
 
 
 def of_tabor(tabor: float) -> Theory:
-    """The theory for mu at any load: DMT below 0.1, JKR above 5, else Maugis and Dugdale's."""
+    """Return the theory for mu at any load: DMT below 0.1, JKR above 5, else Maugis-Dugdale."""
     if tabor < DMT_TABOR:
         return Theory.DMT
     return Theory.JKR if tabor > JKR_TABOR else Theory.MAUGIS
 
 
 def valid_theory(tabor: float, reduced_load: float) -> Verdict:
-    """Return the simplest valid theory; tested in the order apart, rigid, Hertz, JKR, DMT, Maugis and Dugdale.
+    """Return the simplest valid theory; tested in the order apart, rigid, Hertz, JKR, DMT, Maugis-Dugdale.
 
     With N = F/(pi W R): rigid where Hertz's compression under F + 2 pi W R, mu [(3 pi/4)(N + 2)]^(2/3) h_0, is small;
     Hertz where (A^3 - N)/N is, the load that attraction adds, by the theory that goes with mu.
@@ -254,12 +255,12 @@ def valid_theory(tabor: float, reduced_load: float) -> Verdict:
     jkr = contacts[Theory.JKR].pull_off_force()
     largest = max(jkr, contacts[Theory.DMT if usual is Theory.DMT else Theory.MAUGIS].pull_off_force())
     if reduced_load < -largest:
-        found, limit = apart(-reduced_load, largest)
-        return Verdict(Theory.APART, f"a tension of {found} πWR exceeds the pull-off force {limit} πWR")
+        tension, limit = apart(-reduced_load, largest)
+        return Verdict(Theory.APART, f"a tension of {tension} πWR exceeds the pull-off force {limit} πWR")
     compression = tabor * math.cbrt(0.75 * math.pi * (reduced_load + 2.0)) ** 2
     if compression < RIGID_COMPRESSION:
-        found, limit = apart(compression, RIGID_COMPRESSION, 2)
-        return Verdict(Theory.RIGID, f"the compression is {found} h₀, less than {limit}: F_A = 2πWR")
+        value, limit = apart(compression, RIGID_COMPRESSION, 2)
+        return Verdict(Theory.RIGID, f"the compression is {value} h₀, less than {limit}: F_A = 2πWR")
     if reduced_load > 0.0:
         share = (contacts[usual].contact_radius(reduced_load) ** 3 - reduced_load) / reduced_load
         if share < HERTZ_ADHESION_SHARE:

@@ -5,7 +5,7 @@ A contact of radius a has, with the power-law profile z = c r^n and kappa_n = (s
     d = kappa_n c a^n - sqrt(2 pi W a/E*),    F = 2n/(n+1) kappa_n c E* a^(n+1) - sqrt(8 pi E* W a^3)
 
 For n = 2, c = 1/2R that is Hertz and, with the work of adhesion W, JKR; for n = 1 Sneddon's cone, with W that of Maugis
-and Barquins. What W adds is a flat punch's tension at the same a. W = 2 gamma is the work of adhesion of two equal
+and Barquins. W adds the tension of a flat punch of the same a. W = 2 gamma is the work of adhesion of two equal
 surfaces, gamma the surface energy of one of them; Geike and Popov (2007) call gamma the work of adhesion. Forces are
 positive in compression. Valid for small slopes, a frictionless half space and, with W, a Tabor parameter well above 1.
 Sources: I. N. Sneddon, Int. J. Engng Sci. 3 (1965) 47; L. A. Galin (1953); K. L. Johnson, K. Kendall, A. D. Roberts,
@@ -28,12 +28,6 @@ from numpy.typing import NDArray
 from contact1d.analysis.polynomial import gauss
 
 Floats = NDArray[np.float64]
-RIM = 1.0 - 1e-12
-"""Of the radius of a whole sphere, up to which its contact is sought: at the rim there is no bound."""
-CURVE = 400
-"""Points of a curve."""
-POINTS = 200
-"""Of Gauss's quadrature of a smooth function: its error is below round-off."""
 
 
 @cache
@@ -51,9 +45,9 @@ def require_positive(**values: float) -> None:
 
 
 class Contact(ABC):
-    """One contact by a theory: force and displacement over the contact radius a, and results derived from them.
+    """A contact in closed form: force and displacement over the contact radius a, and results derived from them.
 
-    Under a fixed load it pulls off where F(a) is lowest, under fixed grips where d(a) is: beyond, both rise with a.
+    Under a fixed load it pulls off where F(a) is lowest, under fixed grips where d(a) is. Both rise with larger a.
     """
 
     @abstractmethod
@@ -66,7 +60,7 @@ class Contact(ABC):
 
     @property
     def reach(self) -> float:
-        """The largest contact radius [length]."""
+        """The largest contact radius [length], infinite by default."""
         return math.inf
 
     def critical_radius(self) -> float:
@@ -107,12 +101,12 @@ class Contact(ABC):
             raise ValueError(f"the bodies separate at the displacement {self.displacement(low)}")
         return self._where(self.displacement, displacement, low)
 
-    def curve(self, least: float, largest: float) -> Floats:
-        """Return a [length], d(a) [length] and F(a) [force] at even radii from one to another, shape (3, CURVE)."""
-        return np.asarray([(a, self.displacement(a), self.force(a)) for a in np.linspace(least, largest, CURVE)]).T
+    def curve(self, least: float, largest: float, points: int = 400) -> Floats:
+        """Return a [length], d(a) [length] and F(a) [force] at evenly spaced radii between two, shape (3, points)."""
+        return np.asarray([(a, self.displacement(a), self.force(a)) for a in np.linspace(least, largest, points)]).T
 
     def _where(self, curve: Callable[[float], float], wanted: float, low: float) -> float:
-        """The radius from `low` on at which a rising curve is `wanted`, to the last digit; `low` where it begins so."""
+        """Return the radius from `low` on at which a rising curve is `wanted`, to the last digit; or `low` itself."""
         if not wanted > curve(low):
             return low
         high = min(2.0 * low or 1.0, self.reach)
@@ -124,16 +118,16 @@ class Contact(ABC):
 
 
 def punch_tension(contact_modulus: float, work_of_adhesion: float, contact_radius: float) -> float:
-    """Return Kendall's F = sqrt(8 pi E* W a^3) [force], the largest tension of a flat punch; arguments as of one."""
+    """Return Kendall's F = sqrt(8 pi E* W a^3) [force], the largest tension of a flat punch of radius a."""
     return math.sqrt(8.0 * math.pi * contact_modulus * work_of_adhesion * contact_radius**3)
 
 
 class Indenter(Contact):
-    """A body whose contact without adhesion is known, with adhesion of no range: at the same a a punch's tension less.
+    """A body whose contact without adhesion is known; adhesion of zero range adds a punch's tension at the same a.
 
         d = g(a) - sqrt(2 pi W a/E*),    F = P(a) - sqrt(8 pi E* W a^3)
 
-    with g and P those without it. Derivatives by a vanish where g'(a) sqrt(a) is 3/4 or 1/4 of sqrt(8 pi W/E*).
+    with g and P those without adhesion. Derivatives by a vanish where g'(a) sqrt(a) is 3/4 or 1/4 of sqrt(8 pi W/E*).
     """
 
     contact_modulus: float
@@ -149,7 +143,7 @@ class Indenter(Contact):
 
     @abstractmethod
     def _steep(self, wanted: float) -> float:
-        """a at which g'(a) sqrt(a) is so much [length]."""
+        """Return the radius a at which g'(a) sqrt(a) is `wanted` [length]."""
 
     def displacement(self, contact_radius: float) -> float:
         """Return d = g(a) - sqrt(2 pi W a/E*) [length]; a >= 0 [length]."""
@@ -158,8 +152,8 @@ class Indenter(Contact):
 
     def force(self, contact_radius: float) -> float:
         """Return F = P(a) - sqrt(8 pi E* W a^3) [force]; a >= 0 [length]."""
-        drawn = punch_tension(self.contact_modulus, self.work_of_adhesion, contact_radius)
-        return self.pressed(contact_radius) - drawn
+        tension = punch_tension(self.contact_modulus, self.work_of_adhesion, contact_radius)
+        return self.pressed(contact_radius) - tension
 
     def critical_radius(self) -> float:
         """Return a where a fixed load pulls off [length]; of JKR (9 pi W R^2/8E*)^(1/3)."""
@@ -174,7 +168,7 @@ class Indenter(Contact):
         return self._steep(wanted) if wanted else 0.0
 
     def _tension(self, contact_radius: float) -> float:
-        """What adhesion takes from the pressure on the axis [stress]: sqrt(2 E* W/pi a)."""
+        """Return the tension of adhesion on the axis, sqrt(2 E* W/pi a) [stress]."""
         a = contact_radius
         return math.sqrt(2.0 * self.contact_modulus * self.work_of_adhesion / (math.pi * a)) if a else 0.0
 
@@ -199,7 +193,7 @@ class PowerLaw(Indenter):
     work_of_adhesion: float = 0.0
 
     def __post_init__(self) -> None:
-        """Check the ranges."""
+        """Raise ValueError for a parameter out of its range."""
         require_positive(coefficient=self.coefficient, contact_modulus=self.contact_modulus)
         if not (self.exponent >= 1.0 and self.work_of_adhesion >= 0.0):
             raise ValueError(
@@ -209,7 +203,7 @@ class PowerLaw(Indenter):
 
     @classmethod
     def sphere(cls, radius: float, contact_modulus: float, work_of_adhesion: float = 0.0) -> PowerLaw:
-        """The paraboloid z = r^2/2R of Hertz, with `work_of_adhesion` that of JKR; arguments as of `PowerLaw`."""
+        """Return the paraboloid z = r^2/2R of Hertz, with `work_of_adhesion` that of JKR; R `radius` [length]."""
         require_positive(radius=radius)
         return cls(0.5 / radius, 2.0, contact_modulus, work_of_adhesion)
 
@@ -241,17 +235,17 @@ class PowerLaw(Indenter):
         """Return the largest p [stress]: for n <= 2 p(0); for n > 2 it is off the axis, and has no closed form: NaN."""
         return self.central_pressure(contact_radius) if self.exponent <= 2.0 else math.nan
 
-    def pressure(self, place: Floats, contact_radius: float) -> Floats:
+    def pressure(self, r: Floats, contact_radius: float) -> Floats:
         """Return p(r) [stress], positive in compression, of a cone or a paraboloid; 0 from the edge on.
 
         (E* c/2) arcosh(a/r) or (2 E* a/pi R) sqrt(1 - r^2/a^2), less sqrt(2 E* W/pi a)/sqrt(1 - r^2/a^2).
 
         Args:
-            place: r >= 0 [length], any shape.
+            r: distances from the axis >= 0 [length], any shape.
             contact_radius: a >= 0 [length].
         """
-        pressure, inside = np.zeros_like(place), place < contact_radius
-        ratio, scale = place[inside] / contact_radius, self.contact_modulus * self.coefficient
+        pressure, inside = np.zeros_like(r), r < contact_radius
+        ratio, scale = r[inside] / contact_radius, self.contact_modulus * self.coefficient
         root = np.sqrt(1.0 - ratio**2)
         with np.errstate(divide="ignore"):
             cone = 0.5 * scale * np.arccosh(1.0 / ratio)
@@ -262,7 +256,7 @@ class PowerLaw(Indenter):
 
 @dataclass(frozen=True)
 class Ellipsoid(Indenter):
-    """The whole ellipsoid z = b (1 - sqrt(1 - r^2/c^2)), a sphere that is b/c times as high; a << c gives Hertz.
+    """An ellipsoid up to its rim, z = b (1 - sqrt(1 - r^2/c^2)), a sphere of b/c times the height; a << c gives Hertz.
 
     Linear elasticity holds for small slopes only, so its use near a = c is to test methods. F loses the digits
     (c/a)^2 to cancellation: for a > 1e-3 c it is good to 1e-10.
@@ -283,13 +277,13 @@ class Ellipsoid(Indenter):
     work_of_adhesion: float = 0.0
 
     def __post_init__(self) -> None:
-        """Check the signs."""
+        """Raise ValueError for a parameter that is not positive and finite."""
         require_positive(radius=self.radius, half_axis=self.half_axis, contact_modulus=self.contact_modulus)
 
     @property
     def reach(self) -> float:
-        """The rim [length]."""
-        return RIM * self.radius
+        """The largest contact radius [length], next to the rim of the body, where F has no bound."""
+        return (1.0 - 1e-12) * self.radius
 
     def transformed(self, contact_radius: float) -> float:
         """Return g(a) = (b/c) a artanh(a/c) [length]; 0 <= a < c [length]."""
@@ -303,22 +297,22 @@ class Ellipsoid(Indenter):
     def _steep(self, wanted: float) -> float:
         return self._where(lambda a: self._rate(a) * math.sqrt(a), wanted, 0.0)
 
-    def _rate(self, place: float) -> float:
-        """g'(x) = (b/c) [artanh(x/c) + x c/(c^2 - x^2)], 0 <= x < c [length]."""
-        x, c = place, self.radius
+    def _rate(self, position: float) -> float:
+        """Return g'(x) = (b/c) [artanh(x/c) + x c/(c^2 - x^2)]; 0 <= x < c [length]."""
+        x, c = position, self.radius
         return self.half_axis / c * (math.atanh(x / c) + x * c / (c**2 - x**2))
 
     def central_pressure(self, contact_radius: float) -> float:
         """Return p(0) = (E*/pi) int_0^a g'/x dx - sqrt(2 E* W/pi a) [stress]; 0 <= a < c [length].
 
-        By quadrature: the first part has no elementary form.
+        By quadrature: the integral has no elementary form.
         """
         if not contact_radius:
             return 0.0
-        nodes, weights = gauss(POINTS)
+        nodes, weights = gauss(200)  # with an error below round-off for a smooth function
         half = 0.5 * contact_radius
-        places = half * (nodes + 1.0)
-        rate = float(weights @ [self._rate(float(x)) / x for x in places])
+        positions = half * (nodes + 1.0)
+        rate = float(weights @ [self._rate(float(x)) / x for x in positions])
         return self.contact_modulus / math.pi * half * rate - self._tension(contact_radius)
 
     peak_pressure = central_pressure
@@ -326,7 +320,7 @@ class Ellipsoid(Indenter):
 
 @dataclass(frozen=True)
 class FlatPunch:
-    """A flat-ended cylinder, F = 2 E* a d: the contact radius is given.
+    """A flat-ended cylinder with the contact radius a, F = 2 E* a d.
 
     Args:
         radius: a [length].
@@ -342,18 +336,18 @@ class FlatPunch:
     work_of_adhesion: float = 0.0
 
     def __post_init__(self) -> None:
-        """Check the signs."""
+        """Raise ValueError for a parameter that is not positive and finite."""
         require_positive(radius=self.radius, contact_modulus=self.contact_modulus)
 
     @property
     def stiffness(self) -> float:
-        """F/d = 2 E* a [force/length]."""
+        """The contact stiffness F/d = 2 E* a [force/length]."""
         return 2.0 * self.contact_modulus * self.radius
 
-    def pressure(self, place: Floats | float, displacement: float) -> Floats:
-        """Return p(r) = (E* d/pi) (a^2 - r^2)^(-1/2) [stress], shape of `place` 0 <= r < a [length]; d [length]."""
-        r = np.asarray(place, dtype=np.float64)
-        return np.asarray(self.contact_modulus * displacement / (math.pi * np.sqrt(self.radius**2 - r**2)))
+    def pressure(self, r: Floats | float, displacement: float) -> Floats:
+        """Return p(r) = (E* d/pi) (a^2 - r^2)^(-1/2) [stress] at 0 <= r < a [length], any shape; d [length]."""
+        root = np.sqrt(self.radius**2 - np.asarray(r, dtype=np.float64) ** 2)
+        return np.asarray(self.contact_modulus * displacement / (math.pi * root))
 
     def pull_off_force(self) -> float:
         """Return Kendall's F_A = sqrt(8 pi E* W a^3), a positive magnitude [force]."""

@@ -2,10 +2,10 @@
 
     F_x = mu N [1 - (1 - u/u*)^(3/2)],    c/a = (1 - u/u*)^(1/2),    u* = mu (E*/G*) d
 
-From the edge inwards the contact slips, out to c it sticks. After a reversal at u_m the same curve runs back at twice
-its size, F = F_m - 2 T((u_m - u)/2) (Mindlin and Deresiewicz), and where it meets the way by which it came, it goes on
-along that (Masing's rules, which hold under a constant N). A body's stick zone is a smaller contact of its own: that
-holds for any shape (Ciavarella, Jaeger), and in the method of dimensionality reduction spring by spring.
+The contact sticks up to c and slips between c and the edge. After a reversal at u_m the curve returns at twice its
+size, F = F_m - 2 T((u_m - u)/2) (Mindlin and Deresiewicz), and where it meets an earlier branch it continues along that
+(Masing's rules, valid under a constant N). The stick zone is itself a smaller contact: that holds for any shape
+(Ciavarella, Jaeger), and in the method of dimensionality reduction for each spring.
 
 Sources: K. L. Johnson, Contact Mechanics (1985), sections 7.2 and 7.4; R. D. Mindlin, H. Deresiewicz, J. Appl. Mech. 20
 (1953) 327; V. L. Popov, M. Hess, Method of Dimensionality Reduction (2015), chapter 5. Any consistent units.
@@ -17,52 +17,50 @@ import math
 from collections.abc import Sequence
 from itertools import pairwise
 
-SAME = 1e-9
-"""Relative: up to that two positions are one; round-off."""
-
 
 def sliding_displacement(friction: float, ratio: float, displacement: float) -> float:
-    """Return u* = mu d/(G*/E*) [length], from which on all slips: mu `friction`, G*/E* `ratio`, d `displacement`."""
+    """Return u* = mu d/(G*/E*) [length], where full slip begins: mu `friction`, G*/E* `ratio`, d `displacement`."""
     return friction * displacement / ratio
 
 
-def _ways(places: Sequence[float]) -> list[list[float]]:
-    """Return at each position how far it is from the first remembered turn, and half of the path from each to the next.
+def _amplitudes(positions: Sequence[float]) -> list[list[float]]:
+    """Return at each position the first remembered turn, or the position without one, and half of each later distance.
 
-    A turn is forgotten where the way comes to the one before it, or of the first one to its mirror image.
+    These are the distances from turn to turn and from the last turn to the position [length]. A turn is forgotten where
+    the path reaches the turn before it, the first one where it reaches its mirror image, but for round-off.
     """
     turns: list[float] = []
-    here, direction, found = 0.0, 0.0, []
-    for place in places:
-        if place != here:
-            onwards = math.copysign(1.0, place - here)
+    current, direction, amplitudes = 0.0, 0.0, []
+    for position in positions:
+        if position != current:
+            onwards = math.copysign(1.0, position - current)
             if direction and onwards != direction:
-                turns.append(here)
-            direction, here = onwards, place
-            while turns and direction * (place - (turns[-2] if len(turns) > 1 else -turns[-1])) >= -SAME * abs(place):
+                turns.append(current)
+            direction, current, round_off = onwards, position, 1e-9 * abs(position)
+            while turns and direction * (position - (turns[-2] if len(turns) > 1 else -turns[-1])) >= -round_off:
                 del turns[-2:]
-        stops = [*turns, place]
-        found.append([stops[0], *(0.5 * (b - a) for a, b in pairwise(stops))])
-    return found
+        stops = [*turns, position]
+        amplitudes.append([stops[0], *(0.5 * (b - a) for a, b in pairwise(stops))])
+    return amplitudes
 
 
-def mindlin_path(places: Sequence[float], normal_force: float, friction: float, sliding: float) -> list[float]:
+def mindlin_path(positions: Sequence[float], normal_force: float, friction: float, sliding: float) -> list[float]:
     """Return F_x [force] at each of the positions, reached one after the other from 0 under a constant load.
 
     From turn to turn T(u_1) + 2 T((u_2 - u_1)/2) + ..., T the force of the initial loading.
 
     Args:
-        places: u [length].
+        positions: u [length].
         normal_force: N [force].
         friction: mu.
         sliding: u* [length].
     """
 
-    def force(way: float) -> float:
-        left = max(1.0 - abs(way) / sliding, 0.0)
-        return friction * normal_force * math.copysign(1.0 - left**1.5, way)
+    def force(distance: float) -> float:
+        left = max(1.0 - abs(distance) / sliding, 0.0)
+        return friction * normal_force * math.copysign(1.0 - left**1.5, distance)
 
-    return [force(first) + sum(2.0 * force(way) for way in later) for first, *later in _ways(places)]
+    return [force(first) + sum(2.0 * force(half) for half in later) for first, *later in _amplitudes(positions)]
 
 
 def mindlin_cycle_energy(amplitude: float, normal_force: float, friction: float, sliding: float) -> float:
@@ -73,7 +71,7 @@ def mindlin_cycle_energy(amplitude: float, normal_force: float, friction: float,
         W = (4/5) mu N u* (1 - s)^3 (1 + 3 s + s^2),    s^2 = 1 - u_m/u*,    for u_m <= u*,
         W = 4 mu N (u_m - (4/5) u*)                                          beyond, where all slips.
 
-    For small amplitudes W = mu N u_m^3/(2 u*^2), of which the difference of the integrals would leave few digits.
+    For small amplitudes W = mu N u_m^3/(2 u*^2), where the difference of the integrals would lose digits.
     By the force amplitude F = mu N (1 - s^3) this is Mindlin and Deresiewicz's
 
         W = (24/5) mu N u* {1 - s^5 - (5/6) (1 - s^3) (1 + s^2)},
@@ -96,12 +94,12 @@ def mindlin_cycle_energy(amplitude: float, normal_force: float, friction: float,
     return friction * normal_force * (partial + 4.0 * max(amplitude - sliding, 0.0))
 
 
-def mindlin_stick_path(places: Sequence[float], contact_radius: float, sliding: float) -> list[float]:
-    """Return c [length] at each of the positions, as `mindlin_path`: after a reversal all sticks again.
+def mindlin_stick_path(positions: Sequence[float], contact_radius: float, sliding: float) -> list[float]:
+    """Return c [length] at each of the positions of a path as of `mindlin_path`; after a reversal all sticks again.
 
     Args:
-        places: u [length].
+        positions: u [length].
         contact_radius: a [length].
         sliding: u* [length].
     """
-    return [contact_radius * math.sqrt(max(1.0 - abs(ways[-1]) / sliding, 0.0)) for ways in _ways(places)]
+    return [contact_radius * math.sqrt(max(1.0 - abs(half[-1]) / sliding, 0.0)) for half in _amplitudes(positions)]

@@ -1,8 +1,8 @@
-"""A rigid body z = c rⁿ pressed into a half-space that relaxes, and drawn back once.
+"""A rigid body z = c rⁿ pressed into a viscoelastic half-space, and retracted once.
 
     F(t) = ∫₀^{t₁} φ(t − s) dP(d(s)),    ∫_{t₁}^{t} φ(t − s) d′(s) ds = 0,    φ(t) = 1 − Σ g (1 − e^(−t/τ))
 
-P(d) ∝ d^((n+1)/n) is the force of the elastic body at once. While the contact grows t₁ = t (E. H. Lee, J. R. M. Radok,
+P(d) ∝ d^((n+1)/n) is the instantaneous, elastic force. While the contact grows t₁ = t (E. H. Lee, J. R. M. Radok,
 J. Appl. Mech. 27 (1960) 438); when it shrinks, t₁ is when it was as wide before (T. C. T. Ting, J. Appl. Mech. 33
 (1966) 845).
 """
@@ -16,16 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-PARTS = 4000
-"""Parts of the integral over the way in, each with φ at its middle: their error is some 1e-7 of F."""
 
 
 @dataclass(frozen=True)
 class Indented:
-    """A history of one pressing.
+    """The history of an indentation.
 
     Attributes:
-        times, displacements: its points, straight between them [time], [length]; the first at most 0, one maximum.
+        times, displacements: its points, joined by straight lines [time], [length]; the first at most 0, one maximum.
         force: P at the largest displacement [force].
         exponent: n of the body.
         terms: (g, τ) of the material, g of the instantaneous modulus [1], [time].
@@ -38,14 +36,14 @@ class Indented:
     terms: tuple[tuple[float, float], ...]
 
     def __post_init__(self) -> None:
-        """Raises ValueError where the displacements begin above 0 or have more than one maximum."""
-        ways = np.sign(np.diff(self.displacements))
-        if self.displacements[0] > 0.0 or (np.diff(ways[ways != 0.0]) > 0.0).any() or max(self.displacements) <= 0.0:
+        """Raise ValueError where the displacements begin above 0 or have more than one maximum."""
+        signs = np.sign(np.diff(self.displacements))
+        if self.displacements[0] > 0.0 or (np.diff(signs[signs != 0.0]) > 0.0).any() or max(self.displacements) <= 0.0:
             raise ValueError("displacements must begin at 0 or below and have one maximum")
 
     @property
     def touched(self) -> float:
-        """When the bodies touch first."""
+        """The time at which the bodies first touch."""
         d = np.asarray(self.displacements)
         first = int(np.argmax(d > 0.0))
         return float(np.interp(0.0, d[first - 1 : first + 1], self.times[first - 1 : first + 1]))
@@ -56,43 +54,46 @@ class Indented:
         return self.times[len(self.times) - 1 - int(np.argmax(self.displacements[::-1]))]
 
     def _relaxed(self, time: Array) -> Array:
-        """φ."""
-        found = np.ones_like(time)
+        """Return the relaxation function φ at times since a load step, (m,) [1]."""
+        phi = np.ones_like(time)
         for g, tau in self.terms:
-            found += g * np.expm1(-time / tau)
-        return found
+            phi += g * np.expm1(-time / tau)
+        return phi
 
     def _balance(self, start: float, time: float) -> float:
-        """∫ φ(t − s) d′ ds from a start to a time [length·1]."""
+        """Return ∫ φ(t − s) d′ ds from a start to a time [length]."""
         ends = np.unique(np.clip([start, *self.times, time], start, time))
         d = np.interp(ends, self.times, self.displacements)
         kept = 1.0 - sum(g for g, _ in self.terms)
-        found = kept * (d[-1] - d[0])
+        integral = kept * (d[-1] - d[0])
         for g, tau in self.terms:
-            age, spans = (time - ends) / tau, np.diff(ends) / tau  # of long times a difference has no digits
-            found -= g * float(np.diff(d) / spans @ (np.exp(-age[1:]) * np.expm1(-spans)))
-        return float(found)
+            age, spans = (time - ends) / tau, np.diff(ends) / tau  # a difference would lose the digits at long times
+            integral -= g * float(np.diff(d) / spans @ (np.exp(-age[1:]) * np.expm1(-spans)))
+        return float(integral)
 
     def lost(self, end: float) -> float | None:
-        """When the contact is lost, up to an end; None where it is not."""
+        """Return the time at which the contact is lost, up to an end; None where it is not."""
         from scipy.optimize import brentq
 
         if self._balance(self.touched, end) > 0.0:
             return None
         return float(brentq(lambda time: self._balance(self.touched, time), self.deepest, end))
 
-    def forces(self, times: Sequence[float]) -> Array:
-        """F at times within the history, (m,) [force]."""
+    def forces(self, times: Sequence[float], parts: int = 4000) -> Array:
+        """Return F at times within the history, (m,) [force].
+
+        The loading has so many parts, each with φ at its middle: the error is some 1e-7 of F.
+        """
         from scipy.optimize import brentq
 
-        found, first, deepest = np.zeros(len(times)), self.touched, self.deepest
+        force, first, deepest = np.zeros(len(times)), self.touched, self.deepest
         largest, power = max(self.displacements), (self.exponent + 1.0) / self.exponent
         for i, time in enumerate(times):
             if time <= first or (time > deepest and self._balance(first, time) <= 0.0):
                 continue
             end = time if time <= deepest else brentq(self._balance, first, deepest, args=(time,))
-            moments = np.union1d(np.linspace(first, end, PARTS), [one for one in self.times if first < one < end])
+            moments = np.union1d(np.linspace(first, end, parts), [turn for turn in self.times if first < turn < end])
             d = np.maximum(np.interp(moments, self.times, self.displacements), 0.0)
             rise = np.diff(self.force * (d / largest) ** power)
-            found[i] = rise @ self._relaxed(time - 0.5 * (moments[1:] + moments[:-1]))
-        return found
+            force[i] = rise @ self._relaxed(time - 0.5 * (moments[1:] + moments[:-1]))
+        return force

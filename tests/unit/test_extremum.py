@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contact1d.analysis.extremum import place_of_minimum
+from contact1d.analysis.extremum import position_of_minimum
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import compressive_radius
 
@@ -20,7 +20,7 @@ def sampled(values: list[float] | np.ndarray) -> tuple[np.ndarray, np.ndarray, n
 
 def test_two_samples_that_tie_leave_no_doubt_of_their_own() -> None:
     t = np.arange(24.0) - 11.5
-    place = place_of_minimum(*sampled(-1.0 / np.cosh(0.2 * t)))
+    place = position_of_minimum(*sampled(-1.0 / np.cosh(0.2 * t)))
     assert place.position == pytest.approx(FAR + SPACING * 11.5, abs=1e-9)
     assert place.uncertainty < 1e-3 * SPACING
 
@@ -28,7 +28,7 @@ def test_two_samples_that_tie_leave_no_doubt_of_their_own() -> None:
 def test_three_samples_that_tie_leave_a_quarter_of_their_extent() -> None:
     y = np.full(31, 0.0)
     y[14:17] = -1.0
-    place = place_of_minimum(*sampled(y))
+    place = position_of_minimum(*sampled(y))
     assert FAR + 14 * SPACING <= place.position <= FAR + 16 * SPACING
     assert 0.25 * 2 * SPACING <= place.uncertainty <= 4 * SPACING
 
@@ -36,7 +36,7 @@ def test_three_samples_that_tie_leave_a_quarter_of_their_extent() -> None:
 def test_a_side_on_which_nothing_pulls_has_its_minimum_anywhere() -> None:
     """A body pressed on so hard that one side alone has a particle under tension."""
     x, y, _ = sampled([0.0] * 20 + [-2e-4] + [1.0] * 40 + [0.0] * 20)
-    place = place_of_minimum(x, y, np.arange(40, 81))
+    place = position_of_minimum(x, y, np.arange(40, 81))
     assert abs(place.position - x[71]) <= 2.0 * SPACING
     assert place.uncertainty >= 9.5 * SPACING
 
@@ -44,8 +44,8 @@ def test_a_side_on_which_nothing_pulls_has_its_minimum_anywhere() -> None:
 def test_five_samples_on_each_side_are_enough_to_converge() -> None:
     """With four the polynomials through seven samples decide, which know less."""
     t = np.arange(-5.0, 6.0) + 0.3
-    wide = place_of_minimum(*sampled(np.cosh(0.3 * t)))
-    narrow = place_of_minimum(*sampled(np.cosh(0.3 * t[1:-1])))
+    wide = position_of_minimum(*sampled(np.cosh(0.3 * t)))
+    narrow = position_of_minimum(*sampled(np.cosh(0.3 * t[1:-1])))
     assert abs(wide.position - (FAR + SPACING * 4.7)) <= wide.uncertainty
     assert abs(narrow.position - (FAR + SPACING * 3.7)) <= narrow.uncertainty
     assert wide.uncertainty < 1e-3 * narrow.uncertainty
@@ -54,7 +54,7 @@ def test_five_samples_on_each_side_are_enough_to_converge() -> None:
 @pytest.mark.parametrize(("width", "known"), [(0.7, 1.0), (1.4, 0.8), (2.8, 0.1), (5.6, 1e-3)])
 def test_a_dip_is_known_the_better_the_more_samples_it_has(width: float, known: float) -> None:
     """One narrower than a sample is anywhere between those beside the lowest, one of ten samples is where it is."""
-    place = place_of_minimum(*sampled(-1.0 / np.cosh((np.arange(60.0) - 30.3) / width)))
+    place = position_of_minimum(*sampled(-1.0 / np.cosh((np.arange(60.0) - 30.3) / width)))
     assert abs(place.position - (FAR + SPACING * 30.3)) <= place.uncertainty <= known * SPACING
 
 
@@ -66,7 +66,7 @@ def test_a_flat_dip_in_noise_is_found_within_its_claim_and_better_than_its_lowes
     errors, claims, lowest = [], [], []
     for _ in range(200):
         y = law + 1e-3 * random.normal(size=t.size)
-        found = place_of_minimum(t, y, np.arange(t.size))
+        found = position_of_minimum(t, y, np.arange(t.size))
         errors.append(found.position - middle)
         claims.append(found.uncertainty)
         lowest.append(t[y.argmin()] - middle)
@@ -80,7 +80,7 @@ def test_a_dip_of_one_sample_may_lie_anywhere_up_to_both_of_its_neighbours(besid
     y = np.full(21, 1.0)
     y[9:12] = beside[0], 0.0, beside[1]
     x, y, every = sampled(y)
-    place = place_of_minimum(x, y, every)
+    place = position_of_minimum(x, y, every)
     assert place.position + place.uncertainty >= x[11] - 1e-9
     assert place.position - place.uncertainty <= x[9] + 1e-9
     assert place.uncertainty <= 2.0 * SPACING

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from contact1d.analysis.extremum import place_of_minimum
+from contact1d.analysis.extremum import position_of_minimum
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import compressive_radius, tensile_radius
 
@@ -179,7 +179,7 @@ def test_a_dip_that_is_steeper_on_one_side_is_where_it_is_claimed_to_be(width: f
     for _ in range(CASES):
         place, skew = rng.uniform(-0.5, 0.5), np.exp(rng.uniform(math.log(1.5), math.log(6.0)))
         t = (x - place) / (width * np.where(x < place, 1.0, skew) * np.exp(rng.uniform(-0.3, 0.3)))
-        found = place_of_minimum(x, -np.exp(-0.5 * t**2), np.arange(x.size))
+        found = position_of_minimum(x, -np.exp(-0.5 * t**2), np.arange(x.size))
         covered.append(abs(found.position - place) <= found.uncertainty)
     assert np.mean(covered) >= COVERED
 

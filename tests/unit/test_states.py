@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from contact1d.analysis import curve as states_module
 from contact1d.analysis.curve import States, read_states, states_of, write_states
 from contact1d.analysis.pressure import Profile
 
@@ -20,14 +19,11 @@ def passed(rows: int, particles: int) -> list[Profile]:
 
 
 @pytest.mark.parametrize("most", [10, 40, 41])
-def test_as_many_states_are_kept_as_numbers_fit_evenly_with_both_ends(
-    most: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(states_module, "MOST_NUMBERS", most)
+def test_as_many_states_are_kept_as_numbers_fit_evenly_with_both_ends(most: int) -> None:
     for rows in (1, 2, 3, 7, 20):
         for particles in (1, 2, 3, 5, 19, 20, 21, 50):
             profiles = passed(rows, particles)
-            found = states_of(profiles)
+            found = states_of(profiles, most_numbers=most)
             kept = found.x[0].astype(int).tolist()
             assert found.rows.size == min(rows, most // len(kept))
             assert len(kept) == min(particles, most // 2)

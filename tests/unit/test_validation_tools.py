@@ -30,7 +30,7 @@ def test_of_drawings_and_messages_only_what_they_show_is_drawn() -> None:
     """Sizes and digits are left, numbers stay."""
     drawn = [one.text for file in ("workflow/report/animation.py", "analysis/figures.py") for one in mutants(file)]
     assert not [text for text in drawn if text.startswith("HEIGHT =")]
-    assert [text for text in drawn if text.startswith("SHOWN_SHARE =")]
+    assert [text for text in drawn if text.startswith("carrying = np.abs(p) > 0.01")]
     assert [text for text in drawn if "4.0 * a**3" in text]
     spacings = [one for one in mutants("workflow/experiments/spacing.py") if "digits_apart" in one.text]
     assert not spacings
