@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from contact1d.analysis.curve_marks import Peak, promised, rivals
 from contact1d.digits import apart
 from contact1d.workflow.continuation.context import ContactBranch, RunContext
-from contact1d.workflow.continuation.marks import PLACE_FACTOR, peak_of, radius_rate
+from contact1d.workflow.continuation.marks import POSITION_FACTOR, peak_of, radius_rate
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Search, Trace, of_states
 from contact1d.workflow.continuation.trust import TensionError, UntrustedError
@@ -59,12 +59,12 @@ class Branch(ContactBranch):
         """Run load steps at displacements [LU] that are known beforehand, in one direction."""
         self._turn(not self.states or positions[-1] >= self._last.displacement)
         self._visit(positions)
-        self._came(math.nan)
+        self._record_target(math.nan)
 
     def _visit(self, positions: Sequence[float] | Array) -> None:
         """Run load steps at displacements [LU] in any order, on the leg under way."""
-        self._enter()
-        self._keep(self.contact.rows(displacements([float(position) for position in positions])))
+        self._begin_phase()
+        self._append(self.contact.rows(displacements([float(position) for position in positions])))
 
     def hold(self, duration: float, displacement: float | None, force: float | None, approach_steps: int = 20) -> None:
         """Hold a displacement [LU] for a time [TU], in which particles move; each move there takes some timesteps."""
@@ -79,8 +79,8 @@ class Branch(ContactBranch):
         self._move([DisplaceInTime(displacement, steps) for steps in self.settings.steps_of(duration)])
 
     def _move(self, rows: Sequence[DisplaceInTime]) -> None:
-        self._enter()
-        self._keep(self.contact.rows(rows, moving=True))
+        self._begin_phase()
+        self._append(self.contact.rows(rows, moving=True))
 
     # --- a force
 
@@ -95,7 +95,7 @@ class Branch(ContactBranch):
         rises = not self.states or force - self._last.carried > near
         direction = 1 if rises else -1
         self._turn(rises)
-        self._at(self._last.displacement if self.states else 0.0)
+        self._load_step(self._last.displacement if self.states else 0.0)
 
         def goes_beyond(state: State) -> bool:
             return state.carried > force if rises else state.carried < force
@@ -118,10 +118,12 @@ class Branch(ContactBranch):
                 )
             self._require_within_reach(force, rises, before, beyond)
             step = self.settings.increment(last.smallest_distance if rises else math.inf)
-            self._at(self._towards(before, beyond, force, direction * step))
-        self._came(force + self._last.pushed)
+            self._load_step(self._next_displacement(before, beyond, force, direction * step))
+        self._record_target(force + self._last.pushed)
 
-    def _towards(self, before: State, beyond: State | None, force: float, step: float, margin: float = 0.05) -> float:
+    def _next_displacement(
+        self, before: State, beyond: State | None, force: float, step: float, margin: float = 0.05
+    ) -> float:
         """Return the next displacement [LU], by a secant of d over that of the model, which is nearly straight.
 
         It is kept within a step, or inside the bracket, off its ends by a share `margin` of it unless the search
@@ -182,15 +184,15 @@ class Branch(ContactBranch):
         increment = self._pass_maximum()
         expected, halvings, changed = self.peak, 0, math.inf
         for _ in range(most_refinements):
-            self._back_to(expected.position)
+            self._revisit(expected.position)
             peak = self.peak
             missed, allowed = abs(peak.smooth - expected.smooth), self.tolerance * peak.smooth
-            if missed > allowed or not self._is_at(peak):
+            if missed > allowed or not self._has_radius_of(peak):
                 expected = peak
                 continue
             known = changed <= allowed and peak.uncertainty <= allowed
-            if known and (halvings > most_halvings or self._is_placed(peak)):
-                before, excess = len(self.states), self._look_at_rivals(allowed)
+            if known and (halvings > most_halvings or self._is_located(peak)):
+                before, excess = len(self.states), self._examine_rivals(allowed)
                 if len(self.states) == before:
                     self._record_maximum(max(missed, changed, excess, abs(peak.smooth + self._last.force)))
                     return
@@ -235,8 +237,8 @@ class Branch(ContactBranch):
         distance = 0.0 if through else self._expected(zero.carried) - self._expected(-math.inf)
         before = 2  # load steps before the expected maximum, for its polynomials
         rows, skipped = [zero], max(0, math.floor(distance / step) - before)
-        while not _is_passed(rows) or (through and -min(s.force for s in rows) <= self._still_held(rows[-1])):
-            rows.append(self._at(zero.displacement - (skipped + len(rows)) * step))
+        while not _is_passed(rows) or (through and -min(s.force for s in rows) <= self._remaining_tension(rows[-1])):
+            rows.append(self._load_step(zero.displacement - (skipped + len(rows)) * step))
             if len(rows) > MOST_INCREMENTS:
                 raise UntrustedError("the search does not pass the force maximum")
         return step
@@ -246,11 +248,11 @@ class Branch(ContactBranch):
         expected = promised(*self.unloading.lists, positions)
         surprise = 0.0
         for position, tension in zip(positions, expected, strict=True):
-            self._back_to(position)
+            self._revisit(position)
             surprise = max(surprise, math.inf if math.isnan(tension) else abs(float(tension) + self._last.force))
         return surprise
 
-    def _look_at_rivals(self, allowed: float, most: int = 200) -> float:
+    def _examine_rivals(self, allowed: float, most: int = 200) -> float:
         """Visit positions near maxima that may be higher than the highest load step by more than `allowed` [FU].
 
         After `most` of them at the latest, return by how much a maximum may still be higher [FU].
@@ -264,46 +266,48 @@ class Branch(ContactBranch):
             if excess <= allowed:
                 break
             for neighbour in (d[highest - 1], d[highest + 1]):
-                self._back_to(0.5 * float(d[highest] + neighbour))
+                self._revisit(0.5 * float(d[highest] + neighbour))
         return excess
 
-    def _is_at(self, peak: Peak) -> bool:
+    def _has_radius_of(self, peak: Peak) -> bool:
         """Return whether the last state has the contact radius of the maximum."""
-        return abs(self._rate(self._last) * (peak.position - self._last.displacement)) <= self._allowed(self._last)
+        return abs(self._radius_rate(self._last) * (peak.position - self._last.displacement)) <= self._radius_limit(
+            self._last
+        )
 
-    def _is_placed(self, peak: Peak) -> bool:
+    def _is_located(self, peak: Peak) -> bool:
         """Return whether the position of the maximum is accurate enough for the contact radius there."""
-        return PLACE_FACTOR * abs(self._rate(self._last)) * peak.misplaced <= self._allowed(self._last)
+        return POSITION_FACTOR * abs(self._radius_rate(self._last)) * peak.misplaced <= self._radius_limit(self._last)
 
-    def _rate(self, state: State) -> float:
+    def _radius_rate(self, state: State) -> float:
         """Return da/dd at a state of the leg under way, from its nearest neighbour."""
         trace = self.unloading
         return radius_rate(trace, int(np.argmin(np.abs(trace.displacement - state.displacement))))
 
-    def _allowed(self, state: State) -> float:
+    def _radius_limit(self, state: State) -> float:
         """Return the allowed error of a contact radius [LU]: half its uncertainty, due to the spacing, at least."""
         radius = state.radius_or_spot
         return max(self.tolerance * radius.value, 0.5 * radius.uncertainty)
 
     # --- moves
 
-    def _at(self, displacement: float) -> State:
+    def _load_step(self, displacement: float) -> State:
         """Run one load step at a displacement [LU] and return its state."""
-        self._enter()
+        self._begin_phase()
         state = self.contact.row(Displace(displacement))
-        self._keep([state])
+        self._append([state])
         return state
 
     def _record_maximum(self, error: float) -> None:
         """Record the error of the search for the force maximum of the leg under way [FU]."""
         self.searches[self._number] = Search({"sampling": error})
 
-    def _back_to(self, displacement: float) -> None:
+    def _revisit(self, displacement: float) -> None:
         """Visit a displacement [LU]; bodies approach by half the smallest distance of their particles at a time."""
         while displacement - self._last.displacement > (longest := 0.5 * self._last.smallest_distance):
             longest = max(longest, self.settings.increments.longest_move)
-            self._at(min(self._last.displacement + longest, displacement))
-        self._at(displacement)
+            self._load_step(min(self._last.displacement + longest, displacement))
+        self._load_step(displacement)
 
     def _separate(self, start: float, share: float = 0.02) -> None:
         """Unload from `start` [LU] until the tension is, and remains, below a share of its maximum.
@@ -311,16 +315,16 @@ class Branch(ContactBranch):
         Increments grow where the tension is below half its maximum.
         """
         largest = max((-s.force for s in self.leg), default=0.0)
-        self._at(start)
+        self._load_step(start)
         displacement, step = start, self._unloading_step(start)
         for _ in range(MOST_INCREMENTS):
             displacement -= step
-            state = self._at(displacement)
+            state = self._load_step(displacement)
             largest = max(largest, -state.force)
             if 0.0 <= -state.force < 0.5 * largest:
                 step *= self._growth(state, largest)
             gone = abs(state.force) < share * largest
-            if (gone and self._still_held(state) < share * largest) or (
+            if (gone and self._remaining_tension(state) < share * largest) or (
                 state.smallest_distance > self.settings.forces.cutoff
             ):
                 return
@@ -338,7 +342,7 @@ class Branch(ContactBranch):
         distance = start - self.settings.forces.rest + float(self.settings.law.gap[-1])
         return max(self.settings.increment(), distance / most)
 
-    def _still_held(self, state: State) -> float:
+    def _remaining_tension(self, state: State) -> float:
         """Return the largest tension [FU] that bodies which move apart can have from this state on.
 
         The tension of a particle beyond the force maximum of its law only falls; any other particle may still reach

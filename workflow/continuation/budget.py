@@ -61,7 +61,7 @@ def curve_errors(
         if name in inputs:
             errors["input"] = inputs[name]
         for source, traces in repeated.items():
-            errors[source] = MARGIN * sum(_off(trace, repetition, name) for repetition in traces)
+            errors[source] = MARGIN * sum(_differences(trace, repetition, name) for repetition in traces)
     if trace.given == "load":  # an error of the force moves the body
         moved = {source: error * softness for source, error in columns["force"].items()}
         held = {source: columns["force"][source] for source in ("solver", *repeated)}
@@ -74,7 +74,7 @@ def of_rows(errors: Mapping[str, Values], chosen: NDArray[np.bool_]) -> dict[str
     return {name: {source: error[chosen] for source, error in column.items()} for name, column in errors.items()}
 
 
-def _off(trace: Trace, repetition: Trace, name: str) -> Array:
+def _differences(trace: Trace, repetition: Trace, name: str) -> Array:
     """Return the differences of a repeated trace, (m,), at the same times, or state by state."""
     values = getattr(repetition, name)
     expected = np.interp(trace.time, repetition.time, values) if trace.time.any() else values
@@ -163,22 +163,17 @@ def budgeted(
     """
     readings = case.read(trace)
     values = values_of(readings)
-    solver = _changes(case.read, values, _off_balance(case, trace, force_error, sampled, length))
+    solver = _changes(case.read, values, _perturbed(case, trace, force_error, sampled, length))
     read = _changes(case.read, values, misread(trace))
     between = sampling_errors(case, trace) if sampled else {}
     repeated = repeated or {}
-    again = {
-        source: [_changes(case.read, values, [repetition], missing=True) for repetition in traces]
-        for source, traces in repeated.items()
-    }
-    late = _changes(case.read, values, [trace.perturbed(moved=_late(case, trace))]) if trace.given == "" else {}
+    repeated_errors = _repetition_errors(case, trace, values, repeated)
     lattice = case.followed(values) if "time" in repeated else case.lattice
     inputs = case.inputs if case.is_open else {}
     results = {}
     for name, reading in readings.items():
         errors = {"solver": solver[name], LATTICE: lattice.get(name, 0.0) + read[name]}
-        errors |= {source: MARGIN * sum(change[name] for change in changes) for source, changes in again.items()}
-        errors |= {"time": max(errors.get("time", 0.0), MARGIN * late[name])} if late else {}
+        errors |= {source: changes[name] for source, changes in repeated_errors.items()}
         for source, error in reading.errors.items():
             errors[source] = errors.get(source, 0.0) + error
         if name in inputs:
@@ -192,14 +187,29 @@ def budgeted(
     return results
 
 
-def _off_balance(case: Reduction, trace: Trace, force_error: ForceErrors, sampled: bool, length: float) -> list[Trace]:
+def _repetition_errors(
+    case: Reduction, trace: Trace, values: Values, repeated: Mapping[str, Sequence[Trace]]
+) -> dict[str, Values]:
+    """Return the errors that repeated traces show, by source and result, and that of the detachment of a free body."""
+    errors = dict[str, Values]()
+    for source, traces in repeated.items():
+        changes = [_changes(case.read, values, [repetition], missing=True) for repetition in traces]
+        errors[source] = {name: MARGIN * sum(change[name] for change in changes) for name in values}
+    if trace.given == "":
+        late = _changes(case.read, values, [trace.perturbed(moved=_detachment_errors(case, trace))])
+        known = errors.get("time", {})
+        errors["time"] = {name: max(known.get(name, 0.0), MARGIN * change) for name, change in late.items()}
+    return errors
+
+
+def _perturbed(case: Reduction, trace: Trace, force_error: ForceErrors, sampled: bool, length: float) -> list[Trace]:
     """Return the trace with forces changed by ±ε, or by a part of it that changes its sign; see `budgeted`."""
     shapes = [force_error.common]
     if length > 0.0:
         shapes.append(force_error.common * np.clip((trace.displacement - force_error.anchor) / length, -1.0, 1.0))
     if sampled:
         shapes.append(force_error.turning * np.sign(np.diff(trace.displacement, prepend=trace.displacement[:1])))
-    missed = _missed(case, trace, force_error.common)
+    missed = _target_errors(case, trace, force_error.common)
     traces = [trace.perturbed(sign * shape, moved=missed) for shape in shapes for sign in SIGNS]
     # A contact is wider or narrower by no more than the relative change of the interaction.
     strength = case.settings.law.pull_off_force() or float(np.max(np.abs(trace.force), initial=0.0))
@@ -217,7 +227,7 @@ def misread(trace: Trace) -> list[Trace]:
     return [trace.perturbed(radius_shift=shift) for shift in (1.0, alternating)]
 
 
-def _late(case: Reduction, trace: Trace) -> Array:
+def _detachment_errors(case: Reduction, trace: Trace) -> Array:
     """Return the error [LU] of the position of a free body, (m,), whose contact is lost within a timestep.
 
     ½ ΔF Δt/M (t − t₀). The change with another timestep may vanish, since the contact is lost elsewhere in it.
@@ -235,7 +245,7 @@ def _short_step(model: Particles) -> float:
     return 1e-3 * (model.deepest - model.apart)
 
 
-def _missed(case: Reduction, trace: Trace, error: Array, margin: float = 1.1) -> Array:
+def _target_errors(case: Reduction, trace: Trace, error: Array, margin: float = 1.1) -> Array:
     """Return the largest distance [LU] of states from the force that they were to carry, (m,); 0 for the rest.
 
     `margin` is the error over that to first order, for nothing else may be in error.

@@ -33,7 +33,7 @@ def plan(scene: Scene, states: Sequence[State], forces: Array) -> dict[str, Agre
     the sum of all loads in its step, to which a share of the largest sum of the run is added, for an unloaded step.
     """
     allowed, share = 1e-9, 1e-5  # differences of right runs are 4e-14 to 8e-11
-    sizes = np.asarray([_size(scene, state) for state in states])
+    sizes = np.asarray([_load_sum(scene, state) for state in states])
     measured = np.asarray([state.force for state in states])
     missed = np.maximum(np.abs(measured - forces) - np.asarray([*map(_round_off, states)]), 0.0)
     off = missed / (sizes + share * max(float(sizes.max()), np.finfo(float).tiny))
@@ -49,7 +49,7 @@ def asked(scene: Scene, pairs: Sequence[tuple[float, float]], states: Sequence[S
     """Compare pairs of forces [FU], required by the scene and carried by its state; a search has a tolerance."""
     if not pairs:
         return {}
-    largest = max([_size(scene, state) for state in states] + [abs(wanted) for wanted, _ in pairs])
+    largest = max([_load_sum(scene, state) for state in states] + [abs(wanted) for wanted, _ in pairs])
     wanted, carried = max(pairs, key=lambda pair: abs(pair[0] - pair[1]))
     words = f"the scene asks for {wanted:.10g} FU, and the state that has it carries {carried:.10g} FU"
     allowed = AT_REST if scene.is_stepped and scene.is_modelled else scene.accuracy.tolerance
@@ -57,7 +57,7 @@ def asked(scene: Scene, pairs: Sequence[tuple[float, float]], states: Sequence[S
     return {"asked": Agreement(missed / largest if largest else 0.0, allowed, words)}
 
 
-def _size(scene: Scene, state: State) -> float:
+def _load_sum(scene: Scene, state: State) -> float:
     """Return the sum of the absolute loads of a state [FU], compressive and tensile: a force of 0 has a scale, too."""
     return scene.bodies.own_spacing * float(np.abs(state.profile.pressure).sum())
 
@@ -68,7 +68,7 @@ def _round_off(state: State) -> float:
 
 
 def balance(scene: Scene, states: Sequence[State]) -> dict[str, Agreement]:
-    """Compare the force of the contact on the plate with the sum of LAMMPS, but for residual forces."""
+    """Compare the force of the contact on the plate with that which LAMMPS adds up, but for residual forces."""
     missing = [
         (max(abs(state.missing) - state.profile.x.size * state.residual, 0.0), state)
         for state in states
@@ -76,7 +76,7 @@ def balance(scene: Scene, states: Sequence[State]) -> dict[str, Agreement]:
     ]
     if not missing:
         return {}
-    size = max(_size(scene, state) for state in states)
+    size = max(_load_sum(scene, state) for state in states)
     missed, worst = max(missing, key=lambda pair: pair[0])
     words = (
         f"the contact has {worst.force:.10g} FU at displacement {worst.displacement:.6g} LU (phase {worst.phase}), and "

@@ -35,7 +35,7 @@ MOTION = {
 }  # fmt: skip
 """Of a slide: means since the start over every fifth step of the cantilever's force and of the kinetic energies of
 particles and plate; energies; velocities and positions."""
-TOLD = "steps/told"
+HEAT_FRAGMENT = "steps/told"
 """The fragment after which a heat bath reports the energy that it takes."""
 FRAMES = "rows.bin"
 """File of a frame for each load step of a single run: id, z, force along z, and along x if that is prescribed."""
@@ -72,7 +72,7 @@ class Contact:
         end = "variable        row_phase delete\n" if self._phases else ""
         self._phases.append(Phase(name, (), begin=fragments))
         self._unfinished += end + self.deck.begin(name, fragments)
-        self._heat_is_reported = self._heat_is_reported or TOLD in fragments
+        self._heat_is_reported = self._heat_is_reported or HEAT_FRAGMENT in fragments
         self.session.execute("", phase=name, expected_steps=expected_steps)
 
     def row(self, row: Row, trusted: bool = True) -> State:
@@ -102,7 +102,7 @@ class Contact:
             self._phases[-1] = replace(self._phases[-1], rows=(*self._phases[-1].rows, *batch))
             if self.deck.stepped:
                 text, self._unfinished = self._unfinished + self.deck.in_one_run(batch), ""
-                self._latest = self._swept(text, [(name, row) for row in batch], first, self._look_back)
+                self._latest = self._states_of_run(text, [(name, row) for row in batch], first, self._compute_radii)
             else:
                 self._latest = self._measured(batch, first)
             for state in self._latest if trusted else ():
@@ -136,7 +136,7 @@ class Contact:
         if self.deck.stepped:
             self._phases, rows = [*phases], [(phase.name, row) for phase in phases for row in phase.rows]
             self.session.execute("", phase=phases[0].name)
-            states = self._swept(self.deck.schedule(phases), rows, 0, meanwhile)
+            states = self._states_of_run(self.deck.schedule(phases), rows, 0, meanwhile)
             self.rows_seconds = self.session.lammps_seconds
             (self.session.folder / FRAMES).unlink(missing_ok=True)
             return states
@@ -169,7 +169,7 @@ class Contact:
             self._written = self._written or self.deck.keeps
             self._unfinished = self.deck.row_end(type(row))
         names = self._values()
-        readings = self.session.measure_rows(texts, tuple(names), tuple(ATOM_UNITS), meanwhile=self._look_back)
+        readings = self.session.measure_rows(texts, tuple(names), tuple(ATOM_UNITS), meanwhile=self._compute_radii)
         units, phase, settings, states = self.deck.units, self._phases[-1].name, self.settings, list[State]()
         for number, (row, reading) in enumerate(zip(rows, readings, strict=True), first):
             numbers = {name: units.from_deck(v, names[name]) for name, v in zip(names, reading.values, strict=True)}
@@ -187,7 +187,7 @@ class Contact:
         """The number of frames that are read at a time, to bound the memory."""
         return max(1, MOST_NUMBERS // len(self._x))
 
-    def _swept(
+    def _states_of_run(
         self, text: str, rows: Sequence[tuple[str, Row]], first: int, meanwhile: Callable[[], object] | None
     ) -> list[State]:
         """Return the states of load steps, each with the name of its phase; a phase is one run, without relaxation."""
@@ -234,7 +234,7 @@ class Contact:
         shears = units.from_deck(frames[:, :, 2], "FU") / spacing
         return [Profile(self._x, none, z, p, q) for z, p, q in zip(surfaces, pressures, shears, strict=True)], end
 
-    def _look_back(self) -> None:
+    def _compute_radii(self) -> None:
         """Compute the radii of the previous load steps, which their states keep, while LAMMPS runs the next ones."""
         for state in self._latest:
             with suppress(ValueError):  # reported where the radius is asked for

@@ -225,12 +225,12 @@ class ContactBranch:
         self._turn(rises=True)
         for name, row in (("touching", Launch(velocity, steps)), ("impact", Fly(steps))):
             self.begin(name)
-            self._enter()
-            self._keep(self.contact.rows([row], moving=True))
+            self._begin_phase()
+            self._append(self.contact.rows([row], moving=True))
         while not is_over([state.displacement for state in self.states], [state.force for state in self.states]):
             if len(self.states) > longest * STRETCHES:
                 raise UntrustedError("the body does not end its impact: use shorter times of [viscoelasticity]")
-            self._keep(self.contact.rows([Fly(steps)] * FLIGHT, moving=True))
+            self._append(self.contact.rows([Fly(steps)] * FLIGHT, moving=True))
 
     def mark(self, name: str) -> None:
         """Report the last state."""
@@ -256,18 +256,18 @@ class ContactBranch:
         self._turned = self._turned or turned
         return turned
 
-    def _keep(self, states: Sequence[State]) -> None:
+    def _append(self, states: Sequence[State]) -> None:
         """Add states to the leg under way, or to the one that begins."""
         self.legs += [self._number + self._turned] * len(states)
         self.states += states
         self._turned = False
 
-    def _came(self, force: float) -> None:
+    def _record_target(self, force: float) -> None:
         """Record the force [FU] that the last state was to carry; NaN: it was to be at a displacement."""
         if not math.isnan(force):
             self.wanted[len(self.states) - 1] = force
 
-    def _enter(self) -> None:
+    def _begin_phase(self) -> None:
         """Begin the phase that the script has named, before its first load step."""
         if self._phase:
             name, self._phase = self._phase, ""

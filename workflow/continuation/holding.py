@@ -99,11 +99,11 @@ def hold_row(scene: Scene, settings: Settings, load: float, scale: float, start:
     inertia = _inertia(scene, settings)
     drag = settings.drag(damping)
     # LAMMPS stops first where the tension of the model has fallen to this share of its maximum.
-    parted = settings.law.parted(0.6) if load < 0.0 else _apart(settings)
+    parted = settings.law.parted(0.6) if load < 0.0 else _separated_displacement(settings)
     longest = 10.0 * settings.motion.settle_time  # then a state is measured in any case
     steps = max(20, math.ceil(longest / settings.motion.time_step))
     rest = at_rest(settings, scale) / inertia
-    return Hold(int(start), load, damping, drag / inertia, rest, parted, _through(settings), steps)
+    return Hold(int(start), load, damping, drag / inertia, rest, parted, _passed_displacement(settings), steps)
 
 
 def held_phase(
@@ -144,7 +144,7 @@ def hold(
         if state.displacement < row.parted:
             if _lost(contact, state, load):
                 return Held(load, tuple(states), False, unbalance)
-            row = replace(row, parted=_apart(settings))
+            row = replace(row, parted=_separated_displacement(settings))
         if state.displacement > row.through:
             require_trust(contact.scene, settings, state)
             raise ThroughError(
@@ -180,12 +180,12 @@ def _inertia(scene: Scene, settings: Settings) -> float:
     return 1.0 if scene.stands else 1.0 + settings.chains.upper * scene.bodies.mass / settings.motion.plate_mass
 
 
-def _apart(settings: Settings) -> float:
+def _separated_displacement(settings: Settings) -> float:
     """Return the displacement [LU] at which the bodies are certainly beyond the cutoff of their interaction."""
     return settings.forces.rest - settings.forces.cutoff - settings.law.spacing
 
 
-def _through(settings: Settings) -> float:
+def _passed_displacement(settings: Settings) -> float:
     """Return the displacement [LU] that an undamped plate does not reach: beyond it bodies went through each other."""
     distance = settings.largest_displacement - settings.forces.rest + settings.forces.cutoff
     return settings.largest_displacement + 2.0 * max(distance, settings.law.spacing)

@@ -113,7 +113,7 @@ class LoadBranch(ContactBranch):
         """
         least_step = 1e-3 * self.scale  # nearer to a tensile load, the load itself is tried
         self._turn(self._held is None or force > self._held.load)
-        self._enter()
+        self._begin_phase()
         if self._turned and self._direction > 0:
             self._take(press(self.contact, max(force, 0.0), scale))
         elif force >= 0.0:
@@ -121,14 +121,14 @@ class LoadBranch(ContactBranch):
         while (held := self._latest).held and held.load > force:
             if self._turn(rises=False):
                 self.begin("unloading")
-                self._enter()
+                self._begin_phase()
             past = overshoot(self.settings, self.scene.bodies.mass, held.load, -self.scale)
             gentle = (past * held.load - self.scale) / (1.0 + past)
             close = gentle >= held.load - least_step
             self._take(hold(self.contact, force if close else max(force, gentle), scale))
         if not self._latest.held:
             raise UntrustedError(f"the contact does not sustain {self._latest.load:.4g} FU: the bodies separate")
-        self._came(force + self._last.pushed)
+        self._record_target(force + self._last.pushed)
 
     def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
         """Hold a force [FU] for a time [TU]; a tension is applied at F = 0."""
@@ -138,10 +138,10 @@ class LoadBranch(ContactBranch):
             self.begin("approaching")
             self.reach(0.0, self.scale)
         self.begin(name)
-        self._enter()
+        self._begin_phase()
         self._turn(rises=force >= 0.0)
         rows = [UnderLoad(force, steps) for steps in self.settings.steps_of(duration)]
-        self._keep(self.contact.rows(rows, moving=True))
+        self._append(self.contact.rows(rows, moving=True))
 
     def holds_more(self, force: float, doubtful_share: float = 0.9) -> bool:
         """Return whether a tensile load larger by FIRST_RISE tolerances is sustained, too, tried on a new contact.
@@ -169,14 +169,14 @@ class LoadBranch(ContactBranch):
         Raises:
             UntrustedError: see `hold`; the force maximum is not bracketed, or not held again.
         """
-        self._enter()
+        self._begin_phase()
         search = LoadSearch(self.settings.tolerance, self.scale, partial(_overshoot, self), [self._latest])
         start = Start.KEPT
         for _ in range(most_loads):
             result = hold(self.contact, -search.next(), search.guess, start)
             start = Start.KEPT if result.held else Start.BACK
             if result.held:
-                self._keep([result.last])
+                self._append([result.last])
             search.learn(result)
             if search.done:
                 break
@@ -185,7 +185,7 @@ class LoadBranch(ContactBranch):
                 f"the pull-off force was not bracketed within {most_loads} loads: it is above {search.best:.6g} FU"
             )
         self.begin("critical")
-        self._enter()
+        self._begin_phase()
         critical = hold(self.contact, -search.best, search.guess, Start.BACK)
         if not critical.held:
             raise UntrustedError(
@@ -214,7 +214,7 @@ class LoadBranch(ContactBranch):
 
     def _take(self, held: Held) -> None:
         self._held, self.unbalance = held, held.unbalance
-        self._keep([held.last])
+        self._append([held.last])
 
 
 def _overshoot(branch: LoadBranch, tension: float) -> float:

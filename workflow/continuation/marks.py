@@ -22,7 +22,7 @@ LAST = 1e-6
 MODEL_DIGITS = 1e-6
 """Relative error of the tables of the reduced model."""
 TINY = float(np.finfo(np.float64).tiny)
-PLACE_FACTOR = 2.0
+POSITION_FACTOR = 2.0
 """Error of the position of the force maximum over the distance between those of two polynomials."""
 _top, _crossed = lru_cache(maxsize=4)(largest_tension), lru_cache(maxsize=4)(smooth_crossing)
 """Marks of the last few curves: the budget evaluates a curve again with other radii."""
@@ -39,7 +39,7 @@ def unloading(branch: Trace, settings: Settings) -> dict[str, Reading]:
     peak, last = peak_of(branch), len(branch) - 1
     if peak.tension > 0.0 and peak.index > 0 and (peak.index < last or _distance_from_limit(branch) <= LAST):
         sampled = max(peak.uncertainty, branch.search.doubt.get("sampling", 0.0))
-        errors = {"sampling": sampled, "instability": cut_short(branch, peak, settings)}
+        errors = {"sampling": sampled, "instability": missed_tension(branch, peak, settings)}
         readings["adhesion_force"] = Reading(peak.smooth, FORCE, errors)
         if branch.radius(peak.index) is not None:
             readings["critical_radius"] = _critical_radius(branch, peak, settings, sum(errors.values()))
@@ -109,8 +109,8 @@ def _critical_radius(branch: Trace, peak: Peak, settings: Settings, missed: floa
         near = int(np.argmin(np.abs(d - peak.position)))
         rate = abs(radius_rate(branch, near))
         radius = radius_at(branch, peak.position)
-        errors = {"sampling": PLACE_FACTOR * rate * peak.misplaced}
-        error = PLACE_FACTOR * peak.misplaced
+        errors = {"sampling": POSITION_FACTOR * rate * peak.misplaced}
+        error = POSITION_FACTOR * peak.misplaced
         positions = np.asarray([d[near], peak.position, peak.position - error, peak.position + error], dtype=np.float64)
         if (known := branch.model.radii(positions)) is not None:  # of a stiff contact it rises from 0 as a root
             nearest, expected, *ends = known.tolist()
@@ -150,13 +150,13 @@ def _zero_load(branch: Trace) -> dict[str, Reading]:
     return readings
 
 
-def early_loss(branch: Trace, peak: Peak, settings: Settings) -> float:
+def early_detachment(branch: Trace, peak: Peak, settings: Settings) -> float:
     """Return the displacement [LU] by which the move after the force maximum may separate a pair before its limit."""
     d = branch.displacement
     return settings.let_go_early(float(d[peak.index] - d[min(peak.index + 1, len(d) - 1)]))
 
 
-def cut_short(branch: Trace, peak: Peak, settings: Settings, positions: int = 200) -> float:
+def missed_tension(branch: Trace, peak: Peak, settings: Settings, positions: int = 200) -> float:
     """Return the tension [FU] that premature detachment misses, extrapolated with the slope before it.
 
     At least by how much the model exceeds it at `positions` between the load steps around the last one in contact:
@@ -170,7 +170,7 @@ def cut_short(branch: Trace, peak: Peak, settings: Settings, positions: int = 20
     if settings.snaps and peak.position == d[i]:
         held = branch.model.held(np.append(d[i - 1 : i + 1], np.linspace(d[i - 1], d[i + 1], positions)))
         hidden = float(held[:2].min() - held.min())
-    return max(rise * early_loss(branch, peak, settings), hidden)
+    return max(rise * early_detachment(branch, peak, settings), hidden)
 
 
 def _distance_from_limit(branch: Trace) -> float:

@@ -144,7 +144,7 @@ class Reduction:
         shifted, finer = self._lattices
         if not (shifted or finer):
             return {}
-        errors = self._apart(shifted)
+        errors = self._largest_changes(shifted)
         if finer:
             results = [self.values(model) for model in finer]
             for name, value in self.results.items():
@@ -163,14 +163,14 @@ class Reduction:
         for key, share in scene.shares.items():
             ends, times = [scene.moved(key, 1.0 + sign * share) for sign in SIGNS], max(1.0, 0.05 / share)
             try:
-                results = [self._of(scene.moved(key, 1.0 + sign * times * share)) for sign in SIGNS]
+                results = [self._results_of(scene.moved(key, 1.0 + sign * times * share)) for sign in SIGNS]
             except SettingsError:
-                times, results = 1.0, [self._of(end) for end in ends]
+                times, results = 1.0, [self._results_of(end) for end in ends]
             moves += self._changes(key, ends, results, times, apart=times > 1.0)
         for number, pair in enumerate(scene.bodies.profile.deviations, 1):
             ends = [scene.with_profile(shape) for shape in pair]
             try:
-                results = [self._of(end) for end in ends]
+                results = [self._results_of(end) for end in ends]
             except SettingsError:  # a body that is no contact
                 continue
             moves += self._changes(f"bodies.profile: deviation {number}", ends, results, 1.0, apart=True)
@@ -189,7 +189,7 @@ class Reduction:
             moves.append(Move(key, end, changes))
         return moves
 
-    def _of(self, scene: Scene) -> Values:
+    def _results_of(self, scene: Scene) -> Values:
         """Return the results of the model of another scene."""
         return self.of(scene, settings_for(scene, self.settings.tolerance)).seen
 
@@ -201,18 +201,18 @@ class Reduction:
             SettingsError: most curves through the points of a profile are no contact, so that no error is known.
         """
         profile = self.scene.bodies.profile
-        models = [model for shape in profile.alternatives if (model := self._of_shape(shape))]
+        models = [model for shape in profile.alternatives if (model := self._model_of(shape))]
         if len(models) < len(profile.alternatives):
-            models += [model for shape in profile.coarser if (model := self._of_shape(shape))]
+            models += [model for shape in profile.coarser if (model := self._model_of(shape))]
         if len(models) < min(2, len(profile.alternatives)):
             raise SettingsError(
                 "the points of bodies.profile allow a corner at which the contact edge would jump, and too few other "
                 "curves through them are a contact to tell the uncertainty: give more points where the slope changes"
             )
-        changes = [self._apart([model]) for model in models]
+        changes = [self._largest_changes([model]) for model in models]
         return {name: sum(change[name] for change in changes) + in_squares(self.moves, name) for name in self.results}
 
-    def _of_shape(self, shape: Shape) -> Particles | None:
+    def _model_of(self, shape: Shape) -> Particles | None:
         """Return the model of another body; None where it is no contact, as with a jump of its edge at a corner."""
         scene = self.scene.with_profile(shape)
         try:
@@ -220,7 +220,7 @@ class Reduction:
         except SettingsError:
             return None
 
-    def _apart(self, models: Sequence[Particles]) -> Values:
+    def _largest_changes(self, models: Sequence[Particles]) -> Values:
         """Return the largest difference of each result of other models from that of the model, by name."""
         largest = {name: np.zeros_like(value) for name, value in self.results.items()}
         for values in map(self.values, models):

@@ -14,7 +14,7 @@ import numpy as np
 from contact1d.analysis.curve_marks import Peak, rivals, smooth_crossing
 from contact1d.workflow.continuation.branch import Branch
 from contact1d.workflow.continuation.context import RunContext
-from contact1d.workflow.continuation.marks import cut_short, early_loss
+from contact1d.workflow.continuation.marks import early_detachment, missed_tension
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trust import UntrustedError
 from contact1d.workflow.deck.steps import Phase, displacements, numbered
@@ -75,7 +75,7 @@ class ReplayedBranch(Branch):
         """
         self._turn(rises=False)
         self._separate(self._last.displacement)
-        self._came(math.nan)
+        self._record_target(math.nan)
         top, window = self._stretches[-1], self._unloading_step(self.leg[0].displacement)
         for number in range(most_replays):
             before = self.peak
@@ -101,8 +101,8 @@ class ReplayedBranch(Branch):
             self._passed, self._stretches, self._top = self.contact.phases, [], None
         return super()._turn(rises)
 
-    def _came(self, force: float) -> None:
-        super()._came(force)
+    def _record_target(self, force: float) -> None:
+        super()._record_target(force)
         phase = self._last.phase.partition("_")[0]
         self._stretches.append(Stretch(self._number, phase, len(self.states) - 1, force))
 
@@ -110,7 +110,7 @@ class ReplayedBranch(Branch):
         """Return displacements [LU] of the last leg, with `count` steps in a window [LU] beside its force maximum."""
         trace, peak = self.unloading, self.peak
         d, force = trace.displacement, trace.force
-        half, step = max(window, early_loss(trace, peak, self.settings)), window / count
+        half, step = max(window, early_detachment(trace, peak, self.settings)), window / count
         high, low = peak.position + half, peak.position - half
         if first:  # coarse load steps do not show which of the maxima within 5 % is the highest
             close = d[-force >= 0.95 * peak.tension]
@@ -169,21 +169,21 @@ class ReplayedBranch(Branch):
         """Return whether two schedules have the same results, and the latest its states at the required positions."""
         peak = self.peak
         allowed = self.tolerance * peak.smooth
-        missed = abs(self._rate(critical) * (peak.position - critical.displacement))  # of the contact radius
+        missed = abs(self._radius_rate(critical) * (peak.position - critical.displacement))  # of the contact radius
         return (
             abs(peak.smooth - before.smooth) <= allowed
-            and peak.uncertainty + cut_short(self.unloading, peak, self.settings) <= allowed
+            and peak.uncertainty + missed_tension(self.unloading, peak, self.settings) <= allowed
             and all(
                 abs(self.states[i].force - force) <= (self.tolerance * abs(force) or allowed)
                 for i, force in self.wanted.items()
             )
             and peak.smooth + critical.force <= allowed
-            and missed <= self._allowed(critical)
+            and missed <= self._radius_limit(critical)
         )
 
     def _growth(self, state: State, largest: float) -> float:
         """Return 1.2 where no maximum can be higher any more, else 1: pairs of longer moves detach prematurely."""
-        return 1.2 if self._still_held(state) < largest else 1.0
+        return 1.2 if self._remaining_tension(state) < largest else 1.0
 
 
 def _displacement_of(states: Sequence[State], force: float) -> float:

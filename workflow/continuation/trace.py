@@ -109,7 +109,7 @@ class Trace:
         search = self.searches.get(int(self.leg[-1]), Search())
         if search.bracket is None:
             return search
-        shift = _of(self.perturbation.force, -1)
+        shift = _value_at(self.perturbation.force, -1)
         return replace(search, bracket=(search.bracket[0] - shift, search.bracket[1] - shift))
 
     @property
@@ -123,13 +123,13 @@ class Trace:
 
     def radius_or_spot(self, state: int) -> float:
         """Return the contact radius of a state [LU]; 0 where no particle is in tension."""
-        radius = self._read(state)
-        value = radius.value + self._further(state, lambda i: self._read(i).value)
+        radius = self._contact_or_spot(state)
+        value = radius.value + self._length_change(state, lambda i: self._contact_or_spot(i).value)
         if radius.uncertainty == 0.0:  # a body that ends at an edge
             return value
         return max(0.0, self.perturbation.radius_factor * (value + self.shift_of(state) * radius.uncertainty))
 
-    def _read(self, state: int) -> ContactRadius:
+    def _contact_or_spot(self, state: int) -> ContactRadius:
         return self.contact(state) or self.rule.or_spot(self.profile(state))
 
     def reach(self, state: int) -> float | None:
@@ -141,11 +141,11 @@ class Trace:
         def reach(i: int) -> float:
             return float(getattr(self.profile(i), "reach", 0.0))
 
-        return reach(state) + self._further(state, reach)
+        return reach(state) + self._length_change(state, reach)
 
-    def _further(self, state: int, length: Callable[[int], float]) -> float:
+    def _length_change(self, state: int, length: Callable[[int], float]) -> float:
         """Return the change of a length [LU] by the displacement that is added to a state."""
-        moved = _of(self.perturbation.moved, state)
+        moved = _value_at(self.perturbation.moved, state)
         if not moved:
             return 0.0
         d = self.displacement - self.perturbation.moved
@@ -157,7 +157,7 @@ class Trace:
 
     def shift_of(self, state: int) -> float:
         """Return the shift that is added to the radius of a state, in multiples of its uncertainty."""
-        return _of(self.perturbation.radius_shift, state)
+        return _value_at(self.perturbation.radius_shift, state)
 
     def falling(self) -> Trace:
         """Return the states in contact, by falling displacement; of several at one displacement the last measured."""
@@ -211,7 +211,7 @@ class Trace:
         return replace(self, displacement=self.displacement + moved, force=changed, perturbation=perturbation)
 
 
-def _of(values: Array | float, state: int) -> float:
+def _value_at(values: Array | float, state: int) -> float:
     """Return the value of a state, from values (m,) or from a number for all states."""
     return values if isinstance(values, float) else float(values[state])
 

@@ -101,7 +101,7 @@ def require_no_contradiction(settings: Settings, tension: float, uncertainty: fl
             )
 
 
-def _cut(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[str, str]:
+def _chain_end(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[str, str]:
     """Return a warning where a chain ends too near to its contact."""
     share = max(end_pressure_share(state.profile) for state in states)
     ends = reflected(scene, settings.law, settings.largest_displacement, settings.chains.upper)
@@ -123,7 +123,7 @@ def _cut(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[st
 
 def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[str, str]:
     """Return warnings, by name, about what limits the accuracy of states that are results."""
-    warnings = _cut(scene, settings, states) if states[0].rule.ends_with_chain else {}
+    warnings = _chain_end(scene, settings, states) if states[0].rule.ends_with_chain else {}
     share = settings.forces.share(scene)
     if share > settings.tolerance:
         warnings["cutoff"] = (
