@@ -262,8 +262,7 @@ class Contact:
             # LAMMPS looks for lost atoms when it makes a new neighbour list, and a load step may end before.
             raise self._lost(f"atoms are missing: only {count} particles are left in the box", int(numbers["step"]))
         position, force = atoms["x"], atoms["f"]
-        x, z_held = position[upper, 0], position[upper, 2]
-        z = z_held
+        x, z = position[upper, 0], position[upper, 2]
         if lower.any():
             x_low, z_low = self._surface(position[lower, 0], position[lower, 2])
             closest = smallest_distance(x, z, x_low, z_low)
@@ -279,10 +278,6 @@ class Contact:
         profile = pressure_profile(
             x, z, z_below, atoms["v_opposite_x"][upper], atoms["v_opposite_z"][upper], self.scene.bodies.own_spacing
         )
-        missing, springs = None, atoms["type"] == ANCHORS["upper"]
-        if springs.any() and self.scene.method == "quasistatic" and not self.settings.chains.far:
-            pulled = self.settings.forces.bulk_stiffness * float(np.sum(position[springs, 2] - z_held))
-            missing = float(atoms["v_opposite_z"][upper].sum()) + pulled
         free = [0, 2] if self.scene.horizontal else [2]
         moving = upper if self.scene.bodies.lower == "rigid_chain" else upper | lower
         return State(
@@ -294,7 +289,7 @@ class Contact:
             smallest_distance=closest,
             depth=depth,
             residual=float(np.abs(force[moving][:, free]).max()),
-            missing=missing,
+            missing=self._missing(atoms, upper),
             pushed=float(sum(numbers[name] for name in self._pushes)),
             plate_velocity=-numbers.get("plate_velocity", 0.0),
             plate_x=numbers.get("cantilever_plate", 0.0),
@@ -303,6 +298,14 @@ class Contact:
             motion={name: numbers[name] for name in (*MOTION, *HEAT) if name in numbers},
             number=number,
         )
+
+    def _missing(self, atoms: dict[str, Array], upper: NDArray[np.bool_]) -> float | None:
+        """Return the sum of contact and spring forces on the upper particles [FU]; None where it may differ from 0."""
+        springs = atoms["type"] == ANCHORS["upper"]
+        if not springs.any() or self.scene.method != "quasistatic" or self.settings.chains.far:
+            return None
+        stretch = float(np.sum(atoms["x"][springs, 2] - atoms["x"][upper, 2]))
+        return float(atoms["v_opposite_z"][upper].sum()) + self.settings.forces.bulk_stiffness * stretch
 
     def _surface(self, x: Array, z: Array) -> tuple[Array, Array]:
         """Return the positions of the lower particles, of a periodic chain with its images on both sides."""
