@@ -49,8 +49,8 @@ def curve_errors(
     """
     rows, repeated = case.along(trace), repeated or {}
     measured = {"force": trace.force, "displacement": trace.displacement}
-    lattice = rows.followed(measured) if "time" in repeated else rows.lattice
-    inputs = rows.inputs if case.is_open else {}
+    lattice = rows.lattice_in_time(measured) if "time" in repeated else rows.lattice
+    inputs = rows.inputs if case.has_uncertain_inputs else {}
     columns: dict[str, Values] = {"force": {"solver": solver}}
     if trace.given != "displacement":
         softness = 1.0 / _stiffness(case, trace.displacement)
@@ -168,8 +168,8 @@ def budgeted(
     between = sampling_errors(case, trace) if sampled else {}
     repeated = repeated or {}
     repeated_errors = _repetition_errors(case, trace, values, repeated)
-    lattice = case.followed(values) if "time" in repeated else case.lattice
-    inputs = case.inputs if case.is_open else {}
+    lattice = case.lattice_in_time(values) if "time" in repeated else case.lattice
+    inputs = case.inputs if case.has_uncertain_inputs else {}
     results = {}
     for name, reading in readings.items():
         errors = {"solver": solver[name], LATTICE: lattice.get(name, 0.0) + read[name]}

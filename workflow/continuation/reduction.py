@@ -62,7 +62,7 @@ class Reduction:
     def values(self, model: Particles, dense: int = 1, shift: float = 0.0) -> Values:
         """Return the results of a model; `shift` is added to the displacements that the scene gives [LU]."""
         if self.passed:
-            return self.passed.again(self.scene, self.settings, model)
+            return self.passed.recomputed(self.scene, self.settings, model)
         return values_of(self.read(self.trace(model, dense, shift)))
 
     def trace(self, model: Particles, dense: int = 1, shift: float = 0.0, whole: bool = False) -> Trace:
@@ -76,7 +76,7 @@ class Reduction:
         return branch
 
     @property
-    def is_open(self) -> bool:
+    def has_uncertain_inputs(self) -> bool:
         """Whether the scene has uncertain inputs."""
         profile = self.scene.bodies.profile
         return bool(self.scene.shares or profile.deviations or profile.alternatives)
@@ -106,7 +106,7 @@ class Reduction:
         return self.values(self.model) if self.passed else values_of(self.readings)
 
     @cached_property
-    def seen(self) -> Values:
+    def results_and_pressures(self) -> Values:
         """The results, and where springs are not linear the logarithms of the pressures of reported states."""
         if self.passed or self.scene.keeps_springs:
             return self.results
@@ -116,7 +116,7 @@ class Reduction:
         pressures = {PRESSURE + name: _on_axis(whole.profile(i)) for name, i in states.items()}
         return self.results | {name: math.log(pressure) for name, pressure in pressures.items() if pressure > 0.0}
 
-    def followed(self, values: Values, share: float = 0.5) -> Values:
+    def lattice_in_time(self, values: Values, share: float = 0.5) -> Values:
         """Return the discretisation error of results in time, by name.
 
         Where the model differs from the motion by more than a share of the value, it is that difference at least.
@@ -182,16 +182,17 @@ class Reduction:
         """Return the moves of an input to its ends, from results `times` as far; `apart`: half of their difference."""
         moves = []
         for end, values, opposite in zip(ends, results, results[::-1], strict=True):
-            both_have = values.keys() & opposite.keys()
-            middle = {name: 0.5 * (values[name] + opposite[name]) for name in both_have} if apart else self.seen
-            shared = self.seen.keys() & middle.keys()
+            middle = self.results_and_pressures
+            if apart:
+                middle = {name: 0.5 * (values[name] + opposite[name]) for name in values.keys() & opposite.keys()}
+            shared = self.results_and_pressures.keys() & middle.keys()
             changes = {name: (values.get(name, middle[name]) - middle[name]) / times for name in shared}
             moves.append(Move(key, end, changes))
         return moves
 
     def _results_of(self, scene: Scene) -> Values:
         """Return the results of the model of another scene."""
-        return self.of(scene, settings_for(scene, self.settings.tolerance)).seen
+        return self.of(scene, settings_for(scene, self.settings.tolerance)).results_and_pressures
 
     @cached_property
     def inputs(self) -> Values:

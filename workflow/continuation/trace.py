@@ -184,7 +184,7 @@ class Trace:
             contact=lambda i: self.contact(int(index[i])),
         )
 
-    def again(self, scene: Scene, settings: Settings, model: Particles) -> dict[str, Array]:
+    def recomputed(self, scene: Scene, settings: Settings, model: Particles) -> dict[str, Array]:
         """Return the columns that are not prescribed, (m,) each, on another model of the particles.
 
         A free motion is computed anew, and interpolated at the times of the states.
