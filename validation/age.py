@@ -22,6 +22,9 @@ RECORDS = {
     "speed": "validation/results/speed.json", "grains": "validation/results/grains.json",
     "random faults": "validation/results/mutants.json",
     "listed faults": "validation/results/faults.json", "slow tests": "docs/slow.json",
+    "calibration": "validation/results/calibration.csv", "costs of effects": "validation/results/costs",
+    "figure of tolerances": "docs/tolerance.png",
+    "figure of validity": "docs/validity.png",
 }  # fmt: skip
 NAMED = 4
 """Parts of a record that are named; of more the number is."""
@@ -61,7 +64,7 @@ def today() -> Measured:
 
 def measured(file: str) -> dict[str, Measured]:
     """Of each part of a record when it was measured; of a record that says nothing, when it was committed."""
-    data: Any = json.loads((ROOT / file).read_text(encoding="utf-8"))
+    data: Any = json.loads((ROOT / file).read_text(encoding="utf-8")) if file.endswith(".json") else {"": {}}
     whole = {"": data} if "seed" in data else data
     parts = {one["name"]: one for one in data["answers"]} if "answers" in data else whole
     at, _, date = git("log", "-1", "--format=%h %cs", "--", file).partition(" ")

@@ -53,7 +53,7 @@ def integrated(scene: Scene, settings: Settings) -> Trace:
     """All legs by the independent integrator, in the program's timesteps, measured where the program measures."""
     _, _, amplitude, reach = law_of(scene)
     body = Integrator(slide_model(scene, settings))
-    body.settle(settings.motion.time_step, RESIDUAL * amplitude / reach, drag=settings.motion.calm_damping)
+    body.settle(settings.motion.time_step, RESIDUAL * amplitude / reach, drag=settings.motion.settling_damping)
     legs, drive, time, impulse = [], 0.0, 0.0, 0.0
     for leg in settings.motion.drive:
         trace = body.run(leg.rows * leg.steps, leg.time_step, leg.velocity, start=drive, every=leg.steps)

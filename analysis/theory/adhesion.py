@@ -1,16 +1,16 @@
 """Which theory of an adhesive sphere holds, and those of an attraction with a range: DMT, Maugis and Dugdale.
 
-The Tabor parameter mu = (R W^2/(E*^2 h_0^3))^(1/3) is the elastic stretch of the surfaces before they separate over the
-range h_0 = W/sigma_0 of the attraction, which is 0.974 z_0 of a Lennard-Jones surface: JKR (`indenters`) holds for a
-large one, DMT for a small one, Maugis and Dugdale between the two. The map is that of K. L. Johnson, J. A. Greenwood,
-J. Colloid Interface Sci. 192 (1997) 326, after D. Tabor, ibid. 58 (1977) 2: the zones are theirs. Their figure was not
-at hand: each boundary is a criterion written out below, not read off it, and how small is negligible is a convention in
-all but one. The lines mu = 5 (JKR) and mu = 0.1 (DMT) are common usage and independent of the load, which the criteria
-behind them are not. What they cost, against Maugis and Dugdale: at mu = 5 JKR's contact radius is 0.8 % too large at
-F = 0 and its pull-off 0.3 % too small; at mu = 0.1 DMT's radius is 6 % too small at F = 0 (8 % at -pi W R, 2 % at
-40 pi W R) and its pull-off 3 % too large. The rest is computed, with 5 % as negligible: the compression over h_0 for
-the rigid sphere, the load that attraction adds over F for Hertz. F positive in compression; a << R. Any consistent
-units.
+The Tabor parameter mu = (R W^2/(E*^2 h_0^3))^(1/3) is the elastic displacement of the surfaces at pull-off, of the
+order of (R W^2/E*^2)^(1/3), over the range h_0 = W/sigma_0 of the attraction, 0.974 z_0 of a Lennard-Jones surface: JKR
+(`indenters`) holds for a large one, DMT for a small one, Maugis and Dugdale between the two. The map is that of K. L.
+Johnson, J. A. Greenwood, J. Colloid Interface Sci. 192 (1997) 326, after D. Tabor, ibid. 58 (1977) 2: the zones are
+theirs. Their figure was not at hand: each boundary is a criterion written out below, not read off it, and how small is
+negligible is a convention in all but one. The lines mu = 5 (JKR) and mu = 0.1 (DMT) are common usage and independent of
+the load, which the criteria behind them are not. What they cost, against Maugis and Dugdale: at mu = 5 JKR's contact
+radius is 0.8 % too large at F = 0 and its pull-off 0.3 % too small; at mu = 0.1 DMT's radius is 6 % too small at F = 0
+(8 % at -pi W R, 2 % at 40 pi W R) and its pull-off 3 % too large. The rest is computed, with 5 % as negligible: the
+compression over h_0 for the rigid sphere, the load that attraction adds over F for Hertz. F positive in compression; a
+<< R. Any consistent units.
 """
 
 from __future__ import annotations

@@ -221,14 +221,19 @@ def test_a_record_survives_its_file(tmp_path: Path) -> None:
 
 
 def test_the_table_of_the_page_is_what_the_kept_record_says() -> None:
-    """Renew docs with `contact1d cost lammps_inputs/scenes/pull_off.toml`, then WRITE_DOCS=1 pytest this file."""
-    require_shown("docs/performance.md", "cost", markdown(read_record(ROOT / "docs" / "cost.json")), exactly=True)
+    """Renew the record with `contact1d cost lammps_inputs/scenes/pull_off.toml`, then WRITE_DOCS=1 pytest this file."""
+    require_shown(
+        "docs/performance.md",
+        "cost",
+        markdown(read_record(ROOT / "validation/results/costs/pull_off.json")),
+        exactly=True,
+    )
     assert (ROOT / "docs" / "cost.png").is_file()
 
 
 def test_the_kept_record_is_of_the_scene_as_it_is_and_runs_today(tmp_path: Path) -> None:
     """A change of the settings without a new study of `pull_off.toml` fails here."""
-    kept, scene = read_record(ROOT / "docs" / "cost.json"), read_scene(SCENES / "pull_off.toml")
+    kept, scene = read_record(ROOT / "validation/results/costs/pull_off.json"), read_scene(SCENES / "pull_off.toml")
     found = [edit for edit, other in variants_of(scene) if other.accuracy.tolerance > kept.reference_tolerance]
     assert [one.edit for one in kept.rows] == found
     today = with_errors(run_once(scene, tmp_path), kept.reference)

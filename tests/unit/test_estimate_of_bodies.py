@@ -168,10 +168,10 @@ def test_a_pair_snaps_over_the_fall_of_its_own_grid(stiffness: float, points: in
     assert found.stiffness == 0.5 * stiffness
 
 
-def test_pairs_that_do_not_snap_are_not_let_go_early() -> None:
+def test_pairs_that_do_not_snap_do_not_detach_prematurely() -> None:
     found = pairs("parabola", 5.0)
     assert not found.snaps
-    assert found.let_go_early(1.0, 1.0) == 0.0
+    assert found.premature_detachment(1.0, 1.0) == 0.0
 
 
 @pytest.mark.parametrize("stiffness", np.geomspace(0.01, 100.0, 24).tolist())
@@ -187,7 +187,7 @@ def test_a_body_carries_no_more_than_all_its_particles_on_the_opposite_ones(shap
 def test_a_plane_is_felt_as_deep_as_a_body_may_go(depth: float) -> None:
     found = on_plane(Independent, body("punch"), ROW, 0.5)
     assert not found.snaps
-    assert found.let_go_early(1.0, 1.0) == 0.0
+    assert found.premature_detachment(1.0, 1.0) == 0.0
     assert found.snap == (0.0, 0.0)
     assert found.contact_force(depth) == pytest.approx(12.0 / ROW * 0.5 * depth, rel=1e-6)
     assert found.displacement_at(12.0 / ROW * 0.5 * depth) == pytest.approx(depth, rel=1e-6)

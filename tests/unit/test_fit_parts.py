@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from scipy.stats import t as student
 
-from contact1d.workflow.fit.curve import BESIDE, ForceCurve
+from contact1d.workflow.fit.curve import BESIDE_JUMP, ForceCurve
 from contact1d.workflow.fit.forward import LAWS, Body
-from contact1d.workflow.fit.noise import noises, uncertain
+from contact1d.workflow.fit.noise import averaged, noises
 from contact1d.workflow.scene import Circle, Cone, FlatPunch, Parabola
 from validation.references.force_curves import Sphere, measured
 
@@ -43,11 +43,11 @@ def test_a_contact_model_on_a_spring_is_the_closed_form(kind: str, stiffness: fl
     exact = d + F / stiffness
     assert lost == pytest.approx(exact.min(), abs=1e-4 * DEPTH)
     held = z > lost + 0.02 * DEPTH
-    assert branch.at(z[held], stiffness, True) == pytest.approx(down[held], rel=1e-4, abs=CURVE * force)
+    assert branch.forces_at(z[held], stiffness, True) == pytest.approx(down[held], rel=1e-4, abs=CURVE * force)
     touching = z > (-TABOR if kind == "Maugis" else 0.0) + 0.02 * DEPTH
-    assert branch.at(z[touching], stiffness, True) == pytest.approx(up[touching], rel=1e-4, abs=CURVE * force)
+    assert branch.forces_at(z[touching], stiffness, True) == pytest.approx(up[touching], rel=1e-4, abs=CURVE * force)
     pitch = float(z[1] - z[0])
-    let_go = branch.at(z, stiffness, False, pitch)
+    let_go = branch.forces_at(z, stiffness, False, pitch)
     assert np.all(let_go[z < lost - pitch] == 0.0)
     assert let_go[held] == pytest.approx(down[held], rel=1e-4, abs=CURVE * force)
 
@@ -58,10 +58,10 @@ def test_a_contact_that_is_known_to_hold_goes_on_where_the_model_has_lost_it(kin
     branch = LAWS[kind].branch(Body.of(Parabola(kind="parabola", radius=RADIUS), 4.0 * DEPTH), MODULUS, WORK, 0.0)
     lost, force = branch.snap_out(STIFF)
     z = np.linspace(lost, 3.0 * DEPTH, 20_000)
-    quarter = float(np.interp(0.75 * force, branch.at(z, STIFF, True), z))
+    quarter = float(np.interp(0.75 * force, branch.forces_at(z, STIFF, True), z))
     slope = 3.0 * -0.25 * force / (quarter - lost)
     below = lost - np.array([0.1, 1.0]) * DEPTH
-    assert branch.at(below, STIFF, True) == pytest.approx(force - slope * (lost - below), rel=QUARTER)
+    assert branch.forces_at(below, STIFF, True) == pytest.approx(force - slope * (lost - below), rel=QUARTER)
 
 
 def test_the_first_touch_is_between_the_axis_and_the_first_edge() -> None:
@@ -69,7 +69,7 @@ def test_the_first_touch_is_between_the_axis_and_the_first_edge() -> None:
     body = Body.of(Parabola(kind="parabola", radius=RADIUS), 4.0 * DEPTH)
     d = 0.5 * body.heights[1:2]
     exact = 4.0 / 3.0 * MODULUS * math.sqrt(RADIUS) * d**1.5
-    assert LAWS["Hertz"].branch(body, MODULUS, 0.0, 0.0).at(d, math.inf, True) == pytest.approx(exact, rel=0.2)
+    assert LAWS["Hertz"].branch(body, MODULUS, 0.0, 0.0).forces_at(d, math.inf, True) == pytest.approx(exact, rel=0.2)
 
 
 @pytest.mark.parametrize("kind", ["Hertz", "JKR"])
@@ -115,19 +115,19 @@ def test_a_line_in_white_noise_has_the_interval_of_student() -> None:
     """Two parameters of 12 points, nothing known: least squares, s² (JᵀJ)⁻¹ and t with 10 degrees of freedom."""
     slopes = np.column_stack([np.ones(12), np.arange(12.0)])
     residuals = np.tile([1.0, -1.2, 0.4], 4) + 0.3 * np.arange(12.0)
-    found = uncertain([np.arange(12)], residuals, slopes, np.zeros((0, 3)), looks=1)
-    white = next(one for one in found.judged if one.noise.share == 0.0)
+    found = averaged([np.arange(12)], residuals, slopes, np.zeros((0, 3)), looks=1)
+    white = next(one for one in found.estimates if one.noise.share == 0.0)
     step, (squares,), *_ = np.linalg.lstsq(slopes, residuals)
     assert white.step == pytest.approx(step, rel=ROUND_OFF)
     assert white.deviation == pytest.approx(math.sqrt(squares / 10.0), rel=1e-4)
     assert white.covariance == pytest.approx(squares / 10.0 * np.linalg.inv(slopes.T @ slopes), rel=1e-4)
     assert found.freedom == 10.0
-    assert sum(one.weight for one in found.judged) == pytest.approx(1.0)
+    assert sum(one.weight for one in found.estimates) == pytest.approx(1.0)
     for level in (0.025, 0.5, 0.9, 0.975):
         at = found.quantile(1, level)
         by = [
             one.weight * student.cdf((at - one.step[1] + found.best.step[1]) / math.sqrt(one.covariance[1, 1]), 10.0)
-            for one in found.judged
+            for one in found.estimates
         ]
         assert sum(by) == pytest.approx(level, abs=1e-5)
 
@@ -136,8 +136,8 @@ def test_what_is_known_counts_as_a_further_point() -> None:
     """A parameter known to ± 1 and measured to ± 1 is their mean, known to ± 1/√2."""
     residuals = np.tile([1.0, -1.0], 2000) + 3.0
     slopes, prior = np.full((4000, 1), 1.0 / math.sqrt(4000.0)), np.array([[1.0, 0.0]])
-    found = uncertain([np.arange(4000)], residuals, math.sqrt(4000.0) * slopes, prior, looks=1)
-    white = next(one for one in found.judged if one.noise.share == 0.0)
+    found = averaged([np.arange(4000)], residuals, math.sqrt(4000.0) * slopes, prior, looks=1)
+    white = next(one for one in found.estimates if one.noise.share == 0.0)
     weight = 4000.0 / white.deviation**2
     assert white.step[0] == pytest.approx(3.0 * weight / (weight + 1.0), rel=1e-6)
     assert white.covariance[0, 0] == pytest.approx(1.0 / (weight + 1.0), rel=1e-6)
@@ -148,8 +148,8 @@ def test_what_is_known_of_one_parameter_moves_the_other_that_is_tied_to_it() -> 
     """Only their sum is measured, to be 5 with next to no doubt; the second is known to be 2 ± 1."""
     slopes, prior = np.ones((100, 2)), np.array([[0.0, 1.0, 2.0]])
     residuals = 5.0 + 1e-6 * np.random.default_rng(1).standard_normal(100)
-    found = uncertain([np.arange(100)], residuals, slopes, prior, looks=1)
-    white = next(one for one in found.judged if one.noise.share == 0.0)
+    found = averaged([np.arange(100)], residuals, slopes, prior, looks=1)
+    white = next(one for one in found.estimates if one.noise.share == 0.0)
     assert white.step == pytest.approx([3.0, 2.0], rel=1e-5)
     assert np.sqrt(np.diag(white.covariance)) == pytest.approx(1.0, rel=1e-5)
     assert found.freedom == 99.0
@@ -161,10 +161,10 @@ def test_the_noise_of_a_series_is_found(memory: float) -> None:
     drawn, kept = draw.standard_normal(800), math.exp(-1.0 / memory) if memory else 0.0
     for i in range(1, 800):
         drawn[i] = kept * drawn[i - 1] + math.sqrt(1.0 - kept**2) * drawn[i]
-    found = uncertain([np.arange(400), np.arange(400, 800)], 2.0 * drawn, np.ones((800, 1)), np.zeros((0, 2)), looks=2)
-    weights = np.array([one.weight for one in found.judged])
-    deviation = weights @ [one.deviation for one in found.judged]
-    share, length = (weights @ [getattr(one.noise, name) for one in found.judged] for name in ("share", "memory"))
+    found = averaged([np.arange(400), np.arange(400, 800)], 2.0 * drawn, np.ones((800, 1)), np.zeros((0, 2)), looks=2)
+    weights = np.array([one.weight for one in found.estimates])
+    deviation = weights @ [one.deviation for one in found.estimates]
+    share, length = (weights @ [getattr(one.noise, name) for one in found.estimates] for name in ("share", "memory"))
     assert deviation == pytest.approx(2.0, rel=0.25 if memory else 0.1)
     if memory:
         assert share > 0.9
@@ -194,7 +194,7 @@ def test_a_jump_has_its_steps_and_what_is_beside_it_is_left_out(jump: tuple[floa
     assert retraction.held.tolist() == list(range(60, 91 - many))
     assert retraction.apart.tolist() == list(range(90, 120))
     left = set(range(60)) - set(approach.compared.tolist())
-    assert left == set(range(30 - BESIDE, 29 + many + BESIDE))
+    assert left == set(range(30 - BESIDE_JUMP, 29 + many + BESIDE_JUMP))
     assert curve.baseline == pytest.approx(5.0, abs=0.05)
     assert curve.depth == 59.0
 

@@ -233,7 +233,7 @@ def test_a_rigid_plane_has_neither_snaps_nor_teeth() -> None:
         settings = settings_for(scene_from_dict(tables))
         assert settings.snaps == snaps
         if snaps or settings.forces.law is None:
-            assert settings.is_toothed == snaps
+            assert settings.has_several_maxima == snaps
 
 
 @pytest.mark.parametrize("spacing", [0.01, 1.0, 8.0])

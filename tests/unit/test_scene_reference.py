@@ -34,8 +34,8 @@ RESULTS = """
 # What results.json holds
 
 Every quantity is `{"value", "uncertainty", "unit"}`; where LU and FU are known it has `si`, the same in SI. A
-pressure also has its `state`. A `value` is `null` where the uncertainty is more than half of it; the warning `unknown`
-names it. Beside:
+pressure also has its `state`. A `value` is `null` where the uncertainty is more than half of it
+([with exceptions](uncertainty.md)); the warning `unknown` names it. Beside:
 
 | key | what |
 | --- | --- |

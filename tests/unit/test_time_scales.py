@@ -144,12 +144,12 @@ def test_what_snaps_comes_to_rest_under_a_drag_that_is_critical_for_the_stiffest
     of = scene(damping={"coefficient": "auto"}, plate={})
     settings = settings_for(of)
     critical = 2.0 * math.sqrt(stiffest(of, settings) * MASS)
-    assert settings.motion.calm_damping == pytest.approx(critical, rel=EXACT)
-    assert settings.motion.calm_step == pytest.approx(
-        min(settings.motion.time_step, 0.2 * MASS / settings.motion.calm_damping), rel=EXACT
+    assert settings.motion.settling_damping == pytest.approx(critical, rel=EXACT)
+    assert settings.motion.settling_step == pytest.approx(
+        min(settings.motion.time_step, 0.2 * MASS / settings.motion.settling_damping), rel=EXACT
     )
     given = settings_for(of.with_({"damping.coefficient": 0.3})).motion
-    assert (given.calm_damping, given.calm_step) == (given.damping, given.time_step)
+    assert (given.settling_damping, given.settling_step) == (given.damping, given.time_step)
 
 
 @pytest.mark.parametrize("coefficient", [1e-3, 1.0, 500.0])
@@ -180,18 +180,18 @@ def test_a_slide_is_loaded_with_a_drag_that_lets_its_plate_swing_not_and_creep_n
         settings.law.half_width(settings.largest_displacement, settings.forces.rest) * 2.0 * settings.law.stiffness,
     )
     moving = settings.motion.plate_mass + count * MASS
-    rate = count * settings.motion.calm_damping / moving
+    rate = count * settings.motion.settling_damping / moving
     values = np.linalg.eigvals([[0.0, 1.0], [-0.6 * stiffness / moving, -rate]])
-    assert settings.motion.calm_step == pytest.approx(settings.motion.time_step, rel=0.3)
+    assert settings.motion.settling_step == pytest.approx(settings.motion.time_step, rel=0.3)
     swing = 2.0 * math.pi * math.sqrt(moving / stiffness)  # of the plate on its contact, by the law and springs
     own = 2.0 * math.pi * math.sqrt(moving / (2.0 * settings.law.stiffness))
     assert settings.motion.settle_time >= SWING * swing * (1.0 - 1e-6)
     assert settings.motion.settle_time <= max(SWING * swing, own) * (1.0 + 1e-6)
-    assert settings.motion.calm_step * settings.motion.calm_damping / MASS <= 0.4 * 1.3
-    if drag == 0.3 and settings.motion.calm_damping != drag:
+    assert settings.motion.settling_step * settings.motion.settling_damping / MASS <= 0.4 * 1.3
+    if drag == 0.3 and settings.motion.settling_damping != drag:
         assert np.abs(values.imag).max() <= 1e-3 * np.abs(values.real).max()
     if drag == 3e3:  # a particle alone would not come to rest
-        assert settings.motion.calm_damping < drag
+        assert settings.motion.settling_damping < drag
     assert settings.motion.damping == drag
 
 
@@ -199,12 +199,12 @@ def test_in_smaller_steps_a_chain_without_a_plate_is_stopped_by_drag_and_a_plate
     path = {"kind": "path", "method": "dynamic", "displacements": [0.05]}
     alone = settings_for(scene(damping={"coefficient": "auto"}, experiment=path))
     held = settings_for(scene(damping={"coefficient": "auto"}, plate={}))
-    for settings, damping in ((alone, alone.motion.calm_damping), (held, held.motion.damping)):
+    for settings, damping in ((alone, alone.motion.settling_damping), (held, held.motion.damping)):
         smaller = settings.in_smaller_steps(0.25)
-        assert (smaller.motion.damping, smaller.motion.time_step) == (damping, settings.motion.calm_step)
+        assert (smaller.motion.damping, smaller.motion.time_step) == (damping, settings.motion.settling_step)
         for name in ("displacement_step", "loading_step", "smooth_step", "longest_move"):
             assert getattr(smaller.increments, name) == 0.25 * getattr(settings.increments, name)
-        assert settings.motion.calm_damping > 2.0 * settings.motion.damping
+        assert settings.motion.settling_damping > 2.0 * settings.motion.damping
 
 
 @pytest.mark.parametrize("spring", [2.0, 2000.0])
@@ -242,12 +242,12 @@ def test_a_slide_is_loaded_under_its_own_drag_where_that_is_enough_and_no_more_t
     if critical < within[1]:
         enough = critical
     else:
-        enough = settings.motion.calm_damping
+        enough = settings.motion.settling_damping
         assert within[1] <= enough <= within[0] * (1.0 + EXACT) or drag >= within[1]
     if enough <= drag <= 10.0 * enough:
-        assert settings.motion.calm_damping == drag
+        assert settings.motion.settling_damping == drag
     else:
-        assert settings.motion.calm_damping == pytest.approx(enough, rel=EXACT)
+        assert settings.motion.settling_damping == pytest.approx(enough, rel=EXACT)
 
 
 def test_a_relaxation_without_time_has_steps_in_which_nothing_swings_apart() -> None:

@@ -92,7 +92,7 @@ class Case:
     @property
     def is_elastic(self) -> bool:
         """Whether the contact has linear springs alone: no attraction, no memory, no other effects."""
-        return self.scene.keeps_springs and "pressed" in self.law.beside and not self.law.attracts(self.scene)
+        return self.scene.keeps_springs and "pressed" in self.law.closed_forms and not self.law.attracts(self.scene)
 
     @property
     def sphere(self) -> tuple[float, float, float]:

@@ -189,7 +189,7 @@ def with_body(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressu
                 for key, result in pressure.results.items()
             }
     # Without an attraction dF/dd is that of springs in equilibrium.
-    if "pressed" in law_of(scene).beside and not (scene.interaction or scene.noise):
+    if "pressed" in law_of(scene).closed_forms and not (scene.interaction or scene.noise):
         for name in reported_state(outcome):
             if (pressure := pressures.get(name)) and pressure.stiffness:
                 of_pressure["contact_stiffness"] = (pressure.stiffness, share * pressure.stiffness.value)

@@ -56,7 +56,7 @@ class ClosedForm:
 
 def applying(case: Case) -> list[ClosedForm]:
     """Return the closed forms that hold for a case."""
-    return _applying(case, case.law.beside)
+    return _applying(case, case.law.closed_forms)
 
 
 def exact(case: Case) -> list[ClosedForm]:

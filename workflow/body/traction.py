@@ -319,14 +319,14 @@ def _nodes(state: LoadedState, edge: float, angles: int) -> tuple[Array, Array]:
 
 
 def _attraction(scene: Scene, zone: ZonedProfile | None, growth: float = 0.0) -> tuple[float, Callable[[Array], Array]]:
-    """Return force [FU] and pressure of the attraction beyond the contact, as `Law.drawn` does; 0 without a zone.
+    """Return force [FU] and pressure of the attraction, as `Law.cohesive_load` does; 0 without a zone.
 
     Edge and reach are larger by a share `growth`.
     """
     if zone is None:
         return 0.0, np.zeros_like
     edge, reach = zone.edge, zone.reach
-    return law_of(scene).drawn(scene, edge + growth * edge, reach + growth * edge)
+    return law_of(scene).cohesive_load(scene, edge + growth * edge, reach + growth * edge)
 
 
 def _edge_sensitivity(load: LineLoad, body: Callable[[Array], Array], r: Array, sign: float) -> Array:

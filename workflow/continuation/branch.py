@@ -230,7 +230,7 @@ class Branch(ContactBranch):
         Each maximum has four load steps, of up to 400 maxima: of more, each is a small part of the force.
         """
         law, zero = self.settings.law, self._last
-        period = law.tooth(self.settings.chains.upper)
+        period = law.maxima_distance(self.settings.chains.upper)
         densest = (zero.displacement - law.rest + float(law.gap[-1])) / 400.0
         step = min(self.settings.increment(), max(period, densest) / 4.0)
         through = period < math.inf or self.context.through

@@ -263,7 +263,7 @@ def _target_errors(case: Reduction, trace: Trace, error: Array, margin: float = 
 def _stiffness(case: Reduction, displacement: Array) -> Array:
     """Return dF/dd [FU/LU] of the model at displacements (m,) [LU], at least that of a particle."""
     settings, model = case.settings, case.model
-    if settings.is_toothed:
+    if settings.has_several_maxima:
         return np.full_like(displacement, settings.law.stuck_stiffness(settings.largest_displacement))
     step = abs(_short_step(model)) or model.law.spacing
     rise = model.held(displacement) - model.held(displacement - step)

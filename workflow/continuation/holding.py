@@ -60,7 +60,7 @@ class Held:
 
 def stiffness_under(settings: Settings, load: float) -> float:
     """Return the contact stiffness [FU/LU] under a load [FU]; where pairs separate one by one, of all that touch."""
-    if settings.is_toothed:
+    if settings.has_several_maxima:
         return settings.law.stuck_stiffness(settings.largest_displacement)
     return settings.law.stiffness_under(load)
 
@@ -73,7 +73,7 @@ def damping_under(settings: Settings, load: float) -> float:
     if settings.motion.damped_stiffness == 0.0:
         return settings.motion.damping
     if settings.gentle and load >= 0.0:
-        return settings.motion.calm_damping
+        return settings.motion.settling_damping
     stiffer = stiffness_under(settings, load) / settings.motion.damped_stiffness
     return settings.motion.damping * math.sqrt(min(max(stiffer, 0.0), 1.0 / SOFTENING))
 
@@ -137,8 +137,8 @@ def hold(
         state = contact.row(row, trusted=False)
         states.append(state)
         drag = row.drag * abs(state.plate_velocity)
-        unbalance, calm = abs(state.carried - load), drag <= row.rest
-        if calm and unbalance <= near:
+        unbalance, stands = abs(state.carried - load), drag <= row.rest
+        if stands and unbalance <= near:
             require_trust(contact.scene, settings, state)
             return Held(load, tuple(states), True, unbalance + drag * _inertia(contact.scene, settings))
         if state.displacement < row.parted:
@@ -151,7 +151,7 @@ def hold(
                 f"the bodies went through each other under {load:.4g} FU, at {state.displacement:.4g} LU"
             )
         # A plate that is at rest while its contact is not gets a lower threshold.
-        row = replace(row, start=int(Start.HERE), rest=row.rest * (0.5 if calm else 1.0))
+        row = replace(row, start=int(Start.HERE), rest=row.rest * (0.5 if stands else 1.0))
     raise RestlessError(
         f"the contact did not reach equilibrium under {load:.4g} FU within {MOST_HOLDS * row.steps} timesteps "
         f"(phase {state.phase}): the residual force is {unbalance:.2g} FU",

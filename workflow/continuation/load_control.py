@@ -204,7 +204,7 @@ class LoadBranch(ContactBranch):
     def _missed_maxima(self, search: LoadSearch) -> float:
         """Return the tension [FU] that an oscillating plate may miss, where pairs separate one at each contact edge."""
         settings = self.settings
-        lost = (settings.law.snap[1] or settings.strongest[1]) if settings.is_toothed else 0.0
+        lost = (settings.law.snap[1] or settings.strongest[1]) if settings.has_several_maxima else 0.0
         return 2.0 * lost * search.overshoot(search.best)
 
     @property

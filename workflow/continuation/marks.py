@@ -153,7 +153,7 @@ def _zero_load(branch: Trace) -> dict[str, Reading]:
 def early_detachment(branch: Trace, peak: Peak, settings: Settings) -> float:
     """Return the displacement [LU] by which the move after the force maximum may separate a pair before its limit."""
     d = branch.displacement
-    return settings.let_go_early(float(d[peak.index] - d[min(peak.index + 1, len(d) - 1)]))
+    return settings.premature_detachment(float(d[peak.index] - d[min(peak.index + 1, len(d) - 1)]))
 
 
 def missed_tension(branch: Trace, peak: Peak, settings: Settings, positions: int = 200) -> float:

@@ -160,8 +160,9 @@ class ModelBranch:
         positions = positions[positions < zero]
         last = int(np.count_nonzero(positions > peak - 0.5 * step)) if peak < zero else 0
         if (near := positions[max(last - nearest, 0) : last]).size:
-            tensions = -self.model.held(near)  # a chain may lose a part at its limit point, the top that a law knows
-            if self.model.top is None or tensions[-1] < (1.0 - self.settings.tolerance) * tensions.max():
+            tensions = -self.model.held(near)  # a chain may lose a part at the limit point, the maximum of its law
+            loses = tensions[-1] < (1.0 - self.settings.tolerance) * tensions.max()
+            if loses or self.model.critical_displacement is None:
                 last -= near.size - 1 - int(np.argmax(tensions))
         self._add(positions[:last])
         self._beyond = positions[last:]
@@ -175,7 +176,7 @@ class ModelBranch:
         """
         zero, top = float(positions[0]), int(np.argmin(self.model.held(positions)))
         low, high = float(positions[min(top + 1, positions.size - 1)]), float(positions[max(top - 1, 0)])
-        peak, step, known = float(positions[top]), (high - low) / 64.0, self.model.top
+        peak, step, known = float(positions[top]), (high - low) / 64.0, self.model.critical_displacement
         if known is not None:
             return min(max(known, end), zero), step
         for _ in range(0 if self.settings.is_smooth else zooms):

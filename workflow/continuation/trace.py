@@ -190,7 +190,7 @@ class Trace:
         A free motion is computed anew, and interpolated at the times of the states.
         """
         if self.given == "force":
-            return {"displacement": model.carrying(self.time, self.force)[0]}
+            return {"displacement": model.displacements_under(self.time, self.force)[0]}
         if self.given:
             return {"force": model.follow(Path(self.displacement, self.along, self.time)).total}
         assert isinstance(scene.experiment, Impact)

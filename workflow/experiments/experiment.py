@@ -26,9 +26,6 @@ from contact1d.workflow.model.settings import Settings, slower
 from contact1d.workflow.scene import Kind, Scene
 from contact1d.workflow.units import ENERGY
 
-FINER_SPACING = "a smaller bodies.spacing at the same stiffness and energy per length"
-"""Advice that makes the uncertainty of every radius smaller."""
-
 K = TypeVar("K", bound=Kind)
 
 
@@ -73,8 +70,8 @@ class Experiment(ABC, Generic[K]):
         if scene.method == "dynamic":
             return 'Use method = "quasistatic"'
         if not scene.interaction:
-            return f"Use {FINER_SPACING}"
-        return f'Use "auto" for interaction.cutoff and bodies.particles; for a radius also {FINER_SPACING}'
+            return f"Use {finer_spacing(scene)}"
+        return f'Use "auto" for interaction.cutoff and bodies.particles; for a radius also {finer_spacing(scene)}'
 
     def branch(self, phase: str) -> str:
         """Return the branch name of a phase in curve.csv."""
@@ -170,6 +167,13 @@ class Scripted(Experiment[K]):
         """Return script and reader on the reduced model of a scene."""
         script, read = partial(self.script, scene=scene), partial(self.read, scene=scene, settings=settings)
         return Reduction(scene, settings, script, read, self.reduction)
+
+
+def finer_spacing(scene: Scene, size: str = "") -> str:
+    """Return the advice to use a smaller spacing of a `size`, with the keys of a scene that depend on it."""
+    keys = ["bodies.bulk_stiffness"] * (scene.bodies.bulk_stiffness != "auto")
+    keys += ["the amplitudes of [interaction]"] * (scene.interaction is not None)
+    return f"a smaller bodies.spacing{size}" + (f", with {' and '.join(keys)} in proportion to it" if keys else "")
 
 
 def driver_of(context: RunContext, meanwhile: Callable[[], object]) -> Branch | LoadBranch | PlannedBranch:

@@ -16,7 +16,7 @@ from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.outcome import Outcome, Reading
 from contact1d.workflow.continuation.reduction import MARGIN
 from contact1d.workflow.continuation.trace import Trace
-from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
+from contact1d.workflow.experiments.experiment import Scripted, finer_spacing
 from contact1d.workflow.laws import law_of
 from contact1d.workflow.laws.path import History as LoadHistory
 from contact1d.workflow.model.settings import Settings
@@ -94,7 +94,7 @@ class HistoryExperiment(Scripted[History]):
 
     def advice(self, scene: Scene) -> str:
         """Return the advice to refine load steps and lattice, the sources of the uncertainty."""
-        return f"Use more experiment.steps, or {FINER_SPACING}"
+        return f"Use more experiment.steps, or {finer_spacing(scene)}"
 
 
 def _load_steps(scene: Scene) -> LoadHistory:
@@ -105,7 +105,7 @@ def _load_steps(scene: Scene) -> LoadHistory:
     # The sampling error goes with the square of the steps' width, and 70 in a leg meet a tolerance of 1e-3.
     count = given.steps or math.ceil(70 * math.sqrt(1e-3 / scene.accuracy.tolerance))
     directions = {1.0: "loading", -1.0: "unloading", 0.0: "holding"}
-    names, soonest = list[str](), law_of(scene).soonest(scene)
+    names, soonest = list[str](), law_of(scene).shortest_time(scene)
     times, wanted = [np.asarray(given.times[:1])], [np.asarray(values[:1])]
     for (before, after), (start, end) in zip(pairwise(given.times), pairwise(values), strict=True):
         parts = np.linspace(0.0, 1.0, count + 1)[1:]

@@ -16,7 +16,7 @@ from contact1d.workflow.continuation.reduction import Reduction
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.deck.steps import Fly, Launch, Phase
-from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
+from contact1d.workflow.experiments.experiment import Scripted, finer_spacing
 from contact1d.workflow.experiments.history import contact_time
 from contact1d.workflow.laws.path import Path
 from contact1d.workflow.model.free import FLIGHT, impact, stretch
@@ -106,7 +106,7 @@ class ImpactExperiment(Scripted[Impact]):
 
     def advice(self, scene: Scene) -> str:
         """Return the advice to refine the lattice, the largest source of the uncertainty."""
-        return f"Use {FINER_SPACING}"
+        return f"Use {finer_spacing(scene)}"
 
 
 def _peak(trace: Trace, column: Array, near: int = 2) -> float:

@@ -27,7 +27,7 @@ from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import doubts, require_trust
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import Displace, DisplaceInTime, Phase, Row, displacements
-from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
+from contact1d.workflow.experiments.experiment import Scripted, finer_spacing
 from contact1d.workflow.experiments.thermal import CERTAIN, averaged, thermal_rows
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import path_of
@@ -176,7 +176,8 @@ class PathExperiment(Scripted[Path]):
 
     def advice(self, scene: Scene) -> str:
         """Return the advice to refine the displacements of the scene, or the lattice."""
-        return f"Use more steps in experiment.displacements; for a radius or a force in curve.csv also {FINER_SPACING}"
+        finer = finer_spacing(scene)
+        return f"Use more steps in experiment.displacements; for a radius or a force in curve.csv also {finer}"
 
     def _missing_results(
         self, results: Mapping[str, Result], case: Reduction, phases: Sequence[Phase]

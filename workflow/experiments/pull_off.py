@@ -175,7 +175,7 @@ def _marks_by_load(rested: Trace, scene: Scene, settings: Settings, preload: flo
     tension = 0.5 * (best + broken)
     errors = {"sampling": 0.5 * (broken - best)} | dict(rested.search.doubt)
     zero, last = rested.radius_or_spot(0), len(rested) - 1
-    if settings.is_toothed:
+    if settings.has_several_maxima:
         # No smooth maximum can be extrapolated. The pull-off may be at the next maximum, with one particle less at each
         # edge, and further off where the bracket of F_A allows it: the maxima lie near F = F_A (1 − y²),
         # y = (a − a_cr)/(a₀ − a_cr).
@@ -185,7 +185,7 @@ def _marks_by_load(rested: Trace, scene: Scene, settings: Settings, preload: flo
     else:
         critical = _critical_radius(rested)
     at_zero = {}
-    if settings.is_toothed:  # beyond the force maximum the plate would not have come back
+    if settings.has_several_maxima:  # beyond the force maximum the plate would not have come back
         swung = overshoot(settings, scene.bodies.mass, preload, 0.0) * preload
         at_zero["instability"] = abs(critical.value - zero) * min(swung / tension, 1.0)
     return {

@@ -92,7 +92,7 @@ class SlideExperiment(Experiment[Slide]):
         """Return the phase in which the normal force [FU] is applied, as it is planned."""
         scale = abs(force) or settings.forces.scale
         rows = [hold_row(scene, _loading_settings(settings), force, scale, Start.KEPT)]
-        if settings.motion.calm_damping != settings.motion.damping:
+        if settings.motion.settling_damping != settings.motion.damping:
             rows.append(hold_row(scene, settings, force, scale, Start.HERE))
         return Phase("loading", tuple(rows))
 
@@ -180,7 +180,7 @@ def _warnings(motion: Motion) -> dict[str, str]:
 
 def _loading_settings(settings: Settings) -> Settings:
     """Return the settings with the drag of the loading, which is critical for the contact."""
-    return replace(settings, motion=replace(settings.motion, damping=settings.motion.calm_damping))
+    return replace(settings, motion=replace(settings.motion, damping=settings.motion.settling_damping))
 
 
 def _settled_along_x(contact: Contact, force: float, scale: float, state: State) -> State:

@@ -29,8 +29,8 @@ from contact1d.workflow.continuation.trust import UntrustedError, doubts
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.lattice import places
 from contact1d.workflow.deck.steps import Phase
-from contact1d.workflow.experiments.experiment import FINER_SPACING, Scripted
-from contact1d.workflow.laws.friction import Sliders, SlidingSprings, Stop, sliders_of, stops, without_rests
+from contact1d.workflow.experiments.experiment import Scripted, finer_spacing
+from contact1d.workflow.laws.friction import JenkinsElements, SlidingSprings, Stop, elements_of, stops, without_stops
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import Path
 from contact1d.workflow.model.reduced import reduced
@@ -147,7 +147,7 @@ class TangentialExperiment(Scripted[Tangential]):
 
     def advice(self, scene: Scene) -> str:
         """Return the advice to refine the lattice: the load steps are exact."""
-        return f"Use {FINER_SPACING}"
+        return f"Use {finer_spacing(scene)}"
 
 
 @dataclass(frozen=True)
@@ -280,19 +280,21 @@ def _columns(rows: Sequence[SlidState]) -> dict[str, tuple[float, ...]]:
     }
 
 
-def _chain(scene: Scene, settings: Settings) -> Sliders:
+def _chain(scene: Scene, settings: Settings) -> JenkinsElements:
     """Return the sliders of the chain that runs."""
-    return sliders_of(scene, places(settings.chains.upper, scene.bodies.spacing))
+    return elements_of(scene, places(settings.chains.upper, scene.bodies.spacing))
 
 
-def load_steps(scene: Scene, chain: Sliders, settings: Settings, sparse: bool = False) -> list[tuple[Stop, bool]]:
+def load_steps(
+    scene: Scene, chain: JenkinsElements, settings: Settings, sparse: bool = False
+) -> list[tuple[Stop, bool]]:
     """Return displacement and position [LU] of every load step in order, each with whether the scene asks for it.
 
     With `sparse`, stops are left out at which the direction does not change.
     """
     assert isinstance(scene.experiment, Tangential)
     asked = stops(scene.experiment, chain)
-    first, *later = without_rests(asked) if sparse else asked
+    first, *later = without_stops(asked) if sparse else asked
     steps, most = [(first, False)], _most_between(settings)
     before = first
     for stop in later:

@@ -13,23 +13,17 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 JUMP = 6.0
 """Change of the force between neighbouring points over its usual spread that counts as a jump."""
-PART_OF_JUMP, SHARE_OF_JUMP = 3.0, 0.2
-"""The same for a point beside it that belongs to it, a jump that takes several points, and its change over the largest
-one: close to the fold a contact softens, which is no jump.
-"""
-NEIGHBOURS = 15
-"""Points whose usual change of the force is no jump."""
-BESIDE = 3
-"""Points beside a jump that are not compared: there the force is no smooth function of the parameters."""
+BESIDE_JUMP = 3
+"""Points to each side of a jump that are not compared: there the force is no smooth function of the parameters."""
 
 
 @dataclass(frozen=True)
 class Segment:
-    """One way of a curve, in the order of time.
+    """The approach or the retraction of a curve, in the order of time.
 
     Attributes:
         points: indices into the curve.
-        jump: the last point before and the first one after a jump of the force, in `points`; None: no jump.
+        jump: positions in `points` of the last point before and the first one after a jump of the force; None: no jump.
         approaches: whether the bodies approach.
     """
 
@@ -37,25 +31,25 @@ class Segment:
     jump: tuple[int, int] | None
     approaches: bool
 
-    def _sides(self, beside: int = 0) -> tuple[Indices, Indices]:
-        """The points before and after the jump, but for so many beside it; without one there are none."""
+    def _sides(self, margin: int = 0) -> tuple[Indices, Indices]:
+        """Return the points before and after the jump without the `margin` points next to it; none without a jump."""
         before, after = self.jump or (-1, self.points.size)
-        return self.points[: max(0, before + 1 - beside)], self.points[after + beside :]
+        return self.points[: max(0, before + 1 - margin)], self.points[after + margin :]
 
     @property
     def held(self) -> Indices:
-        """Points of a contact that holds; without a jump none is known to."""
+        """Points at which the bodies are certainly in contact; none without a jump."""
         return self._sides()[self.approaches]
 
     @property
     def apart(self) -> Indices:
-        """Points of bodies that are known to be apart."""
+        """Points at which the bodies are certainly apart; none without a jump."""
         return self._sides()[not self.approaches]
 
     @property
     def compared(self) -> Indices:
-        """Points that a model is compared with: all but those at the jump and beside it."""
-        return self.points if self.jump is None else np.concatenate(self._sides(BESIDE))
+        """Points that a model is compared with: all but those of the jump and next to it."""
+        return self.points if self.jump is None else np.concatenate(self._sides(BESIDE_JUMP))
 
 
 @dataclass(frozen=True)
@@ -72,38 +66,39 @@ class ForceCurve:
 
     @cached_property
     def segments(self) -> tuple[Segment, Segment]:
-        """Approach and retraction."""
-        every = np.arange(self.positions.size)
-        approach, retraction = every[: self.turn], every[self.turn :]
+        """The approach and the retraction of the curve."""
+        approach, retraction = np.split(np.arange(self.positions.size), [self.turn])
         return (
             Segment(approach, self._jump(approach, -1.0), True),
             Segment(retraction, self._jump(retraction, 1.0), False),
         )
 
     def _jump(self, points: Indices, sign: float) -> tuple[int, int] | None:
-        """The largest change of the force of this sign from one point to the next, if it is one."""
+        """Return the last of `points` before a jump of the force of this sign and the first one after it, or None."""
         change = sign * np.diff(self.forces[points])
-        change -= median_filter(change, NEIGHBOURS, mode="nearest")  # what the contact's stiffness does
+        change -= median_filter(change, 15, mode="nearest")  # less the usual change, due to the contact stiffness
         spread = 1.4826 * float(np.median(np.abs(change)))
-        at = int(np.argmax(change))
-        if not change[at] > JUMP * max(spread, 1e-12 * float(np.ptp(self.forces))):
+        peak = int(np.argmax(change))
+        if not change[peak] > JUMP * max(spread, 1e-12 * float(np.ptp(self.forces))):
             return None
-        first, last, part = at, at, max(PART_OF_JUMP * spread, SHARE_OF_JUMP * change[at])
-        while first > 0 and change[first - 1] > part:
+        # A jump may take several points: a neighbour belongs to it whose change is half of JUMP and a fifth of the
+        # largest one, since close to the fold a contact softens, which is no jump.
+        first, last, least = peak, peak, max(0.5 * JUMP * spread, 0.2 * change[peak])
+        while first > 0 and change[first - 1] > least:
             first -= 1
-        while last < change.size - 1 and change[last + 1] > part:
+        while last < change.size - 1 and change[last + 1] > least:
             last += 1
         return first, last + 1
 
     @property
     def depth(self) -> float:
-        """Range of the positions [LU]."""
+        """The range of the positions [LU]."""
         return float(np.ptp(self.positions))
 
     @cached_property
     def baseline(self) -> float:
-        """The force [FU] of bodies apart: of points that are known to be, else of the first fifth of the approach."""
-        apart = np.concatenate([one.apart for one in self.segments])
+        """The median force [FU] where the bodies are certainly apart, else of the first fifth of the approach."""
+        apart = np.concatenate([segment.apart for segment in self.segments])
         if apart.size < 10:
             apart = np.arange(max(3, self.turn // 5))
         return float(np.median(self.forces[apart]))

@@ -31,59 +31,49 @@ COLUMNS = {
     "x": ("x",),
     "y": ("y",),
 }
-"""Names of columns, in small letters."""
-KNOWN = {word: name for name, words in COLUMNS.items() for word in words}
-WORDS, PLACE = ("segment", "curve"), ("x", "y")
-"""Columns that are no numbers, and those of a map's curve."""
+"""Allowed headings of each column, in lower case."""
+COLUMN_OF = {heading: name for name, headings in COLUMNS.items() for heading in headings}
+TEXT_COLUMNS, MAP_COLUMNS = ("segment", "curve"), ("x", "y")
+"""Columns of text, and those of the position of a curve in a map."""
 UNITS = {"z": "m", "d": "m", "F": "N"}
 PATTERN = "*.csv"
-"""Curves in a folder."""
+"""Names of the files of curves in a folder."""
 FORM = "name the columns with their units, z [nm] (or d [nm]) and F [nN]"
 APPROACH = ("approach", "trace", "extend", "loading", "annähern", "anfahren", "0")
 RETRACT = ("retract", "retrace", "withdraw", "unloading", "rückzug", "1")
 LARGEST = 400_000_000
-"""Bytes of a file: a map of 1000 curves has a tenth of them."""
-MOST_POINTS = 20_000
-"""Points of one curve: a fit takes seconds. More are one every few nanometres in any experiment."""
-FEWEST = 40
-HEAD_LINES = 200
-"""Lines in which the names of columns are looked for."""
-SATURATED = 6
-"""Points of equal force at an end of it that are no measurement."""
-FLAT_PART = 1e-4
-"""Range of a force over the largest within which it counts as equal."""
-APART = 0.05
-"""Distance of an end of the force from that of bodies apart over its range, from which on it may be saturated."""
-BLOCKS, RISE = 20, 2.0
-"""Parts of a curve whose mean forces differ by so many times its noise, if it has a contact."""
-GAP = 8.0
-"""Distance of neighbouring positions over the usual one that is a gap."""
+"""Largest size of a file [bytes]: a map of 1000 curves has a tenth of it."""
+FEWEST_POINTS, MOST_POINTS = 40, 20_000
+"""Least and largest number of points of a curve: a fit of the largest takes seconds, and has a point every few
+nanometres in any experiment."""
 
 
 class DataError(Contact1dError, ValueError):
-    """A file that is no force curve; the message says where, why and what to do."""
+    """Data that are no force curve; the message says where, why and what to do."""
 
 
 NamedCurve = tuple[str, tuple[float, float] | None, ForceCurve | DataError]
-"""Name of a curve, its place (x, y) in a map, and the curve, or why it is none."""
+"""Name of a curve, its position (x, y) in a map or None, and the curve, or the error of reading it."""
 
 
 def files_of(plan: FitPlan) -> list[Path]:
-    """The files of data: one, all of a folder, or those of a pattern. Raises DataError where there is none."""
-    place = plan.folder / plan.fit.data
-    if place.is_dir():
-        found = sorted(place.glob(PATTERN))
+    """Return the files of data: one, all of a folder, or those of a pattern. Raises DataError where there is none."""
+    path = plan.folder / plan.fit.data
+    if path.is_dir():
+        files = sorted(path.glob(PATTERN))
     elif any(sign in plan.fit.data for sign in "*?["):
-        found = sorted(plan.folder / name for name in glob(plan.fit.data, root_dir=plan.folder, recursive=True))
+        files = sorted(plan.folder / name for name in glob(plan.fit.data, root_dir=plan.folder, recursive=True))
     else:
-        found = [place]
-    if not found or not all(map(Path.is_file, found)):
-        raise DataError(f"{place}: no such file, and no folder with {PATTERN}; data is looked up beside the fit file")
-    return found
+        files = [path]
+    if not files or not all(map(Path.is_file, files)):
+        raise DataError(
+            f"{path}: no such file, and no folder with {PATTERN}; data is relative to the fit file's folder"
+        )
+    return files
 
 
 def curves_of(plan: FitPlan) -> Iterator[NamedCurve]:
-    """All curves of a plan; what is wrong with a file stands for its curve. Raises DataError as `files_of`."""
+    """Yield all curves of a plan; a file that cannot be read gives its error. Raises DataError as `files_of`."""
     for file in files_of(plan):
         try:
             yield from curves(file, plan)
@@ -92,52 +82,57 @@ def curves_of(plan: FitPlan) -> Iterator[NamedCurve]:
 
 
 def is_series(plan: FitPlan) -> bool:
-    """Whether the data of a plan are more than one curve."""
+    """Return whether the data of a plan are more than one curve."""
     return len([*islice(curves_of(plan), 2)]) > 1
 
 
 def curves(path: Path, plan: FitPlan) -> Iterator[NamedCurve]:
-    """The curves of a file: name, place (x, y) of a map, and the curve, or why it is none.
+    """Yield the curves of a file, each with its name and its position (x, y) in a map, or its error.
 
     Raises:
-        DataError: nothing in the file can be read.
+        DataError: the file as a whole cannot be read.
     """
     head = _head(path)
     try:
         table, units = _table(path, head)
         along = "z" if "z" in table else "d"
         if not {along, "F"} <= {*table}:
-            raise DataError(f"its columns are not known; {FORM}")
+            raise DataError(f"lacks a column z or d, or F; {FORM}")
         if along == "z" and not math.isfinite(plan.stiffness):
             raise DataError(
-                "z is the position of the piezo, of which the instrument takes a part: give [instrument] stiffness, or "
-                "a column d, the indentation"
+                "z is the position of the piezo, to which the instrument's deflection contributes: give [instrument] "
+                "stiffness, or a column d, the indentation"
             )
-        if without := [name for name in (along, "F") if not units.get(name)]:
-            raise DataError(f"{' and '.join(without)} without a unit; {FORM}")
+        if unitless := [name for name in (along, "F") if not units.get(name)]:
+            raise DataError(f"{' and '.join(unitless)} without a unit; {FORM}")
     except ValueError as error:
         raise DataError(f"{path}: {error}") from None
-    maps = table.groupby((table["curve"] != table["curve"].shift()).cumsum()) if "curve" in table else [(1, table)]
-    for _, part in maps:
-        name = part["curve"].iloc[0] if "curve" in part else path.stem
-        place = next(part[[*PLACE]].itertuples(index=False, name=None), None) if {*PLACE} <= {*part} else None
+    groups = table.groupby((table["curve"] != table["curve"].shift()).cumsum()) if "curve" in table else [(1, table)]
+    is_map = {*MAP_COLUMNS} <= {*table}
+    for _, rows in groups:
+        name = rows["curve"].iloc[0] if "curve" in rows else path.stem
+        position = next(rows[[*MAP_COLUMNS]].itertuples(index=False, name=None), None) if is_map else None
         try:
-            yield name, place, _curve(part, along, units, plan)
+            yield name, position, _curve(rows, along, units, plan)
         except DataError as error:
-            yield name, place, DataError(f"{path}: {error}")
+            yield name, position, DataError(f"{path}: {error}")
 
 
-def _head(path: Path) -> list[str]:
-    """The first lines of a file. Raises DataError where it is none."""
+def _head(path: Path, count: int = 200) -> list[str]:
+    """Return the first `count` lines of a file, among which the names of columns must be.
+
+    Raises:
+        DataError: the file cannot be read, is too large or no text.
+    """
     try:
         size = path.stat().st_size
         if size > LARGEST:
             raise DataError(
-                f"{path} has {size} bytes, and at most {LARGEST} are read: average neighbouring points, or split the "
-                "map into files"
+                f"{path} must have at most {LARGEST} bytes; it has {size}: average neighbouring points, or split the "
+                "map into several files"
             )
         with path.open(encoding="utf-8-sig") as file:
-            return [line.rstrip("\r\n") for line in islice(file, HEAD_LINES)]
+            return [line.rstrip("\r\n") for line in islice(file, count)]
     except UnicodeDecodeError:
         raise DataError(f"{path} is not UTF-8 text; export the curve as CSV") from None
     except OSError as error:
@@ -145,44 +140,54 @@ def _head(path: Path) -> list[str]:
 
 
 def _table(path: Path, head: list[str]) -> tuple[DataFrame, dict[str, str]]:
-    """The columns that are known, by our names, each row by its line in the file, and their units.
+    """Return the columns of COLUMNS that a file has, indexed by the line in the file, and the unit of each.
 
-    Raises ValueError.
+    Raises:
+        ValueError: no line has names of columns, or a cell is no number; the message lacks the file's name.
     """
     from pandas import to_numeric
 
     rows = rows_in(head)
-    start = next((i for i, (_, cells) in enumerate(rows) if "F" in (found := _known(cells)) and len(found) > 1), None)
+    columns = [_indices(cells) for _, cells in rows]
+    start = next((i for i, indices in enumerate(columns) if "F" in indices and len(indices) > 1), None)
     if start is None:
-        raise DataError(f"{'is empty' if not rows else 'no line has names of columns that are known'}; {FORM}")
-    (line, names), (last, below) = rows[start], (*rows[start + 1 :], (0, []))[0]
-    known = _known(names)
-    require_names(last, below, names)
-    units, are_below = units_of(names, below, [*known.values()])
-    table = _rows(path, head, line, last if are_below else line, [*known.values()])
-    table = table.set_axis([*known], axis="columns").dropna(how="all")
-    for name in known:
-        if name in WORDS:
+        raise DataError(f"{'is empty' if not rows else 'no line has names of columns that are allowed'}; {FORM}")
+    (line, names), (next_line, below), indices = rows[start], (*rows[start + 1 :], (0, []))[0], columns[start]
+    require_names(next_line, below, names)
+    units, are_below = units_of(names, below, [*indices.values()])
+    table = _rows(path, head, line, next_line if are_below else line, [*indices.values()])
+    table = table.set_axis([*indices], axis="columns").dropna(how="all")
+    for name in indices:
+        if name in TEXT_COLUMNS:
             table[name] = table[name].astype(str).str.strip().str.lower()
             continue
         table[name] = to_numeric(table[name], errors="coerce")
         bad = table.index[~np.isfinite(table[name])]
-        if bad.size and name not in PLACE:
+        if bad.size and name not in MAP_COLUMNS:
             raise DataError(f"line {bad[0]}: {name} is empty or no number; leave such lines out ({bad.size} in all)")
-    return table, dict(zip(known, units, strict=True))
+    return table, dict(zip(indices, units, strict=True))
 
 
 def _rows(path: Path, head: list[str], names: int, skip: int, columns: list[int]) -> DataFrame:
-    """The cells of some columns, by their line in the file, below line `skip`; that of the names is `names`.
+    """Return the cells of some columns below a line, indexed by the line in the file.
 
-    Raises DataError.
+    Args:
+        path: the file.
+        head: its first lines.
+        names: the line with the names of the columns.
+        skip: the last line above the cells.
+        columns: the indices of the columns.
+
+    Raises:
+        DataError: the lines have different numbers of cells, or there is none.
     """
     from pandas import read_csv
 
     while skip < len(head) and not head[skip].strip():  # the first line says how many columns there are
         skip += 1
-    separator = next((one for one in ";\t," if one in head[names - 1]), r"\s+")
-    decimal = "," if separator != "," and any("," in one and "." not in one for one in head[skip : skip + 5]) else "."
+    separator = next((sign for sign in ";\t," if sign in head[names - 1]), r"\s+")
+    first = head[skip : skip + 5]
+    decimal = "," if separator != "," and any("," in line and "." not in line for line in first) else "."
     try:
         rows = read_csv(
             path, sep=separator, decimal=decimal, skiprows=skip, header=None, usecols=columns, comment="#",
@@ -191,23 +196,23 @@ def _rows(path: Path, head: list[str], names: int, skip: int, columns: list[int]
     except ValueError:  # of pandas: no line at all, or lines of several lengths
         raise DataError(f"the lines below the names have not as many cells as these; {FORM}") from None
     with path.open(encoding="utf-8-sig") as file:
-        lines = np.fromiter((i for i, one in enumerate(file, 1) if i > skip and not one.startswith("#")), int)
+        lines = np.fromiter((i for i, line in enumerate(file, 1) if i > skip and not line.startswith("#")), int)
     return rows[columns].set_axis(lines[: len(rows)], axis="index")
 
 
-def _known(cells: list[str]) -> dict[str, int]:
-    """Where the columns are whose names are known; of several of one name the first."""
-    found: dict[str, int] = {}
+def _indices(cells: list[str]) -> dict[str, int]:
+    """Return the index of each column of COLUMNS among the cells of a line, the first where several have one name."""
+    indices: dict[str, int] = {}
     for i, cell in enumerate(cells):
         match = NAME.match(cell.strip('" '))
-        name = KNOWN.get(match[1].lower()) if match else None
+        name = COLUMN_OF.get(match[1].lower()) if match else None
         if name is not None:
-            found.setdefault(name, i)
-    return found
+            indices.setdefault(name, i)
+    return indices
 
 
 def _curve(table: DataFrame, along: str, units: dict[str, str], plan: FitPlan) -> ForceCurve:
-    """One curve. Raises DataError."""
+    """Return the curve in a table of columns; `along` is that of the positions, z or d. Raises DataError."""
     reverse = plan.fit.reverse or ()
     columns = []
     for name in (along, "F"):
@@ -215,13 +220,15 @@ def _curve(table: DataFrame, along: str, units: dict[str, str], plan: FitPlan) -
             factor = float(si_value(f"1 {units[name]}", UNITS[name])[0])
         except UnitTextError as error:
             volts = units[name].endswith("V")
-            what = "is in volts: multiply it by sensitivity and stiffness of the cantilever" if volts else f"{error}"
-            raise DataError(f"column {name} {what}") from None
+            fault = "is in volts: multiply it by sensitivity and stiffness of the cantilever" if volts else f"{error}"
+            raise DataError(f"column {name} {fault}") from None
         sign = -1.0 if name in reverse else 1.0
         columns.append(sign * factor * np.asarray(table[name], dtype=float))
     z, F = columns
-    if z.size < FEWEST:
-        raise DataError(f"has {z.size} points, and at least {FEWEST} are needed: approach and retraction at full rate")
+    if z.size < FEWEST_POINTS:
+        raise DataError(
+            f"has {z.size} points, and at least {FEWEST_POINTS} are needed: approach and retraction at full rate"
+        )
     if z.size > MOST_POINTS:
         raise DataError(f"has {z.size} points, and at most {MOST_POINTS} are compared: average neighbouring points")
     turn = _turn(z, table.get("segment"))
@@ -234,20 +241,20 @@ def _curve(table: DataFrame, along: str, units: dict[str, str], plan: FitPlan) -
 
 
 def _turn(z: Array, segment: Series | None) -> int:
-    """How many points approach; they come first. Raises DataError where a segment is missing."""
+    """Return the number of points of the approach, which come first. Raises DataError where a segment is missing."""
+    least, most = FEWEST_POINTS // 4, z.size - FEWEST_POINTS // 4
     if segment is not None:
         approaches = np.isin(segment, APPROACH)
-        unknown = ~approaches & ~np.isin(segment, RETRACT)
-        if unknown.any():
+        if not (approaches | np.isin(segment, RETRACT)).all():
             raise DataError("column segment has words other than approach and retract")
         turn = int(approaches.sum())
         if not approaches[:turn].all():
             raise DataError("column segment: the approach must come before the retraction")
     else:
         turn, low = (int(extreme(z)) + 1 for extreme in (np.argmax, np.argmin))
-        if not FEWEST // 4 <= turn <= z.size - FEWEST // 4 and FEWEST // 4 <= low <= z.size - FEWEST // 4:
+        if not least <= turn <= most and least <= low <= most:
             raise DataError('z is reversed, since the approach lowers it: write reverse = ["z"]')
-    if not FEWEST // 4 <= turn <= z.size - FEWEST // 4:
+    if not least <= turn <= most:
         raise DataError(
             f"has one segment only ({turn} points approach, {z.size - turn} retract): give both, the approach first"
         )
@@ -255,38 +262,41 @@ def _turn(z: Array, segment: Series | None) -> int:
 
 
 def _require_signs(curve: ForceCurve) -> None:
-    """Refuse what would be a contact with other signs only."""
+    """Refuse a curve without a contact, or one whose positions or forces have the opposite sign."""
     z, F = curve.positions, curve.forces
-    low, high = (
-        F[np.argsort(z[: curve.turn])[part]].mean()
-        for part in (slice(0, curve.turn // 10 + 1), slice(-(curve.turn // 10 + 1), None))
-    )
-    span = float(np.ptp(F))
-    if high - low < -0.2 * span:
+    tenth = curve.turn // 10 + 1
+    approach = F[np.argsort(z[: curve.turn])]
+    if approach[-tenth:].mean() - approach[:tenth].mean() < -0.2 * float(np.ptp(F)):
         raise DataError('the force falls towards the sample: tension is positive here; write reverse = ["F"]')
     if z[curve.turn - 1] < z[0]:
         raise DataError('z falls on the approach: it must grow towards the sample; write reverse = ["z"]')
-    blocks = [float(part.mean()) for part in np.array_split(F, BLOCKS)]
-    if np.ptp(blocks) < RISE * float(np.std(np.diff(F))):
-        raise DataError("the force does not leave its noise: no contact is in the curve, or z and F are swapped")
+    means = [float(block.mean()) for block in np.array_split(F, 20)]
+    if np.ptp(means) < 2.0 * float(np.std(np.diff(F))):  # a contact changes the mean by more than the noise
+        raise DataError("the force does not exceed its noise: the curve has no contact, or z and F are swapped")
 
 
-def _require_whole(curve: ForceCurve, along: str) -> None:
-    """Refuse a force that is cut at an end of its range, and positions with gaps."""
+def _require_whole(curve: ForceCurve, along: str, saturated: int = 6, gap: float = 8.0) -> None:
+    """Refuse a force that is cut at an end of its range, and positions with gaps.
+
+    Args:
+        curve: as it was read.
+        along: the column of its positions.
+        saturated: number of points of equal force at an end of its range that are no measurement.
+        gap: distance of neighbouring positions over its median that is a gap.
+    """
     F, span = curve.forces, float(np.ptp(curve.forces))
-    for end, what in ((float(F.max()), "largest"), (float(F.min()), "least")):
-        flat = int((np.abs(F - end) <= FLAT_PART * span).sum())
-        if flat >= SATURATED and abs(end - curve.baseline) > APART * span:
+    for end, name in ((float(F.max()), "largest"), (float(F.min()), "least")):
+        flat = int((np.abs(F - end) <= 1e-4 * span).sum())
+        if flat >= saturated and abs(end - curve.baseline) > 0.05 * span:  # bodies apart may have equal forces
             raise DataError(
-                f"the force is saturated: {flat} points have its {what} value; lower the trigger force or the gain, or "
+                f"the force is saturated: {flat} points have its {name} value; lower the trigger force or the gain, or "
                 "leave these lines out"
             )
     for points in (slice(0, curve.turn), slice(curve.turn, None)):
         steps = np.abs(np.diff(curve.positions[points]))
-        usual = float(np.median(steps))
-        at = int(np.argmax(steps))
-        if steps[at] > GAP * usual and steps[at] > 0.1 * curve.depth:
-            line = curve.lines[points][at]
+        widest = int(np.argmax(steps))
+        if steps[widest] > max(gap * float(np.median(steps)), 0.1 * curve.depth):
+            line = curve.lines[points][widest]
             raise DataError(
                 f"has a gap in {along} after line {line}: give the points between, or the curve up to there"
             )

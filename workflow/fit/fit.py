@@ -27,27 +27,25 @@ from contact1d.workflow.runs.advised import run
 from contact1d.workflow.scene import AnyScene, Scene
 from contact1d.workflow.scene.read import plain_data
 
-LOAD_STEPS = 15
-"""Of the run that the found scene is compared with."""
-
 
 @dataclass
-class Found:
-    """A fit as far as it came.
+class FitResult:
+    """The results of a fit as far as it came.
 
     Attributes:
         file: the data.
-        fit: the curve under the contact model of the base scene.
-        others: by name, other contact models on the same points.
-        difference, allowed: largest one of the forces on LAMMPS from the model's, and the fit's own uncertainty [N].
-        warnings: by name.
-        seconds: that it took.
-        finished: whether all was done.
+        fit: the fit of the contact model of the base scene.
+        alternatives: the fits of other contact models to the same points, by the name of the model.
+        difference: largest difference [N] between the forces on LAMMPS and those of the contact model.
+        allowed: largest uncertainty [N] of the fitted force.
+        warnings: messages, by the name of the warning.
+        seconds: duration of the fit.
+        finished: whether all steps were done.
     """
 
     file: Path
     fit: Fitted
-    others: dict[str, Fitted] = field(default_factory=dict)
+    alternatives: dict[str, Fitted] = field(default_factory=dict)
     difference: float = math.nan
     allowed: float = math.nan
     warnings: dict[str, str] = field(default_factory=dict)
@@ -56,13 +54,13 @@ class Found:
 
     @property
     def models(self) -> dict[str, Fitted]:
-        """All contact models, the most likely one first."""
-        known = {self.fit.model: self.fit, **self.others}
-        return dict(sorted(known.items(), key=lambda pair: pair[1].criterion))
+        """The fits of all contact models, the most likely one first."""
+        fits = {self.fit.model: self.fit, **self.alternatives}
+        return dict(sorted(fits.items(), key=lambda pair: pair[1].criterion))
 
     @property
     def bracket(self) -> tuple[float, float]:
-        """Positions z [m] between which the contact is lost; NaN where the force does not jump."""
+        """The positions z [m] between which the contact is lost; NaN where the force does not jump."""
         segment = self.fit.curve.segments[1]
         if segment.jump is None:
             return math.nan, math.nan
@@ -71,7 +69,7 @@ class Found:
 
     @property
     def scene(self) -> Scene:
-        """See `Fitted.scene`."""
+        """The base scene with the fitted values."""
         return self.fit.scene
 
 
@@ -81,7 +79,7 @@ def fit(
     folder: AnyPath | None = None,
     progress: Progress | None = None,
     **keys: Any,
-) -> Found:
+) -> FitResult:
     """Fit a measured force curve.
 
         contact1d.fit("fit.toml", folder="fits/pdms")
@@ -96,8 +94,8 @@ def fit(
 
     Raises:
         SceneError: the fit file or its base scene is wrong.
-        DataError: the curve is none.
-        UndeterminedError: it does not tell what was asked for; what would help.
+        DataError: the data are no force curve, or more than one.
+        UndeterminedError: the curve does not determine the parameters; with a suggested fix.
     """
     if base is None:
         plan = read_fit(data, **keys)
@@ -112,115 +110,117 @@ def fit(
         raise curve
     from contact1d.workflow.fit.report import write
 
-    out = None if folder is None else own_folder(Path(folder))
-    begin, found = time.perf_counter(), None
+    out = None if folder is None else fit_folder(Path(folder))
+    begin, result = time.perf_counter(), None
     try:
-        for found in _steps(plan, files_of(plan)[0], curve, progress):
-            found.seconds = time.perf_counter() - begin
+        for result in _steps(plan, files_of(plan)[0], curve, progress):
+            result.seconds = time.perf_counter() - begin
     finally:
-        if out is not None and found is not None:
-            write(found, out)
-    assert found is not None
-    return found
+        if out is not None and result is not None:
+            write(result, out)
+    assert result is not None
+    return result
 
 
-def _steps(plan: FitPlan, file: Path, curve: ForceCurve, progress: Progress) -> Iterator[Found]:
-    """The fit after each of its steps, so that what is known is there when it is broken off."""
-    own = model_of(plan)
+def _steps(plan: FitPlan, file: Path, curve: ForceCurve, progress: Progress) -> Iterator[FitResult]:
+    """Yield the result of a fit after each of its steps, so that an interrupted one is not lost."""
+    base_model = model_of(plan)
     progress.phase("fit", 1 + len(LAWS), "model")
-    found = Found(file, fitted(plan, curve, own))
-    _judge(found)
+    result = FitResult(file, fitted(plan, curve, base_model))
+    _warn_of_fit(result)
     progress.advance(1)
-    yield found
+    yield result
     for law in LAWS.values():
-        if law != own and law.applies(plan.base) and any(map(law.depends_on, plan.fit.parameters)):
+        if law != base_model and law.applies(plan.base) and any(map(law.depends_on, plan.fit.parameters)):
             with suppress(Contact1dError, ArithmeticError, np.linalg.LinAlgError):  # it does not describe the curve
-                found.others[law.name] = compared(found.fit, law)
+                result.alternatives[law.name] = compared(result.fit, law)
         progress.advance(1)
-    _judge_models(found)
-    yield found
-    progress.phase("run of the found scene")
+    _warn_of_models(result)
+    yield result
+    progress.phase("run of the fitted scene")
     try:
-        _run(found)
+        _run(result)
     except Contact1dError as error:
-        found.warnings["run"] = f"the found scene does not run on LAMMPS: {error}"
-    found.finished = True
-    yield found
+        result.warnings["run"] = f"the fitted scene does not run on LAMMPS: {error}"
+    result.finished = True
+    yield result
 
 
-def _judge(found: Found) -> None:
-    """Warn of what the fit itself shows."""
-    one = found.fit
-    segment, snap = one.curve.segments[1], float(one.jumps_at(one.solution.values)[1])
+def _warn_of_fit(result: FitResult, largest_misfit: float = 3.0) -> None:
+    """Warn of a wrong snap-out, misfit, contact point outside the curve, and parameters with a ±.
+
+    The reduced χ² of the right model is below 2 where the noise has a memory of 20 in 1000 points: a warning needs
+    more than `largest_misfit`.
+    """
+    base_fit = result.fit
+    segment, snap = base_fit.curve.segments[1], float(base_fit.jumps_at(base_fit.solution.values)[1])
     if segment.jump is not None:
-        low, high = found.bracket
+        low, high = result.bracket
         if not 2.0 * low - high <= snap <= 2.0 * high - low:
-            found.warnings["snap_out"] = (
-                f"the contact is lost between z = {low:.4g} and {high:.4g} m, and {one.model} loses it at {snap:.4g} "
-                "m: compare the contact models"
+            result.warnings["snap_out"] = (
+                f"the contact is lost between z = {low:.4g} and {high:.4g} m, and {base_fit.model} loses it at "
+                f"{snap:.4g} m: compare the contact models"
             )
-    if one.misfit > MISFIT:
-        found.warnings["misfit"] = (
-            f"residuals in contact have {one.misfit:.2g} times the mean square of those apart: {one.model} or the "
-            "profile does not describe the contact; compare the contact models and look at the residuals"
+    if base_fit.misfit > largest_misfit:
+        result.warnings["misfit"] = (
+            f"residuals in contact have {base_fit.misfit:.2g} times the mean square of those apart: {base_fit.model} "
+            "or the profile does not describe the contact; compare the contact models and look at the residuals"
         )
-    if not one.curve.positions.min() < one.values[POINT] < one.curve.positions.max():
-        found.warnings[POINT] = "the contact point is outside the curve: the baseline is not in it"
-    shared = [key for key in one.plan.fit.parameters if key in one.plan.known]
-    if shared:
-        found.warnings["prior"] = (
-            f"{', '.join(shared)}: the ± in the base scene counts as a measurement beside the curve"
+    if not base_fit.curve.positions.min() < base_fit.values[POINT] < base_fit.curve.positions.max():
+        result.warnings[POINT] = "the contact point is outside the curve: the baseline is not in it"
+    uncertain = [key for key in base_fit.plan.fit.parameters if key in base_fit.plan.known]
+    if uncertain:
+        result.warnings["prior"] = (
+            f"{', '.join(uncertain)}: the ± in the base scene counts as a measurement in addition to the curve"
         )
 
 
-MISFIT = 3.0
-"""Particles χ² of a warning: with a memory of 20 in 1000 points that of the right model is below 2."""
-DECISIVE = 10.0
-"""Difference of criteria that counts as very strong (Kass and Raftery)."""
+def _warn_of_models(result: FitResult, decisive: float = 10.0) -> None:
+    """Warn where another contact model is more likely, or one without adhesion as likely.
 
-
-def _judge_models(found: Found) -> None:
-    best, *_ = found.models
-    free = [one for one in found.others.values() if not one.subject.model.needs]
-    if any(one.criterion < found.fit.criterion + DECISIVE for one in free):
-        found.warnings["adhesion"] = (
+    A difference of criteria of 10 is very strong (R. E. Kass, A. E. Raftery, J. Am. Stat. Assoc. 90 (1995) 773).
+    """
+    best, *_ = result.models
+    non_adhesive = [fit for fit in result.alternatives.values() if not fit.subject.model.needs]
+    if any(fit.criterion < result.fit.criterion + decisive for fit in non_adhesive):
+        result.warnings["adhesion"] = (
             "contact without adhesion describes the curve about as well (criteria under models): W may be 0, which its "
-            "interval leaves out; fit without [base.adhesion], too, and average more curves"
+            "interval excludes; fit without [base.adhesion], too, and average more curves"
         )
-    ahead = found.fit.criterion - found.models[best].criterion
-    if best != found.fit.model and ahead > DECISIVE:
-        found.warnings["model"] = (
-            f"{best} is more likely than {found.fit.model} (criterion lower by {ahead:.0f}): its values are in "
+    ahead = result.fit.criterion - result.models[best].criterion
+    if best != result.fit.model and ahead > decisive:
+        result.warnings["model"] = (
+            f"{best} is more likely than {result.fit.model} (criterion lower by {ahead:.0f}): its values are in "
             "fit.json under models"
         )
 
 
-def _run(found: Found) -> None:
-    """The found scene on LAMMPS along the displacements of the fit, beside the model."""
-    one, branch = found.fit, found.fit.branch
+def _run(result: FitResult, load_steps: int = 15) -> None:
+    """Run the fitted scene on LAMMPS along the displacements of the fit, and compare its forces with the model's."""
+    base_fit, branch = result.fit, result.fit.branch
     F, d = branch.forces, branch.displacements
-    least = max(int(np.argmin(branch.positions(one.values.get(STIFFNESS, math.inf)))), int(np.argmin(d)))
-    top = float(np.interp(one.forces.max() - one.values[OFFSET], F[least:], d[least:]))
-    places = np.linspace(top, d[least] + (top - d[least]) / LOAD_STEPS, LOAD_STEPS)
-    scene = found.scene.with_({"experiment": {"kind": "path", "displacements": places.tolist()}})
+    least = max(int(np.argmin(branch.positions(base_fit.values.get(STIFFNESS, math.inf)))), int(np.argmin(d)))
+    top = float(np.interp(base_fit.forces.max() - base_fit.values[OFFSET], F[least:], d[least:]))
+    displacements = np.linspace(top, d[least] + (top - d[least]) / load_steps, load_steps)
+    scene = result.scene.with_({"experiment": {"kind": "path", "displacements": displacements.tolist()}})
     with TemporaryDirectory(prefix="contact1d-fit-") as folder:
         curve = run(scene, Path(folder) / "run", figures=False).curve
-        predicted = branch.at(np.asarray(curve["displacement"]), math.inf, held=True)
-        found.difference = float(np.abs(np.asarray(curve["force"]) - predicted).max())
-    found.allowed = float(one.spread().max())
-    if found.difference > found.allowed:
-        found.warnings["run"] = (
-            f"LAMMPS differs from the fit's model by up to {found.difference:.3g} N, more than the fit's own "
-            f"uncertainty, {found.allowed:.3g} N: lower accuracy.tolerance in [base]"
+        predicted = branch.forces_at(np.asarray(curve["displacement"]), math.inf, held=True)
+        result.difference = float(np.abs(np.asarray(curve["force"]) - predicted).max())
+    result.allowed = float(base_fit.spread().max())
+    if result.difference > result.allowed:
+        result.warnings["run"] = (
+            f"LAMMPS differs from the fit's model by up to {result.difference:.3g} N, more than the fit's own "
+            f"uncertainty, {result.allowed:.3g} N: lower accuracy.tolerance in [base]"
         )
 
 
-def own_folder(folder: Path) -> Path:
-    """Make the folder, or see that it is that of a fit. Raises FolderError."""
+def fit_folder(folder: Path) -> Path:
+    """Make the folder of a fit, or accept that of an earlier one. Raises FolderError for any other."""
     if folder.is_file():
         raise FolderError(f"{folder} is a file; a fit needs a folder")
-    known = ("fit.json", "fits.csv")
-    if folder.is_dir() and any(folder.iterdir()) and not any((folder / name).exists() for name in known):
+    records = ("fit.json", "fits.csv")
+    if folder.is_dir() and any(folder.iterdir()) and not any((folder / name).exists() for name in records):
         raise FolderError(f"{folder} has files that do not belong to a fit; choose another folder")
     folder.mkdir(parents=True, exist_ok=True)
     return folder

@@ -3,13 +3,13 @@
 With the profile's transform g, its integral G(a) = ∫₀ᵃ g dx, and the contact edge a
 
     Hertz   d = g(a),                    F = 2E*(a d − G)
-    DMT     the same,                    F lower by 2πWR
+    DMT     d = g(a),                    F lower by 2πWR
     Maugis  d = g(a) − (2σ₀/E*) √(c² − a²),  F lower by that of the cohesive zone up to c
     JKR     d = g(a) − √(2πaW/E*),       F = 2E*(a d − G)
 
 An instrument of stiffness k_c has its contact point at z = d + F/k_c. A measured position z is prescribed, and F
-follows from it on the branch that is held: down to the least z, where dF/dd = −k_c and the contact snaps out. The
-noise of the force is in no displacement.
+follows from it on the branch of the contact: down to the least z, where dF/dd = −k_c and the contact snaps out. The
+noise of the force does not enter the positions.
 """
 
 from __future__ import annotations
@@ -30,29 +30,22 @@ from contact1d.workflow.scene import Scene, Shape
 
 Array = NDArray[np.float64]
 RANGE = "adhesion.range"
-"""The key of h₀."""
-EDGES = 300
-"""Edges a between which a branch is cubic, in geometric progression over SPAN."""
-THINNED, NODES, BEFORE = 3, 20, 40
-"""Of Maugis's equations: every how many edges has a root, nodes of a quadrature, and places before contact."""
-ROOT = 1e-9
-"""Relative error of s."""
-NEWTON = 2
-"""Steps to the place of a position between two of them: from a straight start the error is below 1e-9 of the cell."""
-SPAN = 2e-3
-"""The first of them over the last."""
-DEEPEST = 8.0
-"""Transformed height of the last edge over the range of positions of the data."""
-STEEP = 3.0
-"""Slope of the continuation below the least z over that of the branch's first quarter: no model holds a contact there,
-so that a point there pulls the parameters back."""
-kept = lru_cache(maxsize=50)
-"""Bodies and branches are remembered: most steps of a fit change only what the measurement adds."""
+"""The key of h₀ in a scene."""
+cached = lru_cache(maxsize=50)
+"""Bodies and branches are cached: most steps of a fit change only what the measurement adds."""
 
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """A profile's transform at EDGES: a, g and G [LU, LU, LU²], the profile f [LU], the radius at its apex [LU]."""
+    """A profile and its transform at edges a, (n,) each.
+
+    Attributes:
+        edges: a [LU].
+        heights: the transform g [LU].
+        areas: its integral G [LU²].
+        surface: the profile f [LU].
+        radius: radius of curvature at the apex [LU]; None where it has none.
+    """
 
     edges: Array
     heights: Array
@@ -61,18 +54,25 @@ class Body:
     radius: float | None
 
     @classmethod
-    @kept
-    def of(cls, shape: Shape, depth: float) -> Body:
-        """The profile up to where its transform is DEEPEST times `depth` [LU], or to its end."""
+    @cached
+    def of(cls, shape: Shape, depth: float, edges: int = 300, deepest: float = 8.0) -> Body:
+        """Return the body of a profile.
+
+        Args:
+            shape: the profile.
+            depth: range of the measured positions [LU].
+            edges: number of edges, in geometric progression over a factor of 500, between which a branch is cubic.
+            deepest: transformed height over `depth` at the last edge, unless the profile ends before.
+        """
         last = depth
-        while last < shape.reach and float(shape.transformed(np.array([last]))[0]) > DEEPEST * depth:
+        while last < shape.reach and float(shape.transformed(np.array([last]))[0]) > deepest * depth:
             last *= 0.5
-        while last < shape.reach and float(shape.transformed(np.array([last]))[0]) < DEEPEST * depth:
+        while last < shape.reach and float(shape.transformed(np.array([last]))[0]) < deepest * depth:
             last *= 1.3
-        a = np.append(0.0, np.geomspace(SPAN, 1.0, EDGES) * min(last, shape.reach))
+        a = np.append(0.0, np.geomspace(2e-3, 1.0, edges) * min(last, shape.reach))
         g, f = (np.append(0.0, height(a[1:])) for height in (shape.transformed, shape.height))
-        # ∫ g dx of a power between two edges is (g₂x₂ − g₁x₁)/(1 + n), n = log(g₂/g₁)/log(x₂/x₁), up to the first as
-        # beyond it.
+        # ∫ g dx of a power between two edges is (g₂x₂ − g₁x₁)/(1 + n), n = log(g₂/g₁)/log(x₂/x₁); up to the first edge
+        # n is that of the first two.
         with np.errstate(divide="ignore", invalid="ignore"):
             n = np.where(g[1:-1] > 0.0, np.log(g[2:] / g[1:-1]) / np.log(a[2] / a[1]), math.inf)
         n = np.append(n[0], n)
@@ -83,8 +83,12 @@ class Body:
 
 @dataclass(frozen=True)
 class Branch:
-    """Displacements and forces [LU, FU] along a path of states, and a length that grows along it [LU]: a, where bodies
-    touch at once.
+    """The states of a contact along a rising path, (n,) each.
+
+    Attributes:
+        radii: a length that grows along the path [LU]: a, where the bodies attract each other only in contact.
+        displacements: d [LU].
+        forces: F [FU].
     """
 
     radii: Array
@@ -92,39 +96,44 @@ class Branch:
     forces: Array
 
     def positions(self, stiffness: float) -> Array:
-        """z = d + F/k_c [LU] of the states, with an instrument of this stiffness [FU/LU]."""
+        """Return z = d + F/k_c [LU] of the states, (n,), with an instrument of a stiffness k_c [FU/LU]."""
         return np.asarray(self.displacements + self.forces / stiffness)
 
-    def at(self, positions: Array, stiffness: float, held: bool, pitch: float = 1e-300) -> Array:
-        """F [FU] at positions z [LU] of an instrument of this stiffness [FU/LU], contact point at 0.
+    def forces_at(self, positions: Array, stiffness: float, held: bool, pitch: float = 1e-300) -> Array:
+        """Return F [FU] at positions z [LU] of the piezo, (m,); the contact point is at 0.
 
         Args:
-            positions: of the piezo.
-            stiffness: k_c; infinite: d is prescribed.
-            held: whether the contact holds at all of them, so that it is continued below its least z;
-                else it is lost there.
-            pitch: distance of positions [LU], over which a contact is lost: of a step no least squares sees a slope.
+            positions: z of the piezo.
+            stiffness: k_c [FU/LU] of the instrument; infinite: d is prescribed.
+            held: whether the bodies are in contact at all positions, so that the branch is continued below its least z;
+                else the contact is lost there.
+            pitch: distance of positions [LU] over which a contact is lost: least squares need a finite slope.
         """
         z = self.positions(stiffness)
-        least = min(int(np.argmin(z)), z.size - 4)  # of an adhesion that is known to be too strong the rest matters not
+        least = min(int(np.argmin(z)), z.size - 4)  # four states are left of an adhesion that is far too strong
         a, z, F = self.radii[least:], np.maximum.accumulate(z[least:]), self.forces[least:]
-        found, below = _between(a, z, F, positions), positions < z[0]
+        forces, below = _between(a, z, F, positions), positions < z[0]
         if not held:
-            return np.asarray(np.clip(0.5 + (positions - z[0]) / pitch, 0.0, 1.0) * found)
-        at = np.searchsorted(F, F[0] + 0.25 * abs(F[0])) if F[0] < 0.0 else 1
-        at = int(min(max(at, 1), z.size - 1))
-        slope = STEEP * (F[at] - F[0]) / max(z[at] - z[0], 1e-300)
-        return np.where(below, F[0] + slope * (positions - z[0]), found)
+            return np.asarray(np.clip(0.5 + (positions - z[0]) / pitch, 0.0, 1.0) * forces)
+        # No model has a contact below the least z. Its continuation is three times as steep as the branch's first
+        # quarter, so that a point there pulls the parameters back.
+        quarter = np.searchsorted(F, F[0] + 0.25 * abs(F[0])) if F[0] < 0.0 else 1
+        quarter = int(min(max(quarter, 1), z.size - 1))
+        slope = 3.0 * (F[quarter] - F[0]) / max(z[quarter] - z[0], 1e-300)
+        return np.where(below, F[0] + slope * (positions - z[0]), forces)
 
     def snap_out(self, stiffness: float) -> tuple[float, float]:
-        """Position z [LU] and force [FU] at which the contact is lost."""
+        """Return position z [LU] and force [FU] at which the contact is lost, with an instrument of a stiffness."""
         z = self.positions(stiffness)
         least = int(np.argmin(z))
         return float(z[least]), float(self.forces[least])
 
 
 def _between(a: Array, z: Array, F: Array, positions: Array) -> Array:
-    """F at z, both cubic in a between its places: under correlated noise the differences of neighbours count."""
+    """Return F at positions z, both cubic in a between the states of a branch.
+
+    Straight lines are not smooth enough: under correlated noise the differences of neighbouring points count.
+    """
     i = np.clip(np.searchsorted(z, positions) - 1, 0, a.size - 2)
     width = np.diff(a)[i]
     cubic = [_cubic(values[i], values[i + 1], slope[i] * width, slope[i + 1] * width)
@@ -132,7 +141,7 @@ def _between(a: Array, z: Array, F: Array, positions: Array) -> Array:
     (z0, z1, z2, z3), (f0, f1, f2, f3) = cubic
     with np.errstate(divide="ignore", invalid="ignore"):
         t = np.clip((positions - z[i]) / (z[i + 1] - z[i]), 0.0, 1.0)
-        for _ in range(NEWTON):
+        for _ in range(2):  # steps of Newton: from the straight start the error is below 1e-9 of the cell
             slope = z1 + t * (2.0 * z2 + 3.0 * t * z3)
             t = t - np.where(slope > 0.0, (z0 + t * (z1 + t * (z2 + t * z3)) - positions) / slope, 0.0)
     t = np.nan_to_num(np.clip(t, 0.0, 1.0))
@@ -140,32 +149,32 @@ def _between(a: Array, z: Array, F: Array, positions: Array) -> Array:
 
 
 def _cubic(start: Array, end: Array, leaving: Array, arriving: Array) -> tuple[Array, Array, Array, Array]:
-    """The coefficients of Hermite's cubic from 0 to 1."""
+    """Return the coefficients of Hermite's cubic from 0 to 1, of ends and slopes there."""
     rise = end - start
     return start, leaving, 3.0 * rise - 2.0 * leaving - arriving, leaving + arriving - 2.0 * rise
 
 
 def jkr(body: Body, modulus: float, work: float, reach: float) -> Branch:
-    """Adhesion of no range."""
+    """Return the branch of JKR's contact, whose adhesion has no range."""
     a, d = body.edges, body.heights - elongation(body.edges, modulus, work)
     return Branch(a, d, 2.0 * modulus * (a * d - body.areas))
 
 
 def hertz(body: Body, modulus: float, work: float, reach: float) -> Branch:
-    """Without adhesion."""
+    """Return the branch of Hertz's contact, which has no adhesion."""
     return jkr(body, modulus, 0.0, reach)
 
 
 def dmt(body: Body, modulus: float, work: float, reach: float) -> Branch:
-    """Adhesion of long range, which adds 2πWR to the load."""
+    """Return the branch of the DMT contact, to whose load adhesion of long range adds 2πWR."""
     assert body.radius is not None
-    free = hertz(body, modulus, work, reach)
-    return replace(free, forces=free.forces - 2.0 * math.pi * work * body.radius)
+    branch = hertz(body, modulus, work, reach)
+    return replace(branch, forces=branch.forces - 2.0 * math.pi * work * body.radius)
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
-    """A profile by cubics, for `laws.dugdale`; it goes on beyond its last place."""
+class SplineProfile:
+    """A profile of cubics for `laws.dugdale`, extrapolated beyond its last edge."""
 
     height: Callable[[Array], Array]
     reach: float = math.inf
@@ -173,42 +182,45 @@ class Curve:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Zone(Dugdale):
-    """Its equations with the integral G of a body that is known already: places [LU], G [LU²]."""
+class CohesiveZone(Dugdale):
+    """The equations of Maugis and Dugdale with the integral G of a `Body`.
+
+    Attributes:
+        areas: positions [LU] and G there [LU²].
+    """
 
     areas: tuple[Array, Array]
 
     def area(self, x: Array) -> Array:
-        """See `Dugdale`."""
+        """Return G [LU²] at positions x [LU], linear between the edges."""
         return np.interp(x, *self.areas)
 
 
 def maugis(body: Body, modulus: float, work: float, reach: float) -> Branch:
-    """Dugdale's stress σ₀ = W/h₀ over the range h₀ around the contact (`laws.dugdale`), by a rising path.
+    """Return the branch of Maugis and Dugdale's contact: a stress σ₀ = W/h₀ over the range h₀ (`laws.dugdale`).
 
-    Its states before contact, a = 0, are explicit in c; of a contact s = √(c² − a²) is a root for each a.
+    The states before contact, a = 0, are explicit in c; in contact s = √(c² − a²) is a root for each a, to 1e-9.
     """
-    a = np.concatenate([[0.0], body.edges[1::THINNED]])
-    profile, surface = (Curve(CubicSpline(body.edges, heights)) for heights in (body.heights, body.surface))
-    law = Zone(
-        profile, surface, modulus, work / reach, reach, float(a[-1]), NODES, ROOT, areas=(body.edges, body.areas)
-    )
+    a = np.concatenate([[0.0], body.edges[1::3]])  # a third of the edges is enough
+    profile, surface = (SplineProfile(CubicSpline(body.edges, heights)) for heights in (body.heights, body.surface))
+    nodes, areas = 20, (body.edges, body.areas)
+    law = CohesiveZone(profile, surface, modulus, work / reach, reach, float(a[-1]), nodes, 1e-9, areas=areas)
     s = law.widths(a)
     held = law.states(a, s)
-    c = s[0] * np.linspace(0.0, 1.0, BEFORE, endpoint=False)
-    early, late = (c, law.before(c), -math.pi * law.stress * c * c), (s[0] + a, held.displacement, held.force)
-    return Branch(*(np.concatenate(both) for both in zip(early, late, strict=True)))
+    c = s[0] * np.linspace(0.0, 1.0, 40, endpoint=False)
+    before, contact = (c, law.before(c), -math.pi * law.stress * c * c), (s[0] + a, held.displacement, held.force)
+    return Branch(*(np.concatenate(columns) for columns in zip(before, contact, strict=True)))
 
 
 @dataclass(frozen=True)
 class ContactModel:
-    """A contact model.
+    """A contact model of a fit.
 
     Attributes:
-        name: what it is called.
-        branch: its states, of a body, E* [FU/LU²], W [FU/LU] and the range h₀ [LU].
+        name: its name in messages and fit.json.
+        branch: function of a body, E* [FU/LU²], W [FU/LU] and the range h₀ [LU] that returns the states.
         needs: what a scene must have for it: a work of adhesion W, the range h₀ of that, the radius R of the body.
-        limits: the models between which it lies, whose fits are the starts of its own, which takes long.
+        limits: names of the models between which it lies; since its fit takes long, it starts from theirs.
     """
 
     name: str
@@ -217,16 +229,16 @@ class ContactModel:
     limits: tuple[str, ...] = ()
 
     def applies(self, scene: Scene) -> bool:
-        """Whether a scene has what it needs."""
-        known = {
+        """Return whether a scene has what the model needs."""
+        given = {
             "W": scene.work_of_adhesion,
             "h₀": law_of(scene).range_of(scene, 0.0),
             "R": scene.bodies.profile.curvature_radius,
         }
-        return all(known[name] for name in self.needs)
+        return all(given[name] for name in self.needs)
 
     def depends_on(self, key: str) -> bool:
-        """Whether its forces depend on the number at a key of a scene."""
+        """Return whether the forces depend on the number at a key of a scene."""
         return not key.startswith("adhesion.") or ("h₀" if key == RANGE else "W") in self.needs
 
 
@@ -239,4 +251,4 @@ LAWS = {
         ContactModel("Hertz", hertz),
     )
 }
-"""By name; the first that applies is the one that a scene means."""
+"""The contact models by name; the first that applies to a scene is the one that it means."""

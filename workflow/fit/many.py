@@ -16,7 +16,7 @@ from contact1d.files import AnyPath, whole
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import Contact1dError
 from contact1d.workflow.fit.data import DataError, NamedCurve, curves_of
-from contact1d.workflow.fit.fit import own_folder
+from contact1d.workflow.fit.fit import fit_folder
 from contact1d.workflow.fit.plan import AnyFit, FitPlan, read_fit
 from contact1d.workflow.fit.report import entry
 from contact1d.workflow.fit.solution import fitted, model_of
@@ -31,14 +31,19 @@ TABLE = "fits.csv"
 
 @dataclass(frozen=True)
 class Fits:
-    """A finished or interrupted series: its folder, and how many curves ended as done or refused."""
+    """A finished or interrupted series of fits.
+
+    Attributes:
+        folder: with fits.csv and the figures.
+        counts: number of curves by status, done or refused.
+    """
 
     folder: Path
     counts: dict[str, int]
 
 
 def fit_many(source: AnyFit, folder: AnyPath, workers: int | None = None, progress: Progress | None = None) -> Fits:
-    """Fit every curve that a plan's data name; DIR/fits.csv has a line for each, in their order.
+    """Fit every curve of a plan's data; fits.csv has a line for each, in their order.
 
     Args:
         source: a fit file, or its tables.
@@ -47,7 +52,7 @@ def fit_many(source: AnyFit, folder: AnyPath, workers: int | None = None, progre
         progress: informed of each curve.
     """
     plan, progress, rows = read_fit(source), progress or Silent(), list[dict[str, Any]]()
-    out = own_folder(Path(folder))
+    out = fit_folder(Path(folder))
     jobs = list(curves_of(plan))
     progress.phase("fits", len(jobs), "curve")
     try:
@@ -61,32 +66,32 @@ def fit_many(source: AnyFit, folder: AnyPath, workers: int | None = None, progre
 
 
 def attempt(plan: FitPlan, job: NamedCurve) -> dict[str, Any]:
-    """The line of the table of one curve: what it says, or why it says nothing."""
-    name, place, curve = job
+    """Return the line of a curve in the table: the values and intervals of its parameters, or why it was refused."""
+    name, position, curve = job
     row: dict[str, Any] = {"curve": name, "status": "done", "reason": ""}
-    if place is not None:
-        row |= {"x": place[0], "y": place[1]}
+    if position is not None:
+        row |= {"x": position[0], "y": position[1]}
     try:
         if isinstance(curve, DataError):
             raise curve
-        found = fitted(plan, curve, model_of(plan))
-        for key, ends in found.intervals.items():
-            label = f"[{entry(found, key)['unit']}]"
-            for part, value in zip(("", "_low", "_high"), (found.values[key], *ends), strict=True):
-                row[f"{key}{part} {label}"] = value
-        row["outliers"], row["reduced_chi_squared"] = found.solution.outliers.size, found.misfit
+        fit = fitted(plan, curve, model_of(plan))
+        for key, ends in fit.intervals.items():
+            unit = entry(fit, key)["unit"]
+            for suffix, value in zip(("", "_low", "_high"), (fit.values[key], *ends), strict=True):
+                row[f"{key}{suffix} [{unit}]"] = value
+        row["outliers"], row["reduced_chi_squared"] = fit.solution.outliers.size, fit.misfit
     except (Contact1dError, ArithmeticError, np.linalg.LinAlgError) as error:
         row |= {"status": "refused", "reason": str(error)}
     return row
 
 
 def _write(plan: FitPlan, rows: Sequence[dict[str, Any]], folder: Path) -> None:
-    """The table and the figures."""
+    """Write fits.csv, and the figure of each parameter of which there are at least two values."""
     from pandas import DataFrame
 
     table = DataFrame(rows, dtype=object)
-    with whole(folder / TABLE) as part:
-        table.to_csv(part, index=False, lineterminator="\n")
+    with whole(folder / TABLE) as path:
+        table.to_csv(path, index=False, lineterminator="\n")
     for key in plan.fit.parameters:
         for name in (name for name in table if name.startswith(f"{key} [")):
             done = table[table[name].notna()]
@@ -95,7 +100,7 @@ def _write(plan: FitPlan, rows: Sequence[dict[str, Any]], folder: Path) -> None:
 
 
 def _draw(plan: FitPlan, key: str, name: str, done: DataFrame, folder: Path) -> None:
-    """Histogram of a parameter, and beside it its map where the curves have places."""
+    """Draw the histogram of a parameter, and its map where the curves have positions."""
     values = done[name].to_numpy(dtype=float)
     factor, unit = scale_of(float(np.median(values)), name.rpartition("[")[2].rstrip("]"))
     label, has_map = f"{key.rpartition('.')[2].replace('_', ' ')} ({unit})", "x" in done
@@ -104,9 +109,9 @@ def _draw(plan: FitPlan, key: str, name: str, done: DataFrame, folder: Path) -> 
     axes[0].hist(factor * values, bins="auto", color="#0072B2")
     plots.describe(axes[0], label, "curves", plan.fit.title, zero=False)
     if has_map:
-        x, y = (done[place].to_numpy(dtype=float) for place in "xy")
-        shown = axes[1].scatter(x, y, c=factor * values, marker="s", cmap="viridis")
+        x, y = (done[column].to_numpy(dtype=float) for column in "xy")
+        points = axes[1].scatter(x, y, c=factor * values, marker="s", cmap="viridis")
         axes[1].set_aspect("equal")
         plots.describe(axes[1], "x", "y", zero=False)
-        figure.colorbar(shown, ax=axes[1], label=label)
+        figure.colorbar(points, ax=axes[1], label=label)
     plots.save_figure(figure, folder / f"{key.rpartition('.')[2]}.png")

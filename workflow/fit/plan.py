@@ -26,25 +26,20 @@ AnyFit = str | PathLike[str] | Mapping[str, Any]
 """What `read_fit` makes a plan of."""
 STIFFNESS = "instrument.stiffness"
 BODIES = {"particles": "auto", "spacing": "auto", "lower": "rigid_plane"}
-"""Of a base scene that leaves them out."""
+"""Defaults of the bodies of a base scene."""
 LOAD = {"kind": "load", "force": "1 nN"}
-"""Stands in for the experiment that a base scene has not."""
-
-
-SOUGHT = ("bodies.", "material.", "adhesion.")
-UNITS = ("bodies.spacing", "material.length_unit", "material.force_unit")
-"""Tables whose numbers a message offers as parameters, and those of their numbers that are none of a contact."""
+"""The experiment of a base scene, which gives none."""
 
 
 class Instrument(Table):
-    """What pushes the contact."""
+    """The instrument that presses the bodies together."""
 
     stiffness: Annotated[float, POSITIVE, Unit("N/m")]
     """stiffness k_c of the cantilever, with its ± where that is known"""
 
 
 class Fit(Table):
-    """A fit file, but for its base scene."""
+    """The keys of a fit file except its base scene."""
 
     title: str = "Fit of a force curve"
     """title, one line"""
@@ -64,12 +59,12 @@ class Fit(Table):
 
 @dataclass(frozen=True)
 class FitPlan:
-    """What a fit file asks for.
+    """A fit file with its base scene.
 
     Attributes:
-        fit: the file's own keys.
+        fit: the keys of the file except its base scene.
         base: the scene.
-        folder: where data are looked up.
+        folder: to which the path of the data is relative.
         known: 95 % half-widths over the values of numbers with ±, by dotted key.
     """
 
@@ -80,27 +75,27 @@ class FitPlan:
 
     @cached_property
     def numbers(self) -> dict[str, Place]:
-        """The numbers of the scene, by dotted key."""
+        """The places of the scene's numbers, by dotted key."""
         tables = Place(self.base.model_dump(by_alias=True, exclude_none=True), WHOLE)
         return {place.path: place for place in tables if place.allowed.quantity and place.is_number}
 
     def unit(self, key: str) -> str:
-        """The unit in SI of a number of the scene."""
+        """Return the SI unit of a number of the scene."""
         unit = self.numbers[key].unit
         return unit.text[0] if unit.text else in_si(unit.name)
 
     @property
     def stiffness(self) -> float:
-        """k_c [N/m]; infinite for a rigid instrument."""
+        """The stiffness k_c [N/m] of the instrument; infinite for a rigid one."""
         return self.fit.instrument.stiffness if self.fit.instrument else float("inf")
 
 
 def read_fit(source: AnyFit, **changes: Any) -> FitPlan:
-    """The plan of a fit file, by its path, or of its tables.
+    """Read the plan of a fit file.
 
     Args:
-        source: the file or the tables.
-        changes: keys at the top of it that are set.
+        source: the path of the file, or its tables.
+        changes: keys at the top of the file that replace its own.
 
     Raises:
         SceneError: with every problem of the file and of its base scene.
@@ -122,8 +117,8 @@ def read_fit(source: AnyFit, **changes: Any) -> FitPlan:
         must = "missing" if base is None else "must be a table of a scene's tables"
         problems.append(Problem("base", must, hint="write [base.bodies], [base.material] … as in a scene"))
         raise SceneError(problems)
-    scene, found = _base(base, folder)
-    problems += found
+    scene, base_problems = _base(base, folder)
+    problems += base_problems
     if fit is not None and scene is not None:
         plan = FitPlan(fit, scene, folder, {**scene.shares, **shares})
         problems += _of_parameters(plan)
@@ -133,19 +128,19 @@ def read_fit(source: AnyFit, **changes: Any) -> FitPlan:
 
 
 def _base(base: Mapping[str, Any], folder: Path) -> tuple[Scene | None, list[Problem]]:
-    """The base scene, with what a fit's contact always has, and its problems."""
+    """Return the base scene, with the defaults of a fit, and its problems; None where it cannot be read."""
     bodies = base.get("bodies", {})
     given = {"title": "fit", "experiment": LOAD, **base}
     given["bodies"] = {**BODIES, **bodies} if isinstance(bodies, Mapping) else bodies
     try:
         scene = scene_from_dict(given, folder=folder)
     except SceneError as error:
-        return None, [Problem(f"base.{one.path}", one.message, one.given, one.hint) for one in error.problems]
+        return None, [Problem(f"base.{fault.path}", fault.message, fault.given, fault.hint) for fault in error.problems]
     if scene.bodies.lower != "rigid_plane" or scene.bodies.reduction != "mdr":
         return scene, [Problem("base.bodies.lower", 'must be "rigid_plane", with the reduction "mdr"')]
-    others = [name for name, one in zip(scene.effects, scene.present, strict=True) if not one.keeps_springs]
-    if others:
-        return scene, [Problem(f"base.{others[0]}", "not in a fit, whose contact models are of linear springs")]
+    for name, effect in zip(scene.effects, scene.present, strict=True):
+        if not effect.keeps_springs:
+            return scene, [Problem(f"base.{name}", "not in a fit, whose contact models are of linear springs")]
     material = scene.material
     if material is None or (material.length_unit, material.force_unit) != (1.0, 1.0):
         hint = (
@@ -156,13 +151,15 @@ def _base(base: Mapping[str, Any], folder: Path) -> tuple[Scene | None, list[Pro
 
 
 def _of_parameters(plan: FitPlan) -> list[Problem]:
-    """What is wrong with the names of parameters."""
+    """Return the problems of the names of parameters."""
     problems, names = [], plan.fit.parameters
+    tables = ("bodies.", "material.", "adhesion.")
+    unfitted = ("bodies.spacing", "material.length_unit", "material.force_unit")
     for i, name in enumerate(names):
         must = "is no number of the base scene" if name not in plan.numbers else ""
         must = "is named twice" if name in names[:i] else must
         if must:
-            left = [key for key in plan.numbers if key.startswith(SOUGHT) and key not in UNITS]
-            hint = f"give it there, as a first guess; numbers of the scene are {', '.join(left)}"
+            allowed = [key for key in plan.numbers if key.startswith(tables) and key not in unfitted]
+            hint = f"give it there, as a first guess; numbers of the scene are {', '.join(allowed)}"
             problems.append(Problem(f"parameters[{i}]", must, shown(name), hint))
     return problems

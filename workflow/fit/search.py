@@ -1,7 +1,7 @@
 """The parameters that fit a curve: starts over decades, least squares under the noise, and the profile likelihood.
 
 Unknowns are u = log(p/p₀) of a positive parameter p, and lengths or forces over that of the data for the contact point
-and the offset of the force. What is known of a parameter beforehand (a calibration with its ±) is a row of its own.
+and the offset of the force. A calibration of a parameter (a value with its ±) is a further row of the least squares.
 """
 
 from __future__ import annotations
@@ -15,38 +15,29 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import differential_evolution, least_squares
 
-from contact1d.workflow.fit.noise import Indices, Judged, Noise, Uncertain, noises, uncertain
+from contact1d.workflow.fit.noise import AveragedEstimate, Estimate, Indices, Noise, averaged, noises
 
 Array = NDArray[np.float64]
-STEP = 1e-4
-"""Of the central differences, in u."""
-DECADES = 3.0
-"""A parameter is sought so many decades to both sides of the value that the scene gives."""
-GENERATIONS, POPULATION, STARTS, SEED = 40, 16, 4, 1
-"""Of the first look, which takes some thousand curves; places of it that are starts of a fit; its random numbers."""
+LIMIT = 3.0 * math.log(10.0)
+"""Largest |u| of a positive parameter: it is sought over three decades to both sides of the value in the scene."""
+STARTS = 4
+"""Points of the global search that are starts of a least-squares fit."""
 OUTLIER = 5.0
-"""Whitened residual over its standard deviation beyond which a point is no part of the noise: one in 1.7 million."""
-LEVEL = 0.95
-TWO_SIDED = 1.959964
-"""Standard deviations of a 95 % uncertainty."""
-LIMIT, EDGE = DECADES * math.log(10.0), 1e-3
-"""Of u of a positive parameter in a fit, and how far inside a start must be."""
-MOST_ROUNDS, SETTLED = 12, 0.02
-"""Of fit, noise and outliers in turn; and change of the unknowns over their standard deviation that ends them."""
-FARTHEST = 4.0
-"""Change of log p at which the end of an interval counts as open."""
+"""Whitened residual over its standard deviation beyond which a point is an outlier: one in 1.7 million."""
+LEVEL, TWO_SIDED = 0.95, 1.959964
+"""Coverage of an interval, and its half-width over the standard deviation of a normal distribution."""
 
 
 @dataclass(frozen=True)
 class Unknown:
-    """A number that the fit may change.
+    """A number that a fit may change.
 
     Attributes:
-        name: a dotted key, or what it is.
-        scale: the value at u = 0 of a positive one; else of which u is the multiple.
-        positive: whether it is p = scale·exp(u), else p = scale·u.
-        known: mean and standard deviation of what is known of it; None: nothing.
-        fitted: whether it was asked for; else it is a nuisance.
+        name: a dotted key of the scene, or a name of the measurement.
+        scale: value of a positive unknown at u = 0; of any other at u = 1.
+        positive: whether p = scale·exp(u), else p = scale·u.
+        known: mean and standard deviation of its calibration; None without one.
+        fitted: whether it is a parameter of the fit; else a nuisance parameter.
     """
 
     name: str
@@ -56,11 +47,11 @@ class Unknown:
     fitted: bool = False
 
     def value(self, u: float) -> float:
-        """p."""
+        """Return the parameter p at u."""
         return self.scale * (math.exp(min(max(u, -50.0), 50.0)) if self.positive else u)
 
     def slope(self, u: float) -> float:
-        """∂p/∂u."""
+        """Return the derivative ∂p/∂u of the parameter at u."""
         return self.value(u) if self.positive else self.scale
 
 
@@ -70,13 +61,13 @@ Model = Callable[[Sequence[float]], Array]
 
 @dataclass(frozen=True)
 class Problem:
-    """Data, unknowns and the model between them.
+    """A least-squares problem under a noise.
 
     Attributes:
-        unknowns: (p,).
-        model: forces at all points.
-        forces: that were measured, (n,).
-        runs: indices of the points that are compared, run after run.
+        unknowns: the unknowns, (p,).
+        model: function of their values that returns the forces at all points.
+        forces: measured forces at all points, (n,).
+        runs: indices of the points that are compared, one array for each run.
     """
 
     unknowns: tuple[Unknown, ...]
@@ -86,181 +77,190 @@ class Problem:
 
     @property
     def kept(self) -> Indices:
-        """All compared points."""
+        """The indices of all compared points."""
         return np.concatenate(self.runs)
 
     def without(self, points: Indices) -> Problem:
-        """The same without some points."""
+        """Return the problem of the remaining points."""
         return replace(self, runs=tuple(run[~np.isin(run, points)] for run in self.runs))
 
     def values(self, u: Array) -> list[float]:
-        """The values of the unknowns."""
-        return [one.value(float(part)) for one, part in zip(self.unknowns, u, strict=True)]
+        """Return the values of the unknowns at u."""
+        return [unknown.value(float(x)) for unknown, x in zip(self.unknowns, u, strict=True)]
 
     def residuals(self, u: Array) -> Array:
-        """Measured less predicted force of the compared points."""
+        """Return the measured less the predicted force of the compared points."""
         return (self.forces - self.model(self.values(u)))[self.kept]
 
     def slopes(self, u: Array, free: Sequence[int] | None = None) -> Array:
-        """∂(predicted force)/∂u of the compared points, (n, p)."""
+        """Return ∂(predicted force)/∂u of the compared points, (n, p), for the `free` unknowns or all."""
         return self.derivative(self.model, u, free)[self.kept]
 
-    def derivative(self, of: Model, u: Array, free: Sequence[int] | None = None) -> Array:
-        """∂/∂u of what follows from the values of the unknowns, (n, p), by central differences."""
-        steps = STEP * np.eye(u.size)
+    def derivative(self, of: Model, u: Array, free: Sequence[int] | None = None, step: float = 1e-4) -> Array:
+        """Return ∂/∂u of a function of the unknowns' values, (n, p), by central differences over a step of u."""
+        steps = step * np.eye(u.size)
         columns = [
-            (of(self.values(u + steps[i])) - of(self.values(u - steps[i]))) / (2.0 * STEP)
+            (of(self.values(u + steps[i])) - of(self.values(u - steps[i]))) / (2.0 * step)
             for i in (range(u.size) if free is None else free)
         ]
         return np.column_stack(columns)
 
     def prior(self, u: Array) -> Array:
-        """Rows of what is known, (q, p + 1), the last column the misfit."""
+        """Return a row for each calibration, (q, p + 1), the last column its misfit in standard deviations."""
         rows = []
-        for i, one in enumerate(self.unknowns):
-            if one.known is not None:
-                mean, spread = one.known
+        for i, unknown in enumerate(self.unknowns):
+            if unknown.known is not None:
+                mean, spread = unknown.known
                 row = np.zeros(u.size + 1)
-                row[i], row[-1] = one.slope(float(u[i])) / spread, (mean - one.value(float(u[i]))) / spread
+                row[i], row[-1] = unknown.slope(float(u[i])) / spread, (mean - unknown.value(float(u[i]))) / spread
                 rows.append(row)
         return np.array(rows).reshape(-1, u.size + 1)
 
     def least(
         self, u: Array, noise: Noise, deviation: float, fixed: int | None = None, robust: bool = False
     ) -> tuple[Array, float]:
-        """The least sum of squares from u on, and where; `fixed` is the index of an unknown that stays."""
+        """Return the unknowns of the least sum of squares, from u on, and that sum; the unknown `fixed` stays."""
         free = [i for i in range(u.size) if i != fixed]
 
-        def whole(part: Array) -> Array:
+        def completed(free_u: Array) -> Array:
             full = u.copy()
-            full[free] = part
+            full[free] = free_u
             return full
 
-        def rows(part: Array) -> Array:
-            full = whole(part)
+        def rows(free_u: Array) -> Array:
+            full = completed(free_u)
             return np.concatenate([noise.whitened(self.residuals(full)) / deviation, self.prior(full)[:, -1]])
 
-        def jacobian(part: Array) -> Array:
-            full = whole(part)
+        def jacobian(free_u: Array) -> Array:
+            full = completed(free_u)
             return -np.concatenate(
                 [noise.whitened(self.slopes(full, free)) / deviation, self.prior(full)[:, :-1][:, free]]
             )
 
-        ends = np.array([LIMIT if one.positive else math.inf for one in self.unknowns])[free]
+        limits = np.array([LIMIT if unknown.positive else math.inf for unknown in self.unknowns])[free]
+        start, bounds = np.clip(u[free], -limits, limits), limits + 1e-3  # a start must be inside the bounds
         options: dict[str, Any] = {"xtol": 1e-6, "ftol": 1e-6, "gtol": 1e-12, "max_nfev": 60}
         options |= {"loss": "soft_l1", "f_scale": 2.0} if robust else {}
-        found = least_squares(
-            rows, np.clip(u[free], -ends, ends), jacobian, (-ends - EDGE, ends + EDGE), x_scale="jac", **options
-        )
-        return whole(found.x), 2.0 * float(found.cost)
+        fit = least_squares(rows, start, jacobian, (-bounds, bounds), x_scale="jac", **options)
+        return completed(fit.x), 2.0 * float(fit.cost)
 
 
 @dataclass(frozen=True)
 class Solution:
-    """A fit that has settled.
+    """The converged solution of a problem.
 
     Attributes:
-        problem: with the points that were compared.
-        u: the unknowns.
-        best: what the residuals say under the most likely noise, with which u is the least.
-        noise: the same under all noises that they allow.
-        squares: the least sum of squares under the most likely one, over its variance.
-        outliers: indices of points that were taken out.
+        problem: the problem without the outliers.
+        u: the unknowns of the least sum of squares.
+        best: the estimate under the most likely noise, which weighs that sum.
+        average: the estimates under all noises.
+        squares: the least sum of squares over the variance of the most likely noise.
+        outliers: indices of the excluded points.
     """
 
     problem: Problem
     u: Array
-    best: Judged
-    noise: Uncertain
+    best: Estimate
+    average: AveragedEstimate
     squares: float
     outliers: Indices
 
     @property
     def values(self) -> list[float]:
-        """Of all unknowns."""
+        """The values of all unknowns."""
         return self.problem.values(self.u)
 
 
-def first_look(problem: Problem, sought: Sequence[int], complete: Callable[[Array], Array]) -> list[Array]:
-    """Promising places over decades of the sought unknowns; `complete` sets those that follow from them.
+def global_search(
+    problem: Problem, sought: Sequence[int], complete: Callable[[Array], Array], generations: int = 40, size: int = 16
+) -> list[Array]:
+    """Return starts of a fit from a search over decades of the sought unknowns.
 
-    The valley of a good fit is some percent wide, in a plane of decades: a population of places is evolved, and the
-    best of it are the starts.
+    The valley of a good fit is some percent wide, in a plane of decades: a population is evolved, which takes some
+    thousand curves, and its best members are the starts.
+
+    Args:
+        problem: what is fitted.
+        sought: indices of the unknowns that the search changes.
+        complete: function that sets the unknowns which follow from these.
+        generations: most generations of the population.
+        size: of the population, for each sought unknown.
     """
 
-    def whole(place: Array) -> Array:
+    def completed(member: Array) -> Array:
         u = np.zeros(len(problem.unknowns))
-        u[list(sought)] = place
+        u[list(sought)] = member
         return complete(u)
 
     if not sought:
-        return [whole(np.zeros(0))]
+        return [completed(np.zeros(0))]
 
-    def misfit(place: Array) -> float:
-        total = float(np.abs(problem.residuals(whole(place))).sum())
+    def misfit(member: Array) -> float:
+        total = float(np.abs(problem.residuals(completed(member))).sum())
         return total if total < 1e100 else 1e100  # of NaN, too; and the square of it is a number
 
-    reach = DECADES * math.log(10.0)
-    found = differential_evolution(
-        misfit, [(-reach, reach)] * len(sought), rng=SEED, maxiter=GENERATIONS, popsize=POPULATION, tol=0.02,
-        init="sobol", polish=False, x0=np.zeros(len(sought)),
+    population = differential_evolution(
+        misfit, [(-LIMIT, LIMIT)] * len(sought), rng=1, maxiter=generations, popsize=size, tol=0.02, init="sobol",
+        polish=False, x0=np.zeros(len(sought)),
     )  # fmt: skip
-    order = np.argsort(found.population_energies)[:STARTS]
-    return [whole(found.population[i]) for i in order]
+    order = np.argsort(population.population_energies)[:STARTS]
+    return [completed(population.population[i]) for i in order]
 
 
-def solved(problem: Problem, starts: Sequence[Array], judges: bool = True) -> Solution:
-    """The best of least-squares fits from several starts, under the noise that its residuals have.
+def solved(problem: Problem, starts: Sequence[Array], rejects: bool = True, most_rounds: int = 12) -> Solution:
+    """Return the best of least-squares fits from several starts, under the noise that its residuals have.
 
     Args:
-        problem: what is solved.
-        starts: places.
-        judges: whether points far outside the noise are taken out.
+        problem: what is fitted.
+        starts: unknowns u of each start.
+        rejects: whether outliers are excluded.
+        most_rounds: largest number of rounds of noise, outliers and fit.
     """
-    tries, (white,) = [], noises([(0.0, 1.0)], problem.runs)
+    fits, (white,) = [], noises([(0.0, 1.0)], problem.runs)
     for start in starts:
         spread = float(np.median(np.abs(problem.residuals(start)))) or 1.0
         u, _ = problem.least(start, white, spread, robust=True)
-        tries.append((float(np.abs(problem.residuals(u)).sum()), u))
-    _, u = min(tries, key=lambda one: one[0])
+        fits.append((float(np.abs(problem.residuals(u)).sum()), u))
+    _, u = min(fits, key=lambda fit: fit[0])
     outliers: list[int] = []
-    for _ in range(MOST_ROUNDS):
-        best = _noise_at(problem, u, looks=1).best
-        fresh = _outliers(problem, u, best) if judges else problem.kept[:0]
+    for _ in range(most_rounds):
+        best = _estimate(problem, u, looks=1).best
+        fresh = _outliers(problem, u, best) if rejects else problem.kept[:0]
         if not fresh.size:
             before, (u, _) = u, problem.least(u, best.noise, best.deviation)
-            if (np.abs(u - before) < SETTLED * np.sqrt(np.diag(best.covariance))).all():
+            if (np.abs(u - before) < 0.02 * np.sqrt(np.diag(best.covariance))).all():
                 break
         outliers += fresh.tolist()
         problem = problem.without(fresh)
-    noise = _noise_at(problem, u)
-    u, squares = problem.least(u, noise.best.noise, noise.best.deviation)
-    return Solution(problem, u, noise.best, noise, squares, np.array(sorted(outliers), dtype=np.intp))
+    average = _estimate(problem, u)
+    u, squares = problem.least(u, average.best.noise, average.best.deviation)
+    return Solution(problem, u, average.best, average, squares, np.array(sorted(outliers), dtype=np.intp))
 
 
-def _noise_at(problem: Problem, u: Array, looks: int = 2) -> Uncertain:
-    return uncertain(problem.runs, problem.residuals(u), problem.slopes(u), problem.prior(u), looks)
+def _estimate(problem: Problem, u: Array, looks: int = 2) -> AveragedEstimate:
+    return averaged(problem.runs, problem.residuals(u), problem.slopes(u), problem.prior(u), looks)
 
 
-def _outliers(problem: Problem, u: Array, judged: Judged) -> Indices:
-    """Points far outside the noise, the largest of neighbours only."""
-    white = np.abs(judged.noise.whitened(problem.residuals(u))) / judged.deviation
+def _outliers(problem: Problem, u: Array, estimate: Estimate) -> Indices:
+    """Return the indices of the outliers; of neighbouring ones only the largest."""
+    white = np.abs(estimate.noise.whitened(problem.residuals(u))) / estimate.deviation
     kept = problem.kept
     far = np.flatnonzero(white > OUTLIER)
     return np.array([kept[i] for i in far if white[i] >= white[max(0, i - 2) : i + 3].max()], dtype=np.intp)
 
 
-def interval(solution: Solution, index: int) -> tuple[float, float]:
-    """The two ends of an unknown's interval of 95 %, in u: its profile likelihood at the noise's own quantiles.
+def interval(solution: Solution, index: int, farthest: float = 4.0) -> tuple[float, float]:
+    """Return the ends of the 95 % interval of an unknown, in u: its profile likelihood at the quantiles of the noise.
 
-    Everything else is fitted again at each value. An end is infinite where the likelihood does not fall far enough.
+    All other unknowns are fitted again at each value. An end is infinite where the likelihood does not fall far enough
+    within `farthest`.
     """
     problem, best = solution.problem, solution.best
     spread = math.sqrt(best.covariance[index, index])
-    along = best.covariance[index] / best.covariance[index, index]  # how the others follow
+    along = best.covariance[index] / best.covariance[index, index]  # how the other unknowns follow
     ends = []
     for side in (-1.0, 1.0):
-        quantile = abs(solution.noise.quantile(index, 0.5 * (1.0 + side * LEVEL)))
+        quantile = abs(solution.average.quantile(index, 0.5 * (1.0 + side * LEVEL)))
         wanted = quantile / spread  # standard deviations
         u, low, high = solution.u.copy(), (0.0, 0.0), None
         change = quantile
@@ -276,7 +276,7 @@ def interval(solution: Solution, index: int) -> tuple[float, float]:
                 high = change, reached
             if high is None:
                 change = min(3.0 * change, max(1.05 * change, change * wanted / max(reached, 1e-3)))
-                if change > FARTHEST:
+                if change > farthest:
                     change = math.inf
                     break
             else:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.workflow.fit.curve import ForceCurve
-from contact1d.workflow.fit.forward import Body, Branch, ContactModel, kept
+from contact1d.workflow.fit.forward import Body, Branch, ContactModel, cached
 from contact1d.workflow.fit.plan import STIFFNESS
 from contact1d.workflow.fit.search import Problem, Unknown
 from contact1d.workflow.laws import law_of
@@ -19,9 +19,9 @@ from contact1d.workflow.scene import Scene
 Array = NDArray[np.float64]
 POINT, OFFSET = "contact_point", "force_offset"
 MEASURED = (POINT, OFFSET, STIFFNESS)
-"""Unknowns that are of the measurement."""
+"""Names of the unknowns of the measurement, which no scene has."""
 Factors = tuple[tuple[str, float], ...]
-"""Keys of a scene, and what their numbers are multiplied by."""
+"""Keys of a scene, and the factors of their numbers."""
 
 
 @dataclass
@@ -29,9 +29,9 @@ class Subject:
     """A scene on a rigid plane and an instrument, of which some numbers are unknown.
 
     Attributes:
-        scene: with a number at each unknown's key.
+        scene: the scene, with a number at the key of each of its unknowns.
         model: the contact model.
-        curve: what was measured.
+        curve: the measured curve.
         unknowns: of the scene, the instrument and the measurement.
     """
 
@@ -41,36 +41,36 @@ class Subject:
     unknowns: tuple[Unknown, ...]
 
     def __post_init__(self) -> None:
-        """Which points hold and which are apart, and without a jump which may be either, or before contact."""
-        self.names = [one.name for one in self.unknowns]
+        """Mark the points in contact, those apart, and without a jump the undecided ones, some on the approach."""
+        self.names = [unknown.name for unknown in self.unknowns]
         n = self.curve.positions.size
-        self.held, self.apart, self.open, self.early = (np.zeros(n, dtype=bool) for _ in range(4))
-        for one in self.curve.segments:
-            self.held[one.held] = self.apart[one.apart] = True
-            if one.jump is None:
-                self.open[one.points] = True
-                self.early[one.points] = one.approaches
+        self.held, self.apart, self.undecided, self.approaching = (np.zeros(n, dtype=bool) for _ in range(4))
+        for segment in self.curve.segments:
+            self.held[segment.held] = self.apart[segment.apart] = True
+            if segment.jump is None:
+                self.undecided[segment.points] = True
+                self.approaching[segment.points] = segment.approaches
         self.pitch = float(np.median(np.abs(np.diff(self.curve.positions)))) or 1e-300
-        self._branches = kept(self._branch)
+        self._branches = cached(self._branch)
 
     @property
     def sought(self) -> list[int]:
-        """The unknowns that are asked for and that the contact model knows."""
-        return [i for i, one in enumerate(self.unknowns) if one.fitted and self.model.depends_on(one.name)]
+        """The indices of the unknowns that are fitted and that the contact model depends on."""
+        return [i for i, number in enumerate(self.unknowns) if number.fitted and self.model.depends_on(number.name)]
 
     @property
     def problem(self) -> Problem:
-        """The least-squares problem."""
-        runs = tuple(one.compared for one in self.curve.segments)
+        """The least-squares problem of the compared points of both segments."""
+        runs = tuple(segment.compared for segment in self.curve.segments)
         return Problem(self.unknowns, self.forces, self.curve.forces, runs)
 
     def scene_with(self, values: Sequence[float]) -> Scene:
-        """The scene with these values of its unknowns, unchecked."""
+        """Return the scene with values of its unknowns, without checking it."""
         return self._moved(self._factors(values))
 
     def _factors(self, values: Sequence[float]) -> Factors:
         numbers = zip(self.unknowns, values, strict=True)
-        return tuple((one.name, value / one.scale) for one, value in numbers if one.name not in MEASURED)
+        return tuple((number.name, value / number.scale) for number, value in numbers if number.name not in MEASURED)
 
     def _moved(self, factors: Factors) -> Scene:
         scene = self.scene
@@ -85,38 +85,38 @@ class Subject:
         return self.model.branch(body, modulus_of(scene), scene.work_of_adhesion, reach)
 
     def parts(self, values: Sequence[float]) -> tuple[Branch, float, float, float]:
-        """The contact's own curve; and k_c [FU/LU], contact point [LU] and offset of the force [FU]."""
+        """Return the branch of the contact, k_c [FU/LU], contact point [LU] and offset of the force [FU]."""
         named = dict(zip(self.names, values, strict=True))
         return self._branches(self._factors(values)), named.get(STIFFNESS, math.inf), named[POINT], named[OFFSET]
 
     def forces(self, values: Sequence[float]) -> Array:
-        """F [FU] at every measured position."""
+        """Return F [FU] at every measured position, (n,)."""
         branch, stiffness, point, offset = self.parts(values)
         z = self.curve.positions - point
-        found = np.zeros_like(z)
-        for points, held in ((self.held, True), (self.open, False)):
+        forces = np.zeros_like(z)
+        for points, held in ((self.held, True), (self.undecided, False)):
             if points.any():
-                found[points] = branch.at(z[points], stiffness, held, self.pitch)
-        found[self.early & (z < branch.displacements[0])] = 0.0  # no force before the bodies touch
-        return np.asarray(found + offset)
+                forces[points] = branch.forces_at(z[points], stiffness, held, self.pitch)
+        forces[self.approaching & (z < branch.displacements[0])] = 0.0  # no force before the bodies touch
+        return np.asarray(forces + offset)
 
     def completed(self, u: Array) -> Array:
-        """Unknowns with the contact point such that the largest force is where it was measured."""
-        u, place, measured = u.copy(), self.names.index(POINT), self.curve
-        point, offset = self.unknowns[place], self.names.index(OFFSET)
+        """Return the unknowns with offset and contact point by the baseline and the position of the largest force."""
+        u, index, measured = u.copy(), self.names.index(POINT), self.curve
+        point, offset = self.unknowns[index], self.names.index(OFFSET)
         u[offset] = measured.baseline / self.unknowns[offset].scale
         if point.known is not None:
-            u[place] = point.known[0] / point.scale
+            u[index] = point.known[0] / point.scale
             return u
         branch, stiffness, *_ = self.parts(self.problem.values(u))
         least, top = int(np.argmin(branch.forces)), int(np.argmax(measured.forces))
         z, F = branch.positions(stiffness)[least:], branch.forces[least:]
-        u[place] = (measured.positions[top] - np.interp(measured.forces[top] - measured.baseline, F, z)) / point.scale
+        u[index] = (measured.positions[top] - np.interp(measured.forces[top] - measured.baseline, F, z)) / point.scale
         return u
 
 
 def modulus_of(scene: Scene) -> float:
-    """E* [FU/LU²] of a contact on a rigid plane."""
+    """Return E* [FU/LU²] of a scene's contact on a rigid plane."""
     bodies, material = scene.bodies, scene.material
     if bodies.bulk_stiffness != "auto":
         return bodies.bulk_stiffness / bodies.spacing

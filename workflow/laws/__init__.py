@@ -1,6 +1,6 @@
-"""Contact laws, each told once: its curve, its particles along any path, what it needs of a scene and what it tells.
+"""Contact laws: the force–displacement curve of a body, and the forces of its particles along any path.
 
-A new law is a module with a `Law` and its `Particles`, a line in `LAWS`, and the fragment that its effect brings.
+A new law is a module with a `Law` and its `Particles`, a line in `LAWS`, and the LAMMPS fragment of its effect.
 """
 
 from contact1d.workflow.laws.friction import Frictional
@@ -13,9 +13,9 @@ from contact1d.workflow.laws.relaxing import Relaxing
 from contact1d.workflow.scene import Scene
 
 LAWS: tuple[type[Law], ...] = (Maugis, Receding, Jkr, Relaxing, Frictional, Independent)
-"""The first that applies is a scene's."""
+"""All laws, in the order in which a scene is offered to them: the first that applies is its law."""
 
 
 def law_of(scene: Scene) -> type[Law]:
-    """The law of a scene, without its numbers."""
-    return next(one for one in LAWS if one.applies(scene))
+    """Return the class of the law of a scene."""
+    return next(law for law in LAWS if law.applies(scene))

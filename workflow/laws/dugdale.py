@@ -1,4 +1,4 @@
-"""The equations of Maugis and Dugdale's contact of any axisymmetric body: an attraction σ₀ over a range h₀ = W/σ₀.
+"""The equations of the Maugis–Dugdale contact of any axisymmetric body: an attraction σ₀ over a range h₀ = W/σ₀.
 
 With the transformed profile g(x), springs E* per length, contact up to a and attraction up to c ≥ a, s² = c² − a²,
 
@@ -26,14 +26,10 @@ from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.laws.shape import Profile, beside_kinks
 
 Array = NDArray[np.float64]
-NODES, PANEL = 48, 8
-"""Of Gauss's quadrature from 0 or a kink to the edge, and of one between two positions of G."""
-FIRST, PLACES = 1e-6, 2000
-"""Positions between which G is one quadrature each, and the first of them over the last."""
 DOUBLINGS = 200
-"""Most of a bracket, and of cuts of it."""
+"""Most doublings of a bracket, and most iterations of a root finder in it."""
 INSIDE = 1.0 - 1e-6
-"""Of a body, up to which an attraction may reach: the transform of a circle has no bound at its end."""
+"""Share of a body's half-width up to which an attraction may act: the transform of a circle is unbounded at its end."""
 TINY = float(np.finfo(np.float64).tiny)
 
 
@@ -42,8 +38,8 @@ class Zone:
     """States of a contact; arrays (m,), or columns of the curve.
 
     Attributes:
-        edge, reach: a and c [LU], both 0 of bodies that do not feel each other.
-        displacement, force: [LU], [FU].
+        edge, reach: a and c [LU], both 0 of bodies without a force between them.
+        displacement, force: d [LU] and F [FU].
     """
 
     edge: Array
@@ -54,15 +50,15 @@ class Zone:
 
 @dataclass(frozen=True, eq=False)
 class Dugdale:
-    """A body on a rigid plane.
+    """The contact of a body on a rigid plane.
 
     Attributes:
-        profile, surface: g and f [LU].
-        modulus, stress: E*, σ₀ [FU/LU²].
+        profile, surface: transformed and actual profile, g and f [LU].
+        modulus, stress: E* and σ₀ [FU/LU²].
         range: h₀ [LU].
-        known: the largest a that is asked for [LU].
-        nodes: of the quadrature of a gap.
-        tolerance: relative, of a root; None: to all digits.
+        known: largest contact radius a that is needed [LU].
+        nodes: points of a Gauss quadrature from 0 or a kink to the edge.
+        tolerance: relative tolerance of a root; None: all digits.
     """
 
     profile: Profile
@@ -71,16 +67,16 @@ class Dugdale:
     stress: float
     range: float
     known: float
-    nodes: int = NODES
+    nodes: int = 48
     tolerance: float | None = None
 
     @property
     def end(self) -> float:
-        """Where the body ends [LU]."""
+        """Half-width [LU] up to which an attraction may act, just inside the body's own."""
         return self.profile.reach * INSIDE
 
     def widest(self) -> float:
-        """Largest a [LU] whose attraction ends on the body. Raises SettingsError where there is none."""
+        """Return the largest a [LU] whose attraction ends on the body. Raises SettingsError where there is none."""
         from scipy.optimize import elementwise
 
         if self.end == math.inf:
@@ -92,38 +88,38 @@ class Dugdale:
 
         if float(error(np.zeros(1))[0]) < 0.0:
             raise covered(self.end)
-        found = elementwise.find_root(error, (np.zeros(1), np.full(1, self.end)), maxiter=DOUBLINGS)
-        return INSIDE * float(found.x[0])
+        root = elementwise.find_root(error, (np.zeros(1), np.full(1, self.end)), maxiter=DOUBLINGS)
+        return INSIDE * float(root.x[0])
 
     @property
     def ratio(self) -> float:
-        """2σ₀/E* [1]."""
+        """Twice the attraction over the modulus, 2σ₀/E* [1]."""
         return 2.0 * self.stress / self.modulus
 
     @cached_property
     def _areas(self) -> tuple[Array, Array]:
-        """Positions [LU] from 0 on, dense beside kinks, and G there [LU²]."""
-        x = np.concatenate([[0.0], np.geomspace(FIRST * self.known, self.known, PLACES)])
+        """Positions [LU] from 0 on, dense near kinks, and G there [LU²]."""
+        x = np.concatenate([[0.0], np.geomspace(1e-6 * self.known, self.known, 2000)])
         x = beside_kinks(x, self.profile)
         return x, np.append(0.0, np.cumsum(self._integral(x[:-1], x[1:])))
 
-    def _integral(self, low: Array, high: Array) -> Array:
-        """∫ g dx between positions [LU²]."""
-        node, weight = gauss(PANEL)
+    def _integral(self, low: Array, high: Array, nodes: int = 8) -> Array:
+        """Return ∫ g dx [LU²] between positions (n,) [LU], by a Gauss quadrature of so many nodes."""
+        node, weight = gauss(nodes)
         half = 0.5 * (high - low)
         return np.asarray(half * (self.profile.height(0.5 * (low + high)[:, None] + half[:, None] * node) @ weight))
 
     def area(self, x: Array) -> Array:
-        """G(x) = ∫₀ˣ g [LU²] at positions ≥ 0 [LU], (n,), as far as the body is known."""
-        places, areas = self._areas
-        cell = np.clip(np.searchsorted(places, x, side="right") - 1, 0, places.size - 1)
-        return np.asarray(areas[cell] + self._integral(places[cell], x))
+        """Return G(x) = ∫₀ˣ g [LU²] at positions from 0 to `known` [LU], (n,)."""
+        knots, areas = self._areas
+        cell = np.clip(np.searchsorted(knots, x, side="right") - 1, 0, knots.size - 1)
+        return np.asarray(areas[cell] + self._integral(knots[cell], x))
 
     def _pressed(self, edge: Array, width: Array) -> Array:
-        """∫₀ᵃ g/√(c² − x²) dx [LU], c² = a² + s²; with x = c sin t, from 0 or a kink on in powers of √(t − t₀)."""
+        """Return ∫₀ᵃ g/√(c² − x²) dx [LU], c² = a² + s²; x = c sin t, from 0 or a kink on in powers of √(t − t₀)."""
         c = np.hypot(edge, width)
         kinks = [np.minimum(kink, edge) for kink in self.profile.kinks if kink < self.known]
-        angles = [np.zeros_like(edge), *(np.arctan2(one, np.sqrt((c - one) * (c + one))) for one in kinks)]
+        angles = [np.zeros_like(edge), *(np.arctan2(kink, np.sqrt((c - kink) * (c + kink))) for kink in kinks)]
         angles.append(np.arctan2(edge, width))
         node, weight = gauss(self.nodes)
         share, total = 0.5 * (node + 1.0), np.zeros_like(edge)
@@ -133,26 +129,26 @@ class Dugdale:
         return total
 
     def gap_error(self, edge: Array, width: Array, displacement: Array) -> Array:
-        """Gap at c less the range [LU] at a, s and d [LU]; 0 of a state, for which d is that of the edge, too."""
+        """Return the gap at c less the range [LU], at a, s and d [LU]; 0 in equilibrium, with d = g(a) − 2σ₀s/E*."""
         c = np.hypot(edge, width)
         angle = np.arctan2(edge, width)
-        # c − a without a difference of numbers that are nearly the same
+        # c − a without a difference of nearly equal numbers
         ahead = width * width / np.maximum(c + edge, TINY)
         elastic = displacement * angle - self._pressed(edge, width) - self.ratio * ahead
         return np.asarray(self.surface.height(c) - displacement + 2.0 / math.pi * elastic - self.range)
 
     def states(self, edge: Array, width: Array) -> Zone:
-        """The states of contacts with these a and s [LU]."""
+        """Return the states of contacts with these a and s, (m,) [LU]."""
         displacement = self.profile.height(edge) - self.ratio * width
         return Zone(edge, np.hypot(edge, width), displacement, self.forces(edge, width, displacement))
 
     def forces(self, edge: Array, width: Array, displacement: Array) -> Array:
-        """F [FU] at a, s and d [LU]."""
+        """Return F [FU] at a, s and d, (m,) [LU]."""
         ring = 0.5 * ((edge**2 + width**2) * np.arctan2(width, edge) - edge * width)
         return np.asarray(2.0 * self.modulus * (edge * displacement - self.area(edge)) - 4.0 * self.stress * ring)
 
     def widths(self, edge: Array) -> Array:
-        """s [LU] of contacts of radius a [LU]. Raises SettingsError where the attraction reaches past the body."""
+        """Return s [LU] of contacts of radii a [LU], (m,). Raises SettingsError: the attraction exceeds the body."""
         from scipy.optimize import elementwise  # which takes longer to import than a small run
 
         def error(width: Array, edge: Array) -> Array:
@@ -167,18 +163,18 @@ class Dugdale:
             if (high >= most)[short].any():
                 raise covered(self.end)
             high = np.where(short, np.minimum(2.0 * high, most), high)
-        found = elementwise.find_root(
+        root = elementwise.find_root(
             error, (np.zeros_like(edge), high), args=(edge,), maxiter=DOUBLINGS, tolerances={"xrtol": self.tolerance}
         )
-        return np.asarray(found.x)
+        return np.asarray(root.x)
 
     def before(self, reach: Array) -> Array:
-        """d [LU] of bodies that attract each other up to c [LU] and do not touch."""
+        """Return d [LU] of bodies that attract each other up to c, (m,) [LU], and do not touch."""
         return np.asarray(self.surface.height(reach) - 2.0 / math.pi * self.ratio * reach - self.range)
 
 
 def covered(reach: float) -> SettingsError:
-    """The error of an attraction that reaches past its body, which ends there [LU]."""
+    """Return the error of an attraction that exceeds its body, which ends at `reach` [LU]."""
     return SettingsError(
         f"the attraction would reach beyond the body, which ends at {reach:.6g} LU: lower adhesion.range or "
         "adhesion.work_of_adhesion, or give a wider profile"

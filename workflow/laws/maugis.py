@@ -1,8 +1,8 @@
-"""The contact of a body whose attraction has a range (`dugdale`), before LAMMPS runs, and as the load of each cell.
+"""The contact of a body whose attraction has a range (`dugdale`), as a curve and as the load of each cell.
 
 Its states are one curve, from c = 0 over the touch of the apexes to wide contacts. Where d falls along it no state is
-stable: a contact that is loaded goes on to the next place of the curve with its d, one that is unloaded to the one
-before; there are any number of such limit points, or none but that of the attraction itself.
+stable: in loading the contact jumps to the next point of the curve with the same d, in unloading to the previous one.
+There is any number of such limit points, or none but that of the attraction itself.
 """
 
 from __future__ import annotations
@@ -19,67 +19,55 @@ from numpy.typing import NDArray
 from contact1d.digits import apart
 from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.laws.dugdale import DOUBLINGS, Dugdale, Zone, covered
-from contact1d.workflow.laws.jkr import Jkr
+from contact1d.workflow.laws.jkr import POINTS, Jkr
+from contact1d.workflow.laws.numerics import ROUND_OFF
 from contact1d.workflow.laws.path import Path, legs
 from contact1d.workflow.laws.shape import Profile, Splined, beside_kinks
 from contact1d.workflow.laws.zoned import Zoned, ZonedCells
 from contact1d.workflow.scene import Adhesion, Scene
 
 Array = NDArray[np.float64]
-POINTS, FIRST, NEAR = 400, 1e-3, 40
-"""Radii at which the equations are solved, the first of them over the last, and how many lie before that one."""
 BETWEEN = 10
-"""Points of the curve for each of them, by cubics: their error is some 1e-8 of F."""
+"""Points of the curve for each solved contact, by cubics: their error is some 1e-8 of F."""
 BEFORE = 1000
 """Points of the curve before contact, where d(c) is explicit."""
 APART = -1.0
-"""Place on the curve of bodies that do not feel each other."""
-ENERGY_PLACES = 4000
-"""Positions of the two integrals of an energy."""
-RESOLVED = 1e-9
-"""Least way of the attraction beyond the contact over the radius under fixed grips. Measured: at 1e-10 forces are off
-by 4e-7, and below that the curve is no longer monotonic."""
-SAME = 1e-9
-"""Fall of d over its range that is one: others are round-off."""
-STIFF = 1e-3
-"""Distance over the range of an attraction of two displacements whose forces give a stiffness."""
-LOOKS = 4
-"""Steps from the curve to a force by the equations."""
+"""Position on the curve of bodies without a force between them."""
 
 
 @dataclass(frozen=True, eq=False)
 class Maugis(Zoned):
-    """The curve of a contact whose attraction has a range.
+    """A contact whose attraction has a range. A position on its curve is an index, between two points a fraction.
 
     Attributes:
-        range: h₀ [LU].
-        table: the predictor's shape is that of the deck.
+        range: range h₀ of the attraction [LU].
+        table: a profile that is smooth to 1e-12, since the deck uses the same one.
     """
 
     table = Splined
-    beside = ("adhesive", "zone", "dmt")
+    closed_forms = ("adhesive", "zone", "dmt")
     exact = ("zone",)
 
     range: float = field(kw_only=True)
 
     @classmethod
     def applies(cls, scene: Scene) -> bool:
-        """Of an attraction with a range."""
+        """Return whether the scene has adhesion with a range."""
         return Jkr.applies(scene) and scene.the(Adhesion).range is not None
 
     @classmethod
     def from_jkr(cls, jkr: Jkr, scene: Scene, wanted: float, load: float) -> Maugis:
-        """See `Jkr`."""
+        """Return the contact with the scene's range, computed up to a displacement `wanted` [LU] and a load [FU]."""
         return _with_range(jkr, scene.the(Adhesion).range or 0.0, scene.bodies.profile, wanted, load)
 
     @classmethod
     def range_of(cls, scene: Scene, assumed: float) -> float:
-        """The scene's."""
+        """Return the range of the scene [LU], `assumed` where it has none."""
         return scene.the(Adhesion).range or assumed
 
     @classmethod
-    def drawn(cls, scene: Scene, edge: float, reach: float) -> tuple[float, Callable[[Array], Array]]:
-        """−σ₀ π (c² − a²), and (2σ₀/π) arctan √((c² − a²)/(a² − r²))."""
+    def cohesive_load(cls, scene: Scene, edge: float, reach: float) -> tuple[float, Callable[[Array], Array]]:
+        """Return −σ₀ π (c² − a²) [FU], and the function (2σ₀/π) arctan √((c² − a²)/(a² − r²)) of r [LU]."""
         adhesion, square = scene.the(Adhesion), (reach - edge) * (reach + edge)
         stress, root = adhesion.work / (adhesion.range or math.inf), math.sqrt(square)
         return (
@@ -88,25 +76,25 @@ class Maugis(Zoned):
         )
 
     def particles(self, x: Array, deepest: float) -> MaugisCells:
-        """See `Law`."""
+        """Return the cells at positions x, (n,) [LU]."""
         return MaugisCells(self, x, deepest)
 
     @cached_property
     def equations(self) -> Dugdale:
-        """Its equations."""
+        """Equations of the contact with the attraction σ₀ = W/h₀."""
         return Dugdale(self.profile, self.surface, self.modulus, self.work / self.range, self.range, self.known)
 
     @cached_property
     def _nodes(self) -> Zone:
         """Contacts at which the equations are solved, by rising a from 0 on, limit points among them."""
-        least = FIRST * self.known
-        edge = np.concatenate([np.linspace(0.0, least, NEAR, endpoint=False), np.geomspace(least, self.known, POINTS)])
+        first = 1e-3 * self.known
+        edge = np.concatenate([np.linspace(0.0, first, 40, endpoint=False), np.geomspace(first, self.known, 400)])
         edge = beside_kinks(edge, self.profile)
         edge = np.unique(np.concatenate([edge, self._folds(edge)]))
         return self.equations.states(edge, self.equations.widths(edge))
 
     def _folds(self, edge: Array) -> Array:
-        """a [LU] where d has an extremum, between those of its neighbours on a grid."""
+        """Return the radii a [LU] at which d has an extremum, each between two neighbours of a grid (n,) [LU]."""
         from scipy.optimize import elementwise
 
         d = self.equations.states(edge, self.equations.widths(edge)).displacement
@@ -114,113 +102,133 @@ class Maugis(Zoned):
         turns = np.flatnonzero(slope[1:] != slope[:-1]) + 1
         if not turns.size:
             return turns.astype(np.float64)
-        found = elementwise.find_minimum(
+        extrema = elementwise.find_minimum(
             lambda a, sign: sign * self.equations.states(a, self.equations.widths(a)).displacement,
             (edge[turns - 1], edge[turns], edge[turns + 1]),
             args=(np.sign(slope[turns]),),
         )
-        return np.asarray(found.x)
+        return np.asarray(extrema.x)
 
     @cached_property
     def curve(self) -> Zone:
-        """All states, from c = 0 on: before contact, and by cubics between contacts."""
+        """All states from c = 0 on: explicit before contact, then by cubics between the solved contacts."""
         from scipy.interpolate import CubicSpline
 
         nodes = self._nodes
         reach = nodes.reach[0] * np.linspace(0.0, 1.0, BEFORE, endpoint=False)
-        none = np.zeros_like(reach)
-        columns = [[none], [reach], [self.equations.before(reach)], [-math.pi * self.equations.stress * reach**2]]
+        untouched = np.zeros_like(reach)
+        columns = [[untouched], [reach], [self.equations.before(reach)], [-math.pi * self.equations.stress * reach**2]]
         # Each stretch between kinks has its own cubics: beyond a kink d rises as a root.
-        ends = [0, *(at for at in np.searchsorted(nodes.edge, self.profile.kinks) if 0 < at < nodes.edge.size - 1)]
-        for first, last in pairwise([*ends, nodes.edge.size - 1]):
-            own, number = slice(first, last + 1), np.arange(last - first + 1.0)
-            edge = np.interp(np.linspace(0.0, last - first, BETWEEN * (last - first) + 1), number, nodes.edge[own])
+        kinks = np.searchsorted(nodes.edge, self.profile.kinks)
+        ends = [0, *(kink for kink in kinks if 0 < kink < nodes.edge.size - 1), nodes.edge.size - 1]
+        for first, last in pairwise(ends):
+            stretch, number = slice(first, last + 1), np.arange(last - first + 1.0)
+            edge = np.interp(np.linspace(0.0, last - first, BETWEEN * (last - first) + 1), number, nodes.edge[stretch])
             start = 0 if first == 0 else 1
             columns[0].append(edge[start:])
             for column, values in zip(columns[1:], list(vars(nodes).values())[1:], strict=True):
-                column.append(CubicSpline(nodes.edge[own], values[own])(edge[start:]))
+                column.append(CubicSpline(nodes.edge[stretch], values[stretch])(edge[start:]))
         return Zone(*map(np.concatenate, columns))
 
-    def places(self, displacements: Array, place: float = APART) -> Array:
-        """Places on the curve of a contact that goes from one of them along displacements [LU]: indices, or APART."""
+    def positions(self, displacements: Array, start: float = APART) -> Array:
+        """Return the positions on the curve, (m,), of a contact along displacements (m,) [LU] from a `start` on it."""
         d = self.curve.displacement
-        start = -math.inf if place == APART else float(np.interp(place, np.arange(d.size), d))
-        every, found = np.append(start, displacements), np.full(displacements.size + 1, place)
-        for leg in legs(every):
+        first = -math.inf if start == APART else float(np.interp(start, np.arange(d.size), d))
+        path, positions = np.append(first, displacements), np.full(displacements.size + 1, start)
+        for leg in legs(path):
             before = max(leg.start - 1, 0)
-            wanted, at = every[leg], int(max(found[before], 0.0))
-            if wanted[-1] > every[before]:
-                low = at + np.searchsorted(np.maximum.accumulate(d[at + 1 :]), wanted)
+            wanted, point = path[leg], int(max(positions[before], 0.0))
+            if wanted[-1] > path[before]:
+                low = point + np.searchsorted(np.maximum.accumulate(d[point + 1 :]), wanted)
             else:
-                low = at - np.searchsorted(-np.minimum.accumulate(d[at::-1]), -wanted)
-            is_held = (low >= 0) & ((found[before] != APART) | (wanted >= d[0]))
-            found[leg] = np.where(is_held, _between(d, np.clip(low, 0, d.size - 2), wanted), APART)
-        return found[1:]
+                low = point - np.searchsorted(-np.minimum.accumulate(d[point::-1]), -wanted)
+            is_held = (low >= 0) & ((positions[before] != APART) | (wanted >= d[0]))
+            positions[leg] = np.where(is_held, _between(d, np.clip(low, 0, d.size - 2), wanted), APART)
+        return positions[1:]
 
-    def at(self, places: Array) -> Zone:
-        """The states at places of the curve; bodies apart feel nothing, at a displacement that is not known."""
-        number, held = np.arange(self.curve.edge.size, dtype=np.float64), places != APART
-        return Zone(*(np.where(held, np.interp(places, number, one), 0.0) for one in vars(self.curve).values()))
+    def states_at(self, positions: Array) -> Zone:
+        """Return the states at positions on the curve, (m,); of bodies apart all columns are 0, d included."""
+        number, held = np.arange(self.curve.edge.size, dtype=np.float64), positions != APART
+        columns = vars(self.curve).values()
+        return Zone(*(np.where(held, np.interp(positions, number, column), 0.0) for column in columns))
 
-    def solved(self, displacements: Array, places: Array) -> Zone:
-        """The states at displacements [LU] near places of the curve, exactly."""
-        from scipy.optimize import elementwise
-
-        guess, nodes = self.at(places), self._nodes
+    def solved(self, displacements: Array, positions: Array) -> Zone:
+        """Return the states at displacements (m,) [LU] near positions (m,) on the curve, to all digits."""
+        guess = self.states_at(positions)
         edge, width = np.zeros_like(displacements), np.zeros_like(displacements)
-        touching, near = guess.edge > 0.0, (guess.edge == 0.0) & (places != APART)
+        touching, attracted = guess.edge > 0.0, (guess.edge == 0.0) & (positions != APART)
         if touching.any():
-            d = displacements[touching]
-            low = np.clip((places[touching] - BEFORE) // BETWEEN, 0, nodes.edge.size - 2).astype(np.intp)
-            low -= (nodes.displacement[low] > d) & (low > 0)
-            low += (nodes.displacement[low + 1] < d) & (low < nodes.edge.size - 2)
-
-            def error(edge: Array, d: Array) -> Array:
-                return self.equations.gap_error(
-                    edge, np.maximum(self.profile.height(edge) - d, 0.0) / self.equations.ratio, d
-                )
-
-            ends = nodes.edge[low], nodes.edge[low + 1]
-            found = elementwise.find_root(error, ends, args=(d,), maxiter=DOUBLINGS)
-            nearer = np.where(np.abs(error(ends[0], d)) < np.abs(error(ends[1], d)), *ends)
-            edge[touching] = np.where(found.success, found.x, nearer)
-            width[touching] = np.maximum(self.profile.height(edge[touching]) - d, 0.0) / self.equations.ratio
-        if near.any():
-            d = displacements[near]
-            low = np.clip(places[near].astype(np.intp), 0, BEFORE - 1)
-            ends = self.curve.reach[low], self.curve.reach[low + 1]
-            found = elementwise.find_root(lambda c, d: self.equations.before(c) - d, ends, args=(d,), maxiter=DOUBLINGS)
-            width[near] = np.where(found.success, found.x, guess.reach[near])
-        force = np.where(places == APART, 0.0, self.equations.forces(edge, width, displacements))
+            edge[touching], width[touching] = self._touching(displacements[touching], positions[touching])
+        if attracted.any():
+            root, success = self._attracted(displacements[attracted], positions[attracted])
+            width[attracted] = np.where(success, root, guess.reach[attracted])
+        force = np.where(positions == APART, 0.0, self.equations.forces(edge, width, displacements))
         return Zone(edge, np.hypot(edge, width), displacements, force)
 
-    def held_at(self, displacement: float) -> float:
-        """F [FU] at a displacement [LU] of a contact that is unloaded from the widest, exactly."""
-        place = np.interp(displacement, self.held.displacement, self._unloaded[0])
-        return float(self.solved(np.asarray([displacement]), np.atleast_1d(place)).force[0])
+    def _touching(self, displacements: Array, positions: Array) -> tuple[Array, Array]:
+        """Return a and s, (m,) [LU], of contacts at displacements (m,) [LU] near positions (m,) on the curve."""
+        from scipy.optimize import elementwise
 
-    # --- what a predictor is asked
+        nodes = self._nodes
+        low = np.clip((positions - BEFORE) // BETWEEN, 0, nodes.edge.size - 2).astype(np.intp)
+        low -= (nodes.displacement[low] > displacements) & (low > 0)
+        low += (nodes.displacement[low + 1] < displacements) & (low < nodes.edge.size - 2)
+
+        def width(edge: Array, d: Array) -> Array:
+            return np.asarray(np.maximum(self.profile.height(edge) - d, 0.0) / self.equations.ratio)
+
+        def error(edge: Array, d: Array) -> Array:
+            return self.equations.gap_error(edge, width(edge, d), d)
+
+        low_end, high_end = nodes.edge[low], nodes.edge[low + 1]
+        root = elementwise.find_root(error, (low_end, high_end), args=(displacements,), maxiter=DOUBLINGS)
+        is_low = np.abs(error(low_end, displacements)) < np.abs(error(high_end, displacements))
+        edge = np.where(root.success, root.x, np.where(is_low, low_end, high_end))
+        return edge, width(edge, displacements)
+
+    def _attracted(self, displacements: Array, positions: Array) -> tuple[Array, NDArray[np.bool_]]:
+        """Return c, (m,) [LU], of bodies that attract each other and do not touch, and whether it was found."""
+        from scipy.optimize import elementwise
+
+        low = np.clip(positions.astype(np.intp), 0, BEFORE - 1)
+        ends = self.curve.reach[low], self.curve.reach[low + 1]
+        root = elementwise.find_root(
+            lambda c, d: self.equations.before(c) - d, ends, args=(displacements,), maxiter=DOUBLINGS
+        )
+        return np.asarray(root.x), np.asarray(root.success)
+
+    def held_at(self, displacement: float) -> float:
+        """Return F [FU] at a displacement [LU] of a contact that is unloaded from the widest, to all digits."""
+        position = np.interp(displacement, self.held.displacement, self._unloaded[0])
+        return float(self.solved(np.asarray([displacement]), np.atleast_1d(position)).force[0])
+
+    # --- interface of a predictor
+
+    @cached_property
+    def _round_off(self) -> float:
+        """Fall of d along the curve [LU] that counts as round-off."""
+        return ROUND_OFF * float(np.ptp(self.curve.displacement))
 
     @cached_property
     def _unloaded(self) -> tuple[list[float], list[float]]:
-        """Places on the curve that a contact passes which is unloaded from the widest, rising; d [LU] where it jumps.
+        """Rising positions on the curve of a contact that is unloaded from the widest, both ends of a jump, and jumps.
 
-        At a jump they have both its ends.
+        The latter are their displacements [LU], rising.
         """
-        d, least = self.curve.displacement, SAME * float(np.ptp(self.curve.displacement))
+        d = self.curve.displacement
         passed = np.flatnonzero(d <= np.append(np.minimum.accumulate(d[::-1])[::-1][1:], np.inf)).tolist()
-        places, jumps = [float(passed[0])], list[float]()
+        positions, jumps = [float(passed[0])], list[float]()
         for before, after in pairwise(passed):
-            if after > before + 1 and d[before + 1 : after].max() > d[after] + least:
-                places.append(float(_between(d, before, d[after])))
+            if after > before + 1 and d[before + 1 : after].max() > d[after] + self._round_off:
+                positions.append(float(_between(d, before, d[after])))
                 jumps.append(float(d[after]))
-            places.append(float(after))
-        return places, jumps if passed[0] == 0 else [float(d[passed[0]]), *jumps]
+            positions.append(float(after))
+        return positions, jumps if passed[0] == 0 else [float(d[passed[0]]), *jumps]
 
     @cached_property
     def held(self) -> Zone:
-        """The states of a contact that is unloaded from the widest, by rising d."""
-        return self.at(np.asarray(self._unloaded[0]))
+        """States of a contact that is unloaded from the widest, by rising d."""
+        return self.states_at(np.asarray(self._unloaded[0]))
 
     @cached_property
     def _grid(self) -> tuple[Array, Array, Array, int]:
@@ -228,120 +236,124 @@ class Maugis(Zoned):
 
     @property
     def limits(self) -> tuple[float, ...]:
-        """Displacements [LU] at which a contact that is unloaded jumps, rising; at the first it is lost."""
+        """Displacements [LU] at which a contact that is unloaded jumps, rising; at the first one it is lost."""
         return tuple(self._unloaded[1])
 
     @cached_property
     def critical_radius(self) -> float:
-        """a [LU] at the force maximum; 0 where that comes before contact."""
+        """Contact radius [LU] at the force maximum; 0 where that comes before contact."""
         from scipy.optimize import elementwise
 
         nodes = self._nodes
-        top = int(np.argmin(nodes.force))
-        if not 0 < top < nodes.edge.size - 1:
-            return float(nodes.edge[top])
+        peak = int(np.argmin(nodes.force))
+        if not 0 < peak < nodes.edge.size - 1:
+            return float(nodes.edge[peak])
 
         def force(edge: Array) -> Array:
             return self.equations.states(edge, self.equations.widths(edge)).force
 
-        found = elementwise.find_minimum(force, tuple(nodes.edge[top + i : top + i + 1] for i in (-1, 0, 1)))
-        return float(found.x[0])
+        maximum = elementwise.find_minimum(force, tuple(nodes.edge[peak + i : peak + i + 1] for i in (-1, 0, 1)))
+        return float(maximum.x[0])
 
     def half_widths(self, displacements: Array, gap: float) -> Array:
-        """c(d) [LU] of a contact that is held, at least a spacing."""
+        """Return c(d) of bodies in contact, (m,) [LU], at least a spacing; it is the same for any `gap`."""
         return np.maximum(self.spacing, self.reaches(displacements))
 
     def reaches(self, displacements: Array) -> Array:
-        """The same without regard to the spacing."""
+        """Return the radii c(d) of the attraction of the continuous body, (m,) [LU], at displacements (m,) [LU]."""
         return np.asarray(np.interp(displacements, self.held.displacement, self.held.reach))
 
     def require_one_edge(self) -> None:
-        """Nothing: where the edge would jump, the curve has a limit point."""
+        """Accept any profile: where the edge would jump, the curve has a limit point."""
 
     def energy(self, displacement: float, radius: float) -> float:
-        """See `energy_of`, of a contact that is unloaded from the widest."""
+        """Return the energy [FU·LU] of a contact that is unloaded from the widest, of a radius a [LU] at d [LU]."""
         width = (float(self.profile.height(np.asarray([radius]))[0]) - displacement) / self.equations.ratio
         c = math.hypot(radius, width) if radius > 0.0 else float(self.reaches(np.asarray([displacement]))[0])
         return 0.0 if displacement < self.held.displacement[0] else self.energy_of(radius, c, displacement)
 
     def energy_of(self, a: float, c: float, d: float) -> float:
-        """E* ∫₀ᵃ (d−g)² dx − (4σ₀²/E*) ∫ₐᶜ (c²−x²) dx + 4σ₀ ∫ₐᶜ (g−d) √(c²−x²) dx − πc²W [FU·LU], 0 of bodies apart."""
+        """Return the energy [FU·LU] of a state, 0 of bodies apart.
+
+        E* ∫₀ᵃ (d−g)² dx − (4σ₀²/E*) ∫ₐᶜ (c²−x²) dx + 4σ₀ ∫ₐᶜ (g−d) √(c²−x²) dx − πc²W
+        """
         if c == 0.0:
             return 0.0
-        inner, outer = (
-            np.linspace(0.0, a, ENERGY_PLACES),
-            c * np.sin(np.linspace(math.asin(a / c), 0.5 * math.pi, ENERGY_PLACES)),
-        )
+        inner = np.linspace(0.0, a, POINTS)
+        outer = c * np.sin(np.linspace(math.asin(a / c), 0.5 * math.pi, POINTS))
         pressed = self.modulus * float(np.trapezoid((d - self.profile.height(inner)) ** 2, inner))
         root = np.sqrt((c - outer) * (c + outer))
-        drawn = 4.0 * self.equations.stress * float(np.trapezoid((self.profile.height(outer) - d) * root, outer))
+        attraction = 4.0 * self.equations.stress * float(np.trapezoid((self.profile.height(outer) - d) * root, outer))
         disc = c * c * (c - a) - (c**3 - a**3) / 3.0
-        return pressed - 4.0 * self.equations.stress**2 / self.modulus * disc + drawn - math.pi * c * c * self.work
+        return pressed - 4.0 * self.equations.stress**2 / self.modulus * disc + attraction - math.pi * c * c * self.work
 
-    def energy_at(self, place: float) -> float:
-        """The same at a place of the curve."""
-        zone = self.at(np.asarray([place]))
-        return self.energy_of(*(float(one[0]) for one in (zone.edge, zone.reach, zone.displacement)))
+    def energy_at(self, position: float) -> float:
+        """Return the energy [FU·LU] of the state at a position on the curve."""
+        zone = self.states_at(np.asarray([position]))
+        return self.energy_of(*(float(column[0]) for column in (zone.edge, zone.reach, zone.displacement)))
 
     @cached_property
     def snaps_in(self) -> list[float]:
         """Displacements [LU] at which a contact that is loaded jumps, rising."""
         d = self.curve.displacement
         passed = np.flatnonzero(d >= np.maximum.accumulate(d))
-        return [float(d[a]) for a, b in pairwise(passed) if d[a + 1 : b].min(initial=np.inf) < d[a] - SAME * np.ptp(d)]
+        return [float(d[a]) for a, b in pairwise(passed) if d[a + 1 : b].min(initial=np.inf) < d[a] - self._round_off]
 
     @cached_property
     def _falls(self) -> list[int]:
-        """How often the displacement falls along the curve, up to each of its points."""
-        found: list[int] = np.cumsum(np.diff(self.curve.displacement, prepend=-np.inf) < 0.0).tolist()
-        return found
+        """Number of steps up to each point of the curve in which the displacement falls."""
+        falls: list[int] = np.cumsum(np.diff(self.curve.displacement, prepend=-np.inf) < 0.0).tolist()
+        return falls
 
     def lost_between(self, before: float, after: float) -> float:
-        """Energy [FU·LU] that a contact loses as it jumps on its way from one place of the curve to another."""
+        """Return the energy [FU·LU] that a jump between two positions on the curve dissipates, 0 without a jump."""
         low, high = sorted((math.ceil(max(before, 0.0)), math.ceil(max(after, 0.0))))
         if self._falls[high] == self._falls[low]:
             return 0.0
-        way = 1 if after > before else -1
-        d = way * self.curve.displacement[low : high + 1][::way]
-        least = SAME * float(np.ptp(self.curve.displacement))
+        direction = 1 if after > before else -1
+        d = direction * self.curve.displacement[low : high + 1][::direction]
         passed = np.maximum.accumulate(d)
-        if (passed - d).max() < least:
+        if (passed - d).max() < self._round_off:
             return 0.0
-        top = int(np.argmax(passed == passed[int(np.argmax(passed - d >= least))]))
-        place = float(low + top if way > 0 else high - top)
-        beyond = self.places(np.asarray([way * (float(d[top]) + least)]), place)
-        return self.energy_at(place) - self.energy_at(float(beyond[0]))
+        limit = int(np.argmax(passed == passed[int(np.argmax(passed - d >= self._round_off))]))
+        position = float(low + limit if direction > 0 else high - limit)
+        beyond = self.positions(np.asarray([direction * (float(d[limit]) + self._round_off)]), position)
+        return self.energy_at(position) - self.energy_at(float(beyond[0]))
 
 
 def _between(column: Array, low: NDArray[np.intp] | int, values: Array) -> Array:
-    """The places of values, (m,), in the cells of a column that begin at `low`."""
+    """Return the positions of values, (m,), in the cells of a column that begin at the indices `low`."""
     rise = column[low + 1] - column[low]
     share = np.divide(values - column[low], rise, out=np.zeros_like(rise), where=rise > 0.0)
     return np.asarray(low + np.clip(share, 0.0, 1.0))
 
 
 def _with_range(jkr: Jkr, reach: float, surface: Profile, wanted: float, load: float) -> Maugis:
-    """The predictor of a contact whose attraction has a range [LU], known as far as an experiment needs.
+    """Return the law of an attraction of a range `reach` [LU], computed as far as an experiment needs.
 
     Raises:
-        SettingsError: the attraction would reach past the body, or so little beyond the contact, by c − a = πE*h₀²/4W,
-            that no digits show it.
+        SettingsError: the attraction would exceed the body, or its width beyond the contact, c − a = πE*h₀²/4W, is too
+            small to be resolved.
     """
-    least = math.sqrt(4.0 * RESOLVED * jkr.fixed_grips[0] * jkr.work / (math.pi * jkr.modulus))
+    # Over the radius under fixed grips. Measured: at 1e-10 forces are off by 4e-7, and below that the curve is not
+    # monotonic.
+    least_width = 1e-9
+    least = math.sqrt(4.0 * least_width * jkr.fixed_grips[0] * jkr.work / (math.pi * jkr.modulus))
     if reach < least:
         given, most = apart(reach, least)
         raise SettingsError(
             f"an adhesion.range of {given} LU is too short to be resolved beside this contact, at least {most} LU are "
             "needed: the contact is JKR's, which has none: leave adhesion.range out"
         )
-    own = {one.name: getattr(jkr, one.name) for one in fields(jkr)} | {"range": reach, "surface": surface}
-    end = Maugis(**own | {"known": jkr.profile.reach}).equations.widest()
+    parameters = {entry.name: getattr(jkr, entry.name) for entry in fields(jkr)}
+    parameters |= {"range": reach, "surface": surface}
+    end = Maugis(**parameters | {"known": jkr.profile.reach}).equations.widest()
     known = min(jkr.known, end)
     while True:
-        estimate = Maugis(**own | {"known": known})
-        _, displacement, force = estimate.end
-        if estimate.is_beyond(wanted, load) or (known == end and displacement >= wanted and force >= load):
-            return estimate
+        law = Maugis(**parameters | {"known": known})
+        _, displacement, force = law.end
+        if law.is_beyond(wanted, load) or (known == end and displacement >= wanted and force >= load):
+            return law
         if known == end:
             raise covered(jkr.profile.reach)
         known = min(2.0 * known, end)
@@ -349,56 +361,59 @@ def _with_range(jkr: Jkr, reach: float, surface: Profile, wanted: float, load: f
 
 @dataclass(frozen=True, eq=False)
 class MaugisCells(ZonedCells):
-    """The same where the attraction has a range."""
+    """The cells of a chain on a rigid plane, with an attraction that has a range."""
 
     law: Maugis
 
     @property
     def apart(self) -> float:
-        """Where a contact that is unloaded feels nothing any more [LU]."""
+        """Displacement [LU] below which a contact that is unloaded has no force."""
         return float(self.law.held.displacement[0])
 
     def held(self, displacements: Array) -> Array:
-        """F [FU] of a contact that is unloaded."""
+        """Return F, (m,) [FU], of a contact that is unloaded, at displacements (m,) [LU]."""
         return self.law.contact_forces(displacements)
 
     def displacement_at(self, force: float) -> float:
-        """By the equations, from the displacement between points of the curve on."""
-        found, step = super().displacement_at(force), STIFF * self.law.range
-        low, high = self.held(np.asarray([found - step, found + step])).tolist()
-        for _ in range(LOOKS if high > low and found - step > self.apart else 0):
-            found += (force - self.law.held_at(found)) * 2.0 * step / (high - low)
-        return found
+        """Return the largest displacement [LU] that carries a force [FU], by four Newton steps from the curve."""
+        displacement, step = super().displacement_at(force), 1e-3 * self.law.range
+        low, high = self.held(np.asarray([displacement - step, displacement + step])).tolist()
+        for _ in range(4 if high > low and displacement - step > self.apart else 0):
+            displacement += (force - self.law.held_at(displacement)) * 2.0 * step / (high - low)
+        return displacement
 
     @property
     def limits(self) -> tuple[float, ...]:
-        """Where it jumps [LU]."""
+        """Displacements [LU] at which a contact that is unloaded jumps, rising."""
         return self.law.limits
 
     def unloading(self, start: float, end: float, count: int) -> Array:
-        """Evenly in the radius, since a stiff contact is lost on a small part of the way, and beyond it in d."""
-        own = self.law.held
-        touching = own.edge > 0.0
-        a, d = own.edge[touching], own.displacement[touching]
-        rows = np.interp(np.linspace(float(np.interp(start, d, a)), float(a[0]), count + 1)[1:], a, d)
+        """Return the displacements [LU] of load steps in unloading, at equal steps of the radius.
+
+        A stiff contact is lost in a small part of the displacement. Beyond contact they are at equal steps of d.
+        """
+        touching = self.law.held.edge > 0.0
+        a, d = self.law.held.edge[touching], self.law.held.displacement[touching]
+        steps = np.interp(np.linspace(float(np.interp(start, d, a)), float(a[0]), count + 1)[1:], a, d)
         beyond = np.linspace(float(d[0]), end, count // 2 + 1)[1:] if d[0] > end else np.asarray([])
-        return np.append(rows[(rows < start) & (rows > end)], np.append(beyond, [] if beyond.size else [end]))
+        return np.append(steps[(steps < start) & (steps > end)], np.append(beyond, [] if beyond.size else [end]))
 
     def work(self, start: float, every: int) -> float:
-        """By the points of the curve, which has kinks where the bodies touch and jumps."""
+        """Return ∫ −F dd [FU·LU] in unloading from a displacement [LU], by the points of the curve and its kinks."""
         d, force = self.law.held.displacement, self.law.held.force
         last = int(np.searchsorted(d, start))
-        at, own = np.append(d[:last], start), np.append(force[:last], np.interp(start, d, force))
-        chosen = np.unique([*range(0, at.size, every), at.size - 1])
-        return -float(np.trapezoid(own[chosen], at[chosen]))
+        force = np.append(force[:last], np.interp(start, d, force))
+        d = np.append(d[:last], start)
+        chosen = np.unique([*range(0, d.size, every), d.size - 1])
+        return -float(np.trapezoid(force[chosen], d[chosen]))
 
     def radii(self, displacements: Array) -> Array:
-        """See `Particles.radii`."""
+        """Return the contact radii (m,) [LU] in unloading, at displacements (m,) [LU]."""
         return self.law.radii(displacements)
 
     @property
-    def top(self) -> float:
-        """See `Particles`; of one that comes before contact the place on the curve."""
+    def critical_displacement(self) -> float:
+        """Displacement [LU] of the force maximum in unloading; before contact, that of a point of the curve."""
         law, edge = self.law, np.asarray([self.law.critical_radius])
         if edge[0] > 0.0:
             return float(law.equations.states(edge, law.equations.widths(edge)).displacement[0])
@@ -406,20 +421,20 @@ class MaugisCells(ZonedCells):
 
     @property
     def critical_radius(self) -> float:
-        """See `Particles.critical_radius`."""
+        """Contact radius [LU] at the force maximum; 0 where that comes before contact."""
         return self.law.critical_radius
 
     @property
     def jumps(self) -> tuple[float, ...]:
-        """There, where a contact that is loaded jumps, and where the attraction begins."""
+        """Displacements [LU] at which the force jumps, in unloading and in loading, and where the attraction begins."""
         return (*self.limits, *self.law.snaps_in, -self.law.range)
 
     def energies(self, path: Path) -> tuple[float, float]:
-        """U(a, c, d) of Maugis; what it jumps by from one place of the curve to another."""
-        places = self.law.places(path.displacement).tolist()
-        lost = sum(self.law.lost_between(*way) for way in pairwise([APART, *places]))
-        return self.law.energy_at(places[-1]), lost
+        """Return U(a, c, d) of Maugis, and its losses at jumps along the path [FU·LU]."""
+        positions = self.law.positions(path.displacement).tolist()
+        lost = sum(self.law.lost_between(*jump) for jump in pairwise([APART, *positions]))
+        return self.law.energy_at(positions[-1]), lost
 
     def prescribed(self, path: Path) -> dict[str, Array]:
-        """With the edges of the contact, from limit point to limit point of the curve."""
-        return self._edges_of(self.law.solved(path.displacement, self.law.places(path.displacement)))
+        """Return displacements and edges of load steps, (m,) [LU], by the states along the curve and its jumps."""
+        return self._edges_of(self.law.solved(path.displacement, self.law.positions(path.displacement)))

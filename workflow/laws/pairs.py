@@ -1,4 +1,4 @@
-"""Particles of opposite chains, and springs on a rigid plane, which are pairs without a memory."""
+"""Pairs of particles of opposite chains, and springs on a rigid plane, which are pairs without a memory."""
 
 from __future__ import annotations
 
@@ -20,37 +20,34 @@ from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
 T = TypeVar("T", bound=Law)
-GRID = 4000
-TOUCHING, DECADES = 1e-16, 60
-"""Overlap over the largest one up to which that of a spring on a plane keeps its digits, and over how many gaps."""
 
 
 @dataclass(frozen=True, eq=False)
 class Independent(Law):
-    """Particles that know their own spring and what is opposite, and nothing of their neighbours."""
+    """Particles without neighbours: each has its own spring and the opposite chain or a rigid plane."""
 
-    beside: ClassVar[tuple[str, ...]] = ("pressed", "interaction")
+    closed_forms: ClassVar[tuple[str, ...]] = ("pressed", "interaction")
     exact: ClassVar[tuple[str, ...]] = ("pressed",)
 
     @classmethod
     def applies(cls, scene: Scene) -> bool:
-        """Where no other does."""
+        """Return True: this law is the last one, of every scene without another."""
         return True
 
     @classmethod
     def range_of(cls, scene: Scene, assumed: float) -> float:
-        """That of Lennard-Jones surfaces with the force-free distance of an interaction."""
+        """Return the range [LU] of Lennard-Jones surfaces with the same force-free distance as the interaction."""
         law = interaction_law(scene)
         return law.force_free_distance() / LENNARD_JONES_STRESS if law and law.attraction else 0.0
 
     @classmethod
     def of(cls, scene: Scene, profile: Profile) -> Self:
-        """One-sided springs."""
-        found: Self = on_plane(cls, profile, scene.bodies.spacing, scene.bulk_stiffness)
-        return found
+        """Return the law of one-sided springs under a profile."""
+        law: Self = on_plane(cls, profile, scene.bodies.spacing, scene.bulk_stiffness)
+        return law
 
     def particles(self, x: Array, deepest: float) -> Particles:
-        """See `Law`."""
+        """Return the springs at positions x, (n,) [LU]."""
         return Springs(self, x, deepest)
 
 
@@ -60,26 +57,26 @@ class Springs(Particles):
 
     @cached_property
     def heights(self) -> tuple[Array, NDArray[np.intp]]:
-        """Undeformed gaps at displacement 0 [LU], each once, and which is whose."""
+        """Undeformed gaps at displacement 0 [LU], without repetition, and the index of each particle's gap, (n,)."""
         gaps = self.law.rest + self.shape.height(np.abs(self.x))
-        found, own = np.unique(gaps, return_inverse=True)
-        return found, own
+        heights, indices = np.unique(gaps, return_inverse=True)
+        return heights, indices
 
     @property
     def apart(self) -> float:
-        """Where nothing is felt any more [LU]."""
-        return self.law.rest - float(self.law.gap[-1])
+        """Displacement [LU] below which no pair has a force."""
+        return self.law.rest - self.law.cutoff_gap
 
     def held(self, displacements: Array) -> Array:
-        """On the branch of joined pairs [FU]."""
-        heights, own = self.heights
-        each = self._forces(heights - displacements[:, None], np.ones(heights.size, dtype=bool))
-        return np.asarray(each @ np.bincount(own))
+        """Return F [FU] at displacements (m,) [LU], all pairs on the branch of joined ones."""
+        heights, indices = self.heights
+        forces = self._forces(heights - displacements[:, None], np.ones(heights.size, dtype=bool))
+        return np.asarray(forces @ np.bincount(indices))
 
     def carried(self, columns: Mapping[str, Array]) -> Followed:
-        """A pair that has snapped together stays so up to where it snaps apart; see `Particles.carried`."""
-        (heights, own), displacements = self.heights, columns["displacement"]
-        counts = np.bincount(own)
+        """Return the forces of load steps; a pair that has snapped in stays joined up to its snap-out."""
+        (heights, indices), displacements = self.heights, columns["displacement"]
+        counts = np.bincount(indices)
         joined = np.zeros(heights.size, dtype=bool)
         total, memory = np.empty(displacements.size), []
         for leg in legs(displacements):
@@ -89,27 +86,28 @@ class Springs(Particles):
             joined = (joined | (last < self.law.joins)) & (last < self.law.snap[0])
 
         def force(state: int) -> Array:
-            return np.asarray(self._forces(heights - displacements[state], memory[state])[own])
+            return np.asarray(self._forces(heights - displacements[state], memory[state])[indices])
 
         return Followed(self.x, total, force)
 
     def energies(self, path: Path) -> tuple[float, float]:
-        """½ k Σ u²; nothing is lost."""
-        heights, own = self.heights
+        """Return the elastic energy ½ k Σ u² [FU·LU] at the end of a path, and 0: none is dissipated."""
+        heights, indices = self.heights
         pressed = np.maximum(path.displacement[-1] - heights, 0.0)
-        return 0.5 * self.law.stiffness * float(pressed**2 @ np.bincount(own)), 0.0
+        return 0.5 * self.law.stiffness * float(pressed**2 @ np.bincount(indices)), 0.0
 
     def _forces(self, gaps: Array, joined: NDArray[np.bool_]) -> Array:
-        estimate = self.law
-        inner = np.interp(gaps, estimate.gap, estimate.force, right=0.0)
-        if not estimate.snaps or joined.all():
+        """Return the forces [FU] of pairs at undeformed gaps (…, n) [LU], by whether each has snapped in, (n,)."""
+        law = self.law
+        inner = np.interp(gaps, law.gap, law.force, right=0.0)
+        if not law.snaps or joined.all():
             return np.asarray(inner)
-        assert estimate.outer is not None
-        return np.where(joined, inner, np.interp(gaps, estimate.outer, estimate.force, right=0.0))
+        assert law.outer is not None
+        return np.where(joined, inner, np.interp(gaps, law.outer, law.force, right=0.0))
 
 
 def interaction_law(scene: Scene) -> DoubleExponential | None:
-    """The pair interaction of the scene, or None on a rigid plane."""
+    """Return the pair interaction of a scene, or None on a rigid plane."""
     if scene.interaction is None:
         return None
     terms = scene.interaction
@@ -118,7 +116,7 @@ def interaction_law(scene: Scene) -> DoubleExponential | None:
 
 
 def row_force(law: DoubleExponential, r: Array, spacing: float, cutoff: float) -> Array:
-    """Force [FU] of a straight chain of opposite particles on the one facing it, at distances r [LU], shape (n,)."""
+    """Return the force [FU] of a straight chain on the opposite particle, (n,), at distances r, (n,) [LU]."""
     offsets = spacing * np.arange(int(cutoff / spacing) + 1)
     distance = np.hypot(r[:, None], offsets[None, :])
     forces = np.where(distance <= cutoff, law.force(distance), 0.0) * r[:, None] / distance
@@ -133,15 +131,24 @@ def of_pairs(
     stiffness: float,
     cutoff: float,
     rest: float,
-    points: int = GRID,
+    points: int = 4000,
     chains: int = 2,
     row: float | None = None,
 ) -> Independent:
-    """The law of particles held by springs `stiffness` [FU/LU] each, in two chains or in the upper one alone.
+    """Return the law of particles on springs of a `stiffness` [FU/LU] each, in two chains or in the upper one alone.
 
-    `row`: spacing [LU] of the opposite row where it differs.
+    Args:
+        law: interaction of a pair.
+        profile: shape of the upper body.
+        spacing: distance of neighbouring particles [LU].
+        stiffness: of one spring [FU/LU].
+        cutoff: distance [LU] at which the interaction ends.
+        rest: distance of the apexes at displacement 0 [LU].
+        points: distances up to the cutoff in the grid of gaps and forces.
+        chains: how many chains have springs.
+        row: spacing [LU] of the opposite chain where it differs.
     """
-    r, force = _row_over(law, row or spacing, cutoff, points)
+    r, force = _force_table(law, row or spacing, cutoff, points)
     undeformed = r - chains * force / stiffness
     rising = np.arange(points) * 1e-12 * cutoff
     gap = np.maximum.accumulate(undeformed) + rising
@@ -154,8 +161,8 @@ def of_pairs(
 
 
 @lru_cache(maxsize=16)  # a law is mostly that of several bodies
-def _row_over(law: DoubleExponential, spacing: float, cutoff: float, points: int) -> tuple[Array, Array]:
-    """Distances [LU] up to the cutoff, and the `row_force` [FU] there."""
+def _force_table(law: DoubleExponential, spacing: float, cutoff: float, points: int) -> tuple[Array, Array]:
+    """Return distances [LU] up to the cutoff, and the `row_force` [FU] there; both (points,)."""
     r = np.linspace(cutoff / points, cutoff, points)
     force = row_force(law, r, spacing, cutoff)
     r.flags.writeable = force.flags.writeable = False
@@ -163,13 +170,17 @@ def _row_over(law: DoubleExponential, spacing: float, cutoff: float, points: int
 
 
 @lru_cache(maxsize=16)  # as of_pairs
-def on_plane(kind: type[T], profile: Profile, spacing: float, stiffness: float, *own: Any) -> T:
-    """The law of one chain on a rigid plane: one-sided springs `stiffness` [FU/LU], and numbers of its `own`."""
-    return kind(*springs(spacing, stiffness), profile, spacing, stiffness, False, 0.0, None, *own)
+def on_plane(kind: type[T], profile: Profile, spacing: float, stiffness: float, *parameters: Any) -> T:
+    """Return the law of one chain on a rigid plane: one-sided springs of a `stiffness` [FU/LU].
+
+    `kind`: class of the law; `parameters`: the fields that it adds to those of `Law`, in their order.
+    """
+    return kind(*springs(spacing, stiffness), profile, spacing, stiffness, False, 0.0, None, *parameters)
 
 
 def springs(spacing: float, stiffness: float) -> tuple[Array, Array, float]:
-    """Gaps [LU], forces [FU] of a spring on a rigid plane, and the distance [LU] of apexes that touch."""
+    """Return gaps [LU] and forces [FU] of a spring on a rigid plane, and the distance [LU] of apexes that touch, 0."""
     deepest = 1e6 * spacing
-    gap = np.append(-np.geomspace(deepest, TOUCHING * deepest, DECADES), 0.0)  # straight lines keep their digits
+    # Straight lines between gaps in geometric progression keep the digits of an overlap, however small.
+    gap = np.append(-np.geomspace(deepest, 1e-16 * deepest, 60), 0.0)
     return gap, -stiffness * gap, 0.0

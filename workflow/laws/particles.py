@@ -1,14 +1,14 @@
-"""Particles as the law of their contact has them; on a rigid plane they are those of the deck, with the same numbers.
+"""Particles of a contact without their neighbours; on a rigid plane they have the same numbers as those of the deck.
 
     springs on a rigid plane    f = k max(0, d − h(x))
-    pairs of opposite chains    f = f(r),  G(r) = r₀ + h(x) − d, on the branch that a pair came by (`pairs`)
-    cells that adhere           f = k φ [d − g(x) + c (1 − φ)], while the contact is held (`jkr`)
-    cells with an attraction    f = ∫ q dx over the cell, where the contact is on its curve (`maugis`)
-    springs with a memory       f = k (part u + Σ share s_j) ≥ 0  (`relaxing`)
+    pairs of opposite chains    f = f(r),  G(r) = r₀ + h(x) − d, on the branch of the pair's history (`pairs`)
+    cells that adhere           f = k φ [d − g(x) + c (1 − φ)], while the bodies are in contact (`jkr`)
+    cells with an attraction    f = ∫ q dx over the cell, by the state of the contact (`maugis`)
+    viscoelastic springs        f = k (part u + Σ share s_j) ≥ 0  (`relaxing`)
     springs with a slider       s ← clip(s + k_t Δu, ±μ f)  (`friction`)
 
-They follow any path of displacements with the memory that they have, all positions at once. On a rigid plane that is
-the plan of a run; of pairs it is a predictor, and of both it gives the discretisation error (`shifted`, `resized`).
+They follow any path of displacements with their own memory, all positions at once. On a rigid plane that is the plan of
+a run; of pairs it is a predictor, and of both it gives the discretisation error (`shifted`, `resized`).
 """
 
 from __future__ import annotations
@@ -22,39 +22,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.workflow.laws.law import Law
+from contact1d.workflow.laws.numerics import ROUND_OFF
 from contact1d.workflow.laws.path import Followed, History, Path, equilibria
 from contact1d.workflow.laws.shape import Profile as Undeformed
-from contact1d.workflow.laws.shape import places_within
+from contact1d.workflow.laws.shape import positions_within
 
 Array = NDArray[np.float64]
-OVERREACH = 0.1
-"""How far beyond the expected displacement a force is searched, over that displacement and a spacing."""
-ROUNDS, POINTS, SNAPPING = 5, 24, 10
-"""How often the bracket of a displacement is cut, and at how many positions: so many times more at first where pairs
-snap, and the force has many maxima."""
-SIDES, LOOKS = np.asarray([-0.5, -0.1, -0.01, -1e-4, 0.0, 1e-4, 0.01, 0.1, 0.5]), 40
-"""Looks for where a force is carried, each beside the secant's place by so much of the bracket, and most of them."""
-EXACT = 1e-13
-"""Difference of the forces of a bracket over the larger one of the first, from which on it is straight."""
-PHASES, MORE_PHASES = (0.25, 0.0), (0.375, 0.25, 0.125, 0.0)
-"""Positions of the apex between particles, over the spacing, that an even chain is compared with; more where a contact
-has several edges, the errors of which may cancel at two positions."""
-UNEVEN, FINER = (0.93, 0.86), (0.5, 0.25)
-"""Spacings over the own one that put a kink of the profile elsewhere between particles, on both sides alike, and on
-which errors converge."""
-NEAREST = 1e-9
-"""Distance from the limit point, over that to the largest displacement, from which positions are examined."""
+MORE_PHASES = (0.375, 0.25, 0.125, 0.0)
+"""`Particles.phases` of a contact with several edges, whose errors may cancel at two of them."""
 
 
 @dataclass(frozen=True, eq=False)
 class Particles(ABC):
-    """The particles of a chain.
+    """The particles of a chain: their forces along any path of displacements.
+
+    A new law's particles have `carried`, `held` and `apart`; every other method has a default.
 
     Attributes:
-        law: of their contact, with the body, its spacing and stiffness.
-        x: positions of the particles [LU], rising.
+        law: contact law, with the body, its spacing and stiffness.
+        x: positions of the particles [LU], rising, (n,).
         deepest: largest displacement that is expected [LU].
-        body: the same body as the deck has it, where the law has it between points of a table.
+        body: the body as the deck has it, where the law's profile is a table of it.
     """
 
     law: Law
@@ -63,103 +51,110 @@ class Particles(ABC):
     body: Undeformed | None = field(default=None, kw_only=True)
 
     dense: ClassVar[int] = 8
-    """Positions in one step of a path that show what its steps miss."""
-    phases: ClassVar[tuple[float, ...]] = PHASES
+    """States in one load step by which the sampling error of a path is estimated."""
+    phases: ClassVar[tuple[float, ...]] = (0.25, 0.0)
+    """Positions of the apex between particles, over the spacing, at which the discretisation error is sampled."""
 
     @property
     def shape(self) -> Undeformed:
-        """What the particles are of."""
+        """Undeformed profile of the particles' body."""
         return self.body or self.law.profile
 
     @property
     def shares_edges(self) -> bool:
-        """Whether the cells at an edge of the contact have the part of its load that is inside of it.
+        """Whether the cell at a contact edge carries the load of its part inside the contact.
 
-        Then sums over particles come closer to the body's own steadily. Whole particles touch or don't, and what they
-        miss goes up and down with the spacing.
+        Then sums over particles converge steadily. Whole particles touch or do not, and their error goes up and down
+        with the spacing.
         """
         return False
 
     def lattices(self, is_pointed: bool) -> tuple[list[Particles], list[Particles]]:
-        """The same with particles elsewhere, and on finer spacings, where errors converge.
+        """Return these particles at other positions between spacings, and on finer spacings, on which errors converge.
 
-        Of a body that `is_pointed`, sums miss as much wherever its apex is, as those of a cone do.
+        The error of a body that `is_pointed`, as a cone, does not depend on the position of its apex: the spacing
+        varies in its place.
         """
-        kinks, finer = self.law.profile.kinks, FINER if self.shares_edges else ()
+        kinks, finer = self.law.profile.kinks, (0.5, 0.25) if self.shares_edges else ()
         phases = MORE_PHASES if kinks else () if finer else self.phases
-        uneven = UNEVEN if kinks or is_pointed else ()
-        beside = [self.resized(factor) for factor in uneven] + [self.shifted(phase) for phase in phases]
-        return beside, [self.resized(factor) for factor in finer]
+        # These put a kink elsewhere between particles, on both sides alike.
+        uneven = (0.93, 0.86) if kinks or is_pointed else ()
+        moved = [self.resized(factor) for factor in uneven] + [self.shifted(phase) for phase in phases]
+        return moved, [self.resized(factor) for factor in finer]
 
     def prescribed(self, path: Path) -> dict[str, Array]:
-        """What load steps along a path that begins apart give a deck, by the names of its columns, (m,)."""
+        """Return the columns, (m,) each, that prescribe the load steps of a path to a deck; the path begins apart."""
         return {"displacement": path.displacement}
 
     @abstractmethod
     def carried(self, columns: Mapping[str, Array]) -> Followed:
-        """Forces of load steps that give such columns."""
+        """Return the forces in load steps with such `prescribed` columns."""
 
     def follow(self, path: Path) -> Followed:
-        """Forces along a path that begins apart."""
+        """Return the forces along a path that begins apart."""
         return self.carried(self.prescribed(path))
 
     @abstractmethod
     def held(self, displacements: Array) -> Array:
-        """F [FU] at displacements (m,) [LU] of a contact that is unloaded from deeper."""
+        """Return F [FU] at displacements (m,) [LU] of a contact that is unloaded from a larger one, (m,)."""
 
     @property
     @abstractmethod
     def apart(self) -> float:
-        """Displacement [LU] below which nothing is felt."""
+        """Displacement [LU] below which a contact that is unloaded has no force."""
 
     def energies(self, path: Path) -> tuple[float, float] | None:
-        """What springs and surfaces store at the end of a path on a rigid plane, and what was lost on it [FU·LU].
+        """Return the energy stored at the end of a path on a rigid plane, and that dissipated along it [FU·LU].
 
-        Found without a force. None where this is not known.
+        Computed independently of the forces, which it checks; None where the law has no expression for them.
         """
         return None
 
     def checked(self, path: Path, finer: int) -> Path:
-        """The path along which the work of a run is compared with `energies`: from apart on, in dense equilibria.
+        """Return the path along which the work of a run is compared with `energies`: dense equilibria from apart on.
 
-        `finer`: times as many. Where forces depend on time, the load steps themselves.
+        `finer`: how many times as many. Where forces depend on time, the path of the load steps themselves.
         """
         return equilibria(path, self.apart, self.jumps, self.law.spacing, finer)
 
     def refined(self, history: History) -> History:
-        """With further moments where a contact needs them: beside its jumps."""
-        return history if history.by_force or not self.jumps else history.beside(self.jumps)
+        """Return a history with further moments on both sides of the jumps of the force."""
+        return history if history.by_force or not self.jumps else history.refined_at(self.jumps)
 
     def moments(self, deepest: float, velocity: float, count: int) -> Array:
-        """Times [TU] of load steps of a pull from a displacement [LU] at a velocity [LU/TU], until nothing is felt."""
+        """Return the times [TU] of load steps of a pull-off from a displacement [LU] at a velocity [LU/TU]."""
         return np.linspace(0.0, (deepest - self.apart) / velocity, count)
 
-    def carrying(self, times: Array, forces: Array) -> tuple[Array, Array | None]:
-        """Displacements [LU] of load steps at times (m,) [TU] under forces (m,) [FU] ≥ 0; velocities, see `Path`."""
-        found = {force: self.displacement_at(force) if force > 0.0 else 0.0 for force in np.unique(forces).tolist()}
-        return np.asarray([found[force] for force in forces.tolist()]), None
+    def displacements_under(self, times: Array, forces: Array) -> tuple[Array, Array | None]:
+        """Return the displacements (m,) [LU] under forces (m,) [FU] ≥ 0 at times (m,) [TU], and the velocities.
 
-    def feeling(self) -> Callable[[float, float, float], float]:
-        """F [FU] of a body that has just touched, by its next displacement [LU], the time until then [TU] and its
-        velocity there [LU/TU].
+        Velocities (m,) [LU/TU] are those of `Path`; None where displacements are straight between the states.
+        """
+        depths = {force: self.displacement_at(force) if force > 0.0 else 0.0 for force in np.unique(forces).tolist()}
+        return np.asarray([depths[force] for force in forces.tolist()]), None
+
+    def force_in_time(self) -> Callable[[float, float, float], float]:
+        """Return the force [FU] on a body that has just touched, as a function to be called state by state.
+
+        Its arguments are the next displacement [LU], the time until then [TU] and the velocity there [LU/TU].
         """
         is_lost = False
 
-        def force(place: float, time: float, velocity: float) -> float:
+        def force(displacement: float, time: float, velocity: float) -> float:
             nonlocal is_lost
-            is_lost = place < self.apart or (is_lost and place < 0.0)
-            return 0.0 if is_lost else float(self.held(np.asarray([place]))[0])
+            is_lost = displacement < self.apart or (is_lost and displacement < 0.0)
+            return 0.0 if is_lost else float(self.held(np.asarray([displacement]))[0])
 
         return force
 
     @property
     def parted(self) -> float | None:
-        """Displacement [LU] at which a contact that is unloaded is lost; None where the history decides that."""
+        """Displacement [LU] at which a contact that is unloaded is lost; None where that depends on the history."""
         return None if self.law.in_time else self.apart
 
     @property
     def limits(self) -> tuple[float, ...]:
-        """Limit points [LU], at which a contact that is unloaded is lost at once; none where its force falls to 0."""
+        """Limit points [LU], at which the force of a contact that is unloaded jumps; empty where it falls to 0."""
         return ()
 
     @property
@@ -168,83 +163,89 @@ class Particles(ABC):
         return self.limits
 
     @property
-    def top(self) -> float | None:
-        """Displacement [LU] of the force maximum of a contact that is unloaded, where the law knows it."""
+    def critical_displacement(self) -> float | None:
+        """Displacement [LU] of the force maximum of a contact that is unloaded; None where the law does not give it."""
         return None
 
     @property
     def critical_radius(self) -> float | None:
-        """Contact radius [LU] at the force maximum, likewise."""
+        """Contact radius [LU] at the force maximum; None where the law does not give it."""
         return None
 
     def unloading(self, start: float, end: float, count: int) -> Array:
-        """Displacements [LU] of load steps of a contact that is unloaded, after the first one.
+        """Return the displacements [LU] of load steps in unloading from `start` to `end` [LU], without the first one.
 
-        Closer towards the end, its limit point, where the force rises as a root.
+        They are closest near the end, a limit point, where the force rises as a root.
         """
         return end + (start - end) * np.linspace(1.0, 0.0, count + 1)[1:] ** 2
 
     def work(self, start: float, every: int) -> float | None:
-        """∫ −F dd [FU·LU] of a contact that is unloaded from a displacement [LU], where its curve is known.
+        """Return ∫ −F dd [FU·LU] in unloading from a displacement [LU], with one point of `every` so many of the curve.
 
-        Of every so manieth point of the curve alone.
+        None where the law has no curve.
         """
         return None
 
     def radii(self, displacements: Array) -> Array | None:
-        """Contact radii [LU] of a contact that is unloaded, where particles need not tell them."""
+        """Return the contact radii (m,) [LU] in unloading; None where they follow from the particles' forces."""
         return None
 
     def shifted(self, phase: float) -> Particles:
-        """The same with the apex `phase` spacings off a particle."""
-        return replace(self, x=places_within(self._reach, self.law.spacing, phase))
+        """Return the particles of the same body with its apex `phase` spacings from a particle."""
+        return replace(self, x=positions_within(self._reach, self.law.spacing, phase))
 
     def resized(self, factor: float) -> Particles:
-        """The same body with its particles `factor` times as far apart."""
-        own = self.law
-        other = replace(own, spacing=factor * own.spacing, stiffness=factor * own.stiffness, force=factor * own.force)
+        """Return the particles of the same body at `factor` times the spacing."""
+        law = self.law
+        law = replace(law, spacing=factor * law.spacing, stiffness=factor * law.stiffness, force=factor * law.force)
         phase = 0.5 if self.x.size % 2 == 0 else 0.0
-        return replace(self, law=other, x=places_within(self._reach, other.spacing, phase))
+        return replace(self, law=law, x=positions_within(self._reach, law.spacing, phase))
 
     @property
     def _reach(self) -> float:
         return float(self.x[-1]) + 0.5 * self.law.spacing
 
     def displacement_at(self, force: float) -> float:
-        """Largest displacement [LU] at which a force [FU] is carried; that of the force maximum if none is."""
-        low, high = self.apart, self.deepest + OVERREACH * (abs(self.deepest) + self.law.spacing)
-        points = POINTS * (SNAPPING if self.law.snaps else 1)
-        # The attraction may end within a millionth of the way: what lies near the limit point is looked at by decades.
-        near = low + (high - low) * np.geomspace(NEAREST, 1.0, points)
-        positions = np.union1d(np.linspace(low, high, points), near)
-        forces = self.held(positions)
-        for _ in range(ROUNDS):
+        """Return the largest displacement [LU] at which a force [FU] is carried; of the force maximum if none is.
+
+        The search goes to a tenth beyond the expected displacement and a spacing.
+        """
+        low, high = self.apart, self.deepest + 0.1 * (abs(self.deepest) + self.law.spacing)
+        rounds, cuts = 5, 24
+        points = cuts * (10 if self.law.snaps else 1)  # where pairs snap, the force has many maxima
+        # The attraction may end within a millionth of the bracket: near the limit point it is scanned by decades.
+        near = low + (high - low) * np.geomspace(ROUND_OFF, 1.0, points)
+        displacements = np.union1d(np.linspace(low, high, points), near)
+        forces = self.held(displacements)
+        for _ in range(rounds):
             if (forces < force).any():
                 break
             # Where none is below, a lower one may lie on either side of the lowest.
             lowest = int(np.argmin(forces))
-            ends = positions[[max(lowest - 1, 0), min(lowest + 1, positions.size - 1)]]
-            positions = np.linspace(ends[0], ends[1], POINTS)
-            forces = self.held(positions)
+            ends = displacements[[max(lowest - 1, 0), min(lowest + 1, displacements.size - 1)]]
+            displacements = np.linspace(ends[0], ends[1], cuts)
+            forces = self.held(displacements)
         else:
-            return float(positions[int(np.argmin(forces))])
-        first = min(int(np.flatnonzero(forces < force)[-1]), positions.size - 2)
-        return self._crossing(force, positions[first : first + 2], forces[first : first + 2])
+            return float(displacements[int(np.argmin(forces))])
+        first = min(int(np.flatnonzero(forces < force)[-1]), displacements.size - 2)
+        return self._crossing(force, displacements[first : first + 2], forces[first : first + 2])
 
-    def _crossing(self, force: float, places: Array, forces: Array) -> float:
-        """Where a force [FU] is carried between two places [LU] that have less and more.
+    def _crossing(self, force: float, bracket: Array, forces: Array, rounds: int = 40) -> float:
+        """Return the displacement [LU] at which a force [FU] is carried, within a bracket [LU] of less and more force.
 
-        Each look is at the secant's place and at SIDES beside it, a bracket of its own if the curve is straight there.
+        Each round evaluates the secant's displacement and others on both sides of it, which bracket the force more
+        closely if the curve is straight there.
         """
-        straight = EXACT * float(np.abs(forces).max())
-        for _ in range(LOOKS):
-            low, high = (float(one) for one in places)
+        sides = np.asarray([-0.5, -0.1, -0.01, -1e-4, 0.0, 1e-4, 0.01, 0.1, 0.5])  # from the secant, over the bracket
+        straight = 1e-13 * float(np.abs(forces).max())  # round-off of the difference of the forces
+        for _ in range(rounds):
+            low, high = bracket.tolist()
             if not forces[0] < force < forces[1] or np.ptp(forces) <= straight:
                 break
             secant = low + (high - low) * (force - forces[0]) / (forces[1] - forces[0])
-            beside = np.clip(secant + (high - low) * SIDES, low, high)
-            every = np.concatenate([[low], beside, [high]])
-            found = np.concatenate([forces[:1], self.held(beside), forces[1:]])
-            first = min(int(np.flatnonzero(found < force)[-1]), every.size - 2)
-            places, forces = every[first : first + 2], found[first : first + 2]
-        return float(np.interp(force, forces, places))
+            trials = np.clip(secant + (high - low) * sides, low, high)
+            displacements = np.concatenate([[low], trials, [high]])
+            carried = np.concatenate([forces[:1], self.held(trials), forces[1:]])
+            first = min(int(np.flatnonzero(carried < force)[-1]), displacements.size - 2)
+            bracket, forces = displacements[first : first + 2], carried[first : first + 2]
+        return float(np.interp(force, forces, bracket))

@@ -1,4 +1,4 @@
-"""What the plate does, and what particles carry along its path."""
+"""Paths and histories of the plate, and the forces of particles along them."""
 
 from __future__ import annotations
 
@@ -11,24 +11,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from contact1d.workflow.laws.numerics import ROUND_OFF
+
 if TYPE_CHECKING:
     from contact1d.workflow.laws.particles import Particles
 
 Array = NDArray[np.float64]
-NEAREST, ASIDE = 1e-9, 1e-6
-"""Part of a step that is round-off, and that is beside a jump."""
-EACH_STEP, EACH_LEG, BESIDE = 32, 80, 30
-"""States in a step of a tangential path that changes the load, and in all of the displacement of others, between which
-forces are straight lines; on both sides of a jump."""
 
 
 @dataclass(frozen=True)
 class Path:
-    """What the plate does; arrays (m,).
+    """States of the plate along its path; arrays (m,).
 
     Attributes:
-        displacement, along: [LU].
-        time: [TU]; 0 where the states are equilibria.
+        displacement, along: normal and tangential displacement [LU].
+        time: time of each state [TU]; 0 where the states are equilibria.
         velocity: at the end of each load step [LU/TU]; None: displacements are straight between the states.
     """
 
@@ -43,9 +40,10 @@ class History:
     """Displacements or forces over time, straight from one moment to the next; arrays (m,).
 
     Attributes:
-        phases: names, of each moment.
-        time: rising [TU].
+        phases: name of the phase of each moment.
+        time: times, rising [TU].
         values: displacements [LU], or forces [FU] where `by_force`.
+        by_force: whether the force is prescribed.
         marks: names under which the last states of phases are reported.
     """
 
@@ -56,49 +54,54 @@ class History:
     marks: Mapping[str, str]
 
     def denser(self, times: int) -> History:
-        """The same with so many moments for each."""
-        return self.at(np.linspace(0.0, len(self.phases) - 1.0, (len(self.phases) - 1) * times + 1))
+        """Return this history with so many moments for each of its own."""
+        return self.resampled(np.linspace(0.0, len(self.phases) - 1.0, (len(self.phases) - 1) * times + 1))
 
-    def at(self, moments: Array) -> History:
-        """The same at rising moments, whole numbers of which are those of this history."""
+    def resampled(self, moments: Array) -> History:
+        """Return this history at rising moments, in numbers of its own: 1.5 is midway between the second and third."""
         known = np.arange(len(self.phases))
-        time, values = (np.interp(moments, known, one) for one in (self.time, self.values))
+        time, values = (np.interp(moments, known, column) for column in (self.time, self.values))
         return replace(
-            self, phases=tuple(self.phases[int(i)] for i in np.ceil(moments - NEAREST)), time=time, values=values
+            self, phases=tuple(self.phases[int(i)] for i in np.ceil(moments - ROUND_OFF)), time=time, values=values
         )
 
-    def beside(self, places: Sequence[float]) -> History:
-        """With moments on both sides of where displacements pass certain places [LU]: a force jumps there."""
-        found = [np.arange(float(len(self.phases)))]
-        for place in places:
-            before, after = self.values[:-1] - place, self.values[1:] - place
+    def refined_at(self, displacements: Sequence[float], aside: float = 1e-6) -> History:
+        """Return this history with a moment on each side of displacements [LU] that it passes, where a force jumps.
+
+        `aside`: how far before and after, over the load step.
+        """
+        moments = [np.arange(float(len(self.phases)))]
+        for displacement in displacements:
+            before, after = self.values[:-1] - displacement, self.values[1:] - displacement
             passed = np.flatnonzero((before * after <= 0.0) & (before != 0.0))
-            at = passed + before[passed] / (before[passed] - after[passed])
-            found += [at - ASIDE, np.minimum(at + ASIDE, passed + 1.0)]
-        return self.at(np.unique(np.concatenate(found)))
+            passage = passed + before[passed] / (before[passed] - after[passed])
+            moments += [passage - aside, np.minimum(passage + aside, passed + 1.0)]
+        return self.resampled(np.unique(np.concatenate(moments)))
 
     def path(self, model: Particles) -> Path:
-        """The displacements of the body [LU]."""
-        found, velocity = model.carrying(self.time, self.values) if self.by_force else (self.values, None)
-        return Path(found, np.zeros_like(found), self.time, velocity)
+        """Return the path of the body, under prescribed forces by the particles of a model."""
+        displacement, velocity = self.values, None
+        if self.by_force:
+            displacement, velocity = model.displacements_under(self.time, self.values)
+        return Path(displacement, np.zeros_like(displacement), self.time, velocity)
 
 
 def path_of(displacement: Array) -> Path:
-    """Equilibria at displacements (m,) [LU]."""
-    none = np.zeros_like(displacement)
-    return Path(displacement, none, none)
+    """Return a path of equilibria at displacements (m,) [LU]."""
+    zeros = np.zeros_like(displacement)
+    return Path(displacement, zeros, zeros)
 
 
 @dataclass(frozen=True)
 class Followed:
-    """What particles at x (n,) [LU] carry along a path of m displacements.
+    """Forces of particles along a path of m displacements.
 
     Attributes:
-        x: positions [LU].
-        total: force of all, (m,) [FU].
-        force: of each at one of the displacements, by its number, (n,) [FU].
-        shear: the same along x; None where nothing is prescribed there.
-        zone: what a `ZonedProfile` knows of each state, (m,); None where particles tell where they end.
+        x: positions of the particles [LU], (n,).
+        total: sum of their forces, (m,) [FU].
+        force: function of the number of a displacement: the force of each particle there, (n,) [FU].
+        shear: function of that number: tangential forces (n,) [FU]; None where no tangential path is prescribed.
+        zone: edge data of a `ZonedProfile` for each state, (m,); None where the particles' forces show the edge.
         round_off: of the force of one particle, beyond that of its position, (m,) [FU].
     """
 
@@ -111,10 +114,10 @@ class Followed:
 
 
 def legs(displacements: Array) -> list[slice]:
-    """Stretches of a path along which displacements do not turn."""
-    ways = np.sign(np.diff(displacements))
-    moves = np.flatnonzero(ways)
-    turns = moves[1:][ways[moves[1:]] != ways[moves[:-1]]] + 1
+    """Return the monotonic parts of a path of displacements, as slices."""
+    directions = np.sign(np.diff(displacements))
+    moves = np.flatnonzero(directions)
+    turns = moves[1:][directions[moves[1:]] != directions[moves[:-1]]] + 1
     edges = [0, *turns.tolist(), len(displacements)]
     return [slice(first, last) for first, last in pairwise(edges) if last > first]
 
@@ -122,30 +125,30 @@ def legs(displacements: Array) -> list[slice]:
 def equilibria(path: Path, apart: float, jumps: Sequence[float], spacing: float, finer: int) -> Path:
     """Return equilibria along a path from apart on, with as many states as the work along it needs.
 
-    In a step that changes the load, `along` given, EACH_STEP states; else EACH_LEG over all of the displacement, and
-    BESIDE in geometric progression on both sides of each jump; times `finer`.
-
     Args:
         path: of a run.
-        apart: displacement [LU] below which nothing is felt.
+        apart: displacement [LU] below which the force is 0.
         jumps: displacements [LU] at which the force jumps.
         spacing: of the particles [LU].
         finer: so many times as many.
     """
-    start = min(0.0, apart) - NEAREST * spacing  # below that nothing is felt
-    places = np.append(start, np.maximum(path.displacement, start))
+    start = min(0.0, apart) - ROUND_OFF * spacing  # apart
+    displacements = np.append(start, np.maximum(path.displacement, start))
     if path.along.any():
-        each = np.where(np.diff(places) != 0.0, EACH_STEP, 1) * finer
-        steps, moved = np.arange(places.size), np.append(path.along[:1], path.along)
-        at = np.append(0.0, np.concatenate([step + np.arange(1, count + 1) / count for step, count in enumerate(each)]))
-        return Path(np.interp(at, steps, places), np.interp(at, steps, moved), np.zeros_like(at))
-    distances = spacing * np.geomspace(NEAREST, 1.0, BESIDE)
+        # 32 states in a step that changes the load; between others forces are straight lines.
+        counts = np.where(np.diff(displacements) != 0.0, 32, 1) * finer
+        steps, along = np.arange(displacements.size), np.append(path.along[:1], path.along)
+        moments = [step + np.arange(1, count + 1) / count for step, count in enumerate(counts)]
+        states = np.append(0.0, np.concatenate(moments))
+        return Path(np.interp(states, steps, displacements), np.interp(states, steps, along), np.zeros_like(states))
+    # 80 states over all of the displacement, and 30 in geometric progression on both sides of each jump.
+    distances = spacing * np.geomspace(ROUND_OFF, 1.0, 30)
     near = np.asarray([jump + side for jump in jumps for side in (-distances, distances)]).ravel()
-    ends = places[[0, *(leg.stop - 1 for leg in legs(places))]].tolist()
-    passed, whole = [places[:1]], float(np.ptp(places)) or 1.0
-    for start, end in pairwise(ends):
-        count = math.ceil(EACH_LEG * finer * abs(end - start) / whole) + 1
-        between = near[(near > min(start, end)) & (near < max(start, end))]
-        leg = np.unique(np.concatenate([np.linspace(start, end, count + 1), between]))
-        passed.append((leg if end > start else leg[::-1])[1:])
-    return path_of(np.concatenate(passed))
+    ends = displacements[[0, *(leg.stop - 1 for leg in legs(displacements))]].tolist()
+    parts, total = [displacements[:1]], float(np.ptp(displacements)) or 1.0
+    for first, last in pairwise(ends):
+        count = math.ceil(80 * finer * abs(last - first) / total) + 1
+        between = near[(near > min(first, last)) & (near < max(first, last))]
+        leg = np.unique(np.concatenate([np.linspace(first, last, count + 1), between]))
+        parts.append((leg if last > first else leg[::-1])[1:])
+    return path_of(np.concatenate(parts))

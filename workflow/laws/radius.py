@@ -1,4 +1,4 @@
-"""What the contact radius is that a law has, as the contract defines it."""
+"""Definitions of the contact radius, of which a law names its own (`Law.rules`)."""
 
 from __future__ import annotations
 
@@ -11,20 +11,15 @@ from contact1d.analysis.pressure import Array, Profile, ZonedProfile, end_pressu
 from contact1d.analysis.radius import ContactRadius, compressive_radius, held_radius, tensile_radius, whole_cells
 from contact1d.workflow.scene import Bodies
 
-OUTSIDE = 1.5
-"""Position over the spacing of the second particle of a chain whose apex lies between two."""
-INSIDE_SHARE = 0.5
-"""Pressure at a chain's end over the largest one from which on the end of the chain is inside the contact."""
-
 
 @dataclass(frozen=True)
 class RadiusRule(ABC):
-    """What the contact radius of a scene is, as the contract defines it.
+    """A definition of the contact radius by the pressure of the particles.
 
     Attributes:
-        bodies: the scene's.
-        share: pressure over the largest one that is left of nothing.
-        ends_with_chain: whether the end of its chain may cut the contact.
+        bodies: bodies of the scene.
+        share: pressure over the largest one that counts as 0.
+        ends_with_chain: whether the end of the chain may cut the contact.
         jump: line load [FU/LU] just inside the edge; None where the particles show it.
     """
 
@@ -35,55 +30,55 @@ class RadiusRule(ABC):
 
     @abstractmethod
     def of(self, profile: Profile) -> ContactRadius | None:
-        """The contact radius; None where the bodies do not touch."""
+        """Return the contact radius; None where the bodies do not touch."""
 
     def or_spot(self, profile: Profile) -> ContactRadius:
-        """The contact radius; 0 where no particle is in tension, as where F = 0 and the pairs at the apex just touch.
+        """Return the contact radius; 0 where no particle is in tension, as where the pairs at the apex just touch.
 
-        The force maximum is then nearer than the next particle, OUTSIDE spacings from the apex at most.
+        The force maximum is then nearer than the second particle, 1.5 spacings from an apex between two at most.
         """
-        return self.of(profile) or ContactRadius(0.0, OUTSIDE * self.bodies.spacing, 0.0, 0.0, reaches_end=False)
+        return self.of(profile) or ContactRadius(0.0, 1.5 * self.bodies.spacing, 0.0, 0.0, reaches_end=False)
 
     def is_cut(self, profile: Profile) -> bool:
-        """Whether the contact's edge, its last loaded particle, is a chain's last particle."""
+        """Return whether the contact edge, its last loaded particle, is the last particle of the chain."""
         return bool(max(abs(profile.pressure[0]), abs(profile.pressure[-1])) > 0.0)
 
     def load(self, profile: Profile, radius: ContactRadius) -> Array:
-        """Line load [FU/LU] at each of the particles, (n,)."""
+        """Return the line load [FU/LU] at each of the particles, (n,)."""
         return profile.pressure
 
     def lengths(self, profile: Profile) -> Mapping[str, float]:
-        """What else [LU] is known of a state, by the names of results."""
+        """Return further lengths [LU] of a state, by the names of results."""
         return {}
 
 
 class Compressed(RadiusRule):
-    """Up to the last particle that is pressed."""
+    """Contact up to the last particle that is pressed."""
 
     def of(self, profile: Profile) -> ContactRadius | None:
-        """See `compressive_radius`."""
+        """Return the radius of the compressed particles (`compressive_radius`); None without any."""
         return compressive_radius(profile, self.share) if profile.pressure.max() > 0.0 else None
 
 
 class Held(RadiusRule):
-    """Up to where a rigid plane holds the body: the edge leaves a particle a share of its cell."""
+    """Contact up to an edge within a cell, whose particle has a share of its force."""
 
     jump = None
 
     def of(self, profile: Profile) -> ContactRadius | None:
-        """See `held_radius`."""
+        """Return the radius of cells and shares of cells in contact (`held_radius`); None without any force."""
         return held_radius(profile) if profile.pressure.any() else None
 
     def load(self, profile: Profile, radius: ContactRadius) -> Array:
-        """See `whole_cells`."""
+        """Return the line load [FU/LU] of the particles, (n,), of a cell in part over this part (`whole_cells`)."""
         return whole_cells(profile, radius)
 
 
 class Given(RadiusRule):
-    """Up to the edge that a load step gives; where none is known, as the pressure shows it."""
+    """Contact up to the edge that the law computes for each state; where it has none, as the pressure shows it."""
 
     def of(self, profile: Profile) -> ContactRadius | None:
-        """Exact; 0 of bodies that attract each other and do not touch."""
+        """Return the radius that the law gives, 0 of bodies that attract each other and do not touch."""
         if not profile.pressure.any():
             return None
         if not isinstance(profile, ZonedProfile):
@@ -92,47 +87,47 @@ class Given(RadiusRule):
         return ContactRadius(profile.edge, profile.doubt, -profile.edge, profile.edge, reaches_end=False)
 
     def is_cut(self, profile: Profile) -> bool:
-        """Whether the attraction reaches the end of the chain."""
+        """Return whether the attraction reaches the end of the chain."""
         return bool(profile.pressure[-1] != 0.0)
 
     def lengths(self, profile: Profile) -> Mapping[str, float]:
-        """How far the attraction goes, c."""
+        """Return the radius c [LU] up to which the attraction acts, as `cohesive_radius`."""
         return {"cohesive_radius": profile.reach} if isinstance(profile, ZonedProfile) else {}
 
 
 class InTension(RadiusRule):
-    """Up to the force maximum of the tension about the contact."""
+    """Contact up to the largest tension around it."""
 
     def of(self, profile: Profile) -> ContactRadius | None:
-        """See `tensile_radius`."""
+        """Return the radius of the largest tension (`tensile_radius`); None without any tension."""
         return tensile_radius(profile) if profile.pressure.min() < 0.0 else None
 
     def is_cut(self, profile: Profile) -> bool:
-        """Whether the force maximum is at an end, or the chain is shorter than the compressed middle."""
+        """Return whether the largest tension, or more than half the largest pressure, is at an end of the chain."""
         pressure = profile.pressure
         largest = float(pressure.min())
-        return end_pressure_share(profile) > INSIDE_SHARE or (largest < 0.0 and largest in (pressure[0], pressure[-1]))
+        return end_pressure_share(profile) > 0.5 or (largest < 0.0 and largest in (pressure[0], pressure[-1]))
 
 
 class ToTheEdge(RadiusRule):
-    """A body with an edge touches up to there; one that `clings` does so without any force, where it stands."""
+    """Contact up to the edge of a body; of one that `clings` also at zero force, while particles are on the plane."""
 
     ends_with_chain = False
     jump = None
     clings: ClassVar[bool] = False
 
     def of(self, profile: Profile) -> ContactRadius | None:
-        """Its reach."""
+        """Return the half-width of the body; None where it does not touch."""
         touches = profile.pressure.any() or (self.clings and (profile.z_upper <= 0.0).any())
         edge = self.bodies.reach
         return ContactRadius(edge, 0.0, -edge, edge, reaches_end=False) if touches else None
 
     def is_cut(self, profile: Profile) -> bool:
-        """The chain ends there as well."""
+        """Return False: chain and body end at the same position."""
         return False
 
 
 class Clinging(ToTheEdge):
-    """One that adheres."""
+    """Contact up to the edge of a body that adheres."""
 
     clings = True

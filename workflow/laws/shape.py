@@ -1,4 +1,4 @@
-"""The undeformed shape of a body, as a law asks for it, and positions of particles on it."""
+"""The undeformed shape of a body, as a law needs it, and positions of particles on it."""
 
 from __future__ import annotations
 
@@ -11,16 +11,13 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from contact1d.workflow.laws.numerics import ROUND_OFF
+
 Array = NDArray[np.float64]
-NEAREST, WIDEST, BESIDE, MOST_KINKS = 1e-9, 0.1, 60, 100
-"""Distances from a kink over its own position between which positions are added in geometric progression, how many on
-each side, and at how many kinks."""
-PLACES, NEAR = 1000, 0.01
-"""Positions at which a profile is tabulated, and the first one beyond its apex over the spacing."""
 
 
-def places_within(reach: float, spacing: float, phase: float) -> Array:
-    """All x = (i + φ) s with |x| ≤ reach [LU] in order, i a whole number: of particles whose apex is φ s off one."""
+def positions_within(reach: float, spacing: float, phase: float) -> Array:
+    """Return all x = (i + φ) s [LU] with |x| ≤ reach, rising: i an integer, φ the `phase`, s the `spacing` [LU]."""
     first, last = math.ceil(-reach / spacing - phase), math.floor(reach / spacing - phase)
     return np.asarray(spacing * (np.arange(first, last + 1) + phase), dtype=np.float64)
 
@@ -29,7 +26,7 @@ class Profile(Protocol):
     """The undeformed shape of the upper body."""
 
     def height(self, x: Array) -> Array:
-        """Height [LU] at x [LU]."""
+        """Return the height [LU] at positions x [LU]."""
 
     @property
     def reach(self) -> float:
@@ -40,61 +37,67 @@ class Profile(Protocol):
         """Positions [LU] at which its slope jumps."""
 
     def __hash__(self) -> int:
-        """The same for equal bodies, which share their estimate."""
+        """Return one hash for equal bodies, which share their law."""
 
 
 @dataclass(frozen=True, eq=False)
 class Tabulated:
-    """A profile given by its `heights` [LU] at ascending `places` [LU] from 0, linear between them.
+    """A profile given by its `heights` [LU] at ascending `positions` [LU] from 0, linear between them.
 
-    For a measured one, whose transform takes long: a predictor asks thousands of times.
+    It replaces a measured profile, whose transform takes long: a predictor evaluates it thousands of times.
     """
 
-    places: Array
+    positions: Array
     heights: Array
     kinks: tuple[float, ...] = ()
 
     def height(self, x: Array) -> Array:
-        """Height [LU] at x [LU]."""
-        return np.interp(np.abs(x), self.places, self.heights)
+        """Return the height [LU] at positions x [LU], the last one beyond the table."""
+        return np.interp(np.abs(x), self.positions, self.heights)
 
     @property
     def reach(self) -> float:
         """Half-width [LU] of the body."""
-        return float(self.places[-1])
+        return float(self.positions[-1])
 
 
 @dataclass(frozen=True, eq=False)
 class Splined(Tabulated):
-    """The same by cubics, each stretch between kinks by its own: of a parabola to 1e-12 of its height."""
+    """A tabulated profile, interpolated by a cubic spline between kinks: a parabola to 1e-12 of its height."""
 
     @cached_property
     def _curve(self) -> Any:
         from scipy.interpolate import CubicSpline, PPoly
 
-        kinks = [int(at) for at in np.searchsorted(self.places, self.kinks) if 3 < at < self.places.size - 4]
-        parts = [slice(first, last + 1) for first, last in pairwise([0, *kinks, self.places.size - 1])]
-        cubics = [CubicSpline(self.places[part], self.heights[part]).c for part in parts]
-        return PPoly(np.concatenate(cubics, axis=1), self.places)
+        end = self.positions.size - 1
+        kinks = [kink for kink in np.searchsorted(self.positions, self.kinks).tolist() if 3 < kink < end - 3]
+        parts = [slice(first, last + 1) for first, last in pairwise([0, *kinks, end])]
+        cubics = [CubicSpline(self.positions[part], self.heights[part]).c for part in parts]
+        return PPoly(np.concatenate(cubics, axis=1), self.positions)
 
     def height(self, x: Array) -> Array:
-        """Height [LU] at x [LU]."""
+        """Return the height [LU] at positions x [LU], the last one beyond the table."""
         return np.asarray(self._curve(np.minimum(np.abs(x), self.reach)))
 
 
 def tabulated(profile: Profile, spacing: float, kind: type[Tabulated] = Tabulated) -> Tabulated:
-    """The profile, which must be finite, at positions in geometric series: those of a parabola to 1e-4 of its height.
+    """Return the table of a profile, which must be finite, at 1000 positions in geometric progression.
 
-    That holds for a reach of 0.1 to 1e10 spacings [LU]; closer to the apex than NEAR spacings it is a line.
+    Linear interpolation then has an error of 1e-4 of the height of a parabola, for a reach of 0.1 to 1e10 spacings
+    [LU]; closer to the apex than 0.01 spacings the profile is a line.
     """
-    places = beside_kinks(np.concatenate([[0.0], np.geomspace(NEAR * spacing, profile.reach, PLACES)]), profile)
-    return kind(places, profile.height(places), profile.kinks)
+    x = beside_kinks(np.concatenate([[0.0], np.geomspace(0.01 * spacing, profile.reach, 1000)]), profile)
+    return kind(x, profile.height(x), profile.kinks)
 
 
-def beside_kinks(places: Array, profile: Profile) -> Array:
-    """Rising positions [LU] with the kinks of a profile, and others ever nearer to them: g rises as a root there."""
-    most = float(places[-1])
-    near = np.append(0.0, np.geomspace(NEAREST, WIDEST, BESIDE))
-    found = [one * (1.0 + sign * near) for one in profile.kinks[:MOST_KINKS] for sign in (1.0, -1.0)]
-    every = np.unique(np.concatenate([places, *found]))
-    return np.asarray(every[every <= most])
+def beside_kinks(positions: Array, profile: Profile, points: int = 60, most_kinks: int = 100) -> Array:
+    """Return rising positions [LU] with more of them on both sides of a profile's kinks, where g rises as a root.
+
+    `points`: how many on each side, in geometric progression from 1e-9 to a tenth of the kink's position; `most_kinks`:
+    at how many kinks.
+    """
+    end = float(positions[-1])
+    distances = np.append(0.0, np.geomspace(ROUND_OFF, 0.1, points))
+    near = [kink * (1.0 + sign * distances) for kink in profile.kinks[:most_kinks] for sign in (1.0, -1.0)]
+    x = np.unique(np.concatenate([positions, *near]))
+    return np.asarray(x[x <= end])

@@ -1,6 +1,6 @@
-"""Contacts whose edges each load step gives: a particle has the integral of the line load over its cell.
+"""Contacts whose edges the law computes for each load step: a particle has the integral of the line load over its cell.
 
-Integrals of neighbours add up, so that F is exact at every spacing.
+The integrals add up, so that F is exact at every spacing.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Cells:
-    """What the cell of each particle spans on one side of the axis; arrays (n,).
+    """The cell of each particle on one side of the axis; arrays (n,).
 
     Attributes:
-        inner, outer: its ends [LU].
-        below, above: G there [LU²].
-        sides: 2 of a particle on the axis, which has a cell on either side; else 1.
+        inner, outer: ends of the cell [LU].
+        below, above: G at its ends [LU²].
+        sides: 2 for a particle on the axis, which has a cell on each side; else 1.
     """
 
     inner: Array
@@ -41,10 +41,10 @@ class Cells:
 
 @dataclass(frozen=True, eq=False)
 class Zoned(Jkr):
-    """A contact whose edges each load step gives.
+    """A contact whose edges are computed for each load step.
 
     Attributes:
-        surface: f, whose transform the profile is.
+        surface: actual profile f [LU], whose transform is `profile`.
     """
 
     rules = (Given, Given)
@@ -54,63 +54,63 @@ class Zoned(Jkr):
     @property
     @abstractmethod
     def equations(self) -> Dugdale:
-        """Its equations."""
+        """Equations of the contact and of its line load."""
 
     def columns(self, body: Profile, x: Array) -> Mapping[str, tuple[int, Array]]:
-        """See `Law`."""
+        """Return the fields of `Cells` at positions x, (n,) [LU], with their powers of a length."""
         zones, powers = self.zones(x), {"inner": 1, "outer": 1, "below": 2, "above": 2, "sides": 0}
         return {name: (power, getattr(zones, name)) for name, power in powers.items()}
 
     def zones(self, x: Array) -> Cells:
-        """The cells of particles at positions x, (n,) [LU]."""
-        at, half = np.abs(x), 0.5 * self.spacing
-        inner, outer = np.maximum(at - half, 0.0), at + half
-        sides = np.where(at < 0.25 * self.spacing, 2.0, 1.0)
-        # Beyond the body nothing is known, and nothing carries.
+        """Return the cells of particles at positions x, (n,) [LU]."""
+        radius, half = np.abs(x), 0.5 * self.spacing
+        inner, outer = np.maximum(radius - half, 0.0), radius + half
+        sides = np.where(radius < 0.25 * self.spacing, 2.0, 1.0)
+        # Beyond the body there is neither profile nor load.
         below, above = (self.equations.area(np.minimum(end, self.known)) for end in (inner, outer))
         return Cells(inner, outer, below, above, sides)
 
     def loads(self, cells: Cells, zone: Zone, state: int) -> Array:
-        """∫ q dx [FU] over each cell in a state."""
+        """Return ∫ q dx over each cell, (n,) [FU], in the state of this number."""
         a, c, d = (float(column[state]) for column in (zone.edge, zone.reach, zone.displacement))
         end = np.minimum(cells.outer, a)
         area = np.where(cells.outer < a, cells.above, self.equations.area(np.asarray([a]))[0])
         pressed = self.modulus * np.where(cells.inner < a, d * (end - cells.inner) - (area - cells.below), 0.0)
-        low, high = (np.minimum(np.maximum(one, a), c) for one in (cells.inner, cells.outer))
+        low, high = (np.minimum(np.maximum(end, a), c) for end in (cells.inner, cells.outer))
         return np.asarray(
             cells.sides * (pressed - 2.0 * self.equations.stress * (_half_disc(high, c) - _half_disc(low, c)))
         )
 
 
 def _half_disc(x: Array, radius: float) -> Array:
-    """∫₀ˣ √(c² − x²) dx [LU²]."""
+    """Return ∫₀ˣ √(c² − x²) dx [LU²] at positions x, (n,) [LU], for a radius c [LU]."""
     root = np.sqrt((radius - x) * (radius + x))
     return np.asarray(0.5 * (x * root + radius**2 * np.arctan2(x, root)))
 
 
 @dataclass(frozen=True, eq=False)
 class ZonedCells(Particles):
-    """The cells of a chain on a rigid plane, the edges of whose contact each load step gives."""
+    """The cells of a chain on a rigid plane, in a contact whose edges are computed for each load step."""
 
     law: Zoned
     shares_edges = True
 
     def _edges_of(self, zone: Zone) -> dict[str, Array]:
-        """The columns of load steps: d, a, c and the mean of g(x) over the contact."""
+        """Return the columns of load steps, (m,) [LU]: d, a, c and the mean of g(x) over the contact."""
         area = self.law.equations.area(zone.edge)
         height = np.divide(area, zone.edge, out=np.zeros_like(area), where=zone.edge > 0.0)
         return {"displacement": zone.displacement, "edge": zone.edge, "reach": zone.reach, "height": height}
 
     def carried(self, columns: Mapping[str, Array]) -> Followed:
-        """See `Particles.carried`; the line load jumps at an edge beyond which there is no attraction."""
-        estimate, law, cells = self.law, self.law.equations, self.law.zones(self.x)
+        """Return the forces of load steps; the line load jumps at an edge beyond which there is no attraction."""
+        law, equations, cells = self.law, self.law.equations, self.law.zones(self.x)
         d, edge, reach = (columns[name] for name in ("displacement", "edge", "reach"))
-        zone = Zone(edge, reach, d, law.forces(edge, np.sqrt((reach - edge) * (reach + edge)), d))
+        zone = Zone(edge, reach, d, equations.forces(edge, np.sqrt((reach - edge) * (reach + edge)), d))
         ends = (reach == edge) & (edge > 0.0)
-        jump = np.where(ends, estimate.modulus * (d - estimate.profile.height(edge)), 0.0)
+        jump = np.where(ends, law.modulus * (d - law.profile.height(edge)), 0.0)
         # The part of a cell in the ring of attraction is a difference of the discs up to its ends.
-        lost = float(np.finfo(np.float64).eps) * 2.0 * law.stress * reach**2
+        round_off = float(np.finfo(np.float64).eps) * 2.0 * equations.stress * reach**2
         return Followed(
-            self.x, zone.force, lambda state: estimate.loads(cells, zone, state), zone=(edge, reach, jump),
-            round_off=lost,
+            self.x, zone.force, lambda state: law.loads(cells, zone, state), zone=(edge, reach, jump),
+            round_off=round_off,
         )  # fmt: skip

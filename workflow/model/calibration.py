@@ -17,7 +17,7 @@ def _value(meaning: str) -> Any:
 
 @dataclass(frozen=True)
 class Calibration:
-    """The values, each with its meaning (`meanings`); the study that measures them sets others."""
+    """Shares of the tolerance, and increments, each with its meaning (`meanings`); the study of them sets others."""
 
     cutoff: float = _value("force at an automatic cutoff over the law's own, per unit of tolerance")
     table: float = _value("error of the table over the force scale, per unit of tolerance")
@@ -31,12 +31,12 @@ class Calibration:
 
 
 def meanings() -> dict[str, str]:
-    """What each value is, by its name."""
-    return {one.name: one.metadata["is"] for one in fields(Calibration)}
+    """Return the meaning of each value of a `Calibration`, by its name."""
+    return {entry.name: entry.metadata["is"] for entry in fields(Calibration)}
 
 
 def calibration_of(document: Mapping[str, Any]) -> Calibration:
-    """The values in the contents of `calibration.json`. Raises KeyError where one is missing."""
+    """Return the values in the contents of `calibration.json`. Raises KeyError where one is missing."""
     return Calibration(**{name: float(document["values"][name]["value"]) for name in meanings()})
 
 

@@ -1,6 +1,6 @@
-"""How long a chain is, whether profile and contact fit into it, and whether a computer holds what a scene asks for.
+"""The length of chains, and limits of size: of profile, contact, memory and numbers of particles and load steps.
 
-All of it is judged before anything runs; an error names the nearest value that is possible.
+All of them are checked before LAMMPS runs; an error names the nearest value that is possible.
 """
 
 from __future__ import annotations
@@ -15,15 +15,19 @@ import numpy as np
 from contact1d.digits import apart, digits_apart
 from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.laws.law import FARTHEST_RATIO, Law
+from contact1d.workflow.laws.numerics import ROUND_OFF
 from contact1d.workflow.model.dynamics import DriveLeg
 from contact1d.workflow.scene import Bodies, Scene, Tangential
 
-CHAIN_MARGIN = 1.1
-"""Length of an automatic chain over what the predictor asks for."""
-FALL_SHARE = 1e-5
-"""A profile counts as falling where it does by more than this share of its height."""
-ROUND_OFF = 1e-9
-"""Relative, of a length that a chain only just fits into."""
+MOST_PARTICLES = 10_000_000
+"""Most particles of a body."""
+MOST_PARTNERS = 5_000
+"""Most opposite particles within the cutoff of one."""
+MOST_LOAD_STEPS = 1_000_000
+"""Most load steps of a prescribed path, intermediate ones included."""
+MOST_TIMESTEPS = 2**31 - 1
+"""Most timesteps of one load step: LAMMPS counts no further."""
+MIX_UP = "All lengths (spacing, radius, ranges) are in LU: are some of them in another unit?"
 
 
 def require_room(bodies: Bodies) -> None:
@@ -44,7 +48,7 @@ def require_room(bodies: Bodies) -> None:
 def require_body(bodies: Bodies, largest: float, particles: int) -> None:
     """Refuse a chain or a contact that is wider than its profile, and a profile whose contact is no single one.
 
-    A contact that is wider than its chain alone is left to the run, which knows how wide it is.
+    A contact that is wider than its chain, but not than its profile, is refused by the run, which knows its width.
 
     Raises:
         SettingsError: with the nearest value that is possible.
@@ -67,27 +71,27 @@ def require_body(bodies: Bodies, largest: float, particles: int) -> None:
                 f"the contact would cover the profile, which ends at {bodies.reach:.6g} LU: the experiment "
                 f"needs a displacement of about {needed} LU, at most {possible} LU is possible"
             )
-    places = np.linspace(0.0, half, 2001)
-    heights = bodies.height(places)
-    falls = np.diff(heights) < -FALL_SHARE * float(np.ptp(heights))
+    x = np.linspace(0.0, half, 2001)
+    heights = bodies.height(x)
+    falls = np.diff(heights) < -1e-5 * float(np.ptp(heights))  # a smaller share of the height is no fall
     if falls.any():
-        at = float(places[int(np.argmax(falls))])
+        position = float(x[int(np.argmax(falls))])
         raise SettingsError(
-            f"the profile under the reduction {bodies.reduction} falls beyond x = {at:.4g} LU, so that the "
+            f"the profile under the reduction {bodies.reduction} falls beyond x = {position:.4g} LU, so that the "
             "contact would have several parts: smooth it, or end it there"
         )
 
 
 def _most_particles(bodies: Bodies) -> int:
-    """The longest chain, with 3 or an even number of particles, that the profile is wide enough for."""
+    """Return the particles of the longest chain, 3 or an even number, that the profile is wide enough for."""
     return max(3, 2 * math.floor(bodies.reach / bodies.spacing * (1.0 - ROUND_OFF) + 0.5))
 
 
 def decay_length(scene: Scene) -> float:
-    """Decay length ℓ [LU] of the displacement of a chain beside a point load; 0 without neighbours.
+    """Return the decay length ℓ [LU] of the displacement of a chain near a point load; 0 without neighbours.
 
-    Beside the push, k u_i = k_n (u_{i+1} − 2 u_i + u_{i−1}) has the solutions exp(±x/ℓ), cosh(s/ℓ) = 1 + k/(2 k_n): for
-    stiff neighbours ℓ = s √(k_n/k).
+    Outside of the load, k u_i = k_n (u_{i+1} − 2 u_i + u_{i−1}) has the solutions exp(±x/ℓ), cosh(s/ℓ) = 1 + k/(2 k_n):
+    for stiff neighbours ℓ = s √(k_n/k).
     """
     if not scene.neighbours:
         return 0.0
@@ -96,34 +100,34 @@ def decay_length(scene: Scene) -> float:
 
 
 def reflected(scene: Scene, estimate: Law, largest: float, particles: int) -> float:
-    """Share of a displacement at the contact edge that the ends of the chain reflect, exp(−2 L/ℓ), L apart."""
+    """Return the share of a displacement that the end of the chain, L from the contact edge, reflects: exp(−2 L/ℓ)."""
     decay = decay_length(scene)
     beyond = 0.5 * particles * scene.bodies.spacing - _edge(estimate, largest)
     return math.exp(-2.0 * max(beyond, 0.0) / decay) if decay > 0.0 else 0.0
 
 
 def chains_of(scene: Scene, estimate: Law, largest: float, share: float) -> tuple[int, int]:
-    """Particles of the upper and of the lower body, those left open chosen.
+    """Return the particles of the upper and of the lower body, by `chain_length` where the scene leaves them open.
 
-    The upper one by `chain_length`; the lower one the same, and longer by the way on both sides in a slide.
+    In a slide the lower body is longer by the sliding distance on both sides.
     """
     bodies = scene.bodies
     if bodies.particles != "auto":
         return bodies.upper_particles or bodies.particles, bodies.particles
     needed = chain_length(scene, estimate, largest, share)
-    beside = 2 * math.ceil((scene.experiment.way + abs(bodies.upper_offset or 0.0)) / bodies.spacing)
+    additional = 2 * math.ceil((scene.experiment.way + abs(bodies.upper_offset or 0.0)) / bodies.spacing)
     half = 0.5 * needed * bodies.own_spacing
     below = needed if bodies.upper_spacing is None else 2 * math.ceil(half / bodies.spacing)
-    return bodies.upper_particles or needed, below + beside
+    return bodies.upper_particles or needed, below + additional
 
 
 def _edge(estimate: Law, largest: float) -> float:
-    """Half-width [LU] up to the force maximum, or without attraction up to where nothing is felt."""
+    """Return the half-width [LU] of the largest tension, without attraction that of the contact."""
     return estimate.half_width(max(largest, 0.0), float(estimate.gap[int(estimate.force.argmin())]))
 
 
-def felt_up_to(estimate: Law, largest: float, share: float) -> float:
-    """Undeformed gap [LU] beyond which no force is more than a share of the largest of a contact; r₀ if none has any.
+def significant_gap(estimate: Law, largest: float, share: float) -> float:
+    """Return the undeformed gap [LU] beyond which no force exceeds a share of the largest one; r₀ without any force.
 
     `largest`: displacement [LU] of the contact.
     """
@@ -133,45 +137,26 @@ def felt_up_to(estimate: Law, largest: float, share: float) -> float:
 
 
 def chain_length(scene: Scene, estimate: Law, largest: float, share: float) -> int:
-    """Particles of an automatic chain: up to where a force, and the reflection by the end, is at most this share.
+    """Return the particles of an automatic chain, at whose end a force, and the reflection, is at most this share.
 
     A flat punch has its own length; no chain is longer than its profile is wide.
     """
-    if (own := scene.bodies.own_count) is not None:
-        return own
-    # Without attraction the contact ends where nothing is felt at all.
-    reach = felt_up_to(estimate, largest, share) if estimate.attracts(scene) else estimate.felt
-    half = CHAIN_MARGIN * estimate.half_width(max(largest, 0.0), reach)
+    if (count := scene.bodies.own_count) is not None:
+        return count
+    # Without attraction the contact ends where the force is 0.
+    reach = significant_gap(estimate, largest, share) if estimate.attracts(scene) else estimate.cutoff_gap
+    margin = 1.1  # over the length that the predictor gives
+    half = margin * estimate.half_width(max(largest, 0.0), reach)
     half = max(half, _edge(estimate, largest) - 0.5 * decay_length(scene) * math.log(share))
     wanted = 2 * (math.ceil(half / scene.bodies.own_spacing) + 2)
     return wanted if scene.bodies.reach == math.inf else min(wanted, _most_particles(scene.bodies))
 
 
-MOST_PARTICLES = 10_000_000
-MOST_PARTNERS = 5_000
-"""Opposite particles within reach of one."""
-MOST_ROWS = 1_000_000
-"""Load steps of a prescribed path, intermediate ones included."""
-PER_PARTICLE = 2_000.0
-"""Memory for each particle of a body, its opposite and both anchors [bytes]: measured, 2 GB at 10⁶."""
-PER_PAIR = 8.0
-"""The same for each pair of particles within reach."""
-MOST_TIMESTEPS = 2**31 - 1
-"""Timesteps of one row: LAMMPS counts no further."""
-LARGE, USUALLY_FELT = 20_000, 10.0
-"""Particles per body, each within reach of so many opposite ones, from which on a run takes minutes."""
-SHARPEST_RATIO = 1e3
-"""Height of the particles beside an apex over cutoff and spacing: so far even neighbour springs bring none."""
-DIGIT_SHARE = 0.1
-"""Force that the last digit of a position may be, over one particle's and the tolerance: that of a converged state."""
-MIX_UP = "All lengths (spacing, radius, ranges) are in LU: are some of them in another unit?"
-
-
 def require_reach(scene: Scene, cutoff: float) -> None:
-    """Refuse an interaction that reaches over more particles than can be summed over.
+    """Refuse an interaction with a cutoff [LU] over more particles than can be summed over.
 
     Raises:
-        SettingsError: with the widest reach that is possible.
+        SettingsError: with the longest cutoff that is possible.
     """
     spacing = scene.bodies.spacing
     if reaches_too_far(scene, cutoff):
@@ -185,22 +170,23 @@ def require_reach(scene: Scene, cutoff: float) -> None:
 
 
 def reaches_too_far(scene: Scene, cutoff: float) -> bool:
-    """Whether a particle would interact with more opposite ones within a cutoff [LU] than can be summed over."""
+    """Return whether a particle would interact with more opposite ones within a cutoff [LU] than can be summed over."""
     return cutoff > 0.5 * MOST_PARTNERS * scene.bodies.spacing
 
 
 def require_apex(scene: Scene, particles: int, cutoff: float) -> None:
-    """Refuse a chain whose particles beside the apex are far out of range of the interaction (a cutoff [LU]).
+    """Refuse a chain whose particles next to the apex are far out of range of the interaction (a cutoff [LU]).
 
     Raises:
         SettingsError: with the particles' height.
     """
-    beside = 0.5 * scene.bodies.spacing if particles % 2 == 0 else 0.0
-    height = float(scene.bodies.height(np.asarray([beside]))[0])
-    if height > SHARPEST_RATIO * max(cutoff, scene.bodies.spacing):
+    nearest = 0.5 * scene.bodies.spacing if particles % 2 == 0 else 0.0
+    height = float(scene.bodies.height(np.asarray([nearest]))[0])
+    # Not even neighbour springs bring a particle so far.
+    if height > 1e3 * max(cutoff, scene.bodies.spacing):
         raise SettingsError(
             f"the body is too sharp for its chain: it rises by {height:.4g} LU from its apex to the nearest particles, "
-            f"{beside:.4g} LU from it. Use a finer bodies.spacing, a blunter bodies.profile, or an odd number of "
+            f"{nearest:.4g} LU from it. Use a finer bodies.spacing, a blunter bodies.profile, or an odd number of "
             f"bodies.particles, of which one is the apex. {MIX_UP}"
         )
 
@@ -209,7 +195,7 @@ def require_travel(scene: Scene, largest: float, cutoff: float) -> None:
     """Refuse a displacement `largest` [LU] out of all proportion to the range of the forces.
 
     Raises:
-        SettingsError: with the path.
+        SettingsError: with the largest displacement that is possible.
     """
     most = FARTHEST_RATIO * max(cutoff, scene.bodies.spacing)
     if abs(largest) > most:
@@ -231,25 +217,27 @@ def require_memory(scene: Scene, particles: int, cutoff: float) -> None:
             f"the contact would need {apart(particles, MOST_PARTICLES)[0]} particles per body, more than "
             f"{MOST_PARTICLES:.0e}: a wider bodies.spacing, a smaller radius, load or displacement needs fewer"
         )
-    felt = _felt(scene, particles, cutoff)
-    needed = particles * (PER_PARTICLE + PER_PAIR * felt)
+    partners = _partners(scene, particles, cutoff)
+    # Measured: 2 GB at 10⁶ particles of a body, with their opposite ones and all anchors.
+    bytes_per_particle, bytes_per_pair = 2_000.0, 8.0
+    needed = particles * (bytes_per_particle + bytes_per_pair * partners)
     available = float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
     if needed > available:
-        large, there = apart(needed / 1e9, available / 1e9, 2)
+        large, memory = apart(needed / 1e9, available / 1e9, 2)
         raise SettingsError(
-            f"{particles} particles per body, each within reach of {felt:.0f} opposite ones, need about {large} GB of "
-            f"memory, and this machine has {there} GB: a wider bodies.spacing, "
+            f"{particles} particles per body, each within reach of {partners:.0f} opposite ones, need about {large} GB "
+            f"of memory, and this machine has {memory} GB: a wider bodies.spacing, "
             "a smaller radius, load or displacement needs fewer particles, a shorter cutoff fewer pairs"
         )
 
 
 def require_digits(scene: Scene, particles: int, deepest: float, force: float) -> None:
-    """Refuse springs so stiff that the last digit of a position is more force than a particle at rest may be left with.
+    """Refuse springs so stiff that the round-off error of a position is more force than the tolerance allows.
 
     Args:
-        scene: whose particles are brought to rest without time.
+        scene: whose particles relax without time.
         particles: per body.
-        deepest: length that a position has beside the height of the last particle [LU].
+        deepest: length that a position has besides the height of the last particle [LU].
         force: of one particle, times the tolerance [FU].
 
     Raises:
@@ -259,9 +247,9 @@ def require_digits(scene: Scene, particles: int, deepest: float, force: float) -
         return
     last = float(scene.bodies.height(np.asarray([0.5 * (particles - 1) * scene.bodies.spacing]))[0])
     digit = 0.5 * float(np.spacing(abs(last) + abs(deepest)))
-    left, allowed = scene.bulk_stiffness * digit, DIGIT_SHARE * force
-    if left > allowed:
-        error, most = apart(left, allowed, 1)
+    round_off, allowed = scene.bulk_stiffness * digit, 0.1 * force  # a tenth, as the residual of a converged state
+    if round_off > allowed:
+        error, most = apart(round_off, allowed, 1)
         raise SettingsError(
             f"a bodies.bulk_stiffness of {scene.bulk_stiffness:.3g} FU/LU is too stiff to resolve: the round-off error "
             f"of a position, {digit:.1g} LU, is a force of {error} FU, and the tolerance allows {most} FU. "
@@ -270,35 +258,35 @@ def require_digits(scene: Scene, particles: int, deepest: float, force: float) -
 
 
 def _steps(rows: float) -> str:
-    """A number of load steps beyond the largest one."""
-    return f"{apart(rows, MOST_ROWS)[0]} load steps, more than {MOST_ROWS:.0e}"
+    """Return the words for a number of load steps beyond the largest one."""
+    return f"{apart(rows, MOST_LOAD_STEPS)[0]} load steps, more than {MOST_LOAD_STEPS:.0e}"
 
 
 def require_rows(scene: Scene, longest_move: float, drive: Sequence[DriveLeg]) -> None:
-    """Refuse a prescribed path of too many rows; a body moves towards the other by `longest_move` [LU] at most.
+    """Refuse a prescribed path of too many load steps, each an approach by `longest_move` [LU] at most.
 
-    A slide's rows are those of its drive.
+    Those of a slide are the states of its drive.
 
     Raises:
-        SettingsError: with the number of rows.
+        SettingsError: with the number of load steps.
     """
     experiment = scene.experiment
-    if isinstance(experiment, Tangential) and len(experiment.along()) > MOST_ROWS:
+    if isinstance(experiment, Tangential) and len(experiment.along()) > MOST_LOAD_STEPS:
         raise SettingsError(
             f"the tangential path would need {_steps(len(experiment.along()))}: use fewer steps in "
             "experiment.displacements"
         )
-    if (driven := sum(leg.rows for leg in drive)) > MOST_ROWS:
+    if (driven := sum(leg.rows for leg in drive)) > MOST_LOAD_STEPS:
         raise SettingsError(
             f"the slide would need {_steps(driven)}: each spacing has some tens. "
             f"Use a shorter experiment.distance, or shorter legs of experiment.path. {MIX_UP}"
         )
-    places = [0.0, *experiment.places()]
-    way = sum(max(0.0, after - before) for before, after in pairwise(places))
-    rows = len(places) + math.floor(way / longest_move)
-    if rows > MOST_ROWS:
+    displacements = [0.0, *experiment.places()]
+    approach = sum(max(0.0, after - before) for before, after in pairwise(displacements))
+    steps = len(displacements) + math.floor(approach / longest_move)
+    if steps > MOST_LOAD_STEPS:
         raise SettingsError(
-            f"the path would need {_steps(rows)}: the ranges of the interaction "
+            f"the path would need {_steps(steps)}: the ranges of the interaction "
             f"limit a step to {longest_move:.3g} LU. Use smaller "
             f"experiment.displacements or longer ranges. {MIX_UP}"
         )
@@ -321,15 +309,17 @@ def require_steps(steps: Iterable[int]) -> None:
 
 
 def in_words(scene: Scene, particles: int, cutoff: float) -> str:
-    """What makes a run a long one, for its user to know before it starts; "" for a usual one."""
-    felt = _felt(scene, particles, cutoff)
-    if particles * max(1.0, felt / USUALLY_FELT) < LARGE:
+    """Return a note for the user on a system so large that a run takes minutes; "" for a usual one."""
+    large, usual_partners = 20_000, 10.0
+    partners = _partners(scene, particles, cutoff)
+    if particles * max(1.0, partners / usual_partners) < large:
         return ""
     return (
-        f"a large system: {particles} particles per body, each within reach of {felt:.0f} opposite ones; a "
+        f"a large system: {particles} particles per body, each within reach of {partners:.0f} opposite ones; a "
         "wider bodies.spacing, a smaller radius or load needs fewer"
     )
 
 
-def _felt(scene: Scene, particles: int, cutoff: float) -> float:
+def _partners(scene: Scene, particles: int, cutoff: float) -> float:
+    """Return the opposite particles within the cutoff [LU] of one; 0 on a rigid plane."""
     return min(particles, 2.0 * cutoff / scene.bodies.spacing + 2.0) if cutoff else 0.0

@@ -1,6 +1,6 @@
-"""How far particles of opposite bodies feel each other.
+"""The cutoff of the interaction of opposite particles, and their smallest distance.
 
-The cutoff of a slide follows from how a particle is held along x by a straight row of opposite ones,
+The cutoff of a slide follows from the tangential force of a straight row of opposite particles on one,
 
     F_x(x, z) = Σ_j f(r_j) (x − j s)/r_j,    r_j = √((x − j s)² + z²)
 
@@ -22,54 +22,52 @@ from contact1d.workflow.scene import Interaction, Scene
 Array = NDArray[np.float64]
 REACH = 40.0
 """Reach of the sums, and of the longest cutoff, over the longest range."""
-ASIDE, HEIGHTS = 33, 400
-"""Positions within half a spacing, and heights, that are examined."""
-LEFT_OUT = 0.1
-"""Force of a pair at the cutoff over the largest force along x, per unit of tolerance: each pair that comes within
-reach, or leaves it, changes that by that much at once."""
-THERMAL_SIGMAS = 5.0
-"""Standard deviations by which a particle's thermal motion brings it nearer."""
 
 
-def slide_cutoff(law: DoubleExponential, spacing: float, load: float, share: float) -> float:
-    """Cutoff [LU] at which a pair's force is LEFT_OUT `share` of the largest force along x [FU].
+def slide_cutoff(law: DoubleExponential, spacing: float, load: float, tolerance: float) -> float:
+    """Return the cutoff [LU] at which a pair's force is a tenth of the tolerance of the largest tangential force.
+
+    Each pair that comes within the cutoff or leaves it changes the tangential force by that much at once.
 
     Args:
-        law: of a pair.
-        spacing: of the row [LU].
-        load: on a particle [FU], compression positive.
-        share: the tolerance.
+        law: interaction of a pair.
+        spacing: distance of neighbours in the row [LU].
+        load: load on a particle [FU], compression positive.
+        tolerance: relative tolerance of the force.
     """
     holding = max(largest_holding_force(law, spacing, load), np.finfo(float).tiny)
     far = law.repulsion if law.attraction is None else law.attraction
-    start = far.range * math.log(far.amplitude / far.range / (LEFT_OUT * share * holding))
+    start = far.range * math.log(far.amplitude / far.range / (0.1 * tolerance * holding))
     return min(max(start, law.longest_range), REACH * law.longest_range)
 
 
 def largest_holding_force(law: DoubleExponential, spacing: float, load: float) -> float:
-    """max_x F_x [FU] of a particle pressed by a load [FU] onto a rigid chain, at its height in a potential minimum."""
+    """Return max_x F_x [FU] of a particle under a load [FU] on a rigid chain, at its height in a potential minimum.
+
+    The maximum is taken over 33 positions within half a spacing, the height is one of 400.
+    """
     reach = math.ceil(REACH * law.longest_range / spacing) + 1
     row: Array = np.asarray(spacing * np.arange(-reach, reach + 1), dtype=np.float64)
-    heights: Array = np.asarray(law.longest_range * np.geomspace(1e-2, 10.0, HEIGHTS))
+    heights: Array = np.asarray(law.longest_range * np.geomspace(1e-2, 10.0, 400))
     _, upward = _row_forces(law, 0.5 * spacing - row, heights)
     carried = np.flatnonzero(upward >= load)
     height = float(heights[carried[-1]] if carried.size else heights[0])
-    x: Array = np.linspace(0.0, 0.5 * spacing, ASIDE)
-    along = [float(_row_forces(law, place - row, np.asarray([height]))[0][0]) for place in x.tolist()]
+    x: Array = np.linspace(0.0, 0.5 * spacing, 33)
+    along = [float(_row_forces(law, position - row, np.asarray([height]))[0][0]) for position in x.tolist()]
     return float(np.max(np.abs(along)))
 
 
-def _row_forces(law: DoubleExponential, aside: Array, heights: Array) -> tuple[Array, Array]:
-    """Forces along x and z [FU] of pairs so far `aside` [LU], summed, at each of the heights [LU]."""
-    distance = np.hypot(aside[None, :], heights[:, None])
-    over = law.force(distance) / distance
-    return (over * aside).sum(axis=1), over.sum(axis=1) * heights
+def _row_forces(law: DoubleExponential, offsets: Array, heights: Array) -> tuple[Array, Array]:
+    """Return the sums of forces along x and z, (m,) [FU], of pairs at lateral offsets [LU], at heights (m,) [LU]."""
+    distance = np.hypot(offsets[None, :], heights[:, None])
+    ratio = law.force(distance) / distance
+    return (ratio * offsets).sum(axis=1), ratio.sum(axis=1) * heights
 
 
 def cutoff_for(scene: Scene, law: DoubleExponential, share: float, tolerance: float) -> float:
-    """The scene's cutoff [LU], or the one beyond which the force is below a share of the force scale.
+    """Return the scene's cutoff [LU], or the distance beyond which a pair's force is below a share of the force scale.
 
-    In a slide also below what the tolerance leaves of the force along x.
+    In a slide it is `slide_cutoff` at least.
     """
     given = scene.the(Interaction).cutoff
     if given != "auto":
@@ -81,11 +79,11 @@ def cutoff_for(scene: Scene, law: DoubleExponential, share: float, tolerance: fl
 
 
 def innermost_distance(estimate: Law, cutoff: float, displacement: float) -> float:
-    """Distance [LU] of the predictor's innermost pair at a displacement [LU]; its grid ends at the cutoff [LU]."""
+    """Return the distance [LU] of the predictor's innermost pair at a displacement [LU]; its grid ends at `cutoff`."""
     grid = cutoff / estimate.gap.size * np.arange(1, estimate.gap.size + 1)
     return float(np.interp(estimate.rest - displacement, estimate.gap, grid))
 
 
 def thermal_motion(scene: Scene) -> float:
-    """Thermal approach [LU] of two particles on their springs: THERMAL_SIGMAS √(2 k_BT/k)."""
-    return THERMAL_SIGMAS * math.sqrt(2.0 * scene.temperature / scene.bulk_stiffness)
+    """Return the thermal approach [LU] of two particles on their springs: five standard deviations, 5 √(2 k_BT/k)."""
+    return 5.0 * math.sqrt(2.0 * scene.temperature / scene.bulk_stiffness)

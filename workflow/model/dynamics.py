@@ -1,7 +1,7 @@
-"""Time step, damping, plate mass and settling time of a scene in time, and the rows of a slide's drive.
+"""Timestep, damping, plate mass and settling time of a motion, and the load steps of a slide's drive.
 
-The time step is the smaller one of those that a particle and the plate allow (`longest_step`). In a slide it divides
-every leg of the drive, and every load step has as many of them.
+The timestep is the smaller one of those that a particle and the plate allow (`longest_step`). In a slide every leg of
+the drive, and every load step, is a whole number of timesteps.
 """
 
 from __future__ import annotations
@@ -11,45 +11,33 @@ from dataclasses import MISSING, dataclass, field
 from typing import Any
 
 from contact1d.workflow.laws.law import Law
+from contact1d.workflow.laws.numerics import ROUND_OFF
 from contact1d.workflow.scene import Cantilever, Damping, Impact, Scene, Slide
 
-RELAXING_STEP = 0.5
-"""ω_max·Δt without time, where a minimiser is the only one that takes steps (`workflow.deck.parts`)."""
-MOVING_STEP, MOVING_TOLERANCE = 0.2, 1e-3
-"""ω_max·Δt of a slide, whose motion itself is the result, and the tolerance below which it falls with its square root.
-
-Measured on 24 random slides: mean friction off by 1e-6 to 9e-5 of itself, by 5e-4 where that is 1e-4 of a particle's.
-"""
-IMPACT_STEP = 1e-3
-"""Time step of an impact over the time to the deepest displacement at the first velocity; below that tolerance, too."""
-SWING = 0.5
-"""Of the swing of a slide's plate on the law and its springs, the time to settle at least: springs may be rigid."""
+MOVING_TOLERANCE = 1e-3
+"""Tolerance below which the timestep of a motion that is the result falls with the square root of the tolerance."""
 DRAG_STEP = 0.2
-"""Time step over the time m/γ in which drag stops a particle, or the plate: explicit integration needs it below 1."""
-CALM_STEP = 0.4
-"""The same during relaxation, whose drag is no part of what is examined."""
-CREEPING = 10.0
-"""Drag over the critical one from which on the relaxation of a plate is too slow."""
+"""Timestep over the time m/γ in which drag stops a particle, or the plate: explicit integration needs it below 1."""
 SOFTENING = 0.6
 """Stiffness of the contact under tension over that under the preload: automatic damping is critical for the former."""
-LIGHT = 0.5
-"""Drag over the mass of a plate far lighter than its particles, over the same of a particle (`_swinging_apart`)."""
+MOST_ROWS = 50
+"""Most measured states of a slide per spacing of the drive distance."""
 
 
 def measured(unit: str, default: Any = MISSING) -> Any:
-    """A field whose number a deck with units of its own converts (`deck.units`)."""
+    """Return a dataclass field with a unit, whose number a deck with units of its own converts (`deck.units`)."""
     return field(default=default, metadata={"unit": unit})
 
 
 @dataclass(frozen=True)
 class DriveLeg:
-    """A leg of the drive.
+    """A leg of the drive of a slide.
 
     Attributes:
-        velocity: [LU/TU]; 0 where it rests.
         rows: measured states.
-        steps: timesteps of each row, a multiple of FEWEST_STEPS.
-        time_step: [TU]; rows × steps of it are the leg's time exactly.
+        steps: timesteps from one state to the next, a multiple of 5.
+        velocity: velocity of the drive [LU/TU]; 0 where it rests.
+        time_step: timestep [TU]; rows × steps of it are exactly the leg's duration.
     """
 
     rows: int
@@ -59,7 +47,7 @@ class DriveLeg:
 
     @property
     def row_time(self) -> float:
-        """Duration of a load step [TU]."""
+        """Time from one measured state to the next [TU]."""
         return self.steps * self.time_step
 
 
@@ -68,16 +56,16 @@ class Motion:
     """Numbers of a motion in time.
 
     Attributes:
-        plate_mass: [MU].
-        drive: the legs of a slide; `time_step` is that of the first one.
-        time_step: [TU].
+        plate_mass: mass of the plate [MU].
+        drive: legs of a slide.
+        time_step: timestep [TU], in a slide that of the first leg.
         damping: coefficient of a particle [FU·TU/LU].
-        damped_stiffness: of the contact [FU/LU], for which that is critical; 0 where it is the same under every load.
-        plate_damping: [FU·TU/LU].
+        damped_stiffness: contact stiffness [FU/LU] for which that is critical; 0 where it is the same under every load.
+        plate_damping: coefficient of the plate [FU·TU/LU].
         settle_time: about one period of the plate on its contact [TU].
-        calm_damping, calm_step: damping with which particles snap together and don't swing [FU·TU/LU], and the time
-            step for it [TU]; the usual ones where the scene gives its damping. In a slide the one under which it is
-            loaded, with which its plate does not swing.
+        settling_damping: coefficient with which particles snap in without oscillation [FU·TU/LU], in a slide the one
+            with which the plate is loaded without oscillation; `damping` where the scene gives it.
+        settling_step: timestep with that coefficient [TU].
     """
 
     plate_mass: float
@@ -87,20 +75,24 @@ class Motion:
     damped_stiffness: float = measured("FU/LU")
     plate_damping: float = measured("FU·TU/LU")
     settle_time: float = measured("TU")
-    calm_damping: float = measured("FU·TU/LU")
-    calm_step: float = measured("TU")
+    settling_damping: float = measured("FU·TU/LU")
+    settling_step: float = measured("TU")
 
 
 def motion_of(
-    scene: Scene,
-    tolerance: float,
-    estimate: Law,
-    largest: float,
-    particles: int,
-    stiffest: float,
-    still_step: float,
+    scene: Scene, tolerance: float, estimate: Law, largest: float, particles: int, stiffest: float, still_step: float
 ) -> Motion:
-    """Time step, damping, plate mass and settling time from the stiffest and the softest motion of the scene."""
+    """Return the numbers of a motion, from the stiffest and the softest mode of the scene.
+
+    Args:
+        scene: whose motion it is.
+        tolerance: relative tolerance of the main results.
+        estimate: contact law.
+        largest: largest displacement expected [LU].
+        particles: particles of the upper body.
+        stiffest: largest stiffness of a particle's bonds and contacts [FU/LU].
+        still_step: ω_max·Δt of a quasi-static motion.
+    """
     bodies, plate, moves = scene.bodies, scene.plate, scene.experiment.motion_is_result
     touching = 2.0 * estimate.half_width(max(largest, 0.0), estimate.rest) / bodies.spacing
     contact = max(touching, 1.0) * estimate.stiffness
@@ -110,47 +102,63 @@ def motion_of(
     moving = plate_mass + particles * bodies.mass
     critical = 2.0 * math.sqrt(SOFTENING * contact * moving)
     damping, plate_damping = _drags(scene, particles, critical, plate_mass)
-    # The drag on a motion is part of what is looked at, so it is one and the same throughout.
+    # The drag on a motion is part of the result, so it is one and the same throughout.
     is_automatic = scene.damping == Damping(coefficient="auto")
     product = _product(scene, tolerance, still_step)
-    beside = sum(effect.bond_drag(scene.bulk_stiffness) for effect in scene.present)
-    held = particles * scene.bulk_stiffness + scene.experiment.drawing_stiffness
-    if scene.cantilever:
-        held += scene.cantilever.stiffness + particles * max(0.0, scene.tangential_stiffness - scene.bulk_stiffness)
+    bond_drag = sum(effect.bond_drag(scene.bulk_stiffness) for effect in scene.present)
     step = min(
-        longest_step(product, stiffest, bodies.mass, damping + beside),
-        longest_step(product, held, plate_mass, plate_damping + particles * beside),
+        longest_step(product, stiffest, bodies.mass, damping + bond_drag),
+        longest_step(product, _plate_stiffness(scene, particles), plate_mass, plate_damping + particles * bond_drag),
     )
     if isinstance(scene.experiment, Impact):
-        step = IMPACT_STEP * min(1.0, math.sqrt(tolerance / MOVING_TOLERANCE)) * largest / scene.experiment.velocity
+        # A thousandth of the time to the deepest displacement at the impact velocity, less below the tolerance.
+        step = 1e-3 * min(1.0, math.sqrt(tolerance / MOVING_TOLERANCE)) * largest / scene.experiment.velocity
     slowest = contact / moving if plate else scene.bulk_stiffness / bodies.mass
     settle_time = 2.0 * math.pi / math.sqrt(slowest)
-    calm, calm_step = damping, step
+    settling, settling_step = damping, step
     if is_automatic:
-        calm = max(damping, 2.0 * math.sqrt(stiffest * bodies.mass))
-        calm_step = min(step, DRAG_STEP * bodies.mass / calm)
+        settling = max(damping, 2.0 * math.sqrt(stiffest * bodies.mass))
+        settling_step = min(step, DRAG_STEP * bodies.mass / settling)
     if moves:
-        # A plate that swings as it is loaded goes through the other body, which would carry it at rest.
         # The law is softer than stiff springs: the plate is on both in series.
-        held = min(contact, max(0.0, estimate.stiffness_under(scene.experiment.compression or 0.0)))
-        if held > 0.0:
-            settle_time = max(settle_time, SWING * 2.0 * math.pi * math.sqrt(moving / held))
-        enough = 2.0 * math.sqrt(SOFTENING * held * moving) / particles
-        enough = min(enough, CALM_STEP * bodies.mass / step)
-        calm, calm_step = damping if enough <= damping <= CREEPING * enough else enough, step
+        softest = min(contact, max(0.0, estimate.stiffness_under(scene.experiment.compression or 0.0)))
+        if softest > 0.0:  # half a period at least: springs may be rigid
+            settle_time = max(settle_time, math.pi * math.sqrt(moving / softest))
+        critical = 2.0 * math.sqrt(SOFTENING * softest * moving) / particles
+        # This drag is no part of the result, and may be twice as strong for its timestep.
+        critical = min(critical, 2.0 * DRAG_STEP * bodies.mass / step)
+        settling, settling_step = _loading_drag(damping, critical), step
     damped = SOFTENING * contact if is_automatic and not moves else 0.0
     drive = drive_steps(scene, step)
     first = drive[0].time_step if drive else whole_steps(step, scene.experiment.lasts)
-    return Motion(plate_mass, drive, first, damping, damped, plate_damping, settle_time, calm, calm_step)
+    return Motion(plate_mass, drive, first, damping, damped, plate_damping, settle_time, settling, settling_step)
+
+
+def _plate_stiffness(scene: Scene, particles: int) -> float:
+    """Return the stiffness [FU/LU] of all bonds of the plate: of its particles, its drive and its cantilever."""
+    stiffness = particles * scene.bulk_stiffness + scene.experiment.drawing_stiffness
+    if scene.cantilever:
+        lateral = max(0.0, scene.tangential_stiffness - scene.bulk_stiffness)
+        stiffness += scene.cantilever.stiffness + particles * lateral
+    return stiffness
+
+
+def _loading_drag(damping: float, critical: float) -> float:
+    """Return the drag of a particle [FU·TU/LU] with which a slide is loaded: its own, or the critical one of the plate.
+
+    A plate that oscillates as it is loaded goes through the other body, which would carry it at rest.
+    """
+    too_slow = 10.0 * critical  # the plate would creep to rest
+    return damping if critical <= damping <= too_slow else critical
 
 
 def whole_steps(longest: float, duration: float | None) -> float:
-    """The longest time step [TU] of which a motion's duration [TU] is a whole number, two at least."""
+    """Return the longest timestep [TU] of which a motion's duration [TU] is a whole number, two at least."""
     return longest if duration is None else duration / max(2, math.ceil(duration / longest - ROUND_OFF))
 
 
 def longest_step(product: float, stiffness: float, mass: float, drag: float) -> float:
-    """Longest time step [TU] of a mass [MU] on springs [FU/LU] with a drag [FU·TU/LU]; inf of none.
+    """Return the longest timestep [TU] of a mass [MU] on springs [FU/LU] with a drag [FU·TU/LU]; inf without a mass.
 
     ω Δt is the `product` at most, and Δt a share DRAG_STEP of m/γ.
     """
@@ -160,16 +168,19 @@ def longest_step(product: float, stiffness: float, mass: float, drag: float) -> 
 
 
 def _product(scene: Scene, tolerance: float, still_step: float) -> float:
-    """Largest ω Δt: of a relaxation, of a motion that is the result, with noise, or quasi-static."""
+    """Return the largest ω Δt: of a relaxation, of a motion that is the result, with noise, or quasi-static."""
     if scene.experiment.motion_is_result:
-        product = MOVING_STEP * math.sqrt(min(1.0, tolerance / MOVING_TOLERANCE))
+        # Measured on 24 random slides: mean friction off by 1e-6 to 9e-5 of itself, by 5e-4 where that is 1e-4 of a
+        # particle's.
+        product = 0.2 * math.sqrt(min(1.0, tolerance / MOVING_TOLERANCE))
     else:
-        product = still_step if scene.method == "dynamic" else RELAXING_STEP
+        # Without time only the minimiser takes steps (`workflow.deck.parts`).
+        product = still_step if scene.method == "dynamic" else 0.5
     return min([product, *(effect.largest_phase(tolerance) for effect in scene.present)])
 
 
 def _drags(scene: Scene, particles: int, critical: float, plate_mass: float) -> tuple[float, float]:
-    """Drag [FU·TU/LU] of a particle and of the plate, given or together critical for the contact."""
+    """Return the drag [FU·TU/LU] of a particle and of the plate, given or together critical for the contact."""
     mass, damping = scene.bodies.mass, 0.0
     if scene.damping:
         automatic = critical / particles if scene.plate else math.sqrt(scene.bulk_stiffness * mass)
@@ -180,43 +191,36 @@ def _drags(scene: Scene, particles: int, critical: float, plate_mass: float) -> 
         return damping, scene.plate.damping
     if isinstance(scene.experiment, Impact):  # it is free
         return damping, 0.0
-    if scene.noise:  # drag without its noise would cool the plate; the particles' heat bath is its
+    if scene.noise:  # drag without noise would cool the plate; its heat bath is that of the particles
         return damping, 0.0
-    swinging = _swinging_apart(plate_mass, particles * mass, damping / mass)
-    return damping, max(0.0, critical - particles * damping, swinging)
+    relative = _relative_drag(plate_mass, particles * mass, damping / mass)
+    return damping, max(0.0, critical - particles * damping, relative)
 
 
-def _swinging_apart(plate: float, particles: float, rate: float) -> float:
-    """Drag [FU·TU/LU] that a plate lighter than all its particles needs, so as not to swing against them.
+def _relative_drag(plate: float, particles: float, rate: float) -> float:
+    """Return the drag [FU·TU/LU] with which a plate lighter than all its particles does not oscillate against them.
 
-    Of that swing a plate of the mass M [MU] leaves the particles, N m [MU] together with the drag `rate` · N m, the
-    share M/(M + N m): next to nothing, if it is light, and drag on particles does not end it. With the drag c on the
-    plate it decays with [rate · M + c N m/M] / 2(M + N m), which is to be what it is for M = N m, c = 0.
+    In that oscillation a plate of mass M [MU] leaves the particles, N m [MU] together with the drag `rate` · N m, the
+    share M/(M + N m): next to nothing, if it is light, so that drag on particles does not end it. With the drag c on
+    the plate the decay rate is [rate · M + c N m/M] / 2(M + N m); c makes it that of M = N m, c = 0.
     """
-    return LIGHT * rate * plate * max(0.0, 1.0 - plate / particles)
-
-
-MOST_ROWS, FEWEST_ROWS = 50, 20
-"""Measured states per spacing of the drive distance."""
-USUAL_STEPS = 10
-"""Timesteps of a row below which measuring takes longer than moving, so that there are fewer rows."""
-FEWEST_STEPS = 5
-"""Timesteps of a row are a multiple of it: the means of the cantilever are over every fifth one."""
-
-ROUND_OFF = 1e-9
+    return 0.5 * rate * plate * max(0.0, 1.0 - plate / particles)
 
 
 def drive_steps(scene: Scene, longest: float) -> tuple[DriveLeg, ...]:
-    """The legs of a slide, with timesteps of at most `longest` [TU]; none of anything else."""
+    """Return the legs of a slide, with timesteps of at most `longest` [TU]; empty for any other experiment."""
     experiment = scene.experiment
     if not isinstance(experiment, Slide):
         return ()
-    cantilever, found = scene.the(Cantilever), []
+    fewest_rows = 20  # per spacing
+    usual_steps = 10  # per row: with fewer, measuring takes longer than moving, so that there are fewer rows
+    means = 5  # the means of the cantilever are over every fifth timestep
+    cantilever, drive = scene.the(Cantilever), []
     for leg in experiment.legs(cantilever.velocity):
         time = leg.distance / (abs(leg.velocity) or cantilever.velocity)
         spacings = leg.distance / scene.bodies.spacing
-        each = min(MOST_ROWS, max(FEWEST_ROWS, int(time / spacings / longest / USUAL_STEPS)))
-        rows = max(1, math.ceil(each * spacings - ROUND_OFF))
-        steps = FEWEST_STEPS * max(1, math.ceil(time / rows / longest / FEWEST_STEPS - ROUND_OFF))
-        found.append(DriveLeg(rows, steps, leg.velocity, time / rows / steps))
-    return tuple(found)
+        density = min(MOST_ROWS, max(fewest_rows, int(time / spacings / longest / usual_steps)))
+        rows = max(1, math.ceil(density * spacings - ROUND_OFF))
+        steps = means * max(1, math.ceil(time / rows / longest / means - ROUND_OFF))
+        drive.append(DriveLeg(rows, steps, leg.velocity, time / rows / steps))
+    return tuple(drive)

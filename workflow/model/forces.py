@@ -1,4 +1,4 @@
-"""What acts on a particle, on a rigid plane and opposite others; and the increments of a search."""
+"""The forces on a particle, of a rigid plane or of opposite particles, and the increments of a search."""
 
 from __future__ import annotations
 
@@ -16,33 +16,23 @@ from contact1d.workflow.model.cutoff import innermost_distance, thermal_motion
 from contact1d.workflow.model.dynamics import measured
 from contact1d.workflow.scene import Scene
 
-TABLE_MARGIN = 0.8
-"""Distance from which on a table is to follow the law, over the expected smallest one. Measured: the smallest distance
-is 0.93 to 1.004 of what the predictor of independent pairs says."""
-CLOSEST_SHARE = 0.2
-"""Smallest distance that is looked after over the force-free one (with attraction) or the repulsion's range."""
 MOVE_SHARE = 0.25
 """Longest move of a body between two states at rest, over the smallest distance: particles stay in order, down to r
 near 0."""
 NEAR_SHARE = 0.2
-"""Least distance down to which a table follows the law and a search comes down in ever smaller moves, over `closest`: a
+"""Least distance down to which a table follows the law and a search approaches in ever smaller moves, over `closest`: a
 table that is smoothed any earlier lets bodies pass that the interaction still carries."""
-TAIL = 10.0
-"""Force of the tail beyond the cutoff, summed over particles, over the force at the cutoff times a particle's share."""
-COMPLIANCE_FACTOR = 2.0
-"""Error of an equilibrium over that of the force on particles held in place: they follow it, and a table's error, here
-at the distances that happen to be there, is half of what it is between two entries on average."""
 
 
 def loading_step_of(most: float, step: float) -> float:
-    """The `step` [LU] if it is > 0, never more than `most` [LU]."""
+    """Return the `step` [LU] if it is > 0, never more than `most` [LU]."""
     return min(step, most) if step > 0 else most
 
 
 def plane_stiffness_of(scene: Scene, tolerance: float) -> float:
-    """One-sided stiffness of the rigid plane [FU/LU]: that of a particle, k, where particles are fixed in their body.
+    """Return the one-sided stiffness of the rigid plane [FU/LU]: that of a particle, where it is fixed in its body.
 
-    An effect that acts on particles has bonds for them, and a plane 1/tolerance times stiffer.
+    Where effects need bonds of the particles the plane is 1/tolerance times stiffer than those; 0 without a plane.
     """
     if scene.bodies.lower != "rigid_plane":
         return 0.0
@@ -50,22 +40,23 @@ def plane_stiffness_of(scene: Scene, tolerance: float) -> float:
 
 
 def stiffest_of(scene: Scene) -> float:
-    """Bulk spring and what effects add to it [FU/LU]."""
+    """Return the stiffness of the bulk spring and of what effects add to it [FU/LU]."""
     return scene.bulk_stiffness + sum(effect.added_stiffness for effect in scene.present)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Forces:
-    """What acts on a particle on a rigid plane, which has no table, and 0 for cutoff, rest, table_from and closest.
+    """The forces on a particle on a rigid plane; there is no table, and cutoff, table_from, rest and closest are 0.
 
     Attributes:
-        table, cutoff, table_from: of an interaction, its cutoff [LU], and the distance [LU] from which on the table was
-            chosen to follow it.
-        rest: apex distance at displacement 0 [LU].
-        closest: smallest distance for which moves and time step are chosen [LU].
         bulk_stiffness: normal bond of a particle to its anchor [FU/LU].
         plane_stiffness: one-sided stiffness of the rigid plane [FU/LU]; 0 without one.
-        scale: force of one particle [FU] against which residuals are judged.
+        table: table of the interaction.
+        cutoff: cutoff of the interaction [LU].
+        table_from: distance [LU] from which on the table follows the interaction.
+        rest: distance of the apexes at displacement 0 [LU].
+        closest: smallest distance for which moves and timestep are chosen [LU].
+        scale: force of one particle [FU], to which residuals are relative.
         residual: norm of the residual forces at which a minimisation stops [FU].
     """
 
@@ -81,7 +72,7 @@ class Forces:
 
     @property
     def law(self) -> DoubleExponential | None:
-        """The interaction."""
+        """Interaction of a pair; None on a rigid plane."""
         return None
 
     @property
@@ -90,40 +81,43 @@ class Forces:
         return 0.0
 
     def with_table(self, scene: Scene, estimate: Law, largest: float, error: float) -> Forces:
-        """With a table of the law that follows it to an error [FU] from the smallest distance on that is expected."""
+        """Return these forces with a table to an error [FU], from the smallest distance at a displacement `largest` on.
+
+        `estimate`: contact law; `largest` [LU].
+        """
         return self
 
     def scale_of(self, scene: Scene, deepest: float) -> float:
-        """The force of the deepest particle [FU], so deep [LU]."""
+        """Return half the force [FU] of the particle with the largest length change of its spring, `deepest` [LU]."""
         return (deepest if deepest > 0.0 else 1e-3 * scene.bodies.spacing) * scene.bulk_stiffness / 2
 
     def stiffest(self, spacing: float) -> float:
-        """The largest stiffness [FU/LU] that the opposite body has for a particle."""
+        """Return the largest contact stiffness of a particle [FU/LU]."""
         return self.plane_stiffness
 
     def increments(self, spacing: float, largest: float, calibration: Calibration) -> Increments:
-        """Increments of searches, by the spacing [LU]."""
+        """Return the increments of searches, by the spacing and the largest displacement [LU]."""
         loading = loading_step_of(0.1 * spacing, calibration.loading_increment * largest)
         return Increments(loading, loading, 0.0, math.inf)
 
     def share(self, scene: Scene) -> float:
-        """Relative error of a force, before a run: the plane is not quite rigid for springs between particles."""
+        """Return the relative error of a force, before a run: the plane is not quite rigid for springs of particles."""
         return sum(effect.added_stiffness for effect in scene.present) / self.plane_stiffness
 
     def error(self, scene: Scene, profile: Profile) -> float:
-        """Error of the force of a measured state [FU]."""
+        """Return the error of the force of a measured state [FU]."""
         return self.share(scene) * abs(scene.bodies.spacing * float(profile.pressure.sum()))
 
 
 @dataclass(frozen=True, kw_only=True)
 class PairForces(Forces):
-    """What acts on a particle that feels those of the opposite chain."""
+    """The forces on a particle that interacts with those of the opposite chain."""
 
     table: Table
 
     @property
     def law(self) -> DoubleExponential:
-        """The interaction."""
+        """Interaction of a pair, which the table follows."""
         return self.table.law
 
     @property
@@ -132,46 +126,57 @@ class PairForces(Forces):
         return self.law.longest_range
 
     def with_table(self, scene: Scene, estimate: Law, largest: float, error: float) -> Forces:
-        """See `Forces`; `largest`: the displacement [LU]."""
+        """Return these forces with a table to an error [FU], from the smallest distance at a displacement `largest` on.
+
+        `estimate`: contact law; `largest` [LU].
+        """
         nearest = self.closest * (1.0 if scene.noise else NEAR_SHARE)
         innermost = innermost_distance(estimate, self.cutoff, largest) - thermal_motion(scene)
-        start = max(nearest, TABLE_MARGIN * innermost)
+        margin = 0.8  # measured: the smallest distance is 0.93 to 1.004 of that of the predictor
+        start = max(nearest, margin * innermost)
         return replace(self, table_from=start, table=table_for(self.law, self.cutoff, start, error))
 
     def scale_of(self, scene: Scene, deepest: float) -> float:
-        """The force maximum of one pair [FU]; without attraction as on a plane."""
+        """Return the force maximum of one pair [FU]; without attraction as on a plane."""
         if self.law.attraction is None:
             return super().scale_of(scene, deepest)
         r = self.law.force_free_distance() + self.law.longest_range * np.linspace(0.0, 5.0, 2001)
         return float(-self.law.force(r).min())
 
     def stiffest(self, spacing: float) -> float:
-        """Of nearby opposite particles."""
-        rows = 1.0 + 2.0 * self.law.repulsion.range / spacing
-        return 2.0 * rows * float(self.law.stiffness(self.closest))
+        """Return the stiffness [FU/LU] of the pairs with nearby opposite particles."""
+        partners = 1.0 + 2.0 * self.law.repulsion.range / spacing
+        return 2.0 * partners * float(self.law.stiffness(self.closest))
 
     def increments(self, spacing: float, largest: float, calibration: Calibration) -> Increments:
-        """By the range of the interaction."""
+        """Return the increments of searches, by the range of the interaction and the largest displacement [LU]."""
         move = MOVE_SHARE * self.closest
         loading = loading_step_of(0.25 * self.range, calibration.loading_increment * largest)
         return Increments(min(loading, move), loading, calibration.smooth_increment * self.range, move)
 
     def share(self, scene: Scene) -> float:
-        """What table and cutoff may cause."""
-        tail = TAIL * abs(float(self.law.force(self.cutoff)))
+        """Return the relative error of a force, before a run, by table and cutoff.
+
+        The tail beyond the cutoff, summed over particles, is ten times the force at the cutoff at most.
+        """
+        tail = 10.0 * abs(float(self.law.force(self.cutoff)))
         return (tail + self.table.error_beyond(self.table_from)) / self.scale
 
     def error(self, scene: Scene, profile: Profile) -> float:
-        """COMPLIANCE_FACTOR Σ |F_table(r) - f(r)| |z|/r over opposite particles, F_table = 0 beyond the cutoff."""
-        return COMPLIANCE_FACTOR * left_out(self.law, self.table, profile)
+        """Return 2 Σ |F_table(r) - f(r)| |z|/r [FU] over opposite particles of a state, F_table = 0 beyond the cutoff.
+
+        The factor is the error of an equilibrium over that of forces on particles held in place, which follow it. A
+        table's error, here at the distances of the state, is half of that between two entries on average.
+        """
+        return 2.0 * left_out(self.law, self.table, profile)
 
 
 @dataclass(frozen=True)
 class Chains:
-    """Particles of the upper body, of the lower one where it has any, and the length of the long bonds.
+    """Numbers of particles of both bodies, and the length of the long bonds.
 
     Attributes:
-        upper, lower: how many.
+        upper, lower: particles of the upper and of the lower body; the latter is not used for a rigid plane.
         far: length of the long bond that makes normal and tangential stiffness differ [LU]; 0 where they do not.
     """
 
@@ -186,12 +191,12 @@ class Increments:
 
     Attributes:
         displacement_step: where pairs snap, and on a rigid plane.
-        loading_step: the same where particles are so far from each other that it is no danger.
-        smooth_step: elsewhere, where the force is a smooth function of the displacement.
-        longest_move: of a body between two states at rest, inf on a rigid plane: a body that is moved by more than
-            its particles' distance from the opposite ones is put behind them. A search may come nearer than `closest`,
-            in moves down to NEAR_SHARE of this.
-        part: of increments, moves and loads over the usual ones, of a search that restarts in smaller steps.
+        loading_step: the same while particles are so far apart that they cannot pass each other.
+        smooth_step: where the force of particles is a smooth function of the displacement.
+        longest_move: longest move of a body between two states at rest, inf on a rigid plane: a move longer than the
+            distance of opposite particles would put them behind each other. A search may approach to less than
+            `closest`, in moves down to NEAR_SHARE of this.
+        part: increments, moves and loads over the usual ones, below 1 in a search that restarts in smaller steps.
     """
 
     displacement_step: float = measured("LU")
@@ -201,6 +206,6 @@ class Increments:
     part: float = 1.0
 
     def scaled(self, part: float) -> Increments:
-        """All of them by this factor."""
+        """Return these increments with all lengths scaled by a factor `part`."""
         lengths = {name: part * value for name, value in vars(self).items()}
         return replace(self, **lengths | {"part": part})

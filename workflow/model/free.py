@@ -1,4 +1,4 @@
-"""A plate that moves freely on the model of a contact: the swing under a load, and an impact."""
+"""A plate that moves freely on the reduced model of a contact: oscillation under a load, and impact."""
 
 from __future__ import annotations
 
@@ -14,18 +14,20 @@ from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
-
-
 MOST_STEPS = 20_000
-"""Timesteps of a swing that is followed; a longer one ends in equilibrium."""
+"""Most timesteps of an oscillation, beyond which it has ended in equilibrium, and most states of an impact."""
+STRETCHES = 60
+"""States of an impact in the time of a free motion to the deepest displacement."""
+FLIGHT = 3
+"""States in free flight that give its velocity."""
 
 
 def swing(scene: Scene, settings: Settings, model: Particles, start: float, load: float, duration: float) -> Array:
-    """Displacements [LU] of a plate under a load [FU] after the first timestep, and after a time [TU], (2,).
+    """Return the displacements [LU] of a plate under a load [FU] after the first timestep, and after a time [TU], (2,).
 
         (M + N m) d″ = load − F(d) − c d′
 
-    from rest at `start` [LU], with F(d) and limit points of the reduced model, in LAMMPS's own steps (velocity Verlet,
+    from rest at `start` [LU], with F(d) and limit points of the reduced model, in the steps of LAMMPS (velocity Verlet,
     drag half a step late).
     """
     total = sum(settings.steps_of(duration))
@@ -33,59 +35,53 @@ def swing(scene: Scene, settings: Settings, model: Particles, start: float, load
         return np.full(2, model.displacement_at(load))
     particle, plate = inertia(scene, settings)
     mass, drag, step = plate + settings.chains.upper * particle, settings.drag(), settings.motion.time_step
-    path, place, velocity, feel = np.empty(total), start, 0.0, model.feeling()
-    force = load - float(model.held(np.asarray([place]))[0])
+    path, displacement, velocity, contact_force = np.empty(total), start, 0.0, model.force_in_time()
+    force = load - float(model.held(np.asarray([displacement]))[0])
     for i in range(total):
         velocity += 0.5 * step * force / mass
-        place += step * velocity
-        force = load - drag * velocity - feel(place, step, velocity + 0.5 * step * force / mass)
+        displacement += step * velocity
+        force = load - drag * velocity - contact_force(displacement, step, velocity + 0.5 * step * force / mass)
         velocity += 0.5 * step * force / mass
-        path[i] = place
+        path[i] = displacement
     return path[[0, total - 1]]
 
 
-STRETCHES, COARSER = 60, 16
-"""States of an impact in the time of a fall to the deepest displacement; timesteps of the model in each."""
-
-
-FLIGHT = 3
-"""States in free flight that show its velocity."""
-
-
 def stretch(settings: Settings, velocity: float) -> int:
-    """Timesteps from state to state of an impact at a velocity [LU/TU]."""
+    """Return the number of timesteps from state to state of an impact at a velocity [LU/TU]."""
     return max(1, round(settings.largest_displacement / velocity / STRETCHES / settings.motion.time_step))
 
 
 def is_over(displacement: Sequence[float], force: Sequence[float], flight: int = FLIGHT) -> bool:
-    """Whether a body that has hit flies off, so many states long, or comes down again without having parted."""
-    ways = np.sign(np.diff(displacement))
-    parted = not any(force[-flight:]) and ways[-1] < 0.0
-    return bool(parted or np.count_nonzero(np.diff(ways[ways != 0.0])) > 1)
+    """Return whether a body has rebounded, with `flight` states of free flight, or comes down again in contact."""
+    directions = np.sign(np.diff(displacement))
+    separated = not any(force[-flight:]) and directions[-1] < 0.0
+    return bool(separated or np.count_nonzero(np.diff(directions[directions != 0.0])) > 1)
 
 
 def impact(scene: Scene, settings: Settings, model: Particles, velocity: float, dense: int = 1) -> Path:
-    """The model's states of an impact, from touch on at the times of a run, or `dense` ones for each.
+    """Return the path of an impact at a velocity [LU/TU] on the reduced model, from touch to free flight.
 
-    It takes longer timesteps: with `feeling` F, velocity Verlet of M d″ = −F.
+    Its states are at the times of a run, `dense` so many times. Velocity Verlet of M d″ = −F, with F of
+    `Particles.force_in_time`, takes 16 steps for each state of a run, which are longer than timesteps of the run.
     """
     assert scene.plate
     assert scene.plate.mass != "auto"
-    each, time = max(1, COARSER // dense), stretch(settings, velocity) * settings.motion.time_step / dense
-    step, feel, place, force, mass = time / each, model.feeling(), 0.0, 0.0, scene.plate.mass
-    places, forces, velocities = [0.0], [0.0], [velocity]
-    while len(places) < FLIGHT * dense or not is_over(places, forces, FLIGHT * dense):
-        for _ in range(each):
+    steps, time = max(1, 16 // dense), stretch(settings, velocity) * settings.motion.time_step / dense
+    step, contact_force, mass = time / steps, model.force_in_time(), scene.plate.mass
+    displacement, force = 0.0, 0.0
+    displacements, forces, velocities = [0.0], [0.0], [velocity]
+    while len(displacements) < FLIGHT * dense or not is_over(displacements, forces, FLIGHT * dense):
+        for _ in range(steps):
             velocity -= 0.5 * step * force / mass
-            before, place = place, place + step * velocity
-            if model.limits and place < model.limits[0] <= before:  # the force ends there, within the step
-                velocity -= step * force / mass * ((before - model.limits[0]) / (before - place) - 0.5)
-            force = feel(place, step, velocity - 0.5 * step * force / mass)
+            before, displacement = displacement, displacement + step * velocity
+            if model.limits and displacement < model.limits[0] <= before:  # the force ends there, within the step
+                velocity -= step * force / mass * ((before - model.limits[0]) / (before - displacement) - 0.5)
+            force = contact_force(displacement, step, velocity - 0.5 * step * force / mass)
             velocity -= 0.5 * step * force / mass
-        places.append(place)
+        displacements.append(displacement)
         forces.append(force)
         velocities.append(velocity)
-        if len(places) > MOST_STEPS:
+        if len(displacements) > MOST_STEPS:
             break
-    path = np.asarray(places)
+    path = np.asarray(displacements)
     return Path(path, np.zeros_like(path), time * np.arange(float(path.size)), np.asarray(velocities))

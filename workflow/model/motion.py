@@ -1,9 +1,9 @@
-"""A slide's inertia in LAMMPS, whether it stays on its lower chain, whether particles can follow its drive.
+"""Masses of a slide in LAMMPS, and checks that it stays on its lower chain and that particles can follow its drive.
 
 LAMMPS evaluates the drag of a step with the velocity half a step before: m a = F − γ (v − a Δt/2). With m + γ Δt/2 in
-the position of m that is m a = F − γ v. Otherwise a slip is as much too light as its drag is strong, which at usual
-timesteps is percents of its time and tenths of percents of a mean friction. The first half step of a row has the right
-velocity by itself, and so its share of the row is left out.
+place of m that is m a = F − γ v. Without this correction a slip has too small a mass, by γ Δt/2: at usual timesteps an
+error of percents of its duration and tenths of percents of a mean friction. The first half step of a load step has the
+right velocity, and so its share of the load step is not corrected.
 """
 
 from __future__ import annotations
@@ -12,15 +12,15 @@ import math
 
 from contact1d.digits import apart
 from contact1d.workflow.errors import SceneEdit, SettingsError
-from contact1d.workflow.model.chain import felt_up_to
+from contact1d.workflow.model.chain import significant_gap
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Cantilever, Scene, Slide
 
 
 def inertia(scene: Scene, settings: Settings) -> tuple[float, float]:
-    """(mass of a particle, of the plate) in LAMMPS [MU]: the scene's own but in a slide without noise.
+    """Return the masses of a particle and of the plate in LAMMPS [MU]: the scene's own but in a slide without noise.
 
-    With noise the thermostat's own error, of the same order, is bounded by the timestep.
+    With noise the error of the thermostat, of the same order, is bounded by the timestep.
     """
     late, motion = 0.0, settings.motion
     if motion.drive and not scene.noise:
@@ -28,14 +28,10 @@ def inertia(scene: Scene, settings: Settings) -> tuple[float, float]:
     return scene.bodies.mass + motion.damping * late, motion.plate_mass + motion.plate_damping * late
 
 
-SHORTEST = 4.0
-"""Way over the spacing below which no mean friction comes of a slide: a run-in and three periods."""
-
-
 def contact_half_width(scene: Scene, settings: Settings) -> float:
-    """Half-width [LU] in which upper particles feel more than the tolerance's share of the largest force."""
+    """Return the half-width [LU] in which forces on upper particles exceed the tolerance times the largest one."""
     estimate, largest = settings.law, settings.largest_displacement
-    half = estimate.half_width(max(largest, 0.0), felt_up_to(estimate, largest, scene.accuracy.tolerance))
+    half = estimate.half_width(max(largest, 0.0), significant_gap(estimate, largest, scene.accuracy.tolerance))
     return min(half, 0.5 * (settings.chains.upper - 1) * scene.bodies.own_spacing)
 
 
@@ -48,15 +44,16 @@ def require_way(scene: Scene, settings: Settings) -> None:
     bodies = scene.bodies
     if not isinstance(scene.experiment, Slide) or bodies.periodic:
         return
-    half, way = contact_half_width(scene, settings), scene.experiment.way + abs(bodies.upper_offset or 0.0)
+    half, distance = contact_half_width(scene, settings), scene.experiment.way + abs(bodies.upper_offset or 0.0)
     end = 0.5 * settings.chains.lower * bodies.spacing
-    if end < half + way:
-        needed = 2 * math.ceil((half + way) / bodies.spacing)
+    if end < half + distance:
+        needed = 2 * math.ceil((half + distance) / bodies.spacing)
         room = end - half - abs(bodies.upper_offset or 0.0)
-        shorter = f", or a distance of at most {room:.4g} LU" if room >= SHORTEST * bodies.spacing else ""
+        run_in_and_periods = 4.0 * bodies.spacing  # a mean friction needs the run-in and three periods
+        shorter = f", or a distance of at most {room:.4g} LU" if room >= run_in_and_periods else ""
         raise SettingsError(
             f"the lower chain is too short for the sliding distance: it ends {end:.4g} LU from its middle, and a "
-            f"contact of half-width {half:.4g} LU moves {way:.4g} LU along it. Use at least "
+            f"contact of half-width {half:.4g} LU moves {distance:.4g} LU along it. Use at least "
             f"{needed} bodies.particles (with upper_particles = "
             f'{settings.chains.upper}), or "auto"{shorter}',
             changes=[SceneEdit({"bodies.particles": needed, "bodies.upper_particles": settings.chains.upper})],
@@ -64,23 +61,23 @@ def require_way(scene: Scene, settings: Settings) -> None:
 
 
 def cantilever_swing(scene: Scene, settings: Settings) -> float:
-    """Time [TU] of a swing of plate and particles on the cantilever, 2π √((M + N m)/k)."""
+    """Return the period [TU] of plate and particles on the cantilever, 2π √((M + N m)/k)."""
     moving = settings.motion.plate_mass + settings.chains.upper * scene.bodies.mass
     return 2.0 * math.pi * math.sqrt(moving / scene.the(Cantilever).stiffness)
 
 
 def too_fast(scene: Scene) -> str:
-    """A warning where the drive passes particles quicker than they swing, 2π v/s > √(k/m); else empty."""
+    """Return a warning where the drive passes a particle in less than its period, 2π v/s > √(k/m); else ""."""
     experiment, bodies = scene.experiment, scene.bodies
     if not isinstance(experiment, Slide):
         return ""
     fastest = max(abs(leg.velocity) for leg in experiment.legs(scene.the(Cantilever).velocity))
-    own = math.sqrt(min(scene.bulk_stiffness, scene.tangential_stiffness) / bodies.mass)
-    if 2.0 * math.pi * fastest / bodies.spacing <= own:
+    frequency = math.sqrt(min(scene.bulk_stiffness, scene.tangential_stiffness) / bodies.mass)
+    if 2.0 * math.pi * fastest / bodies.spacing <= frequency:
         return ""
-    passing, period = apart(bodies.spacing / fastest, 2.0 * math.pi / own)
+    passing, period = apart(bodies.spacing / fastest, 2.0 * math.pi / frequency)
     return (
         f"the drive passes a particle in {passing} TU, less than the period of a particle on its "
         f"springs, {period} TU: the bodies cannot follow, and the friction is that of a shock. "
-        f"Use a velocity below {own * bodies.spacing / (2.0 * math.pi):.3g} LU/TU"
+        f"Use a velocity below {frequency * bodies.spacing / (2.0 * math.pi):.3g} LU/TU"
     )

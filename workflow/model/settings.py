@@ -1,9 +1,9 @@
-"""Every number that a scene leaves open: chain length, cutoff, table, time step, thresholds, increments.
+"""Every number that a scene leaves open: chain length, cutoff, table, timestep, thresholds, increments.
 
 Each is derived from `[accuracy] tolerance` (relative, on the main results): by its measured share of it, or by the rule
-stated beside it. The shares are in `calibration.json`, which `python -m validation.tools.calibration` writes: it turns
-every value over a ladder in a number of scenes, at tolerances of 1e-2 to 1e-5, and takes the cheapest that adds a small
-part of the tolerance at most to the errors of the main results in each of them; the residual has a set limit, too.
+next to it. The shares are in `calibration.json`, which `python -m validation.tools.calibration` writes: it varies every
+value over a ladder in a number of scenes, at tolerances of 1e-2 to 1e-5, and takes the cheapest that adds a small part
+of the tolerance at most to the errors of the main results in each of them; the residual has a set limit, too.
 """
 
 from __future__ import annotations
@@ -37,7 +37,6 @@ from contact1d.workflow.model.chain import (
 from contact1d.workflow.model.cutoff import cutoff_for
 from contact1d.workflow.model.dynamics import Motion, measured, motion_of, whole_steps
 from contact1d.workflow.model.forces import (
-    CLOSEST_SHARE,
     MOVE_SHARE,
     NEAR_SHARE,
     Chains,
@@ -50,12 +49,8 @@ from contact1d.workflow.model.forces import (
 from contact1d.workflow.scene import Impact, Interaction, Plate, Scene
 from contact1d.workflow.scene.remedies import less_compression
 
-ROWS_IN_TIME = 100
-"""States of a motion that is followed for a given time."""
-FAR_SHARE = 10.0
-"""Length of a long bond over the spacing, per 1/tolerance: a lateral move u turns its force by u/2L."""
 STAGGER_SHARE = 5e-4
-"""Shift of a plate's anchors out of the plane, to and fro, over the chain's length.
+"""Alternating shift of a plate's anchors out of the plane, over the chain's length.
 
 No force acts in that direction, but `fix rigid` refuses a body that is nearly a line ("Bad principal moments"): the
 least moment of inertia must be more than 1e-7 of the largest, and is 12 STAGGER² = 3e-6 of it.
@@ -67,10 +62,13 @@ class Settings:
     """The numbers of one run; units as in the scene. Two are equal if they are the same object.
 
     Attributes:
-        tolerance: that all of this is for; that of a refined pass is smaller than the scene's.
-        law: of the contact.
-        forces, chains, increments, motion: see these.
-        largest_displacement: what the predictor expects [LU].
+        tolerance: relative tolerance of the main results; that of a refined pass is smaller than the scene's.
+        law: contact law.
+        forces: forces on a particle, their cutoff, table and residual.
+        chains: numbers of particles.
+        increments: displacement increments of a search.
+        motion: timestep, masses and damping.
+        largest_displacement: largest displacement that the predictor expects [LU].
     """
 
     tolerance: float
@@ -82,9 +80,9 @@ class Settings:
     largest_displacement: float = measured("LU")
 
     def drag(self, damping: float | None = None) -> float:
-        """On all that moves with the plate [FU·TU/LU], with another coefficient of a particle where one is given."""
-        each = self.motion.damping if damping is None else damping
-        return self.chains.upper * each + self.motion.plate_damping
+        """Return the drag on plate and particles together [FU·TU/LU]; `damping`: of a particle, by default its own."""
+        coefficient = self.motion.damping if damping is None else damping
+        return self.chains.upper * coefficient + self.motion.plate_damping
 
     @property
     def gentle(self) -> bool:
@@ -93,56 +91,63 @@ class Settings:
 
     @property
     def snaps(self) -> bool:
-        """Whether particles snap to the opposite ones and off them."""
+        """Whether pairs of particles snap in and out."""
         return self.law.snaps
 
     @cached_property
-    def is_toothed(self) -> bool:
-        """Whether the tensile force has several maxima: pairs separate one by one; they snap, or nearly so."""
-        return self.snaps or (self.is_smooth and self.law.tooth(self.chains.upper) < math.inf)
+    def has_several_maxima(self) -> bool:
+        """Whether the tensile force has several maxima: pairs separate one by one, with a snap-out or nearly so."""
+        return self.snaps or (self.is_smooth and self.law.maxima_distance(self.chains.upper) < math.inf)
 
     @property
     def is_smooth(self) -> bool:
-        """Whether the force is a smooth function of the displacement: particles, and none of them snaps."""
+        """Whether the force is a smooth function of the displacement: opposite particles interact, and none snaps."""
         return self.forces.range > 0.0 and not self.snaps
 
     @property
     def strongest(self) -> tuple[float, float]:
-        """(distance [LU], tension [FU]) of the force maximum of a chain of opposite particles on one.
+        """Distance [LU] and tension [FU] at the force maximum of a chain of opposite particles on one.
 
-        Of the predictor, whose grid of distances ends at the cutoff; (0, 0) on a rigid plane.
+        By the predictor, whose grid of distances ends at the cutoff; (0, 0) on a rigid plane.
         """
         force = self.law.force
-        at = int(force.argmin())
-        return self.forces.cutoff * (at + 1) / force.size, max(0.0, -float(force[at]))
+        peak = int(force.argmin())
+        return self.forces.cutoff * (peak + 1) / force.size, max(0.0, -float(force[peak]))
 
     def increment(self, smallest_distance: float = math.inf) -> float:
-        """Longest increment [LU] of a search from a state with this smallest distance [LU]; unloading has no such."""
-        own = self.increments
-        if not self.is_smooth:
-            near = MOVE_SHARE * own.part * smallest_distance if smallest_distance < math.inf else 0.0
-            return min(own.loading_step, max(own.displacement_step, near))
-        return min(own.smooth_step, max(NEAR_SHARE * own.longest_move, MOVE_SHARE * smallest_distance))
+        """Return the longest increment [LU] of a search from a state with a smallest distance of particles [LU].
 
-    def steps_of(self, duration: float) -> list[int]:
-        """Timesteps of each load step of a motion of this duration [TU], the first of which is one timestep."""
+        In unloading that distance sets no limit: infinite.
+        """
+        increments = self.increments
+        if not self.is_smooth:
+            near = MOVE_SHARE * increments.part * smallest_distance if smallest_distance < math.inf else 0.0
+            return min(increments.loading_step, max(increments.displacement_step, near))
+        shortest = NEAR_SHARE * increments.longest_move
+        return min(increments.smooth_step, max(shortest, MOVE_SHARE * smallest_distance))
+
+    def steps_of(self, duration: float, states: int = 100) -> list[int]:
+        """Return the timesteps of each load step of a motion of a duration [TU]; the first load step has one.
+
+        `states`: how many follow the first one, where there are as many timesteps.
+        """
         total = round(duration / self.motion.time_step)
-        ends = np.unique(np.linspace(1, total, min(ROWS_IN_TIME, total - 1) + 1).round())
+        ends = np.unique(np.linspace(1, total, min(states, total - 1) + 1).round())
         return [int(steps) for steps in np.diff(ends, prepend=0.0)]
 
-    def let_go_early(self, move: float) -> float:
-        """Premature detachment [LU] of a pair under displacement increments `move` [LU]."""
-        return self.law.let_go_early(move, self.forces.residual)
+    def premature_detachment(self, move: float) -> float:
+        """Return the premature detachment [LU] of a pair under displacement increments `move` [LU]."""
+        return self.law.premature_detachment(move, self.forces.residual)
 
     def in_smaller_steps(self, part: float) -> Settings:
-        """The same, with increments and moves, also those of a relaxation, scaled by this factor.
+        """Return these settings with increments and moves, also those of a relaxation, scaled by a factor `part`.
 
-        In time a particle that comes to the opposite one is stopped by drag, not by its core, where the scene leaves
-        the drag open; it needs timesteps of its own.
+        In time, where the scene leaves the drag open, drag stops a particle that approaches the opposite one before its
+        repulsion does, with a timestep of its own.
         """
         motion = self.motion
-        damping = motion.damping if motion.plate_mass > 0.0 else motion.calm_damping
-        timed = replace(motion, damping=damping, time_step=motion.calm_step)
+        damping = motion.damping if motion.plate_mass > 0.0 else motion.settling_damping
+        timed = replace(motion, damping=damping, time_step=motion.settling_step)
         return replace(self, motion=timed, increments=self.increments.scaled(part))
 
 
@@ -156,8 +161,8 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
         calibration: in place of the one that was measured, for the study that measures it.
 
     Raises:
-        SettingsError: the numbers are so far apart that no chain, table or time step comes out of them, or the bodies
-            can't carry the load.
+        SettingsError: the numbers are so far apart that no chain, table or timestep follows from them, or the bodies
+            cannot carry the load.
     """
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
@@ -177,65 +182,60 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
     return chosen
 
 
-CREEPING = 4
-"""Looks for how deep a body goes that relaxes meanwhile, each with the time of the one before."""
-INERTIA, LONGER = 4.0, 2.0
-"""Masses that the program chose, in a slower motion over the usual one; its drags, which go with the root, and the
-timesteps of a coarser one. What is of first order in these changes by its own amount at least."""
+def slower(scene: Scene, settings: Settings, factor: float = 2.0) -> list[tuple[Scene, Settings]]:
+    """Return settings with longer timesteps and a less rigid plane, and others with more mass and drag if not given.
 
-
-def slower(scene: Scene, settings: Settings) -> list[tuple[Scene, Settings]]:
-    """A motion in longer timesteps, on a less rigid plane; and with more mass and drag where these are not given."""
-    own, forces, duration = settings.motion, settings.forces, scene.experiment.lasts
-    longer = whole_steps(LONGER * own.time_step, duration)
+    `factor`: timesteps, drags and 1/stiffness over the usual ones; masses by its square. An error of first order in
+    these changes by its own amount at least.
+    """
+    usual, forces, duration = settings.motion, settings.forces, scene.experiment.lasts
+    longer = whole_steps(factor * usual.time_step, duration)
     if not scene.stands and forces.plane_stiffness > 0.0:
-        plane = forces.plane_stiffness / LONGER
-        forces = replace(forces, plane_stiffness=plane, bulk_stiffness=_beside_plane(scene.bulk_stiffness, plane))
-    found = [(scene, replace(settings, forces=forces, motion=replace(own, time_step=longer)))]
+        plane = forces.plane_stiffness / factor
+        forces = replace(forces, plane_stiffness=plane, bulk_stiffness=_bond_on_plane(scene.bulk_stiffness, plane))
+    coarser = [(scene, replace(settings, forces=forces, motion=replace(usual, time_step=longer)))]
     bodies, plate, damping = scene.bodies, scene.plate, scene.damping
     if "mass" not in bodies.model_fields_set and not scene.experiment.is_massless:
-        bodies = bodies.model_copy(update={"mass": INERTIA * bodies.mass})
+        bodies = bodies.model_copy(update={"mass": factor**2 * bodies.mass})
     if plate and plate.mass == "auto":
-        plate = plate.model_copy(update={"mass": INERTIA * own.plate_mass})
-    drags = {
-        "damping": own.damping * (LONGER if damping and damping.coefficient == "auto" else 1.0),
-        "plate_damping": own.plate_damping * (LONGER if plate and plate.damping == "auto" else 1.0),
-    }
+        plate = plate.model_copy(update={"mass": factor**2 * usual.plate_mass})
+    drag = usual.damping * (factor if damping and damping.coefficient == "auto" else 1.0)
+    plate_drag = usual.plate_damping * (factor if plate and plate.damping == "auto" else 1.0)
     heavier = scene.model_copy(update={"bodies": bodies, "plate": plate})
     motion = settings_for(heavier, settings.tolerance).motion
-    motion = replace(
-        motion, damping=drags["damping"], plate_damping=drags["plate_damping"],
-        time_step=whole_steps(motion.time_step, duration),
-    )  # fmt: skip
-    return [*found, (heavier, replace(settings, motion=motion))] if motion != own else found
+    step = whole_steps(motion.time_step, duration)
+    motion = replace(motion, damping=drag, plate_damping=plate_drag, time_step=step)
+    return [*coarser, (heavier, replace(settings, motion=motion))] if motion != usual else coarser
 
 
-def _stopped(scene: Scene, law: Law) -> float:
-    """Displacement [LU] at which a body that hits the plane is at rest, one that relaxes meanwhile deeper.
+def _stopped(scene: Scene, law: Law, rounds: int = 4) -> float:
+    """Return the displacement [LU] at which a body that hits the plane is at rest, deeper where it relaxes meanwhile.
+
+    `rounds`: most iterations of the displacement and the time of the impact.
 
     Raises:
-        SettingsError: it sticks.
+        SettingsError: the body sticks.
     """
-    found, given = stopped_at(scene, law), scene.experiment
-    if not isinstance(given, Impact):
-        return found
-    for _ in range(CREEPING):
-        time = 2.0 * found / given.velocity
+    depth, experiment = stopped_at(scene, law), scene.experiment
+    if not isinstance(experiment, Impact):
+        return depth
+    for _ in range(rounds):
+        time = 2.0 * depth / experiment.velocity
         if (softer := law.creep(time)) == 1.0:
             break
-        found = stopped_at(scene, law, softer)
+        depth = stopped_at(scene, law, softer)
     mass = scene.the(Plate).mass
     assert mass != "auto"
-    if sticks := law.sticking(mass, given.velocity, time):
+    if sticks := law.sticking(mass, experiment.velocity, time):
         raise SettingsError(
             f"the body sticks: it {sticks[0]}, for longer than is followed, where an impact of the elastic body takes "
             f"some {time:.4g} TU: give {sticks[1]} in [viscoelasticity]"
         )
-    return found
+    return depth
 
 
-def _beside_plane(stiffness: float, plane: float) -> float:
-    """Stiffness of a bond [FU/LU] that in series with the plane has the particle's."""
+def _bond_on_plane(stiffness: float, plane: float) -> float:
+    """Return the stiffness of a bond [FU/LU] that in series with the plane has the particle's `stiffness` [FU/LU]."""
     return 1.0 / (1.0 / stiffness - 1.0 / plane)
 
 
@@ -256,7 +256,7 @@ def _require_carried(scene: Scene) -> None:
 
 
 def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Settings:
-    """Forces, load, chains, table, motion, increments: each by what was chosen before it."""
+    """Return the settings of a scene: forces, load, chains, table, motion and increments, in this order."""
     bodies = scene.bodies
     require_room(bodies)
     forces, estimate = _forces(scene, tolerance, calibration)
@@ -266,7 +266,7 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     else:
         largest = estimate.displacement_at(load * estimate.creep(scene.experiment.lasts or 0.0))
     chains = _chains(scene, estimate, forces, largest, calibration.chain * tolerance)
-    scale = forces.scale_of(scene, estimate.strained(largest))
+    scale = forces.scale_of(scene, estimate.largest_length_change(largest))
     require_digits(scene, chains.upper, forces.rest + largest, tolerance * scale)
     forces = replace(forces, scale=scale, residual=calibration.residual * tolerance * scale)
     forces = forces.with_table(scene, estimate, largest, calibration.table * tolerance * scale)
@@ -276,26 +276,27 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     increments = forces.increments(bodies.spacing, largest, calibration)
     require_rows(scene, increments.longest_move, motion.drive)
     different = scene.horizontal and scene.tangential_stiffness != scene.bulk_stiffness
-    chains = replace(chains, far=FAR_SHARE / tolerance * bodies.spacing if different else 0.0)
+    # A lateral move u turns the force of a long bond by u/2L.
+    chains = replace(chains, far=10.0 / tolerance * bodies.spacing if different else 0.0)
     return Settings(tolerance, estimate, forces, chains, increments, motion, largest)
 
 
 def _forces(scene: Scene, tolerance: float, calibration: Calibration) -> tuple[Forces, Law]:
-    """Springs, plane and interaction, without table and scales; the predictor of the contact that they make."""
+    """Return the springs, plane and interaction, without table and scales, and the contact law that they make."""
     law, bodies, spring = interaction_law(scene), scene.bodies, scene.bulk_stiffness
     shape: Undeformed = bodies
     if bodies.profile.slow:
         shape = tabulated(bodies, bodies.spacing, law_of(scene).table)
     if law is None:
         plane = plane_stiffness_of(scene, tolerance)
-        bond = spring if scene.stands else _beside_plane(spring, plane)
+        bond = spring if scene.stands else _bond_on_plane(spring, plane)
         return Forces(bulk_stiffness=bond, plane_stiffness=plane), law_of(scene).of(scene, shape)
     cutoff = cutoff_for(scene, law, calibration.cutoff * tolerance, tolerance)
     require_reach(scene, cutoff)
-    rest, closest = cutoff, CLOSEST_SHARE * law.repulsion.range
+    rest, length = cutoff, law.repulsion.range
     if law.attraction is not None:
-        rest = law.force_free_distance()
-        closest = CLOSEST_SHARE * rest
+        rest = length = law.force_free_distance()
+    closest = 0.2 * length  # the smallest distance for which moves and timestep are chosen
     estimate = of_pairs(law, shape, bodies.own_spacing, spring, cutoff, rest, chains=scene.chains, row=bodies.spacing)
     _require_carried(scene)
     table = Table(law, cutoff, FEWEST_POINTS)  # until it is known how near particles come
@@ -303,7 +304,7 @@ def _forces(scene: Scene, tolerance: float, calibration: Calibration) -> tuple[F
 
 
 def _chains(scene: Scene, estimate: Law, forces: Forces, largest: float, share: float) -> Chains:
-    """As many particles as the contact needs, or as the scene gives. Raises SettingsError where they do not fit."""
+    """Return as many particles as the contact needs, or the scene gives. Raises SettingsError where they do not fit."""
     upper, lower = chains_of(scene, estimate, largest, share)
     require_body(scene.bodies, largest, upper)
     require_apex(scene, upper, forces.cutoff)

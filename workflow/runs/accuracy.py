@@ -12,51 +12,50 @@ from contact1d.workflow.body.traction import BodyPressure
 from contact1d.workflow.continuation.outcome import LATTICE, LOSSES, MODEL, Outcome, Result, in_words, unmet
 from contact1d.workflow.continuation.trust import UntrustedError
 from contact1d.workflow.experiments import kind_of
-from contact1d.workflow.experiments.experiment import FINER_SPACING
+from contact1d.workflow.experiments.experiment import finer_spacing
 from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import FORCE, LENGTH
 
-ROWS = "force in curve.csv"
-"""What a warning calls the rows of a curve."""
-UNKNOWN = 0.5
-"""Uncertainty over a value above which the value is not reported."""
+CURVE_FORCE = "force in curve.csv"
+"""Name of the force of a curve in warnings."""
 
 
 def accuracy_warnings(scene: Scene, outcome: Outcome) -> dict[str, str]:
-    """By name: `unknown`, results that are not reported; `lattice` and `tolerance`, those that miss the tolerance.
+    """Return the warnings of results that are not reported (`unknown`) or miss the tolerance, by name.
 
-    `lattice` has those whose discretisation error alone exceeds it. Noise has its own statistics.
+    `lattice` has the results whose discretisation error alone exceeds the tolerance, `tolerance` the others. There are
+    none of a mean under noise, whose standard error is its uncertainty.
     """
     if kind_of(scene).is_statistical:
         return {}
-    missing, tolerance, warnings = unknown(scene, outcome), scene.accuracy.tolerance, {}
-    every = dict(outcome.results) | _of_the_curve(scene, outcome)
-    known = {name: one for name, one in every.items() if name not in missing}
-    by_lattice = _by_lattice(known, tolerance)
-    others = {name: share for name, share in unmet(known, tolerance, (MODEL,)).items() if name not in by_lattice}
+    missing, tolerance, warnings = unreported(scene, outcome), scene.accuracy.tolerance, {}
+    results = dict(outcome.results) | _curve_force(scene, outcome)
+    shown = {name: result for name, result in results.items() if name not in missing}
+    by_lattice = _by_lattice(shown, tolerance)
+    uncertain = {name: share for name, share in unmet(shown, tolerance, (MODEL,)).items() if name not in by_lattice}
     if missing:
-        wide = ", ".join(f"{name} {_less_than(one)}" for name, one in missing.items())
+        bounds = ", ".join(f"{name} {_bound(result)}" for name, result in missing.items())
         warnings["unknown"] = (
-            f"not reported, because the uncertainty is more than half of the value: {wide}. {_advice(scene, missing)}"
+            f"not reported, because the uncertainty is more than half of the value: {bounds}. {_advice(scene, missing)}"
         )
     if by_lattice:
         warnings["lattice"] = _lattice_message(scene, by_lattice, bool(_by_lattice(missing, tolerance)))
-    if others:
+    if uncertain:
         ended = f" ({outcome.refinement.ended})" if outcome.refinement and outcome.refinement.ended else ""
         warnings["tolerance"] = (
-            f"relative uncertainties above the tolerance of {tolerance:g}: {in_words(others, tolerance)}{ended}. "
-            f"{_advice(scene, {name: known[name] for name in others})}"
+            f"relative uncertainties above the tolerance of {tolerance:g}: {in_words(uncertain, tolerance)}{ended}. "
+            f"{_advice(scene, {name: shown[name] for name in uncertain})}"
         )
     return warnings
 
 
-def unknown(scene: Scene, outcome: Outcome) -> dict[str, Result]:
-    """The results whose uncertainty exceeds UNKNOWN of the value and the tolerance of the run's own scale.
+def unreported(scene: Scene, outcome: Outcome) -> dict[str, Result]:
+    """Return the results whose uncertainty exceeds half of the value, and the tolerance of the scale of the run.
 
     The scale of a force or a displacement is the largest of the run, that of another result the largest one of its
-    unit: a number that is 0 beside it is known to be 0. An energy that is lost is compared with itself alone: whether
-    there is a loss at all is what is asked. Means are reported whatever their standard errors, and what follows from
-    numbers with ± whatever these are.
+    unit: a number that is 0 within the tolerance of that scale is reported as 0. A dissipated energy is its own scale,
+    since the question is whether there is a loss at all. Means are reported whatever their standard errors, and numbers
+    with ± do not count.
     """
     if kind_of(scene).is_statistical:
         return {}
@@ -64,45 +63,46 @@ def unknown(scene: Scene, outcome: Outcome) -> dict[str, Result]:
         FORCE: max((abs(state.force) for state in outcome.states), default=0.0),
         LENGTH: max((abs(state.displacement) for state in outcome.states), default=0.0),
     }
-    for name, one in outcome.results.items():
-        kind = _kind(name, one)
-        scales[kind] = max(scales.get(kind, 0.0), abs(one.value), one.scale or 0.0)
+    for name, result in outcome.results.items():
+        scale = _scale_name(name, result)
+        scales[scale] = max(scales.get(scale, 0.0), abs(result.value), result.scale or 0.0)
     tolerance = scene.accuracy.tolerance
     missing = {}
-    for name, one in outcome.results.items():
-        error = one.uncertainty - one.errors.get("statistics", 0.0) - one.given
-        if not one.prescribed and error > max(UNKNOWN * abs(one.value), tolerance * scales[_kind(name, one)]):
-            missing[name] = one
+    for name, result in outcome.results.items():
+        error = result.uncertainty - result.errors.get("statistics", 0.0) - result.given
+        allowed = max(0.5 * abs(result.value), tolerance * scales[_scale_name(name, result)])
+        if not result.prescribed and error > allowed:
+            missing[name] = result
     return missing
 
 
 def main_results(scene: Scene, results: Mapping[str, Result]) -> dict[str, Result]:
-    """The main results as far as they are found, and neither prescribed nor the load."""
+    """Return the main results of an experiment that a run has, without the load and prescribed ones."""
     load = scene.experiment.load_key if scene.experiment.compression is not None else None
-    found = [name for name in kind_of(scene).main_results if name in results and name != load]
-    return {name: results[name] for name in found if not results[name].prescribed}
+    names = [name for name in kind_of(scene).main_results if name in results and name != load]
+    return {name: results[name] for name in names if not results[name].prescribed}
 
 
 def require_results(scene: Scene, outcome: Outcome) -> None:
     """Raise UntrustedError where a run has main results and none of them can be reported.
 
-    A path that the scene gives has its curve, whatever can be read off it.
+    The result of a path that the scene gives is its curve, so that it passes.
     """
     if scene.experiment.way_is_given:
         return
     main = main_results(scene, outcome.results)
-    if main and not main.keys() - unknown(scene, outcome).keys():
+    if main and not main.keys() - unreported(scene, outcome).keys():
         raise UntrustedError(accuracy_warnings(scene, outcome)["unknown"])
 
 
 def with_checks(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressure]) -> Outcome:
-    """The outcome with the checks of the body's results."""
+    """Return the outcome with the consistency checks of the body's results."""
     checks = pressure(scene, outcome, pressures) | closed_form(scene, reported(scene, outcome).exact)
     return replace(outcome, consistency={**outcome.consistency, **checks})
 
 
 def require_consistency(outcome: Outcome) -> None:
-    """Raise UntrustedError where a run contradicts itself."""
+    """Raise UntrustedError where a consistency check of a run fails."""
     for name, check in outcome.consistency.items():
         if not check.holds:
             raise UntrustedError(
@@ -112,32 +112,32 @@ def require_consistency(outcome: Outcome) -> None:
 
 
 def reported(scene: Scene, outcome: Outcome) -> Outcome:
-    """The outcome without results that are not reported."""
-    missing = unknown(scene, outcome)
-    return replace(outcome, results={name: one for name, one in outcome.results.items() if name not in missing})
+    """Return the outcome without the results that are not reported."""
+    missing = unreported(scene, outcome)
+    return replace(outcome, results={name: result for name, result in outcome.results.items() if name not in missing})
 
 
-def _kind(name: str, one: Result) -> str:
-    """Radii are compared with radii, a loss with itself, others by their unit."""
-    if one.scale is None and name.startswith(LOSSES):
+def _scale_name(name: str, result: Result) -> str:
+    """Return what a result is compared with: "radius" of radii, a dissipated energy's own name, else the unit."""
+    if result.scale is None and name.startswith(LOSSES):
         return name
-    return "radius" if name.endswith("radius") else one.unit
+    return "radius" if name.endswith("radius") else result.unit
 
 
-def _less_than(one: Result) -> str:
-    """How large a result may be: "(less than 2.3 FU)" of one that may be 0, else "(± 2.3 FU)"."""
-    bound, words = one.uncertainty, "±"
+def _bound(result: Result) -> str:
+    """Return the bound of an uncertain result: "(less than 2.3 FU)" of one that may be 0, else "(± 2.3 FU)"."""
+    bound, words = result.uncertainty, "±"
     if np.isinf(bound):
         return "(not shown to have a bound: give more particles in the contact, or more points of a profile)"
-    if one.uncertainty >= abs(one.value):
-        bound, words = bound + abs(one.value), "less than"
-    return f"({words} {float(f'{bound:.2g}'):g} {one.unit})"
+    if result.uncertainty >= abs(result.value):
+        bound, words = bound + abs(result.value), "less than"
+    return f"({words} {float(f'{bound:.2g}'):g} {result.unit})"
 
 
-def _of_the_curve(scene: Scene, outcome: Outcome) -> dict[str, Result]:
-    """The force of a curve that is asked for with the largest error of its own, which is compared with the largest one.
+def _curve_force(scene: Scene, outcome: Outcome) -> dict[str, Result]:
+    """Return the force with the largest error of a curve that is a result, by its name in warnings.
 
-    What numbers with ± change is none.
+    Its scale is the largest force. Numbers with ± count for alternative profiles only.
     """
     if not kind_of(scene).curve_is_result:
         return {}
@@ -145,44 +145,47 @@ def _of_the_curve(scene: Scene, outcome: Outcome) -> dict[str, Result]:
     if not scene.bodies.profile.alternatives:
         errors.pop("input", None)
     worst = int(np.argmax(sum(errors.values())))
-    own = {source: float(one[worst]) for source, one in errors.items()}
-    return {ROWS: Result(forces[worst], FORCE, own, scale=float(np.abs(forces).max()))}
+    at_worst = {source: float(column[worst]) for source, column in errors.items()}
+    return {CURVE_FORCE: Result(forces[worst], FORCE, at_worst, scale=float(np.abs(forces).max()))}
 
 
 def _advice(scene: Scene, results: Mapping[str, Result]) -> str:
-    """How to improve these results, by their dominant error."""
+    """Return how to improve results, by their dominant error."""
     tolerance = scene.accuracy.tolerance
-    if all(MODEL in one.errors for one in results.values()):
+    if all(MODEL in result.errors for result in results.values()):
         return "Two evaluations of this quantity differ by that much (`formulas` in results.json)"
     if scene.bodies.profile.alternatives and all(map(_is_of_points, results.values())):
-        return "They are limited by what lies between the points of the profile: give more of them, or more digits"
-    if all(max(one.errors, key=one.errors.__getitem__) == "time" for one in results.values()):
+        return "They are limited by the profile between its points: give more of them, or more digits"
+    if all(max(result.errors, key=result.errors.__getitem__) == "time" for result in results.values()):
         return "They are limited by the timestep, which a smaller accuracy.tolerance shortens"
-    if any(one.read > tolerance * one.size for one in results.values()):
-        return f"The uncertainty of a radius is limited by the spacing: use {FINER_SPACING}"
+    if any(result.read > tolerance * result.size for result in results.values()):
+        return f"The uncertainty of a radius is limited by the spacing: use {finer_spacing(scene)}"
     return kind_of(scene).advice(scene)
 
 
-def _is_of_points(one: Result) -> bool:
-    """Whether the largest error is that of a table."""
-    return one.errors.get("input", 0.0) - one.given > 0.5 * (one.uncertainty - one.given)
+def _is_of_points(result: Result) -> bool:
+    """Return whether the largest error of a result is that of a profile given by points."""
+    return result.errors.get("input", 0.0) - result.given > 0.5 * (result.uncertainty - result.given)
 
 
 def _by_lattice(results: Mapping[str, Result], tolerance: float) -> dict[str, float]:
-    """Relative discretisation errors above the tolerance, without those of interpolation between particles, by name."""
+    """Return relative discretisation errors above the tolerance, without interpolation between particles, by name."""
     of_lattice = {
-        name: replace(one, errors={LATTICE: one.errors.get(LATTICE, 0.0) - one.read}, read=0.0, given=0.0)
-        for name, one in results.items()
+        name: replace(result, errors={LATTICE: result.errors.get(LATTICE, 0.0) - result.read}, read=0.0, given=0.0)
+        for name, result in results.items()
     }
     return unmet(of_lattice, tolerance)
 
 
-def _lattice_message(scene: Scene, shares: Mapping[str, float], others_unknown: bool) -> str:
-    """A spacing is named, by the second order, unless other results are so uncertain that no order holds."""
+def _lattice_message(scene: Scene, shares: Mapping[str, float], uncertain: bool) -> str:
+    """Return the warning of discretisation errors, with a spacing by second order unless other results are unreported.
+
+    Of such uncertain results no order of convergence holds.
+    """
     tolerance = scene.accuracy.tolerance
     spacing = scene.bodies.spacing * np.sqrt(0.5 * tolerance / min(1.0, max(shares.values())))
+    finer = finer_spacing(scene, "" if uncertain else f", about {spacing:.2g} LU")
     return (
         f"relative discretisation errors above the tolerance of {tolerance:g}: {in_words(shares, tolerance)}. "
-        f"Use a smaller bodies.spacing{'' if others_unknown else f', about {spacing:.2g} LU'}, at the same stiffness "
-        "and energy per length, or give bodies.particles if this discrete chain is intended"
+        f"Use {finer}, or give bodies.particles if this discrete chain is intended"
     )

@@ -1,4 +1,4 @@
-"""A scene to a finished run folder, or to an error with a suggested fix: the first change that it carries is tried."""
+"""Run a scene to a finished folder, or to an error with a suggested fix: the first change that it carries is tried."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ from contact1d.workflow.scene.quantities import places
 from contact1d.workflow.units import NUMBER
 
 TRIAL = 4.0
-"""Wall time [s] of LAMMPS in the one trial, for each pass. With 200 particles a pass takes a few tenths."""
+"""Wall time [s] of LAMMPS in the trial of a fix, for each pass. With 200 particles a pass takes a few tenths."""
 
 Reader = Callable[[SceneEdit], Scene]
-"""The scene with an edit. Raises SceneError."""
+"""Function that returns the scene with an edit. Raises SceneError."""
 
 
 def run(
@@ -43,11 +43,11 @@ def run(
     ranks: int = 1,
     printed: Callable[[Run], object] | None = None,
 ) -> Run:
-    """As `workflow.runs.campaign.run`; where it fails, the first change that the error carries is tried.
+    """Run a scene as `workflow.runs.campaign.run`; where that fails, the first suggested fix is tried.
 
-    Arguments and errors are the same; an error says whether the scene gives a result with that change. Without a
-    folder it is a temporary one, which is removed with the `Run`, and figures are drawn if they are asked for: here,
-    or of the `Run` by `plot`.
+    Arguments and errors are those of that function; an error says whether the scene gives a result with the fix. A
+    missing folder stands for a temporary one, which is removed with the `Run`; its figures are drawn only where
+    `figures` is given, or later by `Run.plot`.
     """
     progress, figures = progress or Silent(), folder is not None if figures is None else figures
     reader = partial(edited, scene)
@@ -56,57 +56,57 @@ def run(
             folder = mkdtemp(prefix="contact1d-")
             temporary.callback(rmtree, folder, ignore_errors=True)
         try:
-            done = campaign.run(
+            finished = campaign.run(
                 scene, folder, figures, progress, time_limit, settings, workers=workers, ranks=ranks, printed=printed
             )
         except SceneError as error:
             raise mended(reader, error, progress) from None
         except SettingsError as error:
-            found = _tried(reader, error, progress)
-            message = f"{error}. {found}" if found else str(error)
+            outcome = _tried(reader, error, progress)
+            message = f"{error}. {outcome}" if outcome else str(error)
             raise SettingsError(message, changes=error.changes) from error.__cause__
         except RunError as error:
-            temporary.pop_all()  # it says where its files are
+            temporary.pop_all()  # the error says where its files are
             cause = error.__cause__
-            if isinstance(cause, UntrustedError) and (found := _tried(reader, cause, progress)):
-                raise _reported(error, cause, found) from cause
+            if isinstance(cause, UntrustedError) and (outcome := _tried(reader, cause, progress)):
+                raise _reported(error, cause, outcome) from cause
             raise
-        finalize(done, temporary.pop_all().close)
-    return done
+        finalize(finished, temporary.pop_all().close)
+    return finished
 
 
 def mended(reader: Reader, error: SceneError, progress: Progress) -> SceneError:
-    """The error of a scene, and whether the first suggested fix gives a result.
+    """Return the error of a scene with the outcome of its first suggested fix in the hint.
 
     Args:
-        reader: gives the scene with an edit.
-        error: the scene's, without.
+        reader: returns the scene with an edit.
+        error: of the scene without an edit.
         progress: informed of the trial.
     """
-    found = _tried(reader, error, progress)
-    if not found:
+    outcome = _tried(reader, error, progress)
+    if not outcome:
         return error
-    first, *others = error.problems
-    return SceneError([replace(first, hint=". ".join(filter(None, (first.hint, found)))), *others])
+    first, *rest = error.problems
+    return SceneError([replace(first, hint=". ".join(filter(None, (first.hint, outcome)))), *rest])
 
 
 def edited(source: AnyScene, edit: SceneEdit, overrides: Iterable[str] = (), without: Iterable[str] = ()) -> Scene:
-    """A scene as `read_scene` reads it, with an edit. Raises SceneError."""
+    """Return a scene as `read_scene` reads it, with an edit. Raises SceneError."""
     return read_scene(source, (*overrides, *_overrides(edit)), (*without, *edit.without))
 
 
 def _overrides(edit: SceneEdit) -> list[str]:
-    """The values of an edit in the form of `read_scene` and `--set`."""
+    """Return the values of an edit in the form of `read_scene` and `--set`."""
     return [f"{key}={value if isinstance(value, str) else as_toml(value)}" for key, value in edit.values.items()]
 
 
 def in_words(edit: SceneEdit) -> str:
-    """An edit as options of `contact1d run`."""
-    return " ".join([*(f"--without {name}" for name in edit.without), *(f"--set {one}" for one in _overrides(edit))])
+    """Return an edit as options of `contact1d run`."""
+    return " ".join([*(f"--without {name}" for name in edit.without), *(f"--set {text}" for text in _overrides(edit))])
 
 
 def _tried(reader: Reader, error: Contact1dError, progress: Progress) -> str:
-    """The message on the changes that an error carries, the first of which is tried; "" where it carries none."""
+    """Try the first change that an error carries, and return the message on it; "" where it carries none."""
     edits = []
     for edit in error.changes:
         try:
@@ -116,26 +116,26 @@ def _tried(reader: Reader, error: Contact1dError, progress: Progress) -> str:
         edits.append((in_si(scene, edit), scene))
     if not edits:
         return ""
-    (first, scene), *others = edits
+    (first, scene), *rest = edits
     progress.note(f"trying a suggested fix: {in_words(first)}")
     try:
         _attempt(scene)
     except Contact1dError:
-        untried = f". Not tried: {', or '.join(in_words(edit) for edit, _ in others)}" if others else ""
+        untried = f". Not tried: {', or '.join(in_words(edit) for edit, _ in rest)}" if rest else ""
         return f"Tried without a result within {TRIAL:g} s: {in_words(first)}{untried}"
     return f"Tried: {in_words(first)} gives a result"
 
 
 def _attempt(scene: Scene) -> None:
-    """Run a scene once, without refinement and second tries, for at most a few seconds."""
+    """Run a scene once, without refinement and retries, for at most a few seconds."""
     with TemporaryDirectory() as folder:
-        chosen = with_spacing(scene)
-        settings = settings_for(chosen)
-        campaign.run(chosen, Path(folder) / "trial", False, time_limit=TRIAL, settings=settings, retries=False)
+        scene = with_spacing(scene)
+        settings = settings_for(scene)
+        campaign.run(scene, Path(folder) / "trial", False, time_limit=TRIAL, settings=settings, retries=False)
 
 
 def in_si(scene: Scene, edit: SceneEdit, digits: int = 3) -> SceneEdit:
-    """The edit with units, "33.3pN", where LU and FU are known: a scene file that has them takes no plain number."""
+    """Return an edit with units, "33.3pN", where LU and FU are known: a scene with units takes no plain number."""
     material, scales = scene.material, scales_of(scene, {})
     if material is None or None in (material.length_unit, material.force_unit):
         return edit
@@ -150,11 +150,11 @@ def in_si(scene: Scene, edit: SceneEdit, digits: int = 3) -> SceneEdit:
     return replace(edit, values=values)
 
 
-def _reported(error: RunError, cause: UntrustedError, found: str) -> RunError:
-    """The error with the result of the trial, before advice that was not tried; the same in results.json."""
+def _reported(error: RunError, cause: UntrustedError, outcome: str) -> RunError:
+    """Add the outcome of a trial to an error and to results.json; advice stays where the trial failed."""
     document = read_results(error.folder)
     facts = document["error"]
-    advice = f": {cause.advice}" if cause.advice and "gives a result" not in found else ""
-    facts["message"] = f"{cause.message}{advice}. {found}"
+    advice = f": {cause.advice}" if cause.advice and "gives a result" not in outcome else ""
+    facts["message"] = f"{cause.message}{advice}. {outcome}"
     write_results(error.folder, document)
     return RunError(f"{facts['message']} [phase {facts['phase']}, step {facts['step']}]", error.folder)

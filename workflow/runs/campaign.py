@@ -1,4 +1,4 @@
-"""A scene to a finished run folder."""
+"""Run a scene to a finished run folder, or write its deck."""
 
 from __future__ import annotations
 
@@ -36,8 +36,6 @@ from contact1d.workflow.runs.scales import scales_of
 from contact1d.workflow.scene import AnyScene, Scene, read_scene, scene_to_toml
 
 LOCK = ".running"
-ENDING = 1.0
-"""How long a run that was killed may need to end its children [s]."""
 TIME_LIMIT = 3600.0
 """Wall time after which LAMMPS is stopped, for each pass of a search [s]."""
 
@@ -57,50 +55,50 @@ def run(
     """Run a scene in a folder.
 
     Args:
-        scene: a `Scene`, or what `read_scene` makes one of: a file, TOML text, tables.
+        scene: a `Scene`, or anything that `read_scene` reads: a file, TOML text, tables.
         folder: made if it does not exist; an earlier run in it is replaced.
-        figures: whether to draw, or the format: "png" (as True has it), "svg" or "pdf".
+        figures: whether to draw figures, or their format: "png" (the default), "svg" or "pdf".
         progress: informed of phases and steps.
         time_limit: wall time for LAMMPS [s].
-        settings: in place of those that `settings_for` chooses and refines; for cost studies.
-        retries: whether smaller steps are tried where the bodies went through each other; a trial does without.
-        workers: repeats of a thermal pull-off at a time; None: as many as there are processors.
-        ranks: of MPI, that share one large contact; the numbers are those of one.
+        settings: used in place of those that `settings_for` chooses, without refinement; for cost studies.
+        retries: whether smaller steps are tried where the bodies went through each other.
+        workers: number of repeats of a thermal pull-off at a time; None: as many as there are processors.
+        ranks: number of MPI ranks that share a large contact; the results are those of one.
         printed: called with the run when its numbers are written, before the figures are drawn.
 
     Raises:
-        SceneError: it is no scene; nothing is written.
+        SceneError: the scene is invalid; nothing is written.
         RanksError: several ranks can't run it, or are no use; nothing is written.
         SettingsError: the scene's numbers lead to no computable system; nothing is written.
         FolderError: the folder holds something else, or another run is active in it.
         RunError: LAMMPS failed, or the result can't be trusted.
     """
     started, progress = time.perf_counter(), progress or Silent()
-    with _begun(scene, folder, progress, settings, ranks) as (deck, phases, place):
-        context = RunContext(deck, place, progress, time_limit, retries, workers or cores(), ranks)
+    with _prepared(scene, folder, progress, settings, ranks) as (deck, phases, path):
+        context = RunContext(deck, path, progress, time_limit, retries, workers or cores(), ranks)
         finished = _run(context, started, figures, phases, refine=settings is None)
         if printed:
             printed(finished)
         if figures:
-            draw(charts(finished), place, figures)
+            draw(charts(finished), path, figures)
     return finished
 
 
 @contextmanager
-def _begun(
+def _prepared(
     scene: AnyScene, folder: AnyPath, progress: Progress, settings: Settings | None = None, ranks: int = 1
 ) -> Iterator[tuple[Deck, tuple[Phase, ...], Path]]:
-    """The deck of a scene, its planned schedule, and its folder, which has both in place of an earlier run.
+    """Write the deck of a scene with its planned schedule into a folder in place of an earlier run, and lock that.
 
-    Errors of the scene's numbers have these in SI where they are known.
+    Yields the deck, the schedule and the folder. Errors have numbers in SI where the units are known.
     """
-    asked = scene if isinstance(scene, Scene) else read_scene(scene)
-    scales = scales_of(asked, {})
+    given = scene if isinstance(scene, Scene) else read_scene(scene)
+    scales = scales_of(given, {})
     try:
-        chosen = with_spacing(asked)
-        if chosen is not asked:
-            found = f"bodies.spacing = {chosen.bodies.spacing:.4g} LU for a tolerance of {chosen.accuracy.tolerance:g}"
-            progress.note(scales.in_words(found))
+        chosen = with_spacing(given)
+        if chosen is not given:
+            note = f"bodies.spacing = {chosen.bodies.spacing:.4g} LU for a tolerance of {chosen.accuracy.tolerance:g}"
+            progress.note(scales.in_words(note))
         deck = Deck(chosen, settings or settings_for(chosen))
         require_way(chosen, deck.settings)
         phases = planned(chosen, deck.settings)
@@ -109,24 +107,24 @@ def _begun(
     except SettingsError as error:
         raise SettingsError(scales.in_words(str(error)), changes=error.changes) from error
     require_ranks(deck, ranks)
-    place = prepare(Path(folder))
-    with alone(place):
-        for path in place.iterdir():
-            if path.name.removesuffix(PART) in FILES:
-                path.unlink()
-        write_whole(place / "in.lammps", text)
-        write_whole(place / "scene.toml", scene_to_toml(chosen))
-        write_system(deck, place)
-        yield deck, phases, place
+    path = prepare(Path(folder))
+    with alone(path):
+        for file in path.iterdir():
+            if file.name.removesuffix(PART) in FILES:
+                file.unlink()
+        write_whole(path / "in.lammps", text)
+        write_whole(path / "scene.toml", scene_to_toml(chosen))
+        write_system(deck, path)
+        yield deck, phases, path
 
 
 def _run(context: RunContext, started: float, figures: bool | str, written: Sequence[Phase], refine: bool) -> Run:
-    """Run the deck of a context, whose in.lammps has a schedule that is `written` already."""
+    """Run the deck of a context, whose in.lammps has the schedule `written`, and write the files of the run."""
     scene, settings, folder = context.deck.scene, context.deck.settings, context.folder
     if large := in_words(scene, settings.chains.upper, settings.forces.cutoff):
         context.progress.note(large)
-    for doubt in implausible(scene, scales_of(scene, {}), {}).values():
-        context.progress.note(doubt)
+    for warning in implausible(scene, scales_of(scene, {}), {}).values():
+        context.progress.note(warning)
     try:
         outcome = perform(context)
         deck, outcome = refined(context, outcome) if refine else (context.deck, outcome)
@@ -149,7 +147,7 @@ def _run(context: RunContext, started: float, figures: bool | str, written: Sequ
 
 
 def _failed(context: RunContext, error: EngineError | UntrustedError, started: float, figures: bool | str) -> RunError:
-    """The error of a run that failed, in the units of its scene; what there is of it is written, to see why."""
+    """Return the error of a run that failed, in the units of its scene; the states up to there are written."""
     scene, folder, left = context.deck.scene, context.folder, context.left
     scales = scales_of(scene, {})
     error.message = message = scales.in_words(error.message)
@@ -157,25 +155,25 @@ def _failed(context: RunContext, error: EngineError | UntrustedError, started: f
         error.advice = scales.in_words(error.advice)
         message = str(error)
     if left is not None:
-        bare = replace(left, results={})
-        tables = tables_of(scene, bare, pressures_of(scene, bare))
-        write_tables(folder, scene, bare, tables)
+        states = replace(left, results={})
+        tables = tables_of(scene, states, pressures_of(scene, states))
+        write_tables(folder, scene, states, tables)
         if figures:
-            draw(charts(Run(folder, {}, scene, tables, bare)), folder, figures)
+            draw(charts(Run(folder, {}, scene, tables, states)), folder, figures)
     facts = {"message": message, "phase": context.phase, "step": context.timestep}
     write_results(folder, failure(scene, facts, _timing(context, started), left))
     return RunError(f"{message}{_hint(message)} [phase {context.phase}, step {context.timestep}]", folder)
 
 
 def _timing(context: RunContext, started: float) -> dict[str, float]:
-    """What a run took since then."""
+    """Return the wall and processor times [s] of a run since `started`, and its number of steps, for results.json."""
     total = time.perf_counter() - started
     lammps, cpu, rows, steps = context.clock.taken
     return {"total_s": total, "lammps_s": lammps, "lammps_cpu_s": cpu, "rows_s": rows, "steps": steps}
 
 
 def _hint(message: str) -> str:
-    """What to do about LAMMPS errors whose own words don't say it."""
+    """Return what to do about a LAMMPS error whose message does not say it."""
     if "atoms" in message and ("missing" in message or "left the box" in message):
         return ". The motion is unstable: use stiffnesses, masses, damping and ranges of similar magnitude"
     if TOO_WIDE in message:
@@ -188,25 +186,25 @@ def _hint(message: str) -> str:
 
 
 def write_deck(scene: AnyScene, folder: AnyPath) -> Path:
-    """Write system.data, the table and in.lammps with the planned schedule; nothing runs. Returns the folder.
+    """Write system.data, the table and in.lammps with the planned schedule without running, and return the folder.
 
     Arguments and errors are those of `run`.
     """
-    with _begun(scene, folder, Silent()) as (_, _, place):
-        return place
+    with _prepared(scene, folder, Silent()) as (_, _, path):
+        return path
 
 
-def prepare(folder: Path, what: str = "run", marks: Collection[str] = ("in.lammps", LOCK)) -> Path:
-    """Make the folder of a run or a sweep, or see that it holds nothing but an earlier one, which has one of `marks`.
+def prepare(folder: Path, kind: str = "run", marks: Collection[str] = ("in.lammps", LOCK)) -> Path:
+    """Make the folder of a run or a sweep, and return its absolute path; an earlier one has a file of `marks`.
 
     Raises:
-        FolderError: it is a file, or holds files and none of a run.
+        FolderError: the folder is a file, or holds files but none of `marks`.
     """
     if folder.exists() and not folder.is_dir():
-        raise FolderError(f"{folder} is a file; a {what} needs a folder")
-    there = {path.name for path in folder.iterdir()} if folder.is_dir() else set()
-    if there - {LOCK} and there.isdisjoint(marks):
-        raise FolderError(f"{folder} has files that do not belong to a {what}; choose another folder")
+        raise FolderError(f"{folder} is a file; a {kind} needs a folder")
+    names = {path.name for path in folder.iterdir()} if folder.is_dir() else set()
+    if names - {LOCK} and names.isdisjoint(marks):
+        raise FolderError(f"{folder} has files that do not belong to a {kind}; choose another folder")
     try:
         folder.mkdir(parents=True, exist_ok=True)
         (folder / LOCK).touch()
@@ -216,9 +214,15 @@ def prepare(folder: Path, what: str = "run", marks: Collection[str] = ("in.lammp
 
 
 @contextmanager
-def alone(folder: Path, busy: str = "another run is active in") -> Iterator[None]:
-    """Lock the folder; the system releases it whatever happens to this process, when its children have ended, too."""
-    until = time.monotonic() + ENDING
+def alone(folder: Path, busy: str = "another run is active in", wait: float = 1.0) -> Iterator[None]:
+    """Lock a folder; the system releases it whatever happens to this process, when its children have ended, too.
+
+    Args:
+        folder: the folder.
+        busy: the message of the FolderError where it is locked, without the folder.
+        wait: time [s] for the children of a run that was killed to end.
+    """
+    until = time.monotonic() + wait
     with (folder / LOCK).open("w") as lock:
         while True:
             try:

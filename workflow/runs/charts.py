@@ -1,4 +1,4 @@
-"""The figures of a run, described: which there are, and what is beside each."""
+"""The figures of a run as charts, with the closed forms that apply."""
 
 from __future__ import annotations
 
@@ -34,29 +34,21 @@ if TYPE_CHECKING:
     from contact1d.workflow.runs.finished import Run
 
 Array = NDArray[np.float64]
-LEAST, LARGEST = 0.05, 1.3
-"""Radii over a₀ from and to which JKR is drawn; on a plane from where fixed grips part."""
 CURVE_COLUMNS = ("displacement", "force", "contact_radius", "branch")
-"""Without which a table is no curve."""
+"""Columns that every curve has."""
 
 
 CONTACT_RADIUS = "contact radius a"
 MAIN = {
     "tangential_displacement": "tangential_force", "drive": "friction", "time": "displacement", "displacement": "force",
 }  # fmt: skip
-"""What the path of a run is drawn over, the first that it has, and what is drawn over it."""
+"""Columns of the axes of the main curve, y by x; x is the first one that a run has."""
 FROM_ZERO = ("contact_radius", "force", "friction", "tangential_force")
-"""Columns whose 0 a figure shows."""
-SAME_LOAD = 1e-9
-"""Relative change up to which a load is constant."""
-FINE = 300
-"""Radii at which a closed form is drawn."""
-BETWEEN = 50
-"""Points of a closed form for each step of a path."""
+"""Columns whose axis includes 0."""
 
 
 def charts(run: Run) -> dict[str, Chart]:
-    """What each figure of a run shows, by the names of the files, the main one first; in base units."""
+    """Return the charts of a run by the names of the figures' files, the main one first; in base units."""
     scales, bodies = run.scales, run.scene.bodies
     title = run.scene.title + ("" if bodies.reduction == "mdr" else f"\n(reduction {bodies.reduction})")
     return {
@@ -66,30 +58,31 @@ def charts(run: Run) -> dict[str, Chart]:
 
 
 def axis_of(column: str) -> Axis:
-    """The axis of a column of the tables, in units of the model."""
+    """Return the axis of a column of the tables, in units of the model."""
     remark = figures.COMPRESSIVE if column in CURVE_COLUMNS[:2] else ""
     name = "displacement of the drive" if column == "drive" else column.replace("_", " ")
     return Axis(name, COLUMN_UNITS[column], remark, zero=column in FROM_ZERO)
 
 
 def main_curve(run: Run) -> dict[str, Array]:
-    """What the path of a run is drawn over, and what is drawn over it: columns by their names, in units of the model.
+    """Return the columns of the main curve by name, that of x first; in units of the model.
 
-    A row for each state: a slide begins with one under the load, before it is driven.
+    Each has an element for each state of the curve; those before a slide is driven are NaN.
     """
     columns = run.friction or run.curve
     over = next(name for name in MAIN if name in columns)
     names = [over, "force" if over == "time" and run.scene.experiment.places() else MAIN[over]]
-    if "normal_force" in columns and np.ptp(load := columns["normal_force"]) > SAME_LOAD * np.abs(load).max():
-        names.append("normal_force")
+    if "normal_force" in columns and np.ptp(load := columns["normal_force"]) > 1e-9 * np.abs(load).max():
+        names.append("normal_force")  # it is not constant
     missing = np.full(run.curve.force.size - columns[over].size, nan)
     return {name: np.append(missing, columns[name]) for name in names}
 
 
 def legs_of(run: Run, along: Array) -> list[tuple[str, NDArray[np.int64]]]:
-    """Name and rows of each leg of a prescribed path, which begins where the one before it ends.
+    """Return name and rows of each leg of a prescribed path; a leg begins with the last row of the one before.
 
-    Otherwise of each branch of a cycle, in the order of the positions `along`: a search goes to and fro.
+    Of any other experiment they are the branches of each cycle, sorted by the positions `along`, since a search goes
+    back and forth.
     """
     branch, kind = run.curve.branch, run.scene.experiment
     if kind.way_is_given or kind.goes_along:
@@ -103,7 +96,7 @@ def legs_of(run: Run, along: Array) -> list[tuple[str, NDArray[np.int64]]]:
 
 
 def _charts(run: Run) -> Iterator[tuple[str, Chart]]:
-    """The charts of a run in units of the model, by their names."""
+    """Yield name and chart of each figure of a run, in units of the model."""
     scene, profiles = run.scene, figures.seen(run.profiles)
     over, up, *_ = main_curve(run)
     rule = radius_rule(scene, scene.accuracy.tolerance)
@@ -135,70 +128,73 @@ def _charts(run: Run) -> Iterator[tuple[str, Chart]]:
         yield "scan", figures.scan(taken)
 
 
-def path_chart(run: Run, columns: Mapping[str, Array] | None = None, **beside: Sequence[Series]) -> Chart:
-    """Columns over the first one, by default the main curve, with what is beside each; in units of the model."""
+def path_chart(run: Run, columns: Mapping[str, Array] | None = None, **references: Sequence[Series]) -> Chart:
+    """Return the chart of columns over the first one, by default of the main curve; in units of the model.
+
+    `references` has further series by the column to which they belong.
+    """
     (over, along), *upwards = (columns or main_curve(run)).items()
-    panels = [(axis_of(name), column, beside.get(name, ())) for name, column in upwards]
+    panels = [(axis_of(name), column, references.get(name, ())) for name, column in upwards]
     return figures.path(axis_of(over), along, legs_of(run, along), *panels)
 
 
 def _samples(run: Run) -> Chart:
-    """The motion of a contact with noise, and the load on it."""
+    """Return the chart of the motion of a contact with noise, and of its load."""
     table, mean = run.tables[SAMPLE_TABLE], run.results.get("displacement")
-    beside = {"force": figures.lines(("load", table["time"], table["load"]))}
+    references = {"force": figures.lines(("load", table["time"], table["load"]))}
     if mean is not None:
-        beside["displacement"] = figures.level(mean.value, mean.uncertainty, "mean")
-    return path_chart(run, {name: table[name] for name in ("time", "displacement", "force")}, **beside)
+        references["displacement"] = figures.level(mean.value, mean.uncertainty, "mean")
+    return path_chart(run, {name: table[name] for name in ("time", "displacement", "force")}, **references)
 
 
 def _under_load(run: Run) -> Iterator[tuple[str, Chart]]:
-    """Force over displacement and, where that changes, over the contact radius."""
+    """Yield the charts of the force over the displacement and, where that changes, over the contact radius."""
     curve, theory, scale, tension = run.curve, _theory(run), _pull_off(run), run.results.get("adhesion_force")
-    beside = figures.lines(*((name, d, force) for name, _, d, force in theory))
-    beside += _ting(run, "displacement")
+    references = figures.lines(*((name, d, force) for name, _, d, force in theory))
+    references += _ting(run, "displacement")
     if tension and tension.value:
-        beside += figures.level(-tension.value, tension.uncertainty, f"$F_A$ = {tension.value:.4g} FU")
-    yield "force_displacement", path_chart(run, {name: curve[name] for name in CURVE_COLUMNS[:2]}, force=beside)
+        references += figures.level(-tension.value, tension.uncertainty, f"$F_A$ = {tension.value:.4g} FU")
+    yield "force_displacement", path_chart(run, {name: curve[name] for name in CURVE_COLUMNS[:2]}, force=references)
     radius = np.where(curve.contact_radius > 0.0, curve.contact_radius, nan)
     x, y = axis_of("contact_radius"), axis_of("force")
     unique = not law_of(run.scene).attracts(run.scene)
-    beside = figures.lines(*((name, a, force) for name, a, _, force in theory if unique))
+    references = figures.lines(*((name, a, force) for name, a, _, force in theory if unique))
     width, height = 1.0, 1.0
     if scale and run.scene.bodies.profile.kind in SPHERES:
         height, width = scale
         x, y = Axis("contact radius $a/a_0$"), replace(y, name="force $F/F_A$", unit=NUMBER)
-        beside = figures.reduced(float(np.nanmax(radius)) / width)
+        references = figures.reduced(float(np.nanmax(radius)) / width)
     elif np.unique(radius[np.isfinite(radius)]).size < 2:
         return
-    panel, spread = (y, curve.force / height, beside), curve.contact_radius_uncertainty / width
+    panel, spread = (y, curve.force / height, references), curve.contact_radius_uncertainty / width
     yield "force_radius", figures.path(x, radius / width, legs_of(run, radius), panel, spread=spread)
 
 
 def _ting(run: Run, over: str) -> list[Series]:
-    """F of Lee, Radok and Ting over a column of the curve; nothing where they do not apply."""
+    """Return F of Lee, Radok and Ting over a column of the curve; an empty list where they do not apply."""
     history = indented(Case(run.scene, run.results))
     return [] if history is None else figures.lines(("Ting", run.curve[over], history.forces(run.curve.time)))
 
 
 def _pull_off(run: Run) -> tuple[float, float] | None:
-    """F_A and a₀ of the image, to which the curve belongs; None where there is none, or no width at F = 0."""
-    force, own = run.results.get("adhesion_force"), run.results.get("zero_load_radius")
-    radius = run.results.get(f"{IMAGE}zero_load_radius", own)
+    """Return F_A and a₀ of the run, or of the image to which its curve belongs; None without them or where a₀ is 0."""
+    force, radius = run.results.get("adhesion_force"), run.results.get("zero_load_radius")
+    radius = run.results.get(f"{IMAGE}zero_load_radius", radius)
     return (force.value, radius.value) if force and radius and radius.value > 0.0 else None
 
 
 def _zones(run: Run, states: Iterable[str]) -> dict[str, tuple[float, float, int]]:
-    """Stick radius, place along x and direction of each state: as the row of the curve has them."""
-    zones, places = {}, run.curve.tangential_displacement
+    """Return stick radius, tangential displacement and direction of motion of states by name, from the curve."""
+    zones, displacements = {}, run.curve.tangential_displacement
     for state in states:
         row = row_of(state, run.curve)
-        moves = np.trim_zeros(np.diff(places[: row + 1], prepend=0.0))
-        zones[state] = run.curve.stick_radius[row], places[row], int(np.sign(moves[-1:]).sum())
+        moves = np.trim_zeros(np.diff(displacements[: row + 1], prepend=0.0))
+        zones[state] = run.curve.stick_radius[row], displacements[row], int(np.sign(moves[-1:]).sum())
     return zones
 
 
 def _marks(run: Run, radii: Mapping[str, ContactRadius]) -> dict[str, dict[str, float]]:
-    """What has a radius on the body, by state."""
+    """Return the contact and the stick radius on the body, named as in a legend, by state."""
     wider = WIDER_THAN_SPHERES if stands_for_spheres(run.scene) else 1.0
     sticks = _zones(run, radii) if run.scene.experiment.goes_along else {}
     return {
@@ -208,36 +204,37 @@ def _marks(run: Run, radii: Mapping[str, ContactRadius]) -> dict[str, dict[str, 
 
 
 def _body_theory(run: Run, marks: Mapping[str, Mapping[str, float]]) -> dict[str, figures.Theory]:
-    """The closed form of p(r), by the state that it speaks of."""
+    """Return the closed form of p(r), by the state that it applies to: name, r and p."""
     case = Case(run.scene, run.results)
     for state in (name for name in REPORTED if name in marks):
         for form in applying(case):
             if form.pressure is not None:
-                r = marks[state][CONTACT_RADIUS] * np.sin(np.linspace(0.005, 0.4999 * np.pi, FINE))
+                r = marks[state][CONTACT_RADIUS] * np.sin(np.linspace(0.005, 0.4999 * np.pi, 300))
                 return {state: (form.name, r, form.pressure(case, r))}
     return {}
 
 
 def _mindlin(run: Run) -> list[Series]:
-    """F_x of Cattaneo and Mindlin over u along the path of a parabola under one load; of others nothing."""
-    case, places = Case(run.scene, run.results), run.friction["tangential_displacement"]
+    """Return F_x of Cattaneo and Mindlin over u along the path; an empty list where they do not apply."""
+    case, u = Case(run.scene, run.results), run.friction["tangential_displacement"]
     if not drawn_along(case):
         return []
-    steps = places.size - 1
-    dense = np.interp(np.linspace(0.0, steps, 1 + BETWEEN * steps), range(places.size), places)
+    steps = u.size - 1
+    dense = np.interp(np.linspace(0.0, steps, 1 + 50 * steps), range(u.size), u)
     force = mindlin_path(dense.tolist(), *sliding_contact(case)[:3])
     return figures.lines(("Cattaneo–Mindlin", dense, np.asarray(force)))
 
 
 def _theory(run: Run) -> list[tuple[str, Array, Array, Array]]:
-    """Name, and a, d, F of the closed form of the body; of two chains that of JKR with the run's own F_A and a₀.
+    """Return name, a, d and F of the closed form of the body; for two chains JKR's with the run's own F_A and a₀.
 
-    The image x²/2R₁ on springs E* per length is the contact of R = 2R₁; its a₀ is twice that of the two spheres.
+    The image x²/2R₁ on springs E* per length is the contact of R = 2R₁; its a₀ is twice that of the two spheres. JKR is
+    drawn up to 1.3 a₀, on a plane from where fixed grips separate.
     """
     scene, half, case, pull_off = run.scene, run.scene.bodies.plane_radius, Case(run.scene, run.results), _pull_off(run)
     radius, work, forms = 2.0 * (half or 0.0), scene.work_of_adhesion, applying(case)
     body: PowerLaw | Ellipsoid
-    if not {"pressed", "interaction"} & {*case.law.beside}:  # no curve of a law without closed forms
+    if not {"pressed", "interaction"} & {*case.law.closed_forms}:  # no curve of a law without closed forms
         return []
     if half is not None:
         name = "JKR" if work else "Hertz"
@@ -246,11 +243,12 @@ def _theory(run: Run) -> list[tuple[str, Array, Array, Array]]:
         name, body = forms[0].name, case.body
     else:
         return []
+    largest = 1.3
     if work:
-        ends = body.fixed_grips_radius(), LARGEST * body.zero_load_radius()
+        ends = body.fixed_grips_radius(), largest * body.zero_load_radius()
     elif pull_off is not None:
         force, a_0 = pull_off
-        name, ends = "JKR, same $F_A$ and $a_0$", (LEAST * a_0, LARGEST * a_0)
+        name, ends = "JKR, same $F_A$ and $a_0$", (0.05 * a_0, largest * a_0)
         body = PowerLaw.sphere(radius, 3.0 * force * radius / a_0**3, force / (1.5 * pi * radius))
     elif not scene.interaction:
         ends = 0.0, body.radius_at(max(float(run.curve.displacement.max()), 0.0))

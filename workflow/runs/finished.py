@@ -1,4 +1,4 @@
-"""A finished run: from memory or read from its folder, it has the same face; its figures, with the theory beside."""
+"""A finished run, from memory or read from its folder: results, tables, figures and closed forms."""
 
 from __future__ import annotations
 
@@ -45,11 +45,11 @@ class Results(Named[Quantity]):
     """Quantities by name; each is also an attribute: `results.adhesion_force` is `results["adhesion_force"]`."""
 
     def __missing__(self, name: str) -> Quantity:
-        """Say what there is. Raises KeyError."""
+        """Raise KeyError with the names that there are."""
         raise KeyError(f"the run has no {name}, it has {', '.join(self) or 'no results'}")
 
     def __repr__(self) -> str:
-        """One line for each quantity."""
+        """Return a line for each quantity."""
         return "\n".join(f"{name} = {quantity}" for name, quantity in self.items())
 
 
@@ -57,15 +57,15 @@ class Results(Named[Quantity]):
 class Run:
     """A finished run; `run` returns it, `load_run` reads it from its folder. Two are equal by folder and document.
 
-    What the scene gives in SI is in SI here, too, in base units; without units all is in those of the model.
+    Numbers are in SI base units where the scene has units, else in units of the model.
 
     Attributes:
         folder: with every file of the run.
-        document: what results.json holds.
-        scene: what ran.
-        tables: what the CSV files hold, by their names without ending.
-        outcome: what the experiment handed over, in units of the model; None for a run that was read from its folder,
-            or made by `run_many`.
+        document: the content of results.json.
+        scene: the scene that ran.
+        tables: the columns of the CSV files, by the files' names without ending.
+        outcome: states and results of the experiment in units of the model; None for a run that was read from its
+            folder, or made by `run_many`.
     """
 
     folder: Path
@@ -76,7 +76,7 @@ class Run:
 
     @cached_property
     def results(self) -> Results:
-        """Quantities by name, each with uncertainty and unit."""
+        """The reported quantities by name, each with uncertainty and unit."""
         return Results({name: Quantity.of(entry) for name, entry in quantities_in(self.document).items()})
 
     @property
@@ -86,12 +86,12 @@ class Run:
 
     @property
     def warnings(self) -> dict[str, str]:
-        """By name, what limits the trust in the numbers."""
+        """The messages of the warnings, by name."""
         return {warning["name"]: warning["message"] for warning in self.document["warnings"]}
 
     @property
     def timing(self) -> dict[str, float]:
-        """Wall time, wall and processor time in LAMMPS [s], and steps."""
+        """The wall time, wall and processor time in LAMMPS [s], and the number of steps."""
         return dict(self.document["timing"])
 
     @property
@@ -101,17 +101,17 @@ class Run:
 
     @property
     def friction(self) -> Columns:
-        """Of a slide what friction.csv holds, of a tangential the curve; else nothing."""
+        """The columns of friction.csv of a slide, the curve of a tangential experiment; else empty."""
         return self.curve if self.scene.experiment.goes_along else self.tables.get("friction", Columns({}))
 
     @property
     def detachments(self) -> Columns:
-        """Of a pull-off with [noise], a row for each pull; what detachments.csv holds."""
+        """The columns of detachments.csv, a row for each pull of a pull-off with [noise]; else empty."""
         return self.tables.get(DETACHMENTS, Columns({}))
 
     @property
     def profiles(self) -> dict[str, Profile]:
-        """Line load and shear along x of the reported states, by name; what profile.csv holds."""
+        """Line load and shear along x of the reported states, by name; the content of profile.csv."""
         return {
             state: Profile(*(columns[name] for name in PROFILE_COLUMNS))
             for state, columns in by_state(self.tables["profile"]).items()
@@ -119,12 +119,12 @@ class Run:
 
     @property
     def body_pressures(self) -> dict[str, Columns]:
-        """p(r) of the body of three dimensions, by state; what pressure_3d.csv holds. Empty where there is none."""
+        """The pressure p(r) of the three-dimensional body by state, as in pressure_3d.csv; else empty."""
         return by_state(self.tables.get("pressure_3d", Columns({})))
 
     @property
     def body_shears(self) -> dict[str, Columns]:
-        """q(r) of the body of three dimensions, by state; what shear_3d.csv holds. Empty where there is none."""
+        """The shear stress q(r) of the three-dimensional body by state, as in shear_3d.csv; else empty."""
         return by_state(self.tables.get("shear_3d", Columns({})))
 
     @property
@@ -134,16 +134,16 @@ class Run:
 
     @cached_property
     def scales(self) -> Scales:
-        """What LU, FU and, where it is known, MU stand for in SI."""
+        """The scales of LU, FU and, where it is known, MU in SI."""
         return scales_of(self.scene, self._numbers)
 
     @cached_property
     def model(self) -> Run:
-        """The same run with its tables and results in units of the model."""
-        tables = {name: in_model_units(one, self.scales) for name, one in self.tables.items()}
-        own = replace(self, tables=tables)
-        vars(own).update(results=self._numbers, model=own)
-        return own
+        """The run with its tables and results in units of the model."""
+        tables = {name: in_model_units(columns, self.scales) for name, columns in self.tables.items()}
+        run = replace(self, tables=tables)
+        vars(run).update(results=self._numbers, model=run)
+        return run
 
     def plot(self, name: str | None = None) -> Figure:
         """Draw a figure, by default the experiment's main one; `.savefig(path)` keeps it.
@@ -156,33 +156,33 @@ class Run:
         Raises:
             ValueError: the run has no such figure; the message says which it has.
         """
-        there = charts(self)
-        name = name or next(iter(there))
-        if name not in there:
-            raise ValueError(f"the run has no figure {name!r}, it has {', '.join(there)}")
-        return plots.draw(there[name].written(scale_of))
+        drawable = charts(self)
+        name = name or next(iter(drawable))
+        if name not in drawable:
+            raise ValueError(f"the run has no figure {name!r}, it has {', '.join(drawable)}")
+        return plots.draw(drawable[name].written(scale_of))
 
     def atoms(self, state: int = -1) -> Atoms:
         """Return a reported state as ase.Atoms, by default the last; see `contact1d.atoms`."""
         return atoms(self.folder, state)
 
     def to_json(self, path: AnyPath | None = None) -> str:
-        """What results.json holds; also written to a path."""
-        return _kept(as_json(self.document), path)
+        """Return the text of results.json, and write it to a path if there is one."""
+        return _written(as_json(self.document), path)
 
     def to_csv(self, path: AnyPath | None = None, table: str = "results") -> str:
-        """Name, value, uncertainty and unit of the results, or one of `tables`: "curve"; also written to a path."""
+        """Return the results with uncertainties and units, or one of `tables`, as CSV, and write it to a given path."""
         file, columns = StringIO(), self._table(table)
         put_columns(file, columns, columns.units)
-        return _kept(file.getvalue(), path)
+        return _written(file.getvalue(), path)
 
     def to_latex(self, path: AnyPath | None = None) -> str:
-        """The results as a tabular, the name, and value, uncertainty and unit; also written to a path."""
-        lines = [f"{name.replace('_', ' ')} & ${_tex(one)}$ \\\\" for name, one in self.results.items()]
-        return _kept("\n".join([r"\begin{tabular}{ll}", *lines, r"\end{tabular}", ""]), path)
+        """Return the results with uncertainties and units as a LaTeX tabular, and write it to a given path."""
+        lines = [f"{name.replace('_', ' ')} & ${_tex(quantity)}$ \\\\" for name, quantity in self.results.items()]
+        return _written("\n".join([r"\begin{tabular}{ll}", *lines, r"\end{tabular}", ""]), path)
 
     def to_xarray(self, table: str = "curve") -> Dataset:
-        """One of `tables` as an xarray.Dataset with units, the results in its attributes as text.
+        """Return one of `tables` as an xarray.Dataset with units, the results in its attributes as text.
 
         Raises Contact1dError where xarray isn't installed.
         """
@@ -195,33 +195,33 @@ class Run:
             name: ("row", column, {"units": columns.units[name]} if name in columns.units else {})
             for name, column in columns.items()
         }
-        said = {name: str(quantity) for name, quantity in self.results.items()}
-        return xarray.Dataset(variables, attrs={"title": self.scene.title, **said})
+        results = {name: str(quantity) for name, quantity in self.results.items()}
+        return xarray.Dataset(variables, attrs={"title": self.scene.title, **results})
 
     def _table(self, name: str) -> Columns:
         parts, quantities = ("value", "uncertainty", "unit"), self.results.values()
-        results = {"name": [*self.results]} | {part: [getattr(one, part) for one in quantities] for part in parts}
-        known = {"results": Columns(results), **self.tables}
-        if name not in known:
-            raise ValueError(f"the run has no table {name!r}, it has {', '.join(known)}")
-        return known[name]
+        results = {"name": [*self.results]} | {part: [getattr(number, part) for number in quantities] for part in parts}
+        tables = {"results": Columns(results), **self.tables}
+        if name not in tables:
+            raise ValueError(f"the run has no table {name!r}, it has {', '.join(tables)}")
+        return tables[name]
 
     def __repr__(self) -> str:
-        """A few lines: title, status, folder, results with the closed forms beside, warnings.
+        """Return title, status, folder, results with their closed forms, and warnings, a line each.
 
-        What is implausible comes first, since every result follows from it.
+        Implausible values come first, since every result follows from them.
         """
         lines = [f"Run {self.scene.title!r}: {self.status}, {self.folder}"]
         for name, quantity in self.results.items():
-            beside = ", ".join(in_words(self.document, name))
-            lines.append(f"  {name:<18} {quantity!s:<24} {beside}".rstrip())
+            closed_forms = ", ".join(in_words(self.document, name))
+            lines.append(f"  {name:<18} {quantity!s:<24} {closed_forms}".rstrip())
         for name, message in self.warnings.items():
-            place = 1 if name.startswith(IMPLAUSIBLE) else len(lines)
-            lines.insert(place, f"  warning {name}: {message}")
+            index = 1 if name.startswith(IMPLAUSIBLE) else len(lines)
+            lines.insert(index, f"  warning {name}: {message}")
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
-        """The same as a table, for notebooks."""
+        """Return title, status, folder, results and warnings as an HTML table, for notebooks."""
         cells = [(name.replace("_", " "), str(quantity)) for name, quantity in self.results.items()]
         for name, message in self.warnings.items():
             cells.insert(0 if name.startswith(IMPLAUSIBLE) else len(cells), (f"warning: {name}", message))
@@ -231,11 +231,11 @@ class Run:
 
 
 TEX = {"±": r"\pm", "µ": r"\mu ", "·": r"\cdot ", "²": "^2"}
-"""Signs in a quantity."""
+"""LaTeX of the signs in a quantity."""
 
 
-def _tex(one: Quantity) -> str:
-    number, unit = str(one).rsplit(" ", 1) if one.unit != NUMBER else (str(one), "")
+def _tex(quantity: Quantity) -> str:
+    number, unit = str(quantity).rsplit(" ", 1) if quantity.unit != NUMBER else (str(quantity), "")
     number = re.sub(r"e([+-]\d+)", lambda power: rf"\cdot 10^{{{int(power[1])}}}", number)
     text = number + re.sub(r"[A-Za-z]+", r"\\mathrm{\g<0>}", rf"\,{unit}" if unit else "")
     for sign, tex in TEX.items():
@@ -243,8 +243,8 @@ def _tex(one: Quantity) -> str:
     return text
 
 
-def _kept(text: str, path: AnyPath | None) -> str:
-    """The text, which is written to the path if there is one."""
+def _written(text: str, path: AnyPath | None) -> str:
+    """Write a text to a path if there is one, and return it."""
     if path:
         write_whole(Path(path), text)
     return text
@@ -255,16 +255,16 @@ def load_run(folder: AnyPath) -> Run:
 
     Raises:
         FolderError: the folder holds no run, or none that this version can read.
-        RunError: the run failed; the message is its own.
+        RunError: the run failed; with its message.
     """
-    found = read_run(Path(folder))
-    if found.status != "done":
-        raise RunError(found.document["error"]["message"], found.folder)
-    return found
+    run = read_run(Path(folder))
+    if run.status != "done":
+        raise RunError(run.document["error"]["message"], run.folder)
+    return run
 
 
 def read_run(folder: Path) -> Run:
-    """As `load_run`, but a run that failed is returned, without results and tables."""
+    """Read a run as `load_run`; one that failed is returned, too, without results and tables."""
     document = read_results(folder)
     try:
         scene = scene_from_dict(document["scene"])
@@ -280,7 +280,7 @@ def read_run(folder: Path) -> Run:
 
 
 def draw(drawn: Mapping[str, Chart], folder: Path, figures: bool | str) -> None:
-    """Save charts in a folder, by their names; `figures`: png, svg or pdf, and True is png."""
+    """Save charts in a folder by their names; `figures` is the format png, svg or pdf, and True is png."""
     form = figures if isinstance(figures, str) else FORMATS[0]
     for name, chart in drawn.items():
         plots.save_figure(plots.draw(chart.written(scale_of)), folder / f"{name}.{form}")

@@ -1,4 +1,4 @@
-"""How the results change with the uncertain numbers of a scene, and which of these matters most."""
+"""The changes of the results with the uncertain inputs of a scene: numbers with ± and measured profiles."""
 
 from __future__ import annotations
 
@@ -13,54 +13,57 @@ from contact1d.workflow.runs.accuracy import main_results
 from contact1d.workflow.scene import Scene
 
 COLOURS = (COMPRESSION, TENSION, LOADING, UNLOADING, BLACK)
-OF_INPUT = ("input", "half_width")
+INPUT_COLUMNS = ("input", "half_width")
 """Columns of the table that are no changes of results."""
-WIDTH = 0.8
-"""Of the bars of one input, over the distance of inputs."""
 
 
 def inputs_of(scene: Scene, outcome: Outcome) -> dict[str, Any]:
-    """The table `inputs`: each input, its 95 % half-width over its value, and the change of each main result over that.
+    """Return the table `inputs`, by column: each input, its 95 % half-width, and the change of each main result.
 
-    Empty where a scene is known exactly. A deviation of a measured profile has no width.
+    Half-width and changes are relative to the values. The table is empty of a scene without uncertain inputs. The
+    deviation of a measured profile has no half-width.
     """
     keys = list(dict.fromkeys(move.key for move in outcome.moves))
     if not keys:
         return {}
-    found: dict[str, Any] = {"input": keys, "half_width": [scene.shares.get(key, np.nan) for key in keys]}
-    for name, one in main_results(scene, outcome.results).items():
-        own = [in_squares([move for move in outcome.moves if move.key == key], name) for key in keys]
-        found[name] = [change / one.size if one.size else np.nan for change in own]
-    return found
+    table: dict[str, Any] = {"input": keys, "half_width": [scene.shares.get(key, np.nan) for key in keys]}
+    for name, result in main_results(scene, outcome.results).items():
+        changes = [in_squares([move for move in outcome.moves if move.key == key], name) for key in keys]
+        table[name] = [change / result.size if result.size else np.nan for change in changes]
+    return table
 
 
 def entries(table: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """The same as results.json has it: a table for each input."""
+    """Return the table `inputs` as in results.json: an entry for each input, without what is NaN."""
     rows = [dict(zip(table, row, strict=True)) for row in zip(*table.values(), strict=True)]
     return [{name: value for name, value in row.items() if value == value} for row in rows]
 
 
 def chart(table: Mapping[str, Any]) -> Chart:
-    """Bars of the changes in percent, by input."""
-    names = [name for name in table if name not in OF_INPUT]
+    """Return the bar chart of the changes in percent, by input."""
+    names = [name for name in table if name not in INPUT_COLUMNS]
     words = [key.partition(".")[2].replace("profile.", "") for key in table["input"]]
-    ticks = {float(i): one.replace(".", " ").replace("_", " ") for i, one in enumerate(words)}
-    series, width = [], WIDTH / max(len(names), 1)
+    ticks = {float(i): text.replace(".", " ").replace("_", " ") for i, text in enumerate(words)}
+    filled = 0.8  # share of the axis that bars cover
+    series, width = [], filled / max(len(names), 1)
     for number, name in enumerate(names):
-        left = np.arange(len(ticks)) + width * number - 0.5 * WIDTH
+        left = np.arange(len(ticks)) + width * number - 0.5 * filled
         x = np.add.outer(left, [0.0, 0.0, width, width, np.nan]).ravel()
         y = np.outer(table[name], [0.0, 100.0, 100.0, 0.0, np.nan]).ravel()
         series.append(Series(x, y, name.replace("_", " "), COLOURS[number % len(COLOURS)], FILL))
-    panel = Panel(Axis("change at the ends of the input (%)", zero=True), series)
+    panel = Panel(Axis("change over the input's uncertainty (%)", zero=True), series)
     return Chart(Axis("input", ticks=ticks), [panel])
 
 
-def in_words(found: Mapping[str, Any]) -> list[str]:
-    """Lines for a terminal, the input that matters most first; `found`: what results.json holds."""
-    rows = [({name: one[name] for name in one if name not in OF_INPUT}, one) for one in found.get("inputs", ())]
+def in_words(document: Mapping[str, Any]) -> list[str]:
+    """Return lines on the inputs of results.json for a terminal, the one with the largest change first."""
+    rows = [
+        ({name: change for name, change in row.items() if name not in INPUT_COLUMNS}, row)
+        for row in document.get("inputs", ())
+    ]
     lines = []
-    for changes, one in sorted(rows, key=lambda row: -max(row[0].values(), default=0.0)):
-        width = f" ± {100.0 * one['half_width']:.2g} %" if "half_width" in one else ""
-        said = ", ".join(f"{name.replace('_', ' ')} ± {100.0 * value:.2g} %" for name, value in changes.items())
-        lines.append(f"  {one['input']}{width}: {said}")
+    for changes, row in sorted(rows, key=lambda pair: -max(pair[0].values(), default=0.0)):
+        width = f" ± {100.0 * row['half_width']:.2g} %" if "half_width" in row else ""
+        text = ", ".join(f"{name.replace('_', ' ')} ± {100.0 * value:.2g} %" for name, value in changes.items())
+        lines.append(f"  {row['input']}{width}: {text}")
     return ["\nchanges with the inputs, the largest first:", *lines] if lines else []

@@ -1,4 +1,4 @@
-"""Many scenes run by an executor: one entry for each, a run or an error."""
+"""Run many scenes by an executor: each gives a run or an error."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ def run_many(
     """Run (scene, folder) pairs, several at a time, without figures.
 
     Args:
-        scenes: scenes as `run` takes them, each with a folder of its own.
+        scenes: scenes as `run` reads them, each with a folder of its own.
         executor: anything with the interface of `concurrent.futures`; None: processes on this machine.
         workers: runs at a time on this machine; None: as many as there are processors.
 
     Returns:
-        One entry for each pair, in the order given: a `Run`, or a `RunError` whatever went wrong, with the message of
-        the error that `run` raised and the folder. None keeps another from running, but that a process that is killed
-        takes its executor with it: what has not run by then comes back as errors.
+        An entry for each pair, in the order given: a `Run`, or a `RunError` with the folder and the message of whatever
+        error `run` raised. After an error the others run, unless a process was killed: then its executor ends, and each
+        scene that has not run gives an error.
     """
     pairs = list(scenes)
     if executor is None:
@@ -42,19 +42,19 @@ def run_many(
 
 
 def completed(pairs: Sequence[tuple[AnyScene, AnyPath]], executor: Executor) -> Iterator[tuple[int, Entry]]:
-    """The entries of `run_many` as they are done, each with its place among the pairs."""
+    """Yield the entries of `run_many` as they are done, each after its index among the pairs."""
     futures: dict[Future[Entry], int] = {}
     taken = set()
     for index, (scene, folder) in enumerate(pairs):
-        place = Path(folder).resolve()
-        if place in taken:
-            yield index, RunError("another of these runs has the same folder", place, kept=False)
+        path = Path(folder).resolve()
+        if path in taken:
+            yield index, RunError("another of these runs has the same folder", path, kept=False)
             continue
-        taken.add(place)
+        taken.add(path)
         try:
-            futures[executor.submit(attempt, scene, place)] = index
+            futures[executor.submit(attempt, scene, path)] = index
         except RuntimeError as error:  # it is shut down, or a process of it has died already
-            yield index, _no_answer(error, place)
+            yield index, _no_answer(error, path)
     for future in as_completed(futures):
         index = futures[future]
         try:
@@ -64,7 +64,7 @@ def completed(pairs: Sequence[tuple[AnyScene, AnyPath]], executor: Executor) -> 
 
 
 def attempt(scene: AnyScene, folder: Path) -> Entry:
-    """Run a scene; whatever goes wrong is an entry, its cause an error that is none of the run."""
+    """Run a scene, and return the run, or a RunError whose cause is any other error."""
     try:
         return replace(run(scene, folder, figures=False, workers=1), outcome=None)
     except RunError as error:

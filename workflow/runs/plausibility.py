@@ -18,14 +18,20 @@ from contact1d.workflow.units import LENGTH, Quantity, Scales
 SOFTEST, STIFFEST = 1e3, 2e12
 """Moduli [Pa]: of the softest gels that are pressed, and above those of diamond, 1.2e12."""
 IMPLAUSIBLE = "implausible"
-"""How the names of warnings about values begin from which all results follow."""
-ATOM = 1e-10
-"""Radius of an atom [m]."""
+"""Prefix of the names of warnings about a scene's numbers, from which all results follow."""
 
 
 @dataclass(frozen=True)
 class Usual:
-    """The usual range of a number in SI, from `least` to `most`, and the warning outside of it."""
+    """The usual range of a number in SI.
+
+    Attributes:
+        key: pattern of its key in a scene.
+        name: its name in that of the warning.
+        least, most: ends of the range.
+        unit: in SI.
+        low, high: the remark on a number below and above the range.
+    """
 
     key: str
     name: str
@@ -54,16 +60,17 @@ USUAL = (
 
 
 def implausible(scene: Scene, scales: Scales, quantities: Mapping[str, Quantity]) -> dict[str, str]:
-    """Implausible sizes of a scene and its results, by names of warnings.
+    """Return the warnings of implausible numbers of a scene and its results, by name.
 
     Args:
         scene: with or without a material.
-        scales: what LU and FU stand for.
-        quantities: results.
+        scales: of LU and FU in SI.
+        quantities: the results by name.
     """
-    told = [*_moduli(scene), *_numbers(scene, scales), *_radii(scales, quantities)]
-    names = dict.fromkeys(name for name, _ in told)
-    return {name: "; ".join(message for other, message in told if other == name) for name in names}
+    warnings: dict[str, list[str]] = {}
+    for name, message in (*_moduli(scene), *_numbers(scene, scales), *_radii(scales, quantities)):
+        warnings.setdefault(name, []).append(message)
+    return {name: "; ".join(messages) for name, messages in warnings.items()}
 
 
 def _moduli(scene: Scene) -> Iterator[tuple[str, str]]:
@@ -78,7 +85,7 @@ def _moduli(scene: Scene) -> Iterator[tuple[str, str]]:
         if modulus < SOFTEST:
             meant = f": was {modulus:g} GPa meant?" if modulus >= 0.01 else ": check its unit"
             yield f"{IMPLAUSIBLE}_modulus", f"{key} is {modulus:g} Pa, softer than any gel{meant}"
-    if moduli and min(moduli.values()) > STIFFEST:  # one rigid body beside another one is usual
+    if moduli and min(moduli.values()) > STIFFEST:  # one of two bodies may be rigid
         least = f"{min(moduli.values()):g} Pa"
         yield f"{IMPLAUSIBLE}_modulus", f"{' and '.join(moduli)}: {least} is stiffer than diamond: check its unit"
     for name, body in bodies.items():
@@ -98,16 +105,16 @@ def _numbers(scene: Scene, scales: Scales) -> Iterator[tuple[str, str]]:
         value = place.value * (scales.factor(place.unit.name) if place.unit.bases else 1.0)
         value /= float(BOLTZMANN) if usual.unit == "K" else 1.0
         if not usual.least <= value <= usual.most:
-            what = usual.low if value < usual.least else usual.high
-            yield f"{IMPLAUSIBLE}_{usual.name}", f"{key} is {value:.4g} {usual.unit}, {what}: check its unit"
+            remark = usual.low if value < usual.least else usual.high
+            yield f"{IMPLAUSIBLE}_{usual.name}", f"{key} is {value:.4g} {usual.unit}, {remark}: check its unit"
 
 
-def _radii(scales: Scales, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
-    """Contacts smaller than an atom, where continuum theory does not hold."""
+def _radii(scales: Scales, quantities: Mapping[str, Quantity], atom: float = 1e-10) -> Iterator[tuple[str, str]]:
+    """Yield name and message of each contact smaller than an atom of a radius [m], where continuum theory fails."""
     if not scales.known:
         return
     for name, quantity in quantities.items():
         size = quantity.value * scales.length
-        if name.endswith("radius") and quantity.unit == LENGTH and 0.0 < size < ATOM:
-            found, atom = apart(size, ATOM)
-            yield "below_an_atom", f"the {name.replace('_', ' ')} is {found} m, less than that of an atom, {atom} m"
+        if name.endswith("radius") and quantity.unit == LENGTH and 0.0 < size < atom:
+            radius, limit = apart(size, atom)
+            yield "below_an_atom", f"the {name.replace('_', ' ')} is {radius} m, less than that of an atom, {limit} m"

@@ -1,4 +1,4 @@
-"""The processors of this machine: how many there are, a pool of processes for many runs, MPI ranks for one run.
+"""The processors of this machine: their number, a pool of processes for many runs, MPI ranks for one run.
 
 Each rank has the particles of a slice along x (`processors * 1 1`). Sums over the bodies are then added up in another
 order: forces differ in their last digits, and what a search or a minimiser makes of them stays within their thresholds.
@@ -26,23 +26,21 @@ if TYPE_CHECKING:
 
 P = ParamSpec("P")
 T = TypeVar("T")
-FEWEST = 50
-"""Particles of a body for each rank: with fewer, telling the neighbours of them takes longer than they do."""
 
 
 def cores() -> int:
-    """How many processors this process may use."""
+    """Return the number of processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 class _Pool(ProcessPoolExecutor):
-    """Its processes don't begin by running the script that runs here: a run needs nothing of it.
+    """A pool whose processes do not begin by running the script that runs here, which a run does not need.
 
-    Python's would, so that a script without `if __name__ == "__main__":` began anew in each, and one from a pipe ended.
+    With Python's a script without `if __name__ == "__main__":` begins anew in each process, and one from a pipe ends.
     """
 
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
-        """As any executor's. A process starts here, if at all, and gets another `__main__` meanwhile."""
+        """Submit a call as to any executor; a process that starts here sees an empty `__main__`."""
         main = sys.modules["__main__"]
         sys.modules["__main__"] = ModuleType("__main__")
         try:
@@ -53,25 +51,25 @@ class _Pool(ProcessPoolExecutor):
 
 @contextmanager
 def pool(workers: int) -> Iterator[ProcessPoolExecutor]:
-    """An executor of `workers` processes. After an error in its block their work is not awaited.
+    """Yield an executor of `workers` processes, which an error in its block ends at once.
 
-    The parent holds one end of a pipe, and nobody else: when that closes, however the parent went, the workers end.
+    Only the parent holds one end of a pipe: when that closes, however the parent ended, the workers end.
     """
-    theirs, ours = get_context("spawn").Pipe(duplex=False)
-    executor = _Pool(workers, get_context("spawn"), _begin, (theirs,))
+    receiver, sender = get_context("spawn").Pipe(duplex=False)
+    executor = _Pool(workers, get_context("spawn"), _begin, (receiver,))
     try:
         yield executor
     except BaseException:
-        ours.close()
+        sender.close()
         raise
     finally:
         executor.shutdown(cancel_futures=True)
-        ours.close()
-        theirs.close()
+        sender.close()
+        receiver.close()
 
 
 def _begin(parent: Connection) -> None:
-    """Begin a worker: LAMMPS loads while the rest of the program does."""
+    """Begin a worker that ends with its parent; LAMMPS loads while the rest of the program does."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     start_ahead()
 
@@ -83,8 +81,13 @@ def _begin(parent: Connection) -> None:
     threading.Thread(target=watch, daemon=True).start()
 
 
-def require_ranks(deck: Deck, ranks: int) -> None:
-    """Refuse more ranks than one where they can't, or are no use.
+def require_ranks(deck: Deck, ranks: int, fewest: int = 50) -> None:
+    """Refuse several ranks where they can't run a deck, or are no use.
+
+    Args:
+        deck: of the scene.
+        ranks: number of MPI ranks.
+        fewest: particles of a body for each rank; with fewer, communication takes longer than their forces.
 
     Raises:
         RanksError: why, and what to do.
@@ -107,10 +110,10 @@ def require_ranks(deck: Deck, ranks: int) -> None:
             "bulk springs that are stiffer along x have distant anchors, on other ranks: use one rank, or a "
             "bodies.bulk_stiffness_tangential of at most bulk_stiffness"
         )
-    if particles < FEWEST * ranks:
-        most = particles // FEWEST
+    if particles < fewest * ranks:
+        most = particles // fewest
         raise RanksError(
             f"{ranks} ranks are too many for {particles} particles per body: use "
-            + (f"at most {most}, {FEWEST} particles each" if most > 1 else "one")
+            + (f"at most {most}, {fewest} particles each" if most > 1 else "one")
         )
     launcher_of(ranks)

@@ -1,7 +1,7 @@
 """Refinement: the run is repeated with finer settings until the tolerance is met, or there is no improvement.
 
-A pass has the settings and the checks of a tolerance that is TOLERANCE_RATIO times smaller than that of the one before.
-Where two nested passes differ by more than both uncertainties, these are increased.
+A pass has the settings and the checks of a smaller tolerance than the one before. Where two nested passes differ by
+more than both uncertainties, these are increased.
 """
 
 from __future__ import annotations
@@ -19,19 +19,14 @@ from contact1d.workflow.experiments import kind_of, perform
 from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import Scene
 
-TOLERANCE_RATIO = 5.0
-"""Tolerance of a pass over that of the next one."""
-MOST_REFINEMENTS = 2
-HELP_RATIO = 0.8
-"""Uncertainty of a result over that of the pass before from which on a refinement counts as no help."""
 
+def refined(context: RunContext, outcome: Outcome, ratio: float = 5.0, most: int = 2) -> tuple[Deck, Outcome]:
+    """Refine a run at most `most` times, as long as that helps, and return deck and outcome of the finest pass.
 
-def refined(context: RunContext, outcome: Outcome) -> tuple[Deck, Outcome]:
-    """Refine a run that gave `outcome` as long as that helps, at most MOST_REFINEMENTS times: the finest pass.
-
-    Time and steps of all passes are added to those of `context`. A finer pass that fails is no failure of the run: what
-    was found before stands, and the refinement says how it ended. A way that the scene gives is not refined: its rows
-    limit what is found. With noise a load goes on sampling until it is known well enough, which is its own refinement.
+    `ratio` is the tolerance of a pass over that of the next one. Time and steps of all passes are added to those of
+    `context`. If a finer pass fails, the pass before stands, and the refinement says how it ended. A path that the
+    scene gives is not refined, since its load steps limit the results, nor are means under noise, which are sampled
+    until their standard errors are small.
     """
     scene, deck = context.deck.scene, context.deck
     if kind_of(scene).is_statistical or scene.experiment.way_is_given:
@@ -44,22 +39,22 @@ def refined(context: RunContext, outcome: Outcome) -> tuple[Deck, Outcome]:
         if not left:
             ended = "; ".join(filter(None, (ended, "the spacing limits these")))
             break
-        if count == MOST_REFINEMENTS:
+        if count == most:
             ended = f"{_after(count)}, the limit"
             break
         context.progress.note(f"refining: {in_words(left, wanted)}, tolerance {scene.accuracy.tolerance:g}")
         try:
-            finer_deck, finer = _pass(context, tolerance / TOLERANCE_RATIO)
+            finer_deck, finer = _pass(context, tolerance / ratio)
         except (EngineError, UntrustedError, SettingsError) as error:
             ended = f"{_after(count)}, since the next failed: {error.message}"
             break
-        tolerance, count = tolerance / TOLERANCE_RATIO, count + 1
+        tolerance, count = tolerance / ratio, count + 1
         before, deck, outcome = outcome, finer_deck, nested(outcome, finer)
         ended = _after(count)
         if _open(scene, outcome) and not _helped(left, before, outcome):
             ended += ", the last without improvement"
             break
-    # What a pass doubts by its own tolerance is no doubt of a run that was asked for less.
+    # Warnings by the stricter tolerance of a pass are replaced by those of the scene's tolerance.
     stricter = doubts(deck.scene, deck.settings, outcome.states)
     warnings = {name: text for name, text in outcome.warnings.items() if name not in stricter}
     warnings |= doubts(scene, replace(deck.settings, tolerance=scene.accuracy.tolerance), outcome.states)
@@ -68,31 +63,31 @@ def refined(context: RunContext, outcome: Outcome) -> tuple[Deck, Outcome]:
 
 
 def _open(scene: Scene, outcome: Outcome) -> dict[str, float]:
-    """Main results whose uncertainty exceeds the tolerance, without the discretisation error."""
-    main = {name: one for name, one in outcome.results.items() if name in kind_of(scene).main_results}
+    """Return main results whose uncertainty without the discretisation error exceeds the tolerance, as `unmet`."""
+    main = {name: result for name, result in outcome.results.items() if name in kind_of(scene).main_results}
     return unmet(main, scene.accuracy.tolerance, (LATTICE,))
 
 
 def nested(coarse: Outcome, fine: Outcome) -> Outcome:
-    """The finer outcome; where |fine − coarse| exceeds both uncertainties, its own is increased by the same factor.
+    """Return the finer outcome; an uncertainty grows with |fine − coarse| over the sum of both, where that exceeds 1.
 
-    What numbers with ± change is the same in both, and no part of this.
+    The contribution of numbers with ± is the same in both outcomes, and stays.
     """
     results = {}
-    for name, one in fine.results.items():
-        before = coarse.results.get(name, one)
-        stated = _own(before) + _own(one)
-        factor = max(1.0, abs(one.value - before.value) / stated) if stated > 0.0 else 1.0
-        errors = {source: factor * error for source, error in one.errors.items()}
-        if one.given:
-            errors["input"] -= (factor - 1.0) * one.given
-        results[name] = replace(one, errors=errors)
+    for name, result in fine.results.items():
+        before = coarse.results.get(name, result)
+        stated = _without_input(before) + _without_input(result)
+        factor = max(1.0, abs(result.value - before.value) / stated) if stated > 0.0 else 1.0
+        errors = {source: factor * error for source, error in result.errors.items()}
+        if result.given:
+            errors["input"] -= (factor - 1.0) * result.given
+        results[name] = replace(result, errors=errors)
     return replace(fine, results=results)
 
 
-def _own(one: Result) -> float:
-    """The uncertainty without what the scene leaves open."""
-    return one.uncertainty - one.given
+def _without_input(result: Result) -> float:
+    """Return the uncertainty of a result without the contribution of numbers with ±."""
+    return result.uncertainty - result.given
 
 
 def _after(count: int) -> str:
@@ -100,14 +95,15 @@ def _after(count: int) -> str:
 
 
 def _helped(names: dict[str, float], before: Outcome, after: Outcome) -> bool:
-    """Whether one of the named results is known clearly better."""
+    """Return whether the uncertainty of one of the named results decreased by at least a fifth."""
     return any(
-        name in after.results and _own(after.results[name]) < HELP_RATIO * _own(before.results[name]) for name in names
+        name in after.results and _without_input(after.results[name]) < 0.8 * _without_input(before.results[name])
+        for name in names
     )
 
 
 def _pass(context: RunContext, tolerance: float) -> tuple[Deck, Outcome]:
-    """One pass with the settings of a tolerance; its files replace those in the run folder only when it is done."""
+    """Run with the settings of a tolerance; the files replace those in the run folder only when the pass is done."""
     scene = context.deck.scene
     deck = Deck(scene, settings_for(scene, tolerance))
     with context.aside(deck) as finer:

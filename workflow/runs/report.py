@@ -1,4 +1,4 @@
-"""The files of a finished run: results.json and the tables."""
+"""The files of a finished run: content and text of results.json, and the tables."""
 
 from __future__ import annotations
 
@@ -59,41 +59,43 @@ FILES = (
 
 
 def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict[str, Any]:
-    """What results.json holds after a run that was done."""
-    known = reported(scene, outcome)
-    scales, found = scales_of(scene, known.quantities), of_the_body(scene, known.quantities)
-    entries = _entries(scene, outcome, found, scales)
+    """Return the content of results.json after a run that was done."""
+    shown = reported(scene, outcome)
+    scales, quantities = scales_of(scene, shown.quantities), of_the_body(scene, shown.quantities)
+    entries = _entries(scene, outcome, quantities, scales)
     if scales.known:
         units = (LENGTH, FORCE, MASS, TIME)
         entries["units"] = {unit: scales.in_si(1.0, 0.0, unit) for unit in units if scales.know(unit)}
-    checked = checks(scene, outcome, found, scales)
-    entries |= {"theory": theory(scene, found, scales), "validity": [one.entry() for one in checked]}
-    if table := inputs.inputs_of(scene, known):
+    validity = checks(scene, outcome, quantities, scales)
+    entries |= {"theory": theory(scene, quantities, scales), "validity": [check.entry() for check in validity]}
+    if table := inputs.inputs_of(scene, shown):
         entries["inputs"] = inputs.entries(table)
-    doubts = dict(outcome.warnings) | misfit(scene) | doubt_of_the_image(scene) | implausible(scene, scales, found)
-    doubts |= {one.name: one.message for one in checked if not one.holds} | accuracy_warnings(scene, outcome)
-    if missing := unfound(scene, known.quantities):
-        doubts["no_units"] = (
+    warnings = dict(outcome.warnings) | misfit(scene) | doubt_of_the_image(scene)
+    warnings |= implausible(scene, scales, quantities)
+    warnings |= {check.name: check.message for check in validity if not check.holds}
+    warnings |= accuracy_warnings(scene, outcome)
+    if missing := unfound(scene, shown.quantities):
+        warnings["no_units"] = (
             f"the run found no {' and no '.join(missing)} above 0, from which surface_energy would fix both units, so "
             'nothing is in SI: use kind = "pull_off", and a larger radius, so that the contact has many particles'
         )
     refinement = outcome.refinement or Refinement(scene.accuracy.tolerance, 0, "")
     accuracy = {"tolerance": refinement.tolerance, "refinements": refinement.count}
-    return entries | {"accuracy": accuracy} | _frame(scene, "done", outcome, doubts, scales, timing)
+    return entries | {"accuracy": accuracy} | _frame(scene, "done", outcome, warnings, scales, timing)
 
 
-def _entries(scene: Scene, outcome: Outcome, known: Container[str], scales: Scales) -> dict[str, Any]:
-    """The results by name; the value of one that is not `known` well enough to be reported is null."""
+def _entries(scene: Scene, outcome: Outcome, shown: Container[str], scales: Scales) -> dict[str, Any]:
+    """Return the results by name; the value of one that is not in `shown`, and so not reported, is null."""
     state, entries = next(iter(reported_state(outcome)), None), dict[str, Any]()
-    for name, one in of_the_body(scene, outcome.quantities).items():
-        entry = entries[name] = one.entry()
-        if state and one.unit == MEAN_PRESSURE:
+    for name, quantity in of_the_body(scene, outcome.quantities).items():
+        entry = entries[name] = quantity.entry()
+        if state and quantity.unit == MEAN_PRESSURE:
             entry["state"] = state
         if name in outcome.results and (given := outcome.results[name].given):
             entry["errors"] = {"input": given}
-        if scales.know(one.unit):  # of a time without a mass nothing is
-            entry["si"] = scales.in_si(one.value, one.uncertainty, one.unit)
-        if name not in known:
+        if scales.know(quantity.unit):  # a time has none without a mass
+            entry["si"] = scales.in_si(quantity.value, quantity.uncertainty, quantity.unit)
+        if name not in shown:
             for part in (entry, entry.get("si", {})):
                 part.update({key: None for key, number in part.items() if key == "value" or number == math.inf})
     return entries
@@ -105,7 +107,7 @@ CHECKS = ("plan", "pressure", "asked", "balance", "energy", "closed_form")
 def failure(
     scene: Scene, error: Mapping[str, object], timing: Mapping[str, float], outcome: Outcome | None = None
 ) -> dict[str, Any]:
-    """What results.json holds after a run that failed: no numbers but those of its checks."""
+    """Return the content of results.json after a run that failed: no numbers but those of its consistency checks."""
     scales = scales_of(scene, {})
     frame = _frame(scene, "failed", outcome, implausible(scene, scales, {}), scales, timing)
     return {"error": dict(error)} | frame
@@ -115,22 +117,22 @@ def _frame(
     scene: Scene,
     status: str,
     outcome: Outcome | None,
-    doubts: Mapping[str, str],
+    warnings: Mapping[str, str],
     scales: Scales,
     timing: Mapping[str, float],
 ) -> dict[str, Any]:
-    """What results.json holds of every run; of a check that does not apply null."""
+    """Return the content of results.json that every run has; a consistency check that does not apply is null."""
     agreements = outcome.consistency.items() if outcome else ()
-    checked = {name: {"difference": one.difference, "allowed": one.allowed} for name, one in agreements}
+    consistency = {name: {"difference": check.difference, "allowed": check.allowed} for name, check in agreements}
     return {
-        "consistency": {name: checked.get(name) for name in CHECKS},
+        "consistency": {name: consistency.get(name) for name in CHECKS},
         "scene": scene.tables,
         "experiment": scene.experiment.kind,
         "method": scene.method,
         "reduction": scene.bodies.reduction,
         "effects": list(scene.effects),
         "status": status,
-        "warnings": [{"name": name, "message": scales.in_words(message)} for name, message in doubts.items()],
+        "warnings": [{"name": name, "message": scales.in_words(message)} for name, message in warnings.items()],
         "timing": dict(timing),
         "versions": dict(versions()),
         **scan_entry(scene, scales),
@@ -139,7 +141,7 @@ def _frame(
 
 @cache
 def versions() -> dict[str, str]:
-    """Versions of what a result depends on; asked once, since looking them up takes milliseconds."""
+    """Return the versions of the packages that results depend on; cached, since looking them up takes milliseconds."""
     return {name: version(name) for name in PACKAGES} | {"python": platform.python_version()}
 
 
@@ -147,7 +149,7 @@ TABLE = TypeAdapter(dict[str, Any])
 
 
 class _Part(BaseModel):
-    """What must hold of a part of results.json; other keys of it are not looked at."""
+    """The required keys of a part of results.json; other keys are ignored."""
 
     model_config = ConfigDict(strict=True, allow_inf_nan=False, defer_build=True)
 
@@ -190,17 +192,17 @@ class _Failed(_Document):
 
 
 def results_in(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """The results in what results.json holds, by name; the value of one that is not reported is null."""
+    """Return the entries of the results in results.json by name; the value of one that is not reported is null."""
     return {name: entry for name, entry in document.items() if isinstance(entry, dict) and "value" in entry}
 
 
 def quantities_in(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """Those that are reported."""
+    """Return the entries of the reported results in results.json by name."""
     return {name: entry for name, entry in results_in(document).items() if entry["value"] is not None}
 
 
 def read_results(folder: Path) -> dict[str, Any]:
-    """What results.json in a run folder holds. Raises FolderError where that is not what a run writes."""
+    """Read results.json in a run folder. Raises FolderError where it is not that of a run."""
     try:
         document = TABLE.validate_json(read_text(folder / RESULTS))
         model = _Failed if document.get("status") == "failed" else _Document
@@ -212,13 +214,13 @@ def read_results(folder: Path) -> dict[str, Any]:
 
 
 def as_json(document: Mapping[str, Any]) -> str:
-    """The text of results.json, a line for each entry."""
-    entries = (json.dumps({name: one}, ensure_ascii=False, allow_nan=False)[1:-1] for name, one in document.items())
-    return "{\n  " + ",\n  ".join(entries) + "\n}\n"
+    """Return the text of results.json, a line for each entry."""
+    lines = (json.dumps({name: entry}, ensure_ascii=False, allow_nan=False)[1:-1] for name, entry in document.items())
+    return "{\n  " + ",\n  ".join(lines) + "\n}\n"
 
 
 def write_results(folder: Path, document: Mapping[str, Any]) -> None:
-    """Write results.json."""
+    """Write results.json in a run folder, whole or not at all."""
     write_whole(folder / RESULTS, as_json(document))
 
 
@@ -242,14 +244,15 @@ OTHER_UNITS: dict[str, dict[str, str]] = {
     "pressure_3d": COLUMN_UNITS | {"pressure": MEAN_PRESSURE},
     "inputs": {},
 }
-"""Of tables in which these names are something else: a pressure, where the chain has a line load; relative changes."""
+"""Units of tables that differ: in pressure_3d a pressure is no line load, and `inputs` has relative changes."""
 
 
 def tables_of(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressure]) -> dict[str, Columns]:
-    """The tables of a run by the names of their files, in SI where the units are known.
+    """Return the tables of a run by the names of their files, in SI where the units are known.
 
-    curve: the measured states in order; a radius is NaN where the bodies do not touch. profile: of the reported states,
-    one below the other, and so too pressure_3d and shear_3d of the body of three dimensions; those of the experiment.
+    `curve` has the states in order; a radius is NaN where the bodies do not touch. `profile`, and of the
+    three-dimensional body `pressure_3d` and `shear_3d`, have the reported states one below the other. `inputs` and the
+    tables of the experiment are added.
     """
     states = outcome.states
     radii = [(math.nan, math.nan) if (r := state.radius) is None else (r.value, r.uncertainty) for state in states]
@@ -263,7 +266,7 @@ def tables_of(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressu
         "contact_radius_uncertainty": uncertainty,
     }
     lengths = [state.rule.lengths(state.profile) for state in states]
-    curve |= {name: [one[name] for one in lengths] for name in lengths[-1]}
+    curve |= {name: [row[name] for row in lengths] for name in lengths[-1]}
     tables: dict[str, Mapping[str, Any]] = {
         "curve": curve
         | dict(outcome.columns)
@@ -274,39 +277,39 @@ def tables_of(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressu
     }
     along = {name: np.asarray(column) for name, column in outcome.columns.items()}
     shears = body_shears(scene, outcome.profiles, along, contact_radius)
-    tables["shear_3d"] = below(shears, r="r", shear_stress="shear", shear_stress_uncertainty="uncertainty")
-    tables["pressure_3d"] = below(pressures, r="r", pressure="pressure", pressure_uncertainty="uncertainty")
+    tables["shear_3d"] = stacked(shears, r="r", shear_stress="shear", shear_stress_uncertainty="uncertainty")
+    tables["pressure_3d"] = stacked(pressures, r="r", pressure="pressure", pressure_uncertainty="uncertainty")
     scales = scales_of(scene, outcome.quantities)
     return {name: in_units(columns, scales, name) for name, columns in tables.items() if columns}
 
 
-def below(states: Mapping[str, BodyPressure | BodyShear], **columns: str) -> dict[str, Any]:
-    """Arrays of several states below each other, the state's name in the last column; none of no state.
+def stacked(states: Mapping[str, BodyPressure | BodyShear], **columns: str) -> dict[str, Any]:
+    """Return columns with the arrays of several states below each other, the state's name in the last one.
 
-    `columns`: what each is of a state, by its name.
+    `columns` has the attribute of a state by the name of the column. Without states there are no columns.
     """
     if not states:
         return {}
-    numbers = {name: np.concatenate([getattr(one, part) for one in states.values()]) for name, part in columns.items()}
-    return numbers | {"state": [state for state, one in states.items() for _ in one.r]}
+    stress = {name: np.concatenate([getattr(body, part) for body in states.values()]) for name, part in columns.items()}
+    return stress | {"state": [state for state, body in states.items() for _ in body.r]}
 
 
 def in_units(columns: Mapping[str, Column], scales: Scales, table: str) -> Columns:
-    """The columns of a table in SI, those whose units are known."""
-    units, found, known = OTHER_UNITS.get(table, COLUMN_UNITS), dict(columns), {}
+    """Return the columns of a table, in SI where their units are known."""
+    units, converted, si_units = OTHER_UNITS.get(table, COLUMN_UNITS), dict(columns), {}
     for name, column in columns.items():
         unit = units.get(name.removesuffix("_uncertainty"), "")
         if scales.know(unit):
-            factor, known[name] = scales.base(unit)
-            found[name] = np.asarray(column) * factor
-    return Columns(found, known)
+            factor, si_units[name] = scales.base(unit)
+            converted[name] = np.asarray(column) * factor
+    return Columns(converted, si_units)
 
 
 def in_model_units(columns: Columns, scales: Scales) -> Columns:
-    """The same in units of the model again."""
-    factors = {one.si: scales.factor(unit) for unit, one in SI.items() if scales.know(unit)}
-    own = {name: columns[name] / factors[unit] for name, unit in columns.units.items()}
-    return Columns(columns | own)
+    """Return the columns of a table in SI as columns in units of the model."""
+    factors = {model_unit.si: scales.factor(unit) for unit, model_unit in SI.items() if scales.know(unit)}
+    converted = {name: columns[name] / factors[unit] for name, unit in columns.units.items()}
+    return Columns(columns | converted)
 
 
 def write_tables(folder: Path, scene: Scene, outcome: Outcome, tables: Mapping[str, Columns]) -> None:

@@ -1,4 +1,4 @@
-"""One LU and one FU of a finished run in SI, where the scene has a [material].
+"""The units LU and FU of a finished run in SI, where the scene has a [material].
 
 With `length_unit`:      c LU² h χ / k = FU,  c the layer's stiffness per length, h the spacing, k the stiffness of a
                          bulk spring, χ = 2 chains in series, or 1 on a rigid plane.
@@ -16,16 +16,17 @@ from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import UNKNOWN, Quantity, Scales
 
 UNIT_FIXING_RESULTS = ("adhesion_force", "zero_load_radius")
-"""What a run must have found, and not as 0, for `surface_energy` to fix its units."""
+"""Results that must be positive for `surface_energy` to fix the units of a run."""
 
 
 def scales_of(scene: Scene, quantities: Mapping[str, Quantity]) -> Scales:
-    """The scales of a run; UNKNOWN without a [material], and where results that fix them (`unfound`) are missing.
+    """Return the scales of a run; UNKNOWN without a [material], or without the results that fix them (`unfound`).
 
-    A material's numbers with ± that are no part of the model, as with its own stiffness, are part of them.
+    Numbers of the material with ± that are no part of the model, as where it has its own stiffness, make the scales
+    uncertain: `ends` has the scales at both ends of each.
     """
     ends = tuple(
-        tuple(_scales(scene.moved(key, 1.0 + way * share), quantities) for way in (-1.0, 1.0))
+        tuple(_scales(scene.moved(key, 1.0 + side * share), quantities) for side in (-1.0, 1.0))
         for key, share in scene.shares.items()
         if key.startswith("material.")
     )
@@ -33,7 +34,7 @@ def scales_of(scene: Scene, quantities: Mapping[str, Quantity]) -> Scales:
 
 
 def _scales(scene: Scene, quantities: Mapping[str, Quantity]) -> Scales:
-    """The same, of the numbers alone."""
+    """Return the scales of a run by the values of the numbers, without their ±."""
     material = scene.material
     if material is None or unfound(scene, quantities):
         return UNKNOWN
@@ -51,7 +52,7 @@ def _scales(scene: Scene, quantities: Mapping[str, Quantity]) -> Scales:
 
 
 def unfound(scene: Scene, quantities: Mapping[str, Quantity]) -> tuple[str, ...]:
-    """Those of F_A and a₀ that the scene's units need and that the run did not find, or found to be 0."""
+    """Return the names of F_A and a₀ where the scene's units need them and they are missing or 0."""
     if scene.material is None or scene.material.surface_energy is None:
         return ()
     return tuple(name for name in UNIT_FIXING_RESULTS if name not in quantities or not quantities[name].value > 0.0)
@@ -64,7 +65,7 @@ def jkr_scales(
     contact_modulus: float,
     surface_energy: float,
 ) -> Scales:
-    """The scales with which a run is JKR's contact of a material.
+    """Return the scales with which a run is JKR's contact of a material.
 
     Args:
         adhesion_force: F_A [FU].
@@ -79,5 +80,5 @@ def jkr_scales(
     length = energy / modulus
     force = energy * length
     # LU ∝ a₀⁻³ F_A⁰ and FU ∝ a₀⁻³ F_A⁻¹
-    unsure = 3.0 * zero_load_radius.uncertainty / radius
-    return Scales(length, force, length * unsure, force * (unsure + adhesion_force.uncertainty / tension))
+    uncertainty = 3.0 * zero_load_radius.uncertainty / radius
+    return Scales(length, force, length * uncertainty, force * (uncertainty + adhesion_force.uncertainty / tension))

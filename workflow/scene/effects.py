@@ -144,7 +144,7 @@ class Rate(Table):
     velocity: Velocity
     """v₀, at which it is doubled"""
     exponent: Ratio
-    """n, about 0.6 of elastomers"""
+    """n, about 0.6 for elastomers"""
 
 
 class Adhesion(Effect):

@@ -43,7 +43,7 @@ def integrated(scene: Scene) -> Integrated:
     """A slide of the scene by the integrator, measured where the program measures."""
     settings = settings_for(scene)
     body = Integrator(slide_model(scene, settings))
-    body.settle(settings.motion.time_step, RESIDUAL, drag=settings.motion.calm_damping)
+    body.settle(settings.motion.time_step, RESIDUAL, drag=settings.motion.settling_damping)
     (leg,) = settings.motion.drive
     period = scene.bodies.spacing / leg.velocity
     rows = min(leg.rows, round(PERIODS * period / leg.row_time))
