@@ -1,17 +1,18 @@
 """The error budget: the error of each result by source, found by perturbing the one reader of the results.
 
     solver           the reader on forces ± ε, also tilted about the last mark: ε is the residual of a minimiser or a
-    motion, and the error of table, cutoff and a plane of finite stiffness
+                     motion, and the error of table, cutoff and a plane of finite stiffness
     sampling         error of the reader's polynomials and of the search; where the scene gives the steps, the reader on
-                     the model with these steps beside the model with dense ones
+                     the model with these steps and with dense ones
     discretisation   the reader on the model with its apex elsewhere between particles, or on three spacings; and on
                      radii changed by the error of interpolation between particles
-    time             of a motion: the reader on the same in longer timesteps, with larger masses where none are given
-    instability      premature detachment of particles, and other maxima of the force (the reader's own)
+    time             of a motion: the reader on the motion in longer timesteps, with larger masses where none are given
+    instability      premature detachment of particles, and other maxima of the force (in the reader itself)
     input            the reader on the model of each scene that this one may mean: numbers with ± and deviations of a
-                     measured profile both ways, independent ones added in squares; other curves through its points
+                     measured profile in both directions, independent ones added in squares; other curves through its
+                     points
 
-Nothing here depends on the experiment: whatever a script passes and a reader reads has all of these.
+Nothing here depends on the experiment: the states of any script and the results of any reader have all of these.
 """
 
 from __future__ import annotations
@@ -25,102 +26,97 @@ from numpy.typing import NDArray
 from contact1d.workflow.continuation.marks import displacement_under
 from contact1d.workflow.continuation.model_branch import MOST_NUMBERS
 from contact1d.workflow.continuation.outcome import LATTICE, Result, in_squares
-from contact1d.workflow.continuation.reduction import MARGIN, WAYS, Reader, Reduction, Values, values_of
+from contact1d.workflow.continuation.reduction import MARGIN, SIGNS, Reader, Reduction, Values, values_of
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace
+from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
-STEP_MARGIN, PATH_MARGIN = 1.25, 1.5
-"""Error over the change with dense steps, which have errors, too; the second where a search ends elsewhere."""
-BY_CHANCE = 0.5
-"""Least error of a row over those beside it."""
-SHIFTS = (0.0, 0.25, 0.5, 0.75)
-"""Shifts of a path's steps over their width, of which the worst counts where the model is no copy of the deck."""
-FEWEST = 200
-"""Particles that the model of a plane keeps for dense positions."""
-BEFORE = 1e-3
-"""Distance of two displacements that show the stiffness of the model, over its path."""
-REACHED = 1.1
-"""Of a displacement, over that of a force that was missed to first order: nothing else may err."""
 
 
 def curve_errors(
     case: Reduction, trace: Trace, solver: Array, repeated: Mapping[str, Sequence[Trace]] | None = None
 ) -> dict[str, Values]:
-    """By column of curve.csv, the errors of its rows by source, (m,).
+    """Return the errors of the points of curve.csv, (m,), by column and source.
 
     Args:
         case: scene, settings, script and reader.
         trace: of all states that were passed.
-        solver: ε of each.
+        solver: ε of each state.
         repeated: see `budgeted`.
     """
     rows, repeated = case.along(trace), repeated or {}
     measured = {"force": trace.force, "displacement": trace.displacement}
-    lattice = rows.followed(measured) if "time" in repeated else rows.lattice
-    inputs = rows.inputs if case.is_open else {}
-    found: dict[str, Values] = {"force": {"solver": solver}}
+    lattice = rows.lattice_in_time(measured) if "time" in repeated else rows.lattice
+    inputs = rows.inputs if case.has_uncertain_inputs else {}
+    columns: dict[str, Values] = {"force": {"solver": solver}}
     if trace.given != "displacement":
         softness = 1.0 / _stiffness(case, trace.displacement)
-        found["displacement"] = {"solver": solver * softness}
-    for name, errors in found.items():
+        columns["displacement"] = {"solver": solver * softness}
+    for name, errors in columns.items():
         if name in lattice:
-            errors[LATTICE] = _beside(lattice[name])
+            errors[LATTICE] = _above_neighbours(lattice[name])
         if name in inputs:
             errors["input"] = inputs[name]
-        for source, others in repeated.items():
-            errors[source] = MARGIN * sum(_off(trace, other, name) for other in others)
-    if trace.given == "load":  # a force that is off moves the body
-        moved = {source: error * softness for source, error in found["force"].items()}
-        held = {source: found["force"][source] for source in ("solver", *repeated)}
-        found = {"force": held, "displacement": moved | found["displacement"]}
-    return found
+        for source, traces in repeated.items():
+            errors[source] = MARGIN * sum(_differences(trace, repetition, name) for repetition in traces)
+    if trace.given == "load":  # an error of the force moves the body
+        moved = {source: error * softness for source, error in columns["force"].items()}
+        held = {source: columns["force"][source] for source in ("solver", *repeated)}
+        columns = {"force": held, "displacement": moved | columns["displacement"]}
+    return columns
 
 
 def of_rows(errors: Mapping[str, Values], chosen: NDArray[np.bool_]) -> dict[str, Values]:
-    """The same of the rows that are reported."""
-    return {name: {source: error[chosen] for source, error in one.items()} for name, one in errors.items()}
+    """Return the errors of the points that are reported, by column and source."""
+    return {name: {source: error[chosen] for source, error in column.items()} for name, column in errors.items()}
 
 
-def _off(trace: Trace, other: Trace, name: str) -> Array:
-    """By how much the states of another trace are off at the same times, or one by one, (m,)."""
-    values = getattr(other, name)
-    there = np.interp(trace.time, other.time, values) if trace.time.any() else values
-    return np.asarray(np.abs(getattr(trace, name) - there))
+def _differences(trace: Trace, repetition: Trace, name: str) -> Array:
+    """Return the differences of a repeated trace, (m,), at the same times, or state by state."""
+    values = getattr(repetition, name)
+    expected = np.interp(trace.time, repetition.time, values) if trace.time.any() else values
+    return np.asarray(np.abs(getattr(trace, name) - expected))
 
 
-def _beside(errors: Array) -> Array:
-    """Errors of rows (m,), at least BY_CHANCE of their neighbours': one that changes its sign is small by chance."""
+def _above_neighbours(errors: Array, share: float = 0.5) -> Array:
+    """Return errors (m,), at least a share of those of their neighbours: an error is small where its sign changes."""
     padded = np.pad(errors, 1)
-    return np.maximum(errors, BY_CHANCE * np.maximum(padded[:-2], padded[2:]) * (errors > 0.0))
+    return np.maximum(errors, share * np.maximum(padded[:-2], padded[2:]) * (errors > 0.0))
 
 
-def sampling_errors(case: Reduction, trace: Trace) -> Values:
-    """Sampling error of each result by the steps of the scene, from the model with the same and with dense steps."""
-    model, found = case.model, dict[str, float]()
+def sampling_errors(case: Reduction, trace: Trace, fewest: int = 200) -> Values:
+    """Return the sampling error of each result due to the steps of the scene: the change of the model with dense steps.
+
+    Where the model is no copy of the deck, the largest change of four shifts of the steps counts. The lattice is made
+    coarser where there are too many forces, down to `fewest` particles: steps miss as much on any lattice.
+    """
+    model, errors = case.model, dict[str, float]()
     step = float(np.median(np.abs(np.diff(trace.displacement)))) if len(trace) > 1 else 0.0
     is_copy = case.scene.is_stepped
-    while is_copy and model.dense * len(trace) * model.x.size > MOST_NUMBERS and model.x.size > FEWEST:
-        model = model.resized(2.0)  # steps miss the same on a coarser lattice
-    for share in SHIFTS[:1] if is_copy else SHIFTS:
+    margin = 1.25 if is_copy else 1.5  # dense steps have errors, too, and a search may end elsewhere
+    while is_copy and model.dense * len(trace) * model.x.size > MOST_NUMBERS and model.x.size > fewest:
+        model = model.resized(2.0)
+    for shift in range(1 if is_copy else 4):
+        share = shift / 4.0
         dense = case.values(model, model.dense, share * step)
-        same = case.values(model, 1, share * step) if share or model is not case.model else case.own
-        for name in same.keys() | dense.keys():
-            missed = abs(same.get(name, 0.0) - dense.get(name, 0.0))
-            found[name] = max(found.get(name, 0.0), (STEP_MARGIN if is_copy else PATH_MARGIN) * missed)
-    return found
+        sparse = case.values(model, 1, share * step) if share or model is not case.model else case.results
+        for name in sparse.keys() | dense.keys():
+            missed = abs(sparse.get(name, 0.0) - dense.get(name, 0.0))
+            errors[name] = max(errors.get(name, 0.0), margin * missed)
+    return errors
 
 
 @dataclass(frozen=True)
 class ForceErrors:
-    """Errors of the forces of states, (m,) [FU].
+    """The errors of the forces of states, (m,) [FU].
 
     Attributes:
-        common: alike at neighbouring states: what residual forces add up to at most, table, cutoff, a plane not rigid.
-        turning: what a path back may have otherwise than the path there: residual forces are of either sign.
-        law: of that, the largest part that is the interaction's or the plane's own [FU].
+        common: similar at neighbouring states: the largest sum of residual forces, table, cutoff, stiffness of a plane.
+        turning: may differ between loading and unloading: residual forces are of either sign.
+        law: the largest part of `common` that is due to the interaction or the plane [FU].
         anchor: displacement [LU] about which an error may change sign: that of the last marked state.
     """
 
@@ -133,16 +129,16 @@ class ForceErrors:
 def force_errors(
     scene: Scene, settings: Settings, states: Sequence[State], marked: Collection[State], left: float | None = None
 ) -> ForceErrors:
-    """Of states, by their displacement between `marked` ones; `left`: in place of residual forces [FU]."""
+    """Return the errors of states, interpolated between `marked` ones; `left` [FU] replaces their residual forces."""
     count = float(settings.chains.upper)
     law = {state.displacement: settings.forces.error(scene, state.profile) for state in marked}
-    own = {
+    errors = {
         state.displacement: law[state.displacement] + (count * state.residual if left is None else left)
         for state in marked
     }
-    positions = sorted(own)
+    positions = sorted(errors)
     displacement = np.asarray([state.displacement for state in states])
-    common = np.interp(displacement, positions, [own[position] for position in positions])
+    common = np.interp(displacement, positions, [errors[position] for position in positions])
     turning = np.sqrt(count) * np.asarray([state.residual for state in states])
     return ForceErrors(common, turning, max(law.values()), list(marked)[-1].displacement)
 
@@ -155,110 +151,130 @@ def budgeted(
     length: float = 0.0,
     repeated: Mapping[str, Sequence[Trace]] | None = None,
 ) -> dict[str, Result]:
-    """The results with their errors.
+    """Return the results with their errors by source.
 
     Args:
         case: scene, settings, script and reader.
-        trace: what was measured.
+        trace: of the measured states.
         force_error: ε of each state.
         sampled: whether the scene gives the steps.
         length: over which a tilt of the force is ε [LU]; 0 for none.
-        repeated: by the source of the error that they show, the same measured in other ways: "time" of a motion.
+        repeated: traces of repeated measurements by the source of the error that they show: "time" of a motion.
     """
     readings = case.read(trace)
     values = values_of(readings)
-    solver = _changes(case.read, values, _off_balance(case, trace, force_error, sampled, length))
+    solver = _changes(case.read, values, _perturbed(case, trace, force_error, sampled, length))
     read = _changes(case.read, values, misread(trace))
     between = sampling_errors(case, trace) if sampled else {}
     repeated = repeated or {}
-    again = {
-        source: [_changes(case.read, values, [other], missing=True) for other in others]
-        for source, others in repeated.items()
-    }
-    late = _changes(case.read, values, [trace.perturbed(moved=_late(case, trace))]) if trace.given == "" else {}
-    lattice = case.followed(values) if "time" in repeated else case.lattice
-    inputs = case.inputs if case.is_open else {}
-    found = {}
-    for name, one in readings.items():
+    repeated_errors = _repetition_errors(case, trace, values, repeated)
+    lattice = case.lattice_in_time(values) if "time" in repeated else case.lattice
+    inputs = case.inputs if case.has_uncertain_inputs else {}
+    results = {}
+    for name, reading in readings.items():
         errors = {"solver": solver[name], LATTICE: lattice.get(name, 0.0) + read[name]}
-        errors |= {source: MARGIN * sum(one[name] for one in changes) for source, changes in again.items()}
-        errors |= {"time": max(errors.get("time", 0.0), MARGIN * late[name])} if late else {}
-        for source, error in one.errors.items():
+        errors |= {source: changes[name] for source, changes in repeated_errors.items()}
+        for source, error in reading.errors.items():
             errors[source] = errors.get(source, 0.0) + error
         if name in inputs:
             errors["input"] = errors.get("input", 0.0) + inputs[name]
         if name in between:
             errors["sampling"] = max(errors.get("sampling", 0.0), between[name])
         given = in_squares(case.moves, name)
-        found[name] = Result(one.value, one.unit, errors, one.scale, one.prescribed, read[name], given)
-    return found
+        results[name] = Result(
+            reading.value, reading.unit, errors, reading.scale, reading.prescribed, read[name], given
+        )
+    return results
 
 
-def _off_balance(case: Reduction, trace: Trace, force_error: ForceErrors, sampled: bool, length: float) -> list[Trace]:
-    """The trace with forces that are off by ε both ways, or by a part of it that changes its sign; see `budgeted`."""
+def _repetition_errors(
+    case: Reduction, trace: Trace, values: Values, repeated: Mapping[str, Sequence[Trace]]
+) -> dict[str, Values]:
+    """Return the errors that repeated traces show, by source and result, and that of the detachment of a free body."""
+    errors = dict[str, Values]()
+    for source, traces in repeated.items():
+        changes = [_changes(case.read, values, [repetition], missing=True) for repetition in traces]
+        errors[source] = {name: MARGIN * sum(change[name] for change in changes) for name in values}
+    if trace.given == "":
+        late = _changes(case.read, values, [trace.perturbed(moved=_detachment_errors(case, trace))])
+        known = errors.get("time", {})
+        errors["time"] = {name: max(known.get(name, 0.0), MARGIN * change) for name, change in late.items()}
+    return errors
+
+
+def _perturbed(case: Reduction, trace: Trace, force_error: ForceErrors, sampled: bool, length: float) -> list[Trace]:
+    """Return the trace with forces changed by ±ε, or by a part of it that changes its sign; see `budgeted`."""
     shapes = [force_error.common]
     if length > 0.0:
         shapes.append(force_error.common * np.clip((trace.displacement - force_error.anchor) / length, -1.0, 1.0))
     if sampled:
         shapes.append(force_error.turning * np.sign(np.diff(trace.displacement, prepend=trace.displacement[:1])))
-    missed = _missed(case, trace, force_error.common)
-    traces = [trace.perturbed(sign * shape, moved=missed) for shape in shapes for sign in WAYS]
-    # Where an interaction is so much stronger or weaker, a contact is as much wider or narrower at most.
+    missed = _target_errors(case, trace, force_error.common)
+    traces = [trace.perturbed(sign * shape, moved=missed) for shape in shapes for sign in SIGNS]
+    # A contact is wider or narrower by no more than the relative change of the interaction.
     strength = case.settings.law.pull_off_force() or float(np.max(np.abs(trace.force), initial=0.0))
     if force_error.law > 0.0 and strength > 0.0:
-        traces += [trace.perturbed(radius_factor=1.0 + sign * force_error.law / strength) for sign in WAYS]
+        traces += [trace.perturbed(radius_factor=1.0 + sign * force_error.law / strength) for sign in SIGNS]
     return traces
 
 
 def misread(trace: Trace) -> list[Trace]:
-    """The trace with radii that are read too large by their uncertainties: all of them, or every other one.
+    """Return the trace with radii increased by their uncertainties: all of them, or with alternating sign.
 
-    Results go with radii to first order: those that are too small change them by as much.
+    Results change with radii to first order: smaller radii change them by as much.
     """
-    other = np.asarray((-1.0) ** np.arange(len(trace)), dtype=np.float64)
-    return [trace.perturbed(radius_shift=shift) for shift in (1.0, other)]
+    alternating = np.asarray((-1.0) ** np.arange(len(trace)), dtype=np.float64)
+    return [trace.perturbed(radius_shift=shift) for shift in (1.0, alternating)]
 
 
-def _late(case: Reduction, trace: Trace) -> Array:
-    """How far [LU] a free body is off, (m,), whose contact is lost at once somewhere in a timestep: ½ ΔF Δt/M (t − t₀).
+def _detachment_errors(case: Reduction, trace: Trace) -> Array:
+    """Return the error [LU] of the position of a free body, (m,), whose contact is lost within a timestep.
 
-    Any other timestep has its own place there, so that a difference of two may vanish.
+    ½ ΔF Δt/M (t − t₀). The change with another timestep may vanish, since the contact is lost elsewhere in it.
     """
     model, motion = case.model, case.settings.motion
     if not model.limits:
         return np.zeros(len(trace))
-    jump = float(model.held(np.asarray([model.apart + BEFORE * (model.deepest - model.apart)]))[0])
+    jump = float(model.held(np.asarray([model.apart + _short_step(model)]))[0])
     passed = trace.time - trace.time[trace.force != 0.0].max(initial=0.0)
     return np.asarray(0.5 * abs(jump) * motion.time_step / motion.plate_mass * np.maximum(passed, 0.0))
 
 
-def _missed(case: Reduction, trace: Trace, error: Array) -> Array:
-    """How far [LU] states that were to carry a force are from it, at most, (m,); 0 of others."""
-    found = np.zeros(len(trace))
+def _short_step(model: Particles) -> float:
+    """Return a step [LU] that is small compared with the path of the model."""
+    return 1e-3 * (model.deepest - model.apart)
+
+
+def _target_errors(case: Reduction, trace: Trace, error: Array, margin: float = 1.1) -> Array:
+    """Return the largest distance [LU] of states from the force that they were to carry, (m,); 0 for the rest.
+
+    `margin` is the error over that to first order, for nothing else may be in error.
+    """
+    distances = np.zeros(len(trace))
     for i, wanted in trace.wanted.items():
         force, d = float(trace.force[i]), float(trace.displacement[i])
         parts = abs(wanted - force), float(error[i])
-        off = max(parts) if trace.given == "load" else sum(parts)  # what a load does not balance is both
+        off = max(parts) if trace.given == "load" else sum(parts)  # an unbalanced load is both
         stiffness = float(_stiffness(case, np.asarray([d]))[0])
-        found[i] = REACHED * abs(displacement_under(trace, i, force - off, stiffness) - d)
-    return found
+        distances[i] = margin * abs(displacement_under(trace, i, force - off, stiffness) - d)
+    return distances
 
 
 def _stiffness(case: Reduction, displacement: Array) -> Array:
-    """dF/dd [FU/LU] at displacements (m,) [LU] of the model, at least that of a particle."""
+    """Return dF/dd [FU/LU] of the model at displacements (m,) [LU], at least that of a particle."""
     settings, model = case.settings, case.model
     if settings.has_several_maxima:
         return np.full_like(displacement, settings.law.stuck_stiffness(settings.largest_displacement))
-    step = BEFORE * abs(model.deepest - model.apart) or model.law.spacing
+    step = abs(_short_step(model)) or model.law.spacing
     rise = model.held(displacement) - model.held(displacement - step)
     return np.maximum(rise / step, model.law.stiffness)
 
 
 def _changes(read: Reader, values: Values, perturbed: list[Trace], missing: bool = False) -> Values:
-    """The largest change of each value; where `missing` counts, one that a perturbed reader lacks is 0."""
-    found = dict.fromkeys(values, 0.0)
+    """Return the largest change of each value; with `missing`, a value that a perturbed reader lacks is 0."""
+    changes = dict.fromkeys(values, 0.0)
     for trace in perturbed:
-        others = values_of(read(trace))
+        results = values_of(read(trace))
         for name, value in values.items():
-            found[name] = max(found[name], abs(others.get(name, 0.0 if missing else value) - value))
-    return found
+            changes[name] = max(changes[name], abs(results.get(name, 0.0 if missing else value) - value))
+    return changes

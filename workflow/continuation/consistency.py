@@ -1,4 +1,4 @@
-"""Whether a run contradicts itself: each check compares two numbers that are found in ways that share nothing.
+"""Whether a run contradicts itself: each check compares two numbers that are computed independently.
 
     plan      forces of LAMMPS and of the reduced model along the same load steps on a rigid plane
     asked     the force that the scene asks for and that of the state that has it
@@ -22,84 +22,78 @@ from contact1d.workflow.laws.particles import Array, Particles
 from contact1d.workflow.laws.path import Path
 from contact1d.workflow.scene import Scene
 
-PLAN, ABSOLUTE = 1e-9, 1e-5
-"""Difference of two forces of a load step over the sum of all loads in it; share of the largest sum of the run that is
-added to that, for a step that carries nothing. Measured on right runs: 4e-14 to 8e-11."""
-AT_REST, MOVING = 1e-8, 1e-4
-"""Force that is missing, over the forces of a state in equilibrium, and over those of a motion."""
-ENERGY, LEAST_LOSS, OPEN = 1e-3, 0.05, 4.0
-"""Energy that is missing over what is lost, or over all work where that is less than this share of it; over what half
-the spacing and half the steps change, where that is more: forces rise as roots at first."""
-DENSER = 4
-"""Load steps for each of a history that show what these miss: twice as many may miss the same by chance."""
+AT_REST = 1e-8
+"""Allowed difference of two forces over the forces of a state in equilibrium."""
 
 
 def plan(scene: Scene, states: Sequence[State], forces: Array) -> dict[str, Agreement]:
-    """LAMMPS's forces beside those of the model, (m,) [FU], of all load steps in order.
+    """Compare the forces of LAMMPS with those of the model, (m,) [FU], of all load steps in order.
 
-    Each may be off by the round-off of the particles that carry.
+    A difference below the round-off error of the loaded particles is allowed. The remaining difference is divided by
+    the sum of all loads in its step, to which a share of the largest sum of the run is added, for an unloaded step.
     """
-    sizes = np.asarray([_size(scene, state) for state in states])
+    allowed, share = 1e-9, 1e-5  # differences of right runs are 4e-14 to 8e-11
+    sizes = np.asarray([_load_sum(scene, state) for state in states])
     measured = np.asarray([state.force for state in states])
     missed = np.maximum(np.abs(measured - forces) - np.asarray([*map(_round_off, states)]), 0.0)
-    off = missed / (sizes + ABSOLUTE * max(float(sizes.max()), np.finfo(float).tiny))
+    off = missed / (sizes + share * max(float(sizes.max()), np.finfo(float).tiny))
     worst = int(off.argmax())
     words = (
         f"LAMMPS has {measured[worst]:.10g} FU at displacement {states[worst].displacement:.6g} LU (phase "
         f"{states[worst].phase}), and the model of the same contact {forces[worst]:.10g} FU"
     )
-    return {"plan": Agreement(float(off[worst]), PLAN, words)}
+    return {"plan": Agreement(float(off[worst]), allowed, words)}
 
 
 def asked(scene: Scene, pairs: Sequence[tuple[float, float]], states: Sequence[State]) -> dict[str, Agreement]:
-    """Forces [FU] that the scene asks for beside those of the states that have them; a search has a tolerance."""
+    """Compare pairs of forces [FU], required by the scene and carried by its state; a search has a tolerance."""
     if not pairs:
         return {}
-    largest = max([_size(scene, state) for state in states] + [abs(wanted) for wanted, _ in pairs])
-    wanted, found = max(pairs, key=lambda pair: abs(pair[0] - pair[1]))
-    words = f"the scene asks for {wanted:.10g} FU, and the state that has it carries {found:.10g} FU"
+    largest = max([_load_sum(scene, state) for state in states] + [abs(wanted) for wanted, _ in pairs])
+    wanted, carried = max(pairs, key=lambda pair: abs(pair[0] - pair[1]))
+    words = f"the scene asks for {wanted:.10g} FU, and the state that has it carries {carried:.10g} FU"
     allowed = AT_REST if scene.is_stepped and scene.is_modelled else scene.accuracy.tolerance
-    missed = max(abs(wanted - found) - max(map(_round_off, states)), 0.0)
+    missed = max(abs(wanted - carried) - max(map(_round_off, states)), 0.0)
     return {"asked": Agreement(missed / largest if largest else 0.0, allowed, words)}
 
 
-def _size(scene: Scene, state: State) -> float:
-    """All loads of a state, pressed and pulled [FU]: a force of 0 is compared with what makes it up."""
+def _load_sum(scene: Scene, state: State) -> float:
+    """Return the sum of the absolute loads of a state [FU], compressive and tensile: a force of 0 has a scale, too."""
     return scene.bodies.own_spacing * float(np.abs(state.profile.pressure).sum())
 
 
 def _round_off(state: State) -> float:
-    """What residual forces add up to at most [FU]."""
+    """Return the largest sum of the residual forces of a state [FU]."""
     return state.residual * np.count_nonzero(state.profile.pressure)
 
 
 def balance(scene: Scene, states: Sequence[State]) -> dict[str, Agreement]:
-    """The contact's force on the plate beside what LAMMPS adds up on it, but for residual forces."""
-    told = [
-        (max(abs(one.missing) - one.profile.x.size * one.residual, 0.0), one)
-        for one in states
-        if one.missing is not None
+    """Compare the force of the contact on the plate with that which LAMMPS adds up, but for residual forces."""
+    missing = [
+        (max(abs(state.missing) - state.profile.x.size * state.residual, 0.0), state)
+        for state in states
+        if state.missing is not None
     ]
-    if not told:
+    if not missing:
         return {}
-    size = max(_size(scene, state) for state in states)
-    missed, worst = max(told, key=lambda pair: pair[0])
+    size = max(_load_sum(scene, state) for state in states)
+    missed, worst = max(missing, key=lambda pair: pair[0])
     words = (
         f"the contact has {worst.force:.10g} FU at displacement {worst.displacement:.6g} LU (phase {worst.phase}), and "
         f"what LAMMPS adds up on the plate differs by {missed:.3g} FU from that"
     )
-    allowed = AT_REST if scene.method == "quasistatic" else MOVING
+    allowed = AT_REST if scene.method == "quasistatic" else 1e-4  # of the forces of a motion
     return {"balance": Agreement(missed / size if size else 0.0, allowed, words)}
 
 
 @dataclass(frozen=True)
 class Work:
-    """What the plate has done on its path.
+    """The path of the plate, on which it does work.
 
     Attributes:
         path: in LAMMPS.
-        forces: of the model along it, (m,) [FU]; None where they are still to be found, with positions between.
-        kinetic: the first energy of a body that flies, and what is gone of it [FU·LU].
+        forces: of the model along it, (m,) [FU]; None: to be computed, with positions between.
+        kinetic: the first energy of a free body, and the loss of it [FU·LU].
     """
 
     path: Path
@@ -108,35 +102,37 @@ class Work:
 
 
 def energy(case: Reduction, work: Work, doubt: float = 0.0) -> dict[str, Agreement]:
-    """Work beside what is stored and lost; nothing where the model of a contact does not tell.
+    """Compare the work with the energy that is stored and lost; nothing where the model has no energies.
 
-    `doubt`: what is uncertain of the energy that the run reports, relative.
+    `doubt`: the relative uncertainty of the energy that the run reports.
     """
-    found = _missing(case.model, work, 1)
-    if found is None:
+    checked = _missing(case.model, work, 1)
+    if checked is None:
         return {}
-    missing, done, spent, size = found
-    allowed = ENERGY + doubt
-    if abs(missing) > ENERGY * size:  # cells and steps miss some of it, which may cancel
+    missing, done, spent, size = checked
+    share = 1e-3
+    allowed = share + doubt
+    if abs(missing) > share * size:  # cells and steps miss some of it, which may cancel
         finer = _missing(case.model, _denser(case, work), 2)
-        others = (_missing(case.model.resized(0.5), replace(work, forces=None), 1), finer)
-        allowed += OPEN * sum(abs(missing / size - other[0] / other[3]) for other in others if other)
+        refined = (_missing(case.model.resized(0.5), replace(work, forces=None), 1), finer)
+        # Forces rise as roots at first: four times what half the spacing and smaller steps change.
+        allowed += 4.0 * sum(abs(missing / size - result[0] / result[3]) for result in refined if result)
     words = f"the work of the plate is {done:.6g} FU·LU, and {spent:.6g} FU·LU are stored or lost"
     return {"energy": Agreement(abs(missing) / size if size else 0.0, allowed, words)}
 
 
 def _missing(model: Particles, work: Work, finer: int) -> tuple[float, float, float, float] | None:
-    """Work that is neither stored nor lost, the work, what is stored and lost, and the size of it [FU·LU]."""
+    """Return the work that is neither stored nor lost, the work, the energy stored and lost, their scale [FU·LU]."""
     path = work.path if work.kinetic else model.checked(work.path, finer)
-    if (found := model.energies(path)) is None:
+    if (energies := model.energies(path)) is None:
         return None
-    stored, lost = found
+    stored, lost = energies
     if work.kinetic:
         whole, done = work.kinetic
         return done - stored - lost, done, stored + lost, whole
     followed = None if path is work.path and work.forces is not None else model.follow(path)
     forces = followed.total if followed else np.asarray(work.forces)
-    if forces[0] != 0.0:  # work begins there; what was gained and lost before is no part of it
+    if forces[0] != 0.0:  # the work begins there: energies before the first state are no part of it
         first = {name: column[:1] for name, column in vars(path).items() if column is not None}
         before = model.energies(Path(**first)) or (0.0, 0.0)
         stored, lost = stored - before[0], lost - before[1]
@@ -145,12 +141,12 @@ def _missing(model: Particles, work: Work, finer: int) -> tuple[float, float, fl
         shears = np.asarray([-followed.shear(state).sum() for state in range(path.along.size)])
         parts += 0.5 * (shears[1:] + shears[:-1]) * np.diff(path.along)
     done, whole = float(parts.sum()), float(np.abs(parts).sum())
-    size = lost if lost > LEAST_LOSS * whole else whole
+    size = lost if lost > 0.05 * whole else whole  # a smaller loss is compared with all work
     return done - stored - lost, done, stored + lost, max(size, abs(stored))
 
 
-def _denser(case: Reduction, work: Work) -> Work:
-    """The same of a history in smaller load steps."""
+def _denser(case: Reduction, work: Work, dense: int = 4) -> Work:
+    """Return the work along a history with so many load steps for each: twice as many may miss as much by chance."""
     if work.kinetic or case.model.checked(work.path, 1) is not work.path:
         return work
-    return Work(case.driven(case.model, DENSER).path)
+    return Work(case.driven(case.model, dense).path)

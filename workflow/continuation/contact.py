@@ -23,11 +23,11 @@ from contact1d.workflow.engine.session import EngineError, Session
 
 Array = NDArray[np.float64]
 ATOM_UNITS = {"x": "LU", "f": "FU", "v_opposite_x": "FU", "v_opposite_z": "FU"}
-"""What is measured of every atom, and its unit."""
+"""Quantities that are measured of every atom, and their units."""
 BATCH = 8
-"""Rows that go to LAMMPS at a time where they are known beforehand: waking two processes takes as long as a row."""
+"""Load steps that go to LAMMPS at a time where they are known beforehand: waking two processes takes as long as one."""
 HEAT = ("heat_particles", "heat_plate")
-"""Energy that the heat baths of particles and plate took in a row [FU·LU]."""
+"""Energy that the heat baths of particles and plate took in a load step [FU·LU]."""
 MOTION = {
     "f_cantilever_means[1]": "FU", "f_cantilever_means[2]": "FU·LU", "f_cantilever_means[3]": "FU·LU",
     "c_measuring_energy": "FU·LU", "cantilever_kinetic": "FU·LU", "vcm(plate,x)": "LU/TU", "vcm(plate,z)": "LU/TU",
@@ -35,21 +35,19 @@ MOTION = {
 }  # fmt: skip
 """Of a slide: means since the start over every fifth step of the cantilever's force and of the kinetic energies of
 particles and plate; energies; velocities and positions."""
-MOST_REPEATS = 200
-"""Repeats of a row after which it counts as never relaxed: near an instability the motion is slower without end."""
-TOLD = "steps/told"
-"""The fragment from which on a heat bath reports what energy it takes."""
+HEAT_FRAGMENT = "steps/told"
+"""The fragment after which a heat bath reports the energy that it takes."""
 FRAMES = "rows.bin"
-"""Where rows that are steps of one run leave a frame each: id, z, force along z, and along x if that is prescribed."""
+"""File of a frame for each load step of a single run: id, z, force along z, and along x if that is prescribed."""
 MOST_NUMBERS = 1_000_000
-"""Of the frames that are read at once, to bound the memory."""
+"""Largest count of numbers in the frames that are read at once, to bound the memory."""
 
 
 class Contact:
     """A running deck. It records its schedule: `phases` is the content of in.lammps that repeats it."""
 
     def __init__(self, deck: Deck, session: Session, meanwhile: Callable[[], object] | None = None) -> None:
-        """Run the deck's head. What `meanwhile` does costs no time: LAMMPS reads the bodies then."""
+        """Run the head of a deck, and call `meanwhile` while LAMMPS reads the bodies."""
         self.deck, self.scene, self.settings, self.session = deck, deck.scene, deck.settings, session
         self.rows_seconds = 0.0  # wall time of the rows in LAMMPS
         self._phases: list[Phase] = []
@@ -66,15 +64,15 @@ class Contact:
 
     @property
     def phases(self) -> tuple[Phase, ...]:
-        """The schedule so far."""
+        """The schedule of the load steps so far."""
         return tuple(self._phases)
 
     def begin(self, name: str, fragments: tuple[str, ...] = (), expected_steps: int | None = None) -> None:
-        """Begin a phase."""
+        """Begin a phase of load steps, with fragments that are run first."""
         end = "variable        row_phase delete\n" if self._phases else ""
         self._phases.append(Phase(name, (), begin=fragments))
         self._unfinished += end + self.deck.begin(name, fragments)
-        self._heat_is_reported = self._heat_is_reported or TOLD in fragments
+        self._heat_is_reported = self._heat_is_reported or HEAT_FRAGMENT in fragments
         self.session.execute("", phase=name, expected_steps=expected_steps)
 
     def row(self, row: Row, trusted: bool = True) -> State:
@@ -93,10 +91,10 @@ class Contact:
             EngineError: LAMMPS failed, or lost particles.
             UntrustedError: see `require_trust`.
         """
-        found, size = list[State](), BATCH
+        states, size = list[State](), BATCH
         if self.deck.stepped:
-            places = np.asarray([row.displacement for row in rows if isinstance(row, Displace)])
-            rows, size = swept(self.deck.as_read({"displacement": places})), self._at_once
+            positions = np.asarray([row.displacement for row in rows if isinstance(row, Displace)])
+            rows, size = swept(self.deck.as_read({"displacement": positions})), self._at_once
         before = self.session.lammps_seconds
         for start in range(0, len(rows), size):
             batch, name = rows[start : start + size], self._phases[-1].name
@@ -104,23 +102,23 @@ class Contact:
             self._phases[-1] = replace(self._phases[-1], rows=(*self._phases[-1].rows, *batch))
             if self.deck.stepped:
                 text, self._unfinished = self._unfinished + self.deck.in_one_run(batch), ""
-                self._latest = self._swept(text, [(name, row) for row in batch], first, self._look_back)
+                self._latest = self._states_of_run(text, [(name, row) for row in batch], first, self._compute_radii)
             else:
                 self._latest = self._measured(batch, first)
             for state in self._latest if trusted else ():
                 require_trust(self.scene, self.settings, state, moving)
-            found += self._latest
+            states += self._latest
         self.rows_seconds += self.session.lammps_seconds - before
-        return found
+        return states
 
     def write_state(self) -> None:
-        """Write the state that the last load step left to states.lammpstrj; it ends the phase."""
+        """Write the state of the last load step to states.lammpstrj, at the end of the phase."""
         self._phases[-1] = replace(self._phases[-1], state=True)
         self._unfinished += self.deck.state(first=not self._written)
         self._written = True
 
     def finish(self) -> None:
-        """Run the remaining phases of the last load step, whose states are not kept."""
+        """Run the remaining text of the last load step, whose states are not kept."""
         self.session.execute(self._unfinished, phase=self._phases[-1].name)
         self._unfinished = ""
         (self.session.folder / FRAMES).unlink(missing_ok=True)
@@ -128,7 +126,7 @@ class Contact:
     def replay(
         self, phases: Sequence[Phase], relaxed: bool = False, meanwhile: Callable[[], object] | None = None
     ) -> list[State]:
-        """Run a whole schedule; one state for each load step.
+        """Run a whole schedule, and return one state for each load step.
 
         Args:
             phases: with load steps, the first of the contact.
@@ -138,11 +136,11 @@ class Contact:
         if self.deck.stepped:
             self._phases, rows = [*phases], [(phase.name, row) for phase in phases for row in phase.rows]
             self.session.execute("", phase=phases[0].name)
-            found = self._swept(self.deck.schedule(phases), rows, 0, meanwhile)
+            states = self._states_of_run(self.deck.schedule(phases), rows, 0, meanwhile)
             self.rows_seconds = self.session.lammps_seconds
             (self.session.folder / FRAMES).unlink(missing_ok=True)
-            return found
-        states: list[State] = []
+            return states
+        states = []
         trusted = not self.scene.noise
         for phase in phases:
             steps = sum(getattr(row, "steps", 0) for row in phase.rows)
@@ -156,9 +154,10 @@ class Contact:
         self.finish()
         return states
 
-    def _relaxed(self, row: Row) -> State:
+    def _relaxed(self, row: Row, most: int = 200) -> State:
+        """Repeat a load step until it is relaxed, `most` times: near an instability the motion slows without bound."""
         state, repeats = self.row(row, trusted=False), 0
-        while not is_converged(self.settings, state) and repeats < MOST_REPEATS:
+        while not is_converged(self.settings, state) and repeats < most:
             state, repeats = self.row(row, trusted=False), repeats + 1
         require_trust(self.scene, self.settings, state)
         return state
@@ -170,7 +169,7 @@ class Contact:
             self._written = self._written or self.deck.keeps
             self._unfinished = self.deck.row_end(type(row))
         names = self._values()
-        readings = self.session.measure_rows(texts, tuple(names), tuple(ATOM_UNITS), meanwhile=self._look_back)
+        readings = self.session.measure_rows(texts, tuple(names), tuple(ATOM_UNITS), meanwhile=self._compute_radii)
         units, phase, settings, states = self.deck.units, self._phases[-1].name, self.settings, list[State]()
         for number, (row, reading) in enumerate(zip(rows, readings, strict=True), first):
             numbers = {name: units.from_deck(v, names[name]) for name, v in zip(names, reading.values, strict=True)}
@@ -185,13 +184,13 @@ class Contact:
 
     @property
     def _at_once(self) -> int:
-        """Frames that are read at a time, to bound the memory."""
+        """The number of frames that are read at a time, to bound the memory."""
         return max(1, MOST_NUMBERS // len(self._x))
 
-    def _swept(
+    def _states_of_run(
         self, text: str, rows: Sequence[tuple[str, Row]], first: int, meanwhile: Callable[[], object] | None
     ) -> list[State]:
-        """Load steps that are steps of one run for each phase, with the names of these: nothing has to relax."""
+        """Return the states of load steps, each with the name of its phase; a phase is one run, without relaxation."""
         began = self.session.timestep
         self.session.measure(text, meanwhile=meanwhile)
         spacing, settings, states = self.scene.bodies.spacing, self.settings, list[State]()
@@ -212,9 +211,9 @@ class Contact:
         return states
 
     def _profiles(self, count: int, part: slice) -> tuple[list[Profile], int]:
-        """Profiles of a part of the last rows in order, over x from the body's middle, and how much is read then.
+        """Return profiles of a part of the last load steps over x from the body's middle, and the bytes read so far.
 
-        A particle that carries is on the plane.
+        A loaded particle is on the plane.
 
         Raises:
             EngineError: particles were lost, or a number is not finite.
@@ -235,14 +234,14 @@ class Contact:
         shears = units.from_deck(frames[:, :, 2], "FU") / spacing
         return [Profile(self._x, none, z, p, q) for z, p, q in zip(surfaces, pressures, shears, strict=True)], end
 
-    def _look_back(self) -> None:
-        """Work out the radii of the load steps before, which their states keep: LAMMPS is busy with the next ones."""
+    def _compute_radii(self) -> None:
+        """Compute the radii of the previous load steps, which their states keep, while LAMMPS runs the next ones."""
         for state in self._latest:
             with suppress(ValueError):  # reported where the radius is asked for
                 _ = state.radius
 
     def _values(self) -> dict[str, str]:
-        """What is measured beside the atoms, and its unit."""
+        """Return the quantities that are measured besides those of atoms, with their units."""
         names = {"plate_displacement": "LU", "step": "1"}
         if self.scene.plate:
             names |= {"plate_velocity": "LU/TU", "plate_force": "FU"}
@@ -257,33 +256,28 @@ class Contact:
 
     def _state(self, phase: str, numbers: dict[str, float], atoms: dict[str, Array], number: int) -> State:
         upper, lower = (atoms["type"] == PARTICLES[body] for body in ("upper", "lower"))
-        here = int(upper.sum() + lower.sum())
+        count = int(upper.sum() + lower.sum())
         opposite = 0 if self.scene.bodies.lower == "rigid_plane" else self.settings.chains.lower
-        if here < self.settings.chains.upper + opposite:
-            # LAMMPS looks for lost atoms when it makes a new neighbour list, and a row may end before.
-            raise self._lost(f"atoms are missing: only {here} particles are left in the box", int(numbers["step"]))
+        if count < self.settings.chains.upper + opposite:
+            # LAMMPS looks for lost atoms when it makes a new neighbour list, and a load step may end before.
+            raise self._lost(f"atoms are missing: only {count} particles are left in the box", int(numbers["step"]))
         position, force = atoms["x"], atoms["f"]
-        x, z_held = position[upper, 0], position[upper, 2]
-        z = z_held
+        x, z = position[upper, 0], position[upper, 2]
         if lower.any():
             x_low, z_low = self._surface(position[lower, 0], position[lower, 2])
             closest = smallest_distance(x, z, x_low, z_low)
             depth = penetration_depth(x, z, x_low, z_low)
             z_below = np.interp(x, x_low, z_low)
         else:
-            # The plane's own softness lets a particle dip into it: the surface is where the particle is.
+            # A particle penetrates a plane of finite stiffness: the surface is at the particle.
             closest, depth = float(max(z.min(), 0.0)), 0.0
             if self.scene.stands:
                 z = np.where(atoms["v_opposite_z"][upper] != 0.0, 0.0, z)
-                force = np.zeros_like(force)  # of its own a particle has no motion
+                force = np.zeros_like(force)  # a particle has no motion relative to its support
             z_below = np.minimum(z, 0.0)
         profile = pressure_profile(
             x, z, z_below, atoms["v_opposite_x"][upper], atoms["v_opposite_z"][upper], self.scene.bodies.own_spacing
         )
-        missing, springs = None, atoms["type"] == ANCHORS["upper"]
-        if springs.any() and self.scene.method == "quasistatic" and not self.settings.chains.far:
-            pulled = self.settings.forces.bulk_stiffness * float(np.sum(position[springs, 2] - z_held))
-            missing = float(atoms["v_opposite_z"][upper].sum()) + pulled
         free = [0, 2] if self.scene.horizontal else [2]
         moving = upper if self.scene.bodies.lower == "rigid_chain" else upper | lower
         return State(
@@ -295,7 +289,7 @@ class Contact:
             smallest_distance=closest,
             depth=depth,
             residual=float(np.abs(force[moving][:, free]).max()),
-            missing=missing,
+            missing=self._missing(atoms, upper),
             pushed=float(sum(numbers[name] for name in self._pushes)),
             plate_velocity=-numbers.get("plate_velocity", 0.0),
             plate_x=numbers.get("cantilever_plate", 0.0),
@@ -305,8 +299,16 @@ class Contact:
             number=number,
         )
 
+    def _missing(self, atoms: dict[str, Array], upper: NDArray[np.bool_]) -> float | None:
+        """Return the sum of contact and spring forces on the upper particles [FU]; None where it may differ from 0."""
+        springs = atoms["type"] == ANCHORS["upper"]
+        if not springs.any() or self.scene.method != "quasistatic" or self.settings.chains.far:
+            return None
+        stretch = float(np.sum(atoms["x"][springs, 2] - atoms["x"][upper, 2]))
+        return float(atoms["v_opposite_z"][upper].sum()) + self.settings.forces.bulk_stiffness * stretch
+
     def _surface(self, x: Array, z: Array) -> tuple[Array, Array]:
-        """Positions of the lower particles, of a periodic chain with what follows on both sides."""
+        """Return the positions of the lower particles, of a periodic chain with its images on both sides."""
         if not self.scene.bodies.periodic:
             return x, z
         length = period(self.scene, self.settings)

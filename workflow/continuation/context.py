@@ -1,4 +1,4 @@
-"""Where contacts are opened: one deck, one run folder, the LAMMPS process, and the time spent in it."""
+"""The context in which contacts are opened: one deck, one run folder, the LAMMPS process, and the time spent in it."""
 
 from __future__ import annotations
 
@@ -29,34 +29,32 @@ from contact1d.workflow.laws.path import History
 from contact1d.workflow.model.free import FLIGHT, STRETCHES, is_over, stretch
 from contact1d.workflow.model.reduced import reduced
 
-MOST_STRETCHES = 100
-"""How long an impact lasts at most, over the time of a fall to the deepest displacement."""
 ASIDE = ".aside"
 """Folder of a context aside, in the run folder."""
 
 
 class Clock:
-    """What contacts took, also those of other threads.
+    """The time that contacts took, also those of other threads.
 
     Attributes:
         lammps_seconds, lammps_cpu_seconds: in LAMMPS.
-        rows_seconds: of the first, what load steps took: without the deck's head and the files of states.
+        rows_seconds: the part of lammps_seconds in load steps, without the deck's head and the files of states.
         steps: timesteps.
     """
 
     def __init__(self) -> None:
-        """Begin at 0."""
+        """Begin with no time and no timesteps."""
         self.lammps_seconds = self.lammps_cpu_seconds = self.rows_seconds = 0.0
         self.steps = 0
         self._lock = threading.Lock()
 
     @property
     def taken(self) -> tuple[float, float, float, int]:
-        """What `add` takes."""
+        """The arguments of `add`: seconds in LAMMPS, on its CPUs and in load steps, and timesteps."""
         return self.lammps_seconds, self.lammps_cpu_seconds, self.rows_seconds, self.steps
 
     def add(self, lammps: float, cpu: float, rows: float, steps: int) -> None:
-        """Add what another one took."""
+        """Add the time [s] and the timesteps of a contact."""
         with self._lock:
             self.lammps_seconds += lammps
             self.lammps_cpu_seconds += cpu
@@ -76,10 +74,10 @@ class RunContext:
         retries: whether a search in which bodies went through each other restarts in smaller steps.
         workers: contacts that an experiment may have open at a time.
         ranks: of MPI, for each of them.
-        clock: what all contacts so far took.
-        phase, timestep: where the latest contact is or ended.
-        through: whether a search goes through all of the tension: it rises again after its first maximum.
-        left: what a run that failed had so far, if that is worth looking at; its quantities are no results.
+        clock: the time that all contacts took so far.
+        phase, timestep: of the latest contact, now or at its end.
+        through: whether a search covers the whole tension: it rises again after its first maximum.
+        left: the outcome of a run that failed, as far as it is of use; its quantities are no results.
     """
 
     deck: Deck
@@ -97,9 +95,9 @@ class RunContext:
 
     @contextmanager
     def contact(self, purpose: str = "", meanwhile: Callable[[], object] | None = None) -> Iterator[Contact]:
-        """A fresh contact at displacement 0, in a LAMMPS instance of its own; `purpose` is shown to the user.
+        """Open a contact at displacement 0, in a new LAMMPS instance; `purpose` is shown to the user.
 
-        What `meanwhile` does costs no time: LAMMPS reads the bodies then.
+        `meanwhile` is called while LAMMPS reads the bodies.
         """
         if purpose:
             self.progress.note(purpose)
@@ -115,42 +113,42 @@ class RunContext:
 
     @contextmanager
     def aside(self, deck: Deck) -> Iterator[RunContext]:
-        """A context of another deck in a folder of its own, which goes at the end; its time counts here."""
+        """Open a context of another deck in a temporary folder; its time is added to that of this context."""
         folder = self.folder / ASIDE
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir()
-        own = RunContext(deck, folder, self.progress, self.time_limit, workers=self.workers, ranks=self.ranks)
+        context = RunContext(deck, folder, self.progress, self.time_limit, workers=self.workers, ranks=self.ranks)
         try:
             write_system(deck, folder)
-            yield own
+            yield context
         finally:
-            self.add_time_of(own)
+            self.add_time_of(context)
             shutil.rmtree(folder, ignore_errors=True)
 
-    def add_time_of(self, other: RunContext) -> None:
+    def add_time_of(self, context: RunContext) -> None:
         """Add the time used by another context, possibly in another thread."""
-        self.clock.add(*other.clock.taken)
+        self.clock.add(*context.clock.taken)
 
 
 class ContactBranch:
-    """States of one contact, from its approach on; driven by a script.
+    """The states of one contact, from its approach on; driven by a script.
 
     Attributes:
-        context: where contacts are opened.
+        context: opens contacts.
         contact: the one that runs.
-        model: the reduced one.
+        model: the particles of the reduced model.
         states: of all load steps, in order.
         legs: number of the leg of each; see `Trace`.
-        searches: what the search for a force maximum leaves open, by the leg's number.
+        searches: for a force maximum, by the number of the leg.
         marked: states that are reported, by name.
-        unbalance: force [FU] that the last state leaves unbalanced; None: what its residual forces add up to.
+        unbalance: unbalanced force of the last state [FU]; None: the sum of its residual forces.
         moves: whether the states are those of a motion, and no equilibria.
         wanted: force [FU] that a state was to carry, by its number.
         given: see `Trace`.
     """
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
-        """Prepare a contact; what `meanwhile` does costs no time: LAMMPS reads the bodies then."""
+        """Prepare a contact; `meanwhile` is called while LAMMPS reads the bodies."""
         self.context, self._meanwhile = context, meanwhile
         self.scene, self.settings = context.deck.scene, context.deck.settings
         self.model: Particles = reduced(self.scene, self.settings)
@@ -166,19 +164,19 @@ class ContactBranch:
         self._open = ExitStack()
 
     def __enter__(self) -> Self:
-        """Open it."""
+        """Open the contact in a LAMMPS instance."""
         self.contact: Contact = self._open.enter_context(self.context.contact(meanwhile=self._meanwhile))
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
-        """Close it."""
+        """Close the contact and its LAMMPS instance."""
         self._open.__exit__(kind, error, traceback)
 
     @property
     def phases(self) -> tuple[Phase, ...]:
-        """The schedule so far."""
+        """The schedule of the load steps so far."""
         return self.contact.phases
 
     @property
@@ -188,18 +186,18 @@ class ContactBranch:
 
     @property
     def scale(self) -> float:
-        """The force maximum that is expected [FU]."""
+        """The expected force maximum [FU]."""
         return self.settings.law.pull_off_force()
 
     def checks(self, case: Reduction, doubt: float) -> dict[str, Agreement]:
-        """Whether the states contradict what is known; `doubt`: what is uncertain of their energies, relative."""
+        """Return whether the states contradict each other; `doubt`: the relative uncertainty of their energies."""
         return consistency.balance(self.scene, self.states)
 
     def trace(self) -> Trace:
-        """What a reader sees."""
+        """Return the trace of all states, for a reader."""
         step = self.settings.motion.time_step if self.moves else 0.0
-        found = of_states(self.states, self.model, self.legs, self.searches, step)
-        return replace(found, wanted=self.wanted, given=self.given)
+        trace = of_states(self.states, self.model, self.legs, self.searches, step)
+        return replace(trace, wanted=self.wanted, given=self.given)
 
     def begin(self, name: str) -> None:
         """Begin a phase with the next load step: "loading" for the second time is "loading_2"."""
@@ -217,22 +215,22 @@ class ContactBranch:
         """Go through a history. Raises UntrustedError where load steps are not planned (`planned`)."""
         raise UntrustedError('a history needs springs on a rigid plane: use lower = "rigid_plane"')
 
-    def fly(self, velocity: float) -> None:
-        """Come down at a velocity [LU/TU]: equal stretches of time, until the body flies off or sticks.
+    def fly(self, velocity: float, longest: int = 100) -> None:
+        """Move freely with an impact velocity [LU/TU] through equal stretches of time, until the bodies part or stick.
 
         Raises:
-            UntrustedError: the bodies neither part nor stick in MOST_STRETCHES times the time of a fall.
+            UntrustedError: they do neither in `longest` times the time of a fall to the deepest displacement.
         """
         self.moves, self.given, steps = True, "", stretch(self.settings, velocity)
         self._turn(rises=True)
         for name, row in (("touching", Launch(velocity, steps)), ("impact", Fly(steps))):
             self.begin(name)
-            self._enter()
-            self._keep(self.contact.rows([row], moving=True))
-        while not is_over([one.displacement for one in self.states], [one.force for one in self.states]):
-            if len(self.states) > MOST_STRETCHES * STRETCHES:
+            self._begin_phase()
+            self._append(self.contact.rows([row], moving=True))
+        while not is_over([state.displacement for state in self.states], [state.force for state in self.states]):
+            if len(self.states) > longest * STRETCHES:
                 raise UntrustedError("the body does not end its impact: use shorter times of [viscoelasticity]")
-            self._keep(self.contact.rows([Fly(steps)] * FLIGHT, moving=True))
+            self._append(self.contact.rows([Fly(steps)] * FLIGHT, moving=True))
 
     def mark(self, name: str) -> None:
         """Report the last state."""
@@ -240,7 +238,7 @@ class ContactBranch:
         self.contact.write_state()
 
     def finish(self) -> None:
-        """End the schedule."""
+        """End the schedule of the contact."""
         self.contact.finish()
 
     @property
@@ -252,24 +250,24 @@ class ContactBranch:
         return self.states[-1]
 
     def _turn(self, rises: bool) -> bool:
-        """Whether a leg of rising or falling displacement begins with the next load step, which is not under way."""
+        """Begin a leg with the next load step where the direction of the loading changes; return whether it does."""
         direction = 1 if rises else -1
         turned, self._direction = direction != self._direction, direction
         self._turned = self._turned or turned
         return turned
 
-    def _keep(self, states: Sequence[State]) -> None:
-        """Add states of the leg under way, or the first ones of the next."""
+    def _append(self, states: Sequence[State]) -> None:
+        """Add states to the leg under way, or to the one that begins."""
         self.legs += [self._number + self._turned] * len(states)
         self.states += states
         self._turned = False
 
-    def _came(self, force: float) -> None:
-        """Note that the last state was to carry a force [FU]; NaN: to be at a displacement."""
+    def _record_target(self, force: float) -> None:
+        """Record the force [FU] that the last state was to carry; NaN: it was to be at a displacement."""
         if not math.isnan(force):
             self.wanted[len(self.states) - 1] = force
 
-    def _enter(self) -> None:
+    def _begin_phase(self) -> None:
         """Begin the phase that the script has named, before its first load step."""
         if self._phase:
             name, self._phase = self._phase, ""

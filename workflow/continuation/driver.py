@@ -1,4 +1,4 @@
-"""What a script asks of a driver: LAMMPS under displacement or load control, or the reduced model."""
+"""The driver of a script: LAMMPS under displacement or load control, or the reduced model."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from contact1d.workflow.model.settings import Settings
 
 
 class Driver(Protocol):
-    """Moves a contact from state to state, as often to and fro as a script wants.
+    """The moves of a contact from state to state, forward and back as often as a script requires.
 
-    A leg begins where the loading turns; a force is approached from where the contact is.
+    A leg begins where the loading turns; a force is approached from the last state.
     """
 
     @property
@@ -25,17 +25,17 @@ class Driver(Protocol):
 
     @property
     def model(self) -> Particles:
-        """The reduced model."""
+        """The particles of the reduced model."""
 
     @property
     def scale(self) -> float:
-        """The force maximum that is expected [FU]."""
+        """The expected force maximum [FU]."""
 
     def begin(self, name: str) -> None:
         """Begin a phase with the next load step."""
 
     def visit(self, positions: Sequence[float] | NDArray[np.float64], along: Sequence[float] | None = None) -> None:
-        """Go to displacements [LU] one after the other, and positions along x [LU]."""
+        """Go to displacements [LU] one after another, and to positions along x [LU]."""
 
     def reach(self, force: float, scale: float) -> None:
         """Go on until the contact carries a force [FU], within a share of the tolerance of `scale` [FU]."""
@@ -50,10 +50,10 @@ class Driver(Protocol):
         """Hold a displacement [LU] or a force [FU] for a time [TU]."""
 
     def follow(self, history: History) -> None:
-        """Go through displacements or forces over time, the first of them from apart."""
+        """Go through displacements or forces over time; the bodies are apart at first."""
 
     def fly(self, velocity: float) -> None:
-        """Come down at a velocity [LU/TU] from d = 0 on, and move freely until the bodies part or stick."""
+        """Move freely from d = 0 with an impact velocity [LU/TU] until the bodies separate or stick."""
 
     def mark(self, name: str) -> None:
-        """Report the last state."""
+        """Report the last state under a name."""

@@ -24,29 +24,8 @@ from contact1d.workflow.continuation.trust import ThroughError, UntrustedError
 from contact1d.workflow.deck.steps import UnderLoad
 
 Array = NDArray[np.float64]
-MOST_LEVELS = 60
-BRACKET = 1.0
-"""Width of the final bracket of the tension over the tolerance."""
-BRACKET_AIM = 0.45
-"""Distance from the expected pull-off force at which both sides are tried, over the tolerance."""
-FEWEST_HELD = 4
-"""States at rest from which the critical radius is extrapolated."""
-LONGEST_EXTRAPOLATION = 5.0
-"""Farthest extrapolation over the width of the states that it starts from."""
-SPREAD = 2.0
-"""Uncertainty of the extrapolation over the difference that one state less makes."""
-STRIDE = 0.8
-"""Rise of a tension over what is left to the expected pull-off force at most, so that the last states lie near it."""
-EDGES = 2
-"""Pairs that separate together, one at each contact edge: by so much the tensile force falls after a snap-out."""
-GROWTH = 0.25
-"""Rise of a tension over the one that held, where nothing better is known."""
 FIRST_RISE = 2.0
 """Rise of the tension that is tried first over the tolerance: rest, table and cutoff use up to one of it themselves."""
-DOUBTFUL_SHARE = 0.9
-"""Tension over the expected largest one from which on it may be the pull-off force."""
-LEAST_STEP = 1e-3
-"""Distance to a tensile load, over the expected force maximum, below which the load itself is tried."""
 
 
 @dataclass
@@ -71,13 +50,13 @@ class LoadSearch:
 
     @property
     def best(self) -> float:
-        """The largest tensile force sustained [FU]."""
+        """The largest tensile force that was sustained [FU]."""
         return -self.held[-1].load
 
     @property
     def done(self) -> bool:
-        """Whether the bracket is narrow enough."""
-        return self.broken - self.best <= BRACKET * self.tolerance * self.best
+        """Whether the bracket of the tension is as narrow as the tolerance."""
+        return self.broken - self.best <= self.tolerance * self.best
 
     def learn(self, result: Held) -> None:
         """Record the outcome of the latest tensile load."""
@@ -87,48 +66,54 @@ class LoadSearch:
         self.lost = min(self.lost, -result.load)
         self.broken = min(self.broken, -result.load + self.overshoot(self.best) * (-result.load - self.best))
 
-    def next(self) -> float:
-        """The tension to try next [FU]; the plate's momentum is not to carry it beyond the expected pull-off force."""
+    def next(self, largest_share: float = 0.8, growth: float = 0.25) -> float:
+        """Return the tension to try next [FU]; the momentum of the plate must not carry it past the pull-off force.
+
+        Args:
+            largest_share: of the distance to the expected pull-off force, so that the last states lie near it.
+            growth: relative rise of a tension that held, where nothing better is known.
+        """
         low, high, past = self.best, self.broken, self.overshoot(self.best)
         expected = self._expected()
-        margin = BRACKET_AIM * self.tolerance * expected
-        gentle = min((expected + past * low) / (1.0 + past), low + STRIDE * (expected - low))
+        margin = 0.45 * self.tolerance * expected  # tensions so far on both sides bracket it within the tolerance
+        gentle = min((expected + past * low) / (1.0 + past), low + largest_share * (expected - low))
         for tension in (min(expected - margin, gentle), expected + margin):
             if low + 0.1 * margin < tension < self.lost - 0.1 * margin:
                 return tension
-        return low + 0.5 * (high - low) / (1.0 + past) if high < math.inf else (1.0 + GROWTH) * low
+        return low + 0.5 * (high - low) / (1.0 + past) if high < math.inf else (1.0 + growth) * low
 
     def _expected(self) -> float:
-        """The guess while nothing speaks against it, then the top of a parabola through the last three held states."""
+        """Return the guess while it is in the bracket, then the top of a parabola through the last three states."""
         if len(self.held) < 3 or self.best < self.guess < self.broken:
             return self.guess
         last = [h.last for h in self.held[-3:]]
-        top = top_of(*(np.asarray([getattr(s, name) for s in last]) for name in ("displacement", "force")))
+        top = top_of(np.asarray([state.displacement for state in last]), np.asarray([state.force for state in last]))
         return self.guess if top is None else top[1]
 
 
 class LoadBranch(ContactBranch):
-    """States at rest under loads; as `Branch`, but under load control.
+    """States at rest under load control.
 
     Attributes:
-        unbalance: force [FU] that the last state leaves unbalanced.
+        unbalance: unbalanced force of the last state [FU].
     """
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
-        """Prepare a contact."""
+        """Prepare a contact under load control; see `ContactBranch` for `meanwhile`."""
         super().__init__(context, meanwhile)
         self.unbalance, self.given = 0.0, "load"
         self._held: Held | None = None
 
     def reach(self, force: float, scale: float) -> None:
-        """Hold a force [FU] to a share of the tolerance of `scale` [FU]; a tension is approached from F = 0, so
-        gently that the plate's momentum breaks nothing.
+        """Hold a force [FU] to a share of the tolerance of `scale` [FU]; a tension is approached from F = 0 in steps
+        so small that the momentum of the plate breaks no pair.
 
         Raises:
             UntrustedError: see `hold`; the contact can't hold the force.
         """
+        least_step = 1e-3 * self.scale  # nearer to a tensile load, the load itself is tried
         self._turn(self._held is None or force > self._held.load)
-        self._enter()
+        self._begin_phase()
         if self._turned and self._direction > 0:
             self._take(press(self.contact, max(force, 0.0), scale))
         elif force >= 0.0:
@@ -136,70 +121,71 @@ class LoadBranch(ContactBranch):
         while (held := self._latest).held and held.load > force:
             if self._turn(rises=False):
                 self.begin("unloading")
-                self._enter()
+                self._begin_phase()
             past = overshoot(self.settings, self.scene.bodies.mass, held.load, -self.scale)
             gentle = (past * held.load - self.scale) / (1.0 + past)
-            close = gentle >= held.load - LEAST_STEP * self.scale
+            close = gentle >= held.load - least_step
             self._take(hold(self.contact, force if close else max(force, gentle), scale))
         if not self._latest.held:
             raise UntrustedError(f"the contact does not sustain {self._latest.load:.4g} FU: the bodies separate")
-        self._came(force + self._last.pushed)
+        self._record_target(force + self._last.pushed)
 
     def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
-        """Hold a force [FU] for a time [TU]; a tension from F = 0 on."""
+        """Hold a force [FU] for a time [TU]; a tension is applied at F = 0."""
         assert force is not None
         self.moves, name = True, self._phase
         if force < 0.0:
             self.begin("approaching")
             self.reach(0.0, self.scale)
         self.begin(name)
-        self._enter()
+        self._begin_phase()
         self._turn(rises=force >= 0.0)
         rows = [UnderLoad(force, steps) for steps in self.settings.steps_of(duration)]
-        self._keep(self.contact.rows(rows, moving=True))
+        self._append(self.contact.rows(rows, moving=True))
 
-    def holds_more(self, force: float) -> bool:
-        """Whether a tensile load larger by FIRST_RISE tolerances is sustained, too, tried with a contact of its own.
+    def holds_more(self, force: float, doubtful_share: float = 0.9) -> bool:
+        """Return whether a tensile load larger by FIRST_RISE tolerances is sustained, too, tried on a new contact.
 
         A contact at rest balances its load within a share of the tolerance, and near the limit point it creeps: on
-        which side of it a load is cannot be resolved further.
+        which side of it a load is cannot be resolved further. A tension below `doubtful_share` of the expected
+        pull-off force is not tried.
         """
-        if force > -DOUBTFUL_SHARE * self.scale:
+        if force > -doubtful_share * self.scale:
             return True
         try:
-            with LoadBranch(self.context) as other:
-                other.begin("loading")
+            with LoadBranch(self.context) as branch:
+                branch.begin("loading")
                 larger = force * (1.0 + FIRST_RISE * self.settings.tolerance)
-                other.reach(larger, max(-larger, self.settings.forces.scale))
+                branch.reach(larger, max(-larger, self.settings.forces.scale))
         except ThroughError:
             raise
         except UntrustedError:
             return False
         return True
 
-    def maximum(self) -> None:
-        """Try tensions until the bracket of the largest one is narrow enough, then hold the largest that was held.
+    def maximum(self, most_loads: int = 60) -> None:
+        """Try at most so many tensions until the bracket of the pull-off force is narrow, then hold its lower end.
 
         Raises:
             UntrustedError: see `hold`; the force maximum is not bracketed, or not held again.
         """
-        self._enter()
+        self._begin_phase()
         search = LoadSearch(self.settings.tolerance, self.scale, partial(_overshoot, self), [self._latest])
         start = Start.KEPT
-        for _ in range(MOST_LEVELS):
+        for _ in range(most_loads):
             result = hold(self.contact, -search.next(), search.guess, start)
             start = Start.KEPT if result.held else Start.BACK
             if result.held:
-                self._keep([result.last])
+                self._append([result.last])
             search.learn(result)
             if search.done:
                 break
         else:
             raise UntrustedError(
-                f"the pull-off force was not bracketed within {MOST_LEVELS} loads: it is above {search.best:.6g} FU"
+                f"the pull-off force was not bracketed within {most_loads} loads: it is above {search.best:.6g} FU"
             )
         self.begin("critical")
-        self._enter()
+        self._begin_phase()
         critical = hold(self.contact, -search.best, search.guess, Start.BACK)
         if not critical.held:
             raise UntrustedError(
@@ -209,17 +195,17 @@ class LoadBranch(ContactBranch):
             )
         self.states[-1] = critical.last
         self._held, self.unbalance = critical, critical.unbalance
-        doubt = {"instability": self._missed_teeth(search)}
+        doubt = {"instability": self._missed_maxima(search)}
         self.searches[self._number] = Search(doubt, (search.best, search.broken))
 
     def open(self) -> None:
-        """Nothing: a tension that was not held has separated the bodies."""
+        """Do nothing: a tension that was not held has separated the bodies."""
 
-    def _missed_teeth(self, search: LoadSearch) -> float:
-        """Tension [FU] that a plate may miss which oscillates past a force maximum, where pairs are lost one by one."""
+    def _missed_maxima(self, search: LoadSearch) -> float:
+        """Return the tension [FU] that an oscillating plate may miss, where pairs separate one at each contact edge."""
         settings = self.settings
         lost = (settings.law.snap[1] or settings.strongest[1]) if settings.has_several_maxima else 0.0
-        return EDGES * lost * search.overshoot(search.best)
+        return 2.0 * lost * search.overshoot(search.best)
 
     @property
     def _latest(self) -> Held:
@@ -228,22 +214,22 @@ class LoadBranch(ContactBranch):
 
     def _take(self, held: Held) -> None:
         self._held, self.unbalance = held, held.unbalance
-        self._keep([held.last])
+        self._append([held.last])
 
 
 def _overshoot(branch: LoadBranch, tension: float) -> float:
     return overshoot(branch.settings, branch.scene.bodies.mass, -tension, -branch.scale)
 
 
-def top_of(displacement: Array, force: Array) -> tuple[float, float] | None:
-    """(displacement [LU], tension [FU]) of the force maximum of the polynomial through states at rest.
+def top_of(displacement: Array, force: Array, longest: float = 5.0) -> tuple[float, float] | None:
+    """Return (displacement [LU], tension [FU]) of the force maximum of the polynomial through states at rest.
 
-    None where it has none within LONGEST_EXTRAPOLATION of the states. Their own forces count, not the loads that
-    they balance within a threshold.
+    None where it has none within `longest` times the width of the states. The forces of the states count, not the
+    loads that they balance within a threshold.
     """
     if not are_apart(displacement):
         return None
     width = float(np.ptp(displacement))
     loss = through((displacement - displacement[-1]) / width, force)
-    top, _ = lowest_minimum(loss, -LONGEST_EXTRAPOLATION, LONGEST_EXTRAPOLATION)
+    top, _ = lowest_minimum(loss, -longest, longest)
     return None if math.isnan(top) else (float(displacement[-1]) + width * top, -value(loss, top))

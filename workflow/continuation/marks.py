@@ -19,88 +19,85 @@ from contact1d.workflow.units import ENERGY, FORCE, LENGTH
 Array = NDArray[np.float64]
 LAST = 1e-6
 """Distance from the limit point, over the path from F = 0 to there, within which the last load step represents it."""
-SEPARATED = 0.02
-"""Force over the force maximum below which bodies count as separated: the model has the rest."""
-NODES, MODEL_DIGITS = 128, 1e-6
-"""Of the quadrature of a work; half of them, and of the states, say how well it is known; error of the
-model's own tables, relative."""
-HIDDEN = 200
-"""Positions of the model between the load steps around a jump."""
+MODEL_DIGITS = 1e-6
+"""Relative error of the tables of the reduced model."""
 TINY = float(np.finfo(np.float64).tiny)
-SURELY = 1.1
-"""Error of the force at a limit point over what it gains up to there, to first order."""
-PLACE_FACTOR = 2.0
+POSITION_FACTOR = 2.0
 """Error of the position of the force maximum over the distance between those of two polynomials."""
 _top, _crossed = lru_cache(maxsize=4)(largest_tension), lru_cache(maxsize=4)(smooth_crossing)
-"""Of the last few curves: the budget has one read again with other radii."""
+"""Marks of the last few curves: the budget evaluates a curve again with other radii."""
 
 
 def unloading(branch: Trace, settings: Settings) -> dict[str, Reading]:
-    """F_A, a_cr, a₀ and the work of separation of a branch of falling displacement, those of the four that it has.
+    """Return F_A, a_cr, a₀ and the work of separation of a branch of falling displacement, as far as it has them.
 
-    F_A is the force maximum, at the vertex of a smooth curve or at the last row before a jump, and a_cr the radius
-    there; a₀ is the radius where the force crosses 0. A force maximum at an end of the branch is none, but at the
-    limit point of the contact.
+    F_A is the force maximum, at the vertex of a smooth curve or at the last load step before a jump, and a_cr the
+    radius there; a₀ is the radius where the force crosses 0. A force maximum at an end of the branch counts only at
+    the limit point of the contact.
     """
-    found: dict[str, Reading] = {}
+    readings: dict[str, Reading] = {}
     peak, last = peak_of(branch), len(branch) - 1
     if peak.tension > 0.0 and peak.index > 0 and (peak.index < last or _distance_from_limit(branch) <= LAST):
         sampled = max(peak.uncertainty, branch.search.doubt.get("sampling", 0.0))
-        errors = {"sampling": sampled, "instability": cut_short(branch, peak, settings)}
-        found["adhesion_force"] = Reading(peak.smooth, FORCE, errors)
+        errors = {"sampling": sampled, "instability": missed_tension(branch, peak, settings)}
+        readings["adhesion_force"] = Reading(peak.smooth, FORCE, errors)
         if branch.radius(peak.index) is not None:
-            found["critical_radius"] = _critical_radius(branch, peak, settings, sum(errors.values()))
+            readings["critical_radius"] = _critical_radius(branch, peak, settings, sum(errors.values()))
     zero = _zero_load(branch)
-    if "adhesion_force" in found and zero:
+    if "adhesion_force" in readings and zero:
         zero |= _separation(branch, peak)
-    return found | zero
+    return readings | zero
 
 
-def _separation(branch: Trace, peak: Peak) -> dict[str, Reading]:
-    """∫ −F dd from F = 0 until nothing is felt; none where the branch ends before.
+def _separation(branch: Trace, peak: Peak, separated: float = 0.02, nodes: int = 128) -> dict[str, Reading]:
+    """Return ∫ −F dd from F = 0 until the bodies are apart; nothing where the branch ends before.
 
-    The reduced model has the curve between the states; the difference from it is interpolated.
+    The reduced model has the curve between the states, to which their interpolated difference is added, and the curve
+    below the share `separated` of the force maximum. The error is the change with half the nodes of the quadrature and
+    every second state.
     """
     model = branch.model
     d, force = branch.lists
     start, end = _crossed(d, force, 0.0), model.apart
-    held = [(one, own) for one, own in zip(d[::-1], force[::-1], strict=True) if end <= one < start]
+    held = [(position, load) for position, load in zip(d[::-1], force[::-1], strict=True) if end <= position < start]
     lost = branch.radius(len(branch) - 1) is None or _distance_from_limit(branch) <= LAST
-    if not held or not (lost or abs(force[-1]) <= SEPARATED * peak.tension):
+    if not held or not (lost or abs(force[-1]) <= separated * peak.tension):
         return {}
-    if model.parted is None:  # it goes on for as long as it takes
-        after = next(i for i, one in enumerate(d) if one < start)
-        pulled, way = np.asarray([0.0, *force[after:]]), np.asarray([start, *d[after:]])
-        value, other = (float(np.trapezoid(pulled[rows], way[rows])) for rows in (slice(None), _every_other(way.size)))
-        return {"work_of_separation": Reading(value, ENERGY, {"sampling": abs(value - other)})}
-    at, own = np.asarray([*held, (start, 0.0)]).T
+    if model.parted is None:  # the contact ends at no fixed displacement
+        after = next(i for i, position in enumerate(d) if position < start)
+        tail, path = np.asarray([0.0, *force[after:]]), np.asarray([start, *d[after:]])
+        value, coarse = (
+            float(np.trapezoid(tail[rows], path[rows])) for rows in (slice(None), _every_second(path.size))
+        )
+        return {"work_of_separation": Reading(value, ENERGY, {"sampling": abs(value - coarse)})}
+    positions, forces = np.asarray([*held, (start, 0.0)]).T
 
     def work(nodes: int, every: int) -> float:
-        """By Gauss's quadrature over u, d = d_end + (d₀ − d_end) u²: a limit point has an infinite slope."""
+        """Integrate by Gauss's quadrature over u, d = d_end + (d₀ − d_end) u²: a limit point has an infinite slope."""
         if (known := model.work(start, every)) is not None:
             return known
         u, weights = gauss(nodes)
         u = 0.5 * (u + 1.0)
-        places = end + (start - end) * u**2
-        others = [*range(0, len(at) - 1, every), len(at) - 1]
-        off = own[others] - model.held(at[others])
-        curve = model.held(places) + np.interp(places, at[others], off, left=0.0)
+        between = end + (start - end) * u**2
+        chosen = [*range(0, len(positions) - 1, every), len(positions) - 1]
+        off = forces[chosen] - model.held(positions[chosen])
+        curve = model.held(between) + np.interp(between, positions[chosen], off, left=0.0)
         return -(start - end) * float(weights @ (u * curve))
 
-    value = work(NODES, 1)
-    missed = abs(value - work(NODES // 2, 2)) + MODEL_DIGITS * value
+    value = work(nodes, 1)
+    missed = abs(value - work(nodes // 2, 2)) + MODEL_DIGITS * value
     return {"work_of_separation": Reading(value, ENERGY, {"sampling": missed})}
 
 
-def _every_other(count: int) -> list[int]:
-    """Numbers of every other of so many states, and of the last."""
+def _every_second(count: int) -> list[int]:
+    """Return the numbers of every second of so many states, and of the last."""
     return [*range(0, count - 1, 2), count - 1]
 
 
 def _critical_radius(branch: Trace, peak: Peak, settings: Settings, missed: float) -> Reading:
-    """a at the force maximum; where that may be another one by `missed` [FU], the radius may be the one there.
+    """Return a at the force maximum, which may be another maximum that is lower by up to `missed` [FU].
 
-    A jump comes anywhere before the next load step, and may leave nothing to read a radius off.
+    A jump comes anywhere before the next load step, after which there may be no contact radius.
     """
     d, i = branch.displacement, peak.index
     jumps = i + 1 < len(d) and peak.position == d[i]
@@ -112,57 +109,58 @@ def _critical_radius(branch: Trace, peak: Peak, settings: Settings, missed: floa
         near = int(np.argmin(np.abs(d - peak.position)))
         rate = abs(radius_rate(branch, near))
         radius = radius_at(branch, peak.position)
-        errors = {"sampling": PLACE_FACTOR * rate * peak.misplaced}
-        by = PLACE_FACTOR * peak.misplaced
-        places = np.asarray([d[near], peak.position, peak.position - by, peak.position + by], dtype=np.float64)
-        if (known := branch.model.radii(places)) is not None:  # of a stiff contact it rises from 0 as a root
-            here, there, *ends = known.tolist()
-            radius = branch.radius_or_spot(near) + there - here
+        errors = {"sampling": POSITION_FACTOR * rate * peak.misplaced}
+        error = POSITION_FACTOR * peak.misplaced
+        positions = np.asarray([d[near], peak.position, peak.position - error, peak.position + error], dtype=np.float64)
+        if (known := branch.model.radii(positions)) is not None:  # of a stiff contact it rises from 0 as a root
+            nearest, expected, *ends = known.tolist()
+            radius = branch.radius_or_spot(near) + expected - nearest
             top = branch.model.critical_radius or 0.0
-            errors = {"sampling": max(abs(radius - top), *(abs(there - end) for end in ends)) + MODEL_DIGITS * radius}
+            changes = [abs(radius - top), *(abs(expected - end) for end in ends)]
+            errors = {"sampling": max(changes) + MODEL_DIGITS * radius}
     if settings.snaps:
-        teeth = rivals(*branch.lists, peak)
-        others = [branch.radius_or_spot(i) for i, excess in teeth.items() if excess > -missed]
-        errors["instability"] = max((abs(other - radius) for other in others), default=0.0)
+        maxima = rivals(*branch.lists, peak)
+        radii = [branch.radius_or_spot(i) for i, excess in maxima.items() if excess > -missed]
+        errors["instability"] = max((abs(rival - radius) for rival in radii), default=0.0)
     return Reading(radius, LENGTH, errors)
 
 
 def _zero_load(branch: Trace) -> dict[str, Reading]:
-    """a where the force crosses 0, by a parabola, and how far an attraction with a range goes there, c.
+    """Return a where the force crosses 0, by a parabola, and the outer radius c of a cohesive zone there.
 
-    A straight line estimates the error. None where the force never crosses 0, or only as the contact is lost.
+    A straight line estimates the error. Nothing where the force never crosses 0, or only as the contact is lost.
     """
     d, force = branch.lists
     try:
-        index, place = crossing(d, force, 0.0)
+        index, position = crossing(d, force, 0.0)
     except ValueError:
         return {}
     after = min(index + 1, len(d) - 1)
     if branch.radius(after) is None:
         return {}
 
-    def there(length: Callable[[int], float]) -> Reading:
-        line = float(np.interp(place, [d[after], d[index]], [length(after), length(index)]))
+    def at_zero(length: Callable[[int], float]) -> Reading:
+        line = float(np.interp(position, [d[after], d[index]], [length(after), length(index)]))
         value = _through_nearest(branch, _crossed(d, force, 0.0), length)
         return Reading(value, LENGTH, {"sampling": abs(value - line)})
 
-    found = {"zero_load_radius": there(branch.radius_or_spot)}
+    readings = {"zero_load_radius": at_zero(branch.radius_or_spot)}
     if branch.reach(index) is not None:
-        found["cohesive_radius"] = there(lambda state: branch.reach(state) or 0.0)
-    return found
+        readings["cohesive_radius"] = at_zero(lambda state: branch.reach(state) or 0.0)
+    return readings
 
 
-def early_loss(branch: Trace, peak: Peak, settings: Settings) -> float:
-    """How far [LU] before its limit the force maximum may have been lost, in the move after it."""
+def early_detachment(branch: Trace, peak: Peak, settings: Settings) -> float:
+    """Return the displacement [LU] by which the move after the force maximum may separate a pair before its limit."""
     d = branch.displacement
     return settings.premature_detachment(float(d[peak.index] - d[min(peak.index + 1, len(d) - 1)]))
 
 
-def cut_short(branch: Trace, peak: Peak, settings: Settings) -> float:
-    """Tension [FU] that is missed by that: it would have gone on to rise as it did.
+def missed_tension(branch: Trace, peak: Peak, settings: Settings, positions: int = 200) -> float:
+    """Return the tension [FU] that premature detachment misses, extrapolated with the slope before it.
 
-    Also where the model has its maximum between the load steps around the last one that is held: just before a pair
-    separates its force may have passed its own.
+    At least by how much the model exceeds it at `positions` between the load steps around the last one in contact:
+    just before a pair separates, its force may have passed its maximum.
     """
     d, force, i = branch.displacement, branch.force, peak.index
     if not 0 < i < len(d) - 1:
@@ -170,93 +168,93 @@ def cut_short(branch: Trace, peak: Peak, settings: Settings) -> float:
     rise = max(0.0, float(force[i - 1] - force[i]) / max(float(d[i - 1] - d[i]), TINY))
     hidden = 0.0
     if settings.snaps and peak.position == d[i]:
-        held = branch.model.held(np.append(d[i - 1 : i + 1], np.linspace(d[i - 1], d[i + 1], HIDDEN)))
+        held = branch.model.held(np.append(d[i - 1 : i + 1], np.linspace(d[i - 1], d[i + 1], positions)))
         hidden = float(held[:2].min() - held.min())
-    return max(rise * early_loss(branch, peak, settings), hidden)
+    return max(rise * early_detachment(branch, peak, settings), hidden)
 
 
 def _distance_from_limit(branch: Trace) -> float:
-    """Of the last load step, over the whole branch; infinite where no limit point is known."""
+    """Return the distance of the last load step from the limit point, over the whole branch; infinite without one."""
     return abs(float(branch.displacement[-1]) - branch.limit) / max(float(np.ptp(branch.displacement)), TINY)
 
 
 def peak_of(trace: Trace) -> Peak:
-    """The force maximum by falling displacement; at the limit point, where a contact is lost at once, its force.
+    """Return the force maximum by falling displacement; at the limit point, where the contact is lost, its force.
 
-    Up to there it gains as much as the model has over the same distance before.
+    The force there exceeds that of the last load step by the change of the model over the same distance before it.
     """
-    found = _top(*trace.lists)
+    peak = _top(*trace.lists)
     last = len(trace) - 1
     left = _distance_from_limit(trace)
-    if found.index < last or left > LAST:
-        return found
+    if peak.index < last or left > LAST:
+        return peak
     d = float(trace.displacement[-1])
     gained = float(np.ptp(trace.model.held(np.asarray([d, 2.0 * d - trace.limit]))))
-    missed = max(left * found.tension, SURELY * gained)
-    return Peak(last, found.tension, missed, found.tension, found.position, 0.0)
+    missed = max(left * peak.tension, 1.1 * gained)  # the gain to first order, and a margin
+    return Peak(last, peak.tension, missed, peak.tension, peak.position, 0.0)
 
 
 def radius_rate(trace: Trace, state: int, least: float = 0.0) -> float:
-    """da/dd at a state, from the nearest other one that is farther than a share `least` of the whole path."""
+    """Return da/dd at a state, from the nearest state that is farther than a share `least` of the whole path."""
     return slope(trace.displacement, state, trace.radius_or_spot, least)
 
 
 def radius_at(trace: Trace, position: float) -> float:
-    """Contact radius [LU] at a displacement [LU] of a sorted trace, by a parabola through the three nearest states."""
+    """Return the contact radius [LU] at a displacement [LU] of a sorted trace, by a parabola through three states."""
     return _through_nearest(trace, position, trace.radius_or_spot)
 
 
 def _through_nearest(trace: Trace, position: float, length: Callable[[int], float]) -> float:
     near = int(np.argmin(np.abs(trace.displacement - position)))
     first = min(max(near - 1, 0), max(len(trace) - 3, 0))
-    at = range(first, min(first + 3, len(trace)))
-    if position == trace.displacement[near] or len(at) < 2:
+    states = range(first, min(first + 3, len(trace)))
+    if position == trace.displacement[near] or len(states) < 2:
         return length(near)
-    radii = [length(i) for i in at]
+    radii = [length(i) for i in states]
     if min(radii) == max(radii):  # a body that ends at an edge
         return radii[0]
-    d = trace.displacement[list(at)]
+    d = trace.displacement[list(states)]
     weights = [np.prod([(position - d[k]) / (d[j] - d[k]) for k in range(len(d)) if k != j]) for j in range(len(d))]
     return max(0.0, float(sum(weight * radius for weight, radius in zip(weights, radii, strict=True))))
 
 
 def displacement_under(trace: Trace, state: int, force: float, expected: float) -> float:
-    """Displacement [LU] at which the curve through a state carries a force [FU] that is near to its own.
+    """Return the displacement [LU] at which the curve through a state carries a force [FU] near that of the state.
 
-    x with S x + K x²/2 = ΔF: towards the force maximum the stiffness S = dF/dd falls as K = dS/dd says, and x
-    grows as a square root, up to √(2 |ΔF|/K). S and K are those of a parabola through up to two states beside it,
-    one at least twice as far off as the other; S is at most `expected` [FU/LU], which counts alone where there are
-    no such states.
+    x with S x + K x²/2 = ΔF: towards the force maximum the stiffness S = dF/dd falls with K = dS/dd, and x grows as a
+    square root, up to √(2 |ΔF|/K). S and K are those of a parabola through up to two neighbours of the state, at
+    distances that differ by a factor of two at least; S is at most `expected` [FU/LU], which replaces it where there
+    are no such neighbours.
     """
-    own, missing = float(trace.displacement[state]), force - float(trace.force[state])
-    ways, slopes = _beside(trace, state)
+    d, missing = float(trace.displacement[state]), force - float(trace.force[state])
+    distances, slopes = _neighbours(trace, state)
     expected = max(expected, TINY)
-    if len(ways) < 2:
+    if len(distances) < 2:
         known = [expected, *(abs(slope) for slope in slopes if slope)]
-        return own + missing / min(known)
-    bend = 2.0 * (slopes[0] - slopes[1]) / (ways[0] - ways[1])
-    stiffness = min(expected, slopes[0] - 0.5 * bend * ways[0])
+        return d + missing / min(known)
+    bend = 2.0 * (slopes[0] - slopes[1]) / (distances[0] - distances[1])
+    stiffness = min(expected, slopes[0] - 0.5 * bend * distances[0])
     if bend <= 0.0:
-        return own + missing / (stiffness if stiffness > 0.0 else expected)
+        return d + missing / (stiffness if stiffness > 0.0 else expected)
     root = stiffness**2 + 2.0 * bend * missing
     if stiffness <= 0.0 or root <= 0.0:
-        return own + math.copysign(math.sqrt(2.0 * abs(missing) / bend), missing)
-    return own + 2.0 * missing / (stiffness + math.sqrt(root))
+        return d + math.copysign(math.sqrt(2.0 * abs(missing) / bend), missing)
+    return d + 2.0 * missing / (stiffness + math.sqrt(root))
 
 
-def _beside(trace: Trace, state: int) -> tuple[list[float], list[float]]:
-    """Distances [LU] of up to two states beside one, and dF/dd [FU/LU] up to each.
+def _neighbours(trace: Trace, state: int) -> tuple[list[float], list[float]]:
+    """Return the signed distances [LU] of up to two neighbours of a state, and dF/dd [FU/LU] up to each.
 
-    Nearer than BRANCH_DISTANCE of the path they say less than their own errors.
+    Within BRANCH_DISTANCE of the path, a change is smaller than its error.
     """
-    away = trace.displacement - trace.displacement[state]
-    least = BRANCH_DISTANCE * float(np.abs(away).max())
-    ways: list[float] = []
+    displacements = trace.displacement - trace.displacement[state]
+    least = BRANCH_DISTANCE * float(np.abs(displacements).max())
+    distances: list[float] = []
     slopes: list[float] = []
-    for other in np.argsort(np.abs(away), kind="stable"):
-        way = float(away[other])
-        if way != 0.0 and abs(way) >= least and len(ways) < 2:
-            ways.append(way)
-            slopes.append(float(trace.force[other] - trace.force[state]) / way)
-            least = 2.0 * abs(way)
-    return ways, slopes
+    for neighbour in np.argsort(np.abs(displacements), kind="stable"):
+        distance = float(displacements[neighbour])
+        if distance != 0.0 and abs(distance) >= least and len(distances) < 2:
+            distances.append(distance)
+            slopes.append(float(trace.force[neighbour] - trace.force[state]) / distance)
+            least = 2.0 * abs(distance)
+    return distances, slopes

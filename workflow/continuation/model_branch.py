@@ -20,30 +20,14 @@ from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
-COARSE, DENSE, FINE, ZOOMS = 24, 100, 30, 2
-"""Positions of the first look for the force maximum, on a rigid plane and between particles, and of each closer one,
-and how many of these: none where the curve is smooth, since the model's forces are straight between the points of a
-grid, whose corners would move a top."""
-BESIDE = 32.0
-"""Part of the distance of two positions in which those beside a force maximum are, three on either side."""
-OPENED = np.asarray([1e-4, 0.05])
-"""States beyond where nothing is felt any more, over all of the way."""
-BETWEEN = 8
-"""Intermediate positions towards a force."""
-LAST = 1e-9
-"""How much of the path from F = 0 to the limit point is left before it."""
-NEAR = 1e-6
-"""Distance over the spacing from a jump of the force at which it has jumped, or not yet."""
-NEAREST = 3
-"""Last states before a limit point, of which that with the largest tension is the force maximum."""
 MOST_NUMBERS = 2_000_000
-"""Forces that are worked out in a path with dense positions."""
+"""Largest number of forces that are computed in a path with dense positions."""
 UNSEEN = ""
-"""Phase of states that make the history of a path and are none of it."""
+"""Phase of states that lead to the first state of a path and are not read."""
 
 
 class Row(NamedTuple):
-    """A position of the plate: phase, leg, displacement and position along x [LU], time [TU], velocity [LU/TU]."""
+    """A load step: phase, leg, displacement and position along x [LU], time [TU], velocity [LU/TU]."""
 
     phase: str
     leg: int
@@ -54,7 +38,7 @@ class Row(NamedTuple):
 
 
 class ModelBranch:
-    """States of the model, with positions of the required density; they are computed together at the end.
+    """The states of the model, with positions of the required density; they are computed together at the end.
 
     Attributes:
         model: the particles.
@@ -64,7 +48,7 @@ class ModelBranch:
     """
 
     def __init__(self, scene: Scene, settings: Settings, model: Particles, dense: int, shift: float) -> None:
-        """Begin apart."""
+        """Begin with no states and the bodies apart."""
         self.scene, self.settings, self.model, self.dense, self.shift = scene, settings, model, dense, shift
         self._phase, self._leg = "", -1
         self._rises: bool | None = None
@@ -75,15 +59,15 @@ class ModelBranch:
 
     @property
     def scale(self) -> float:
-        """The force maximum that is expected [FU]."""
+        """The expected force maximum [FU]."""
         return self.settings.law.pull_off_force()
 
     def begin(self, name: str) -> None:
-        """Begin a phase."""
+        """Begin a phase with the next load step."""
         self._phase = name
 
     def visit(self, positions: Sequence[float] | Array, along: Sequence[float] | Array | None = None) -> None:
-        """Displacements [LU] that are known beforehand, and others between them; positions along x [LU], else 0."""
+        """Go to displacements [LU], with dense positions between them, and to positions along x [LU], else 0."""
         wanted = np.asarray(positions, dtype=np.float64) + self.shift
         before = self._rows[-1].displacement if self._rows else float(wanted[0])
         self._turn(float(wanted[-1]) >= before)
@@ -95,40 +79,40 @@ class ModelBranch:
             self._add(wanted[:1])
             wanted = wanted[1:]
         dense, leading = self._between(np.append(self._rows[-1].displacement, wanted), between)
-        own = self._phase
-        if self._rows[-1].phase == UNSEEN:  # what leads from there to the first state of a path is none of it
+        phase = self._phase
+        if self._rows[-1].phase == UNSEEN:  # positions before the first state of a path are not read
             self._phase = UNSEEN
             self._add(dense[:leading])
             dense = dense[leading:]
-        self._phase = own
+        self._phase = phase
         self._add(dense)
 
     def _between(self, ends: Array, count: int) -> tuple[Array, int]:
-        """So many positions [LU] of each step, its end the last, and those on both sides of a jump.
+        """Return `count` positions [LU] in each step, to its end, and one on either side of each jump of the force.
 
-        And how many there are before the end of the first step.
+        And the number of them before the end of the first step.
         """
-        near = NEAR * self.model.law.spacing
-        jumps = np.asarray([at + side for at in self.model.jumps for side in (-near, near)])
+        near = 1e-6 * self.model.law.spacing  # the distance from a jump
+        jumps = np.asarray([jump + side for jump in self.model.jumps for side in (-near, near)])
         steps, step = np.arange(ends.size), np.diff(ends)
         passed = np.divide(
             jumps - ends[:-1, None], step[:, None], out=np.zeros((step.size, jumps.size)), where=step[:, None] != 0.0
         )
         inside = (passed > 0.0) & (passed < 1.0)
-        at = np.union1d(np.arange(1, count * step.size + 1) / count, (steps[:-1, None] + passed)[inside])
-        return np.interp(at, steps, ends), int(np.count_nonzero(at < 1.0))
+        shares = np.union1d(np.arange(1, count * step.size + 1) / count, (steps[:-1, None] + passed)[inside])
+        return np.interp(shares, steps, ends), int(np.count_nonzero(shares < 1.0))
 
-    def reach(self, force: float, scale: float) -> None:
-        """Go to where a force [FU] is carried; under a tension from where the bodies touch on."""
+    def reach(self, force: float, scale: float, steps: int = 8) -> None:
+        """Go to the displacement at which the model carries a force [FU], in some steps."""
         end, begun = self.model.displacement_at(force), bool(self._rows)
         start = self._rows[-1].displacement if begun else 0.0
         self._turn(end > start)
-        self._add(np.linspace(start, end, BETWEEN + 1)[begun:])
+        self._add(np.linspace(start, end, steps + 1)[begun:])
 
     def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
-        """A displacement [LU], or a plate that moves under a force [FU], for a time [TU]: the first and the last state.
+        """Hold a displacement [LU], or a force [FU] on a free plate, for a time [TU]: the first and the last state.
 
-        A transient is that of plate and particles on the contact's own force; see `free.swing`.
+        A transient is that of plate and particles under the force of the contact; see `free.swing`.
         """
         if displacement is not None:
             self._add(np.asarray([displacement, displacement]), time=(0.0, duration))
@@ -140,95 +124,111 @@ class ModelBranch:
             self._add(swing(self.scene, self.settings, self.model, start, force, duration), time=(0.0, duration))
 
     def follow(self, history: History) -> None:
-        """Displacements or forces over time, and others between them; phases are reported at their ends."""
+        """Go through displacements or forces over time, with dense steps; phases are reported at their ends."""
         history = history.denser(self.dense)
         self._leg += 1
         self._given = "force" if history.by_force else self._given
         self._add_path(history.phases, history.path(self.model))
-        for i, (one, other) in enumerate(pairwise([*history.phases, ""])):
-            if one != other and one in history.marks:
-                self.marks.setdefault(i, []).append(history.marks[one])
+        for i, (phase, following) in enumerate(pairwise([*history.phases, ""])):
+            if phase != following and phase in history.marks:
+                self.marks.setdefault(i, []).append(history.marks[phase])
 
     def fly(self, velocity: float) -> None:
-        """A flight at an approach velocity [LU/TU] onto the contact and off it again; see `free.impact`."""
+        """Move freely with an impact velocity [LU/TU] until the bodies part or stick; see `free.impact`."""
         path = impact(self.scene, self.settings, self.model, velocity, self.dense)
         self._leg += 1
         self._add_path(["impact"] * path.time.size, path)
 
-    def maximum(self) -> None:
-        """Go to the force maximum, densely about it; `open` goes on from there."""
+    def maximum(self, coarse: int = 24, dense: int = 100, nearest: int = 3) -> None:
+        """Go to the force maximum, with dense positions about it; `open` continues from there.
+
+        Args:
+            coarse: positions of the unloading for a contact without a range of the interaction.
+            dense: for one with a range; twice as many where pairs snap.
+            nearest: last states before a limit point; that with the largest tension is the force maximum.
+        """
         self._turn(False)
         zero, apart = self._rows[-1].displacement, self.model.apart
-        end = zero + (1.0 - LAST) * (apart - zero)
+        end = zero + (1.0 - 1e-9) * (apart - zero)  # just before the limit point
         if self.settings.forces.range:
-            found = np.linspace(zero, end, DENSE * (2 if self.settings.snaps else 1))[1:]
+            positions = np.linspace(zero, end, dense * (2 if self.settings.snaps else 1))[1:]
         else:
-            found = self.model.unloading(zero, end, COARSE)
-        every = np.append(zero, found)
-        top = int(np.argmin(self.model.held(every)))
-        low, high = float(every[min(top + 1, every.size - 1)]), float(every[max(top - 1, 0)])
-        step, place = 0.5 * (high - low) / BESIDE, float(every[top])
-        known = self.model.critical_displacement
-        for _ in range(0 if self.settings.is_smooth or known is not None else ZOOMS):
-            closer, width = np.linspace(high, low, FINE, retstep=True)
-            place = float(closer[int(np.argmin(self.model.held(closer)))])
-            low, high = max(place - abs(width), end), min(place + abs(width), zero)
-        place = min(max(known, end), zero) if known is not None else place
-        beside = place + step * np.arange(-3.0, 4.0)
-        found = np.unique(np.append(found, np.clip(beside, end, zero)))[::-1]
-        found = found[found < zero]
-        last = int(np.count_nonzero(found > place - 0.5 * step)) if place < zero else 0
-        if (near := found[max(last - NEAREST, 0) : last]).size:
-            tensions = -self.model.held(near)  # a chain may lose a part at its limit point, the top that a law knows
-            if known is None or tensions[-1] < (1.0 - self.settings.tolerance) * tensions.max():
+            positions = self.model.unloading(zero, end, coarse)
+        peak, step = self._peak(np.append(zero, positions), end)
+        about = np.clip(peak + step * np.arange(-3.0, 4.0), end, zero)
+        positions = np.unique(np.append(positions, about))[::-1]
+        positions = positions[positions < zero]
+        last = int(np.count_nonzero(positions > peak - 0.5 * step)) if peak < zero else 0
+        if (near := positions[max(last - nearest, 0) : last]).size:
+            tensions = -self.model.held(near)  # a chain may lose a part at the limit point, the maximum of its law
+            loses = tensions[-1] < (1.0 - self.settings.tolerance) * tensions.max()
+            if loses or self.model.critical_displacement is None:
                 last -= near.size - 1 - int(np.argmax(tensions))
-        self._add(found[:last])
-        self._beyond = found[last:]
+        self._add(positions[:last])
+        self._beyond = positions[last:]
+
+    def _peak(self, positions: Array, end: float, zooms: int = 2, fine: int = 30) -> tuple[float, float]:
+        """Return the displacement [LU] of the force maximum, and the distance [LU] of dense positions about it.
+
+        It is sought among `fine` positions between the neighbours of the highest one, and again between those of the
+        new one. Not where the curve is smooth: forces of the model are linear between the points of a grid, whose
+        corners would move the maximum.
+        """
+        zero, top = float(positions[0]), int(np.argmin(self.model.held(positions)))
+        low, high = float(positions[min(top + 1, positions.size - 1)]), float(positions[max(top - 1, 0)])
+        peak, step, known = float(positions[top]), (high - low) / 64.0, self.model.critical_displacement
+        if known is not None:
+            return min(max(known, end), zero), step
+        for _ in range(0 if self.settings.is_smooth else zooms):
+            closer, width = np.linspace(high, low, fine, retstep=True)
+            peak = float(closer[int(np.argmin(self.model.held(closer)))])
+            low, high = max(peak - abs(width), end), min(peak + abs(width), zero)
+        return peak, step
 
     def mark(self, name: str) -> None:
-        """Report the last state."""
+        """Report the last state under a name."""
         self.marks.setdefault(self.last, []).append(name)
 
     def open(self) -> None:
-        """Pull the bodies apart."""
+        """Pull the bodies apart, to two states beyond the displacement at which the contact is lost."""
         apart, deepest = self.model.apart, max(row.displacement for row in self._rows)
-        self._add(np.append(self._beyond, apart - OPENED * (deepest - apart)))
+        self._add(np.append(self._beyond, apart - np.asarray([1e-4, 0.05]) * (deepest - apart)))
         self._beyond = np.empty(0)
 
     @property
     def last(self) -> int:
-        """Number of the last state."""
+        """The number of the last state."""
         return len(self._rows) - 1
 
     @property
     def held(self) -> float:
-        """F [FU] of the last state, of a contact that is unloaded from deeper."""
+        """The force of the last state on an unloading [FU]."""
         return float(self.model.held(np.asarray([self._rows[-1].displacement]))[0])
 
     @property
     def phases(self) -> list[str]:
-        """Names of the phases of all states."""
+        """The names of the phases of all states."""
         return [row.phase for row in self._rows]
 
     @property
     def legs(self) -> list[int]:
-        """Numbers of the legs of all states."""
+        """The numbers of the legs of all states."""
         return [row.leg for row in self._rows]
 
     @property
     def path(self) -> Path:
-        """All states, also those that no reader sees."""
+        """The path of all states, also of those that are not read."""
         columns = list(zip(*self._rows, strict=True))[2:]
         d, along, time, velocity = (np.asarray(column, dtype=np.float64) for column in columns)
         return Path(d, along, time, None if np.isnan(velocity).any() else velocity)
 
     def trace(self, whole: bool = False) -> Trace:
-        """What a reader sees; of the `whole` path also what leads to its first state."""
+        """Return the trace for a reader; of the `whole` path also the states before its first one."""
         phases, legs, path = self.phases, self.legs, self.path
         rule = radius_rule(self.scene, self.settings.tolerance)
-        found = of_model(phases, legs, path, self.model.follow(path), rule, self.model)
-        found = replace(found, given=self._given)
-        return found if whole else found.chosen([i for i, name in enumerate(phases) if name != UNSEEN])
+        trace = of_model(phases, legs, path, self.model.follow(path), rule, self.model)
+        trace = replace(trace, given=self._given)
+        return trace if whole else trace.chosen([i for i, name in enumerate(phases) if name != UNSEEN])
 
     def _turn(self, rises: bool) -> None:
         """Begin a leg where the loading turns."""
@@ -239,11 +239,11 @@ class ModelBranch:
         self, positions: Array, along: Sequence[float] | Array | None = None, time: Sequence[float] | None = None
     ) -> None:
         none = np.zeros(len(positions))
-        columns = (none if one is None else np.asarray(one) for one in (along, time))
+        columns = (none if column is None else np.asarray(column) for column in (along, time))
         self._add_path([self._phase] * none.size, Path(positions, *columns))
 
     def _add_path(self, phases: Sequence[str], path: Path) -> None:
-        """States in time."""
+        """Add the states of a path, each with its phase."""
         unknown = np.full(path.time.size, math.nan)
         columns = path.displacement, path.along, path.time, unknown if path.velocity is None else path.velocity
         rows = zip(*(column.tolist() for column in columns), strict=True)
@@ -251,4 +251,4 @@ class ModelBranch:
 
 
 Script = Callable[[ModelBranch], object]
-"""What moves a contact."""
+"""A function that moves a contact."""

@@ -18,14 +18,14 @@ from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import Quantity
 
 SOURCES = ("solver", "sampling", "discretisation", "time", "instability", "statistics", "input", "model")
-"""What an error may come from. "input": what the scene leaves open, and results that a number is made of; "model": two
-readings of one quantity."""
+"""Sources of errors. "input": uncertain numbers of the scene, and results that a quantity is computed from; "model":
+two evaluations of one quantity."""
 LATTICE = "discretisation"
 LOSSES = ("dissipated_energy", "instability_energy")
-"""Results that begin so are energies that may be 0, and are compared with themselves alone."""
+"""First words of the names of energies that may be 0, whose scale is the energy itself."""
 MODEL = "model"
 Made = dict[str, tuple[Quantity, float]]
-"""Results that are made of others, by name: as uncertain as these, and what uncertain numbers of the scene add."""
+"""Results that are computed from others, by name, and the uncertainty that uncertain numbers of the scene add."""
 
 
 @dataclass(frozen=True)
@@ -57,8 +57,8 @@ class Result:
         errors: by the names of SOURCES, in `unit`.
         scale: what the uncertainty is compared with, where the value may be 0.
         prescribed: whether the scene prescribes it, or it closes a balance: no tolerance is asked of it.
-        read: part of the discretisation error that is left by reading between particles, whatever the settings.
-        given: part of "input" by numbers with ± and a noisy profile: what the scene says, and no error of the program.
+        read: part of the discretisation error by interpolation between particles, whatever the settings.
+        given: part of "input" by numbers with ± and a noisy profile: of the scene, and no error of the program.
     """
 
     value: float
@@ -70,29 +70,29 @@ class Result:
     given: float = 0.0
 
     def __post_init__(self) -> None:
-        """Refuse a number without a budget."""
+        """Refuse a result without errors by source."""
         if not self.errors or set(self.errors) - set(SOURCES):
             raise ValueError(f"a result needs errors by source ({', '.join(SOURCES)}), got {dict(self.errors)}")
 
     @property
     def uncertainty(self) -> float:
-        """Sum of the errors."""
+        """The sum of the errors of all sources."""
         return float(sum(self.errors.values()))
 
     @property
     def size(self) -> float:
-        """What the uncertainty is compared with."""
+        """The scale that the uncertainty is compared with: the value, unless another is given."""
         return abs(self.value) if self.scale is None else self.scale
 
     @property
     def share(self) -> float:
-        """Uncertainty over the size; infinite for a length that may be 0."""
+        """The uncertainty over the size; infinite where that is 0."""
         return self.uncertainty / self.size if self.size else inf
 
 
 @dataclass(frozen=True)
 class Agreement:
-    """Two numbers of a run that must be one.
+    """The comparison of two numbers of a run that must agree.
 
     Attributes:
         difference: of them, relative.
@@ -106,18 +106,18 @@ class Agreement:
 
     @property
     def holds(self) -> bool:
-        """Whether they are; a number that is none never agrees."""
+        """Whether the numbers agree; NaN never does."""
         return self.difference <= self.allowed
 
 
 @dataclass(frozen=True)
 class Move:
-    """An input of a scene at an end of what it may be.
+    """An input of a scene at an end of its uncertainty.
 
     Attributes:
-        key: the dotted key of a number, or what else is moved.
-        scene: with it there.
-        changes: of the results, by name, on the reduced model, in their units; of rows (m,).
+        key: the dotted key of a number, or the name of another input.
+        scene: with the input at that end.
+        changes: of the results, by name, on the reduced model, in their units; of points of a curve (m,).
     """
 
     key: str
@@ -126,16 +126,16 @@ class Move:
 
 
 def in_squares(moves: Iterable[Move], name: str) -> Any:
-    """√(Σ change²) of a result, or of rows, over independent inputs, of each the larger change of the two ways."""
-    found = dict[str, Any]()
+    """Return √(Σ change²) of a result, or of points (m,), over independent inputs, of each the larger change."""
+    changes = dict[str, Any]()
     for move in moves:
-        found[move.key] = np.maximum(found.get(move.key, 0.0), np.abs(move.changes.get(name, 0.0)))
-    return reduce(np.hypot, found.values(), 0.0)
+        changes[move.key] = np.maximum(changes.get(move.key, 0.0), np.abs(move.changes.get(name, 0.0)))
+    return reduce(np.hypot, changes.values(), 0.0)
 
 
 @dataclass(frozen=True)
 class Refinement:
-    """How a run was refined: the tolerance of its settings in the end, how often that was lowered, why not further."""
+    """The refinement of a run: the last tolerance of its settings, how often it was lowered, why it ended."""
 
     tolerance: float
     count: int
@@ -147,17 +147,17 @@ class Outcome:
     """The outcome of one experiment.
 
     Attributes:
-        results: by the names of the contract.
+        results: by name.
         states: every state that is reported, in order.
         marked: the states that are reported with their profiles, by name.
         phases: the schedule.
-        warnings: by name, what limits the trust in the numbers.
+        warnings: about what limits the accuracy, by name.
         columns: further columns of curve.csv.
-        rows: of columns of curve.csv, by name, the errors of each row by source, (m,).
-        tables: columns of further files, by the names of these.
+        rows: errors of the points of curve.csv by source, (m,), by the name of a column.
+        tables: columns of further files, by the names of the files.
         refinement: None where the settings were given, or are not refined.
-        moves: what the scene leaves open.
-        consistency: whether the run contradicts itself, by the name of the check; without one that says nothing here.
+        moves: of the uncertain inputs of the scene.
+        consistency: agreement of two numbers of the run, by the name of the check, as far as it applies.
     """
 
     results: Mapping[str, Result]
@@ -174,54 +174,60 @@ class Outcome:
 
     @property
     def quantities(self) -> dict[str, Quantity]:
-        """Results, each with its uncertainty and unit."""
-        return {name: Quantity(one.value, one.uncertainty, one.unit) for name, one in self.results.items()}
+        """The results, each with its uncertainty and unit."""
+        return {name: Quantity(result.value, result.uncertainty, result.unit) for name, result in self.results.items()}
 
     @property
     def exact(self) -> dict[str, Quantity]:
-        """The same, as if the scene were known exactly."""
-        own = self.results
-        return {n: replace(one, uncertainty=one.uncertainty - own[n].given) for n, one in self.quantities.items()}
+        """The results with the uncertainties that they would have if the scene were known exactly."""
+        return {
+            name: Quantity(result.value, result.uncertainty - result.given, result.unit)
+            for name, result in self.results.items()
+        }
 
     def made(self, scene: Scene, make: Callable[[Scene, Mapping[str, Quantity]], dict[str, Quantity]]) -> Made:
-        """What is made of a scene and its results, by name, and how inputs change it: made anew at their ends."""
-        made, moves = make(scene, self.exact), []
+        """Return quantities that are computed from a scene and its results, and their uncertainties due to the inputs.
+
+        They are computed again at each end of an uncertain input.
+        """
+        exact = self.exact
+        made, moves = make(scene, exact), []
         for move in self.moves:
-            at = {n: replace(one, value=one.value + move.changes.get(n, 0.0)) for n, one in self.exact.items()}
-            there = make(move.scene, at)
-            changes = {name: there[name].value - one.value for name, one in made.items() if name in there}
+            results = {n: replace(result, value=result.value + move.changes.get(n, 0.0)) for n, result in exact.items()}
+            moved = make(move.scene, results)
+            changes = {name: moved[name].value - result.value for name, result in made.items() if name in moved}
             moves.append(replace(move, changes=changes))
-        return {name: (one, in_squares(moves, name)) for name, one in made.items()}
+        return {name: (result, in_squares(moves, name)) for name, result in made.items()}
 
     @property
     def profiles(self) -> dict[str, Profile]:
-        """Profiles of the marked states."""
+        """The profiles of the marked states, by name."""
         return {name: state.profile for name, state in self.marked.items()}
 
     @property
     def radii(self) -> dict[str, float]:
-        """Contact radius of each marked state [LU]; NaN where there is none."""
+        """The contact radius of each marked state [LU], by name; NaN where there is none."""
         return {name: nan if state.radius is None else state.radius.value for name, state in self.marked.items()}
 
 
 def in_words(shares: Mapping[str, float], tolerance: float) -> str:
-    """Relative uncertainties above the tolerance by name: "critical_radius 3.1e-04"."""
+    """Return a text of relative uncertainties above the tolerance: "critical_radius 3.1e-04, …"."""
     return ", ".join(f"{name} {share:.{digits_apart(share, tolerance, 2) - 1}e}" for name, share in shares.items())
 
 
 def unmet(results: Mapping[str, Result], tolerance: float, without: Iterable[str] = ()) -> dict[str, float]:
-    """Relative uncertainties of the results that exceed the tolerance, by name; what the scene leaves open is none.
+    """Return the relative uncertainties that exceed the tolerance, by name, without the part that the scene gives.
 
     Args:
         results: without those that the scene prescribes.
         tolerance: relative.
         without: sources that are left out.
     """
-    found = {}
-    for name, one in results.items():
-        kept = sum(error for source, error in one.errors.items() if source not in without) - one.given
+    shares = {}
+    for name, result in results.items():
+        kept = sum(error for source, error in result.errors.items() if source not in without) - result.given
         if LATTICE in without:
-            kept += one.read
-        if not one.prescribed and (one.size or name.endswith("radius")) and kept > tolerance * one.size:
-            found[name] = kept / one.size if one.size else inf
-    return found
+            kept += result.read
+        if not result.prescribed and (result.size or name.endswith("radius")) and kept > tolerance * result.size:
+            shares[name] = kept / result.size if result.size else inf
+    return shares

@@ -1,7 +1,7 @@
 """Contacts on a rigid plane: a script drives the reduced model, and LAMMPS goes through its load steps in one request.
 
 The model of such a contact has every particle of the deck, with the same numbers, so that its limit points and forces
-are known beforehand; each load step is compared with it (`consistency.plan`).
+are known beforehand; the force of each load step is compared with that of the model (`consistency.plan`).
 """
 
 from __future__ import annotations
@@ -34,13 +34,13 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """Load steps on a rigid plane.
+    """The planned load steps of a contact on a rigid plane.
 
     Attributes:
         deck: of the scene.
         model: of its particles.
         path: displacements, positions along x and times of all load steps.
-        names: of their phases, (m,); a phase is numbered where its name comes again.
+        names: of their phases, (m,); a phase is numbered where its name is repeated.
         marks: numbers of load steps whose states are written: a phase ends there.
     """
 
@@ -52,7 +52,7 @@ class Plan:
 
     @classmethod
     def of(cls, deck: Deck, branch: ModelBranch) -> Plan:
-        """What a script has done on the model."""
+        """Return the plan of the path on which a script has driven the model."""
         return cls(deck, branch.model, branch.path, branch.phases, branch.marks)
 
     @cached_property
@@ -61,30 +61,30 @@ class Plan:
 
     @cached_property
     def phases(self) -> tuple[Phase, ...]:
-        """The schedule."""
-        rows, found = swept(self._columns), list[Phase]()
-        begins = [0, *(i for i, (one, other) in enumerate(pairwise(self.names), 1) if one != other)]
+        """The schedule of the load steps."""
+        rows, phases = swept(self._columns), list[Phase]()
+        begins = [0, *(i for i, (before, name) in enumerate(pairwise(self.names), 1) if before != name)]
         ends = sorted({*begins, *(mark + 1 for mark in self.marks), len(rows)})
         for first, last in pairwise(ends):
-            name = numbered(self.names[first], [one.name for one in found]) if first in begins else found[-1].name
-            found.append(Phase(name, tuple(rows[first:last]), state=last - 1 in self.marks))
-        return tuple(found)
+            name = numbered(self.names[first], [phase.name for phase in phases]) if first in begins else phases[-1].name
+            phases.append(Phase(name, tuple(rows[first:last]), state=last - 1 in self.marks))
+        return tuple(phases)
 
     @cached_property
     def followed(self) -> Followed:
-        """What the model carries in these load steps, with their numbers as LAMMPS reads them."""
+        """The forces of the model in the load steps, with the numbers that LAMMPS reads."""
         return self.model.carried(self._columns)
 
     def checks(self, case: Reduction, states: Sequence[State], doubt: float = 0.0) -> dict[str, Agreement]:
-        """Whether its states contradict the model, and their energies each other; see `consistency`."""
+        """Return whether the states contradict the model, and their energies each other; see `consistency`."""
         if not self.deck.scene.is_modelled:
             return {}
         forces = self.followed.total
-        found = consistency.plan(self.deck.scene, states, forces)
-        return found | consistency.energy(case, consistency.Work(self.path, forces), doubt)
+        checks = consistency.plan(self.deck.scene, states, forces)
+        return checks | consistency.energy(case, consistency.Work(self.path, forces), doubt)
 
     def measured(self, contact: Contact) -> list[State]:
-        """The states that LAMMPS has, with the edges that the law of the contact tells.
+        """Return the states that LAMMPS has measured, with the contact edges that the law of the contact gives.
 
         Raises:
             UntrustedError: see `require_trust`.
@@ -92,54 +92,54 @@ class Plan:
         states = contact.replay(self.phases, meanwhile=lambda: self.followed)
         followed, bodies, spring = self.followed, contact.scene.bodies, contact.scene.bulk_stiffness
         if followed.zone:
-            zones = zip(*(one.tolist() for one in followed.zone), strict=True)
-            lost = np.broadcast_to(followed.round_off, followed.total.shape).tolist()
+            zones = zip(*(column.tolist() for column in followed.zone), strict=True)
+            round_off = np.broadcast_to(followed.round_off, followed.total.shape).tolist()
             states = [
-                replace(one, profile=_zoned(bodies, spring, one, *zone), residual=one.residual + more)
-                for one, zone, more in zip(states, zones, lost, strict=True)
+                replace(state, profile=_zoned(bodies, spring, state, *zone), residual=state.residual + error)
+                for state, zone, error in zip(states, zones, round_off, strict=True)
             ]
         if self.path.time.any():
-            states = [replace(one, time=time) for one, time in zip(states, self.path.time.tolist(), strict=True)]
+            states = [replace(state, time=time) for state, time in zip(states, self.path.time.tolist(), strict=True)]
         for state in states:
             require_trust(contact.scene, contact.settings, state)
         return states
 
 
-def _zoned(bodies: Bodies, spring: float, state: State, edge: float, reach: float, *others: float) -> Profile:
-    """The profile of a state with its edges [LU]; between them the body is drawn towards the plane."""
-    own = state.profile
+def _zoned(bodies: Bodies, spring: float, state: State, edge: float, reach: float, *further: float) -> Profile:
+    """Return the profile of a state with its edges [LU]; between them the body is attracted by the plane."""
+    profile = state.profile
     if reach > edge:
-        heights = bodies.height(own.x) - state.displacement
-        surface = np.maximum(heights + own.pressure * bodies.spacing / spring, 0.0)
-        own = replace(own, z_upper=np.where(np.abs(own.x) < edge, 0.0, surface))
-    return zoned(own, edge, reach, *others)
+        heights = bodies.height(profile.x) - state.displacement
+        surface = np.maximum(heights + profile.pressure * bodies.spacing / spring, 0.0)
+        profile = replace(profile, z_upper=np.where(np.abs(profile.x) < edge, 0.0, surface))
+    return zoned(profile, edge, reach, *further)
 
 
 class PlannedBranch(ContactBranch):
-    """States on a rigid plane; LAMMPS runs when the script has ended.
+    """The states of a contact on a rigid plane; LAMMPS runs when the script has ended.
 
     Attributes:
-        plan: what it has run then.
+        plan: the load steps that LAMMPS has run.
     """
 
     plan: Plan
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
-        """Prepare a contact."""
+        """Prepare a contact whose load steps are planned on the model; see `ContactBranch` for `meanwhile`."""
         super().__init__(context, meanwhile)
         self._driven = ModelBranch(self.scene, self.settings, self.model, 1, 0.0)
         self._largest: float | None = None
 
     def begin(self, name: str) -> None:
-        """See `Driver`."""
+        """Begin a phase of the plan with the next load step."""
         self._driven.begin(name)
 
     def visit(self, positions: Sequence[float] | Array, along: Sequence[float] | None = None) -> None:
-        """See `Driver`."""
+        """Plan load steps at displacements [LU] and positions along x [LU]."""
         self._driven.visit(positions, along)
 
     def reach(self, force: float, scale: float) -> None:
-        """See `Driver`.
+        """Plan load steps until the model carries a force [FU].
 
         Raises:
             TensionError: no contact holds the force.
@@ -150,36 +150,36 @@ class PlannedBranch(ContactBranch):
         self.wanted[self._driven.last] = force
 
     def maximum(self) -> None:
-        """See `Driver`."""
+        """Plan load steps to the force maximum of the model."""
         self._driven.maximum()
         self._largest = max(self._largest or 0.0, -self._driven.held)
 
     def open(self) -> None:
-        """See `Driver`."""
+        """Plan load steps until the bodies are apart."""
         self._driven.open()
 
     def follow(self, history: History) -> None:
-        """See `Driver`; load steps of forces are where the model carries them."""
+        """Plan a history; of forces, the load steps are at the displacements at which the model carries them."""
         self._driven.follow(history)
         self.given = "force" if history.by_force else self.given
 
     def mark(self, name: str) -> None:
-        """See `Driver`."""
+        """Report the last state of the plan under a name."""
         self._driven.mark(name)
 
     def checks(self, case: Reduction, doubt: float) -> dict[str, Agreement]:
-        """See `ContactBranch.checks`, and the plan's."""
+        """Return the checks of the states, and those of the plan against the model."""
         return super().checks(case, doubt) | self.plan.checks(case, self.states, doubt)
 
     def finish(self) -> None:
-        """Run all load steps.
+        """Run all planned load steps in LAMMPS.
 
         Raises:
             DigitsError: a force maximum is below the round-off error of positions.
         """
         self.plan = Plan.of(self.contact.deck, self._driven)
         self.states, self.legs = self.plan.measured(self.contact), self._driven.legs
-        self.marked = {name: self.states[at] for at, names in self._driven.marks.items() for name in names}
+        self.marked = {name: self.states[i] for i, names in self._driven.marks.items() for name in names}
         self._require_digits()
 
     def _require_digits(self) -> None:

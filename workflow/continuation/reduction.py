@@ -1,6 +1,6 @@
-"""An experiment on the reduced model: how its results go with the lattice, with the inputs, and with another body.
+"""An experiment on the reduced model: how its results change with the lattice, with the inputs, and with the body.
 
-Its script drives the model and its reader reads what that has passed, on any spacing, with the apex anywhere between
+Its script drives the model and its reader evaluates the trace, on any spacing, with the apex anywhere between
 particles, and of each scene that this one may mean (`budget`).
 """
 
@@ -27,29 +27,23 @@ from contact1d.workflow.scene import Scene, Shape
 
 MARGIN = 1.25
 """Error over the change of the model with the lattice: it has no neighbour springs. Measured on both parities: 1.01."""
-FOLLOWED = 0.5
-"""Difference of the model from a motion, over the result, beyond which its lattice says nothing of that."""
-LEAST_MOVE = 0.05
-"""Least relative change of an input that shows what a smaller one does, to first order: readers have errors."""
-FEWEST_BODIES = 2
-"""Bodies at least that show what the points of a profile leave open."""
-WAYS = (-1.0, 1.0)
-"""Both ways."""
+SIGNS = (-1.0, 1.0)
+"""The two directions of a perturbation."""
 
 
 PRESSURE = "ln p "
-"""Before a state's name, among the changes of a move: of the logarithm of p(0), so that it is relative; of the deepest
-state without a name."""
+"""Prefix of the name of a state: its value is the logarithm of p(0), whose change is relative. Alone it is that of the
+deepest state."""
 Reader = Callable[[Trace], Mapping[str, Reading]]
 Values = dict[str, Any]
-"""Numbers by name of a result; by name of a column of curve.csv one for each of its rows, (m,)."""
+"""Numbers by name of a result; by name of a column of curve.csv those of its points, (m,)."""
 
 
 @dataclass(frozen=True)
 class Reduction:
-    """How results go with the lattice of the model: script and reader of a scene's experiment; `of` another scene.
+    """The experiment of a scene on the reduced model: script and reader; `of` makes that of another scene.
 
-    Or, of states that were `passed`, how each of them does.
+    With the `passed` states of a trace, it has a value for each state instead of results.
     """
 
     scene: Scene
@@ -60,41 +54,41 @@ class Reduction:
     passed: Trace | None = None
 
     def along(self, trace: Trace) -> Reduction:
-        """The same for each state of a trace; the models are shared."""
-        found = replace(self, passed=trace, of=lambda *other: replace(self.of(*other), passed=trace))
-        vars(found).update(model=self.model, _lattices=self._lattices)
-        return found
+        """Return the reduction for each state of a trace, with the models of this one."""
+        reduction = replace(self, passed=trace, of=lambda *case: replace(self.of(*case), passed=trace))
+        vars(reduction).update(model=self.model, _lattices=self._lattices)
+        return reduction
 
     def values(self, model: Particles, dense: int = 1, shift: float = 0.0) -> Values:
-        """The results of the model; `shift` of the displacements that the scene gives [LU]."""
+        """Return the results of a model; `shift` is added to the displacements that the scene gives [LU]."""
         if self.passed:
-            return self.passed.again(self.scene, self.settings, model)
+            return self.passed.recomputed(self.scene, self.settings, model)
         return values_of(self.read(self.trace(model, dense, shift)))
 
     def trace(self, model: Particles, dense: int = 1, shift: float = 0.0, whole: bool = False) -> Trace:
-        """What the script makes of the reduced model."""
+        """Return the trace of a model that the script has driven."""
         return self.driven(model, dense, shift).trace(whole)
 
     def driven(self, model: Particles, dense: int = 1, shift: float = 0.0) -> ModelBranch:
-        """The reduced model when the script has ended."""
+        """Return the branch of a model that the script has driven, at the end of the script."""
         branch = ModelBranch(self.scene, self.settings, model, dense, shift)
         self.script(branch)
         return branch
 
     @property
-    def is_open(self) -> bool:
-        """Whether the scene leaves anything open."""
+    def has_uncertain_inputs(self) -> bool:
+        """Whether the scene has uncertain inputs."""
         profile = self.scene.bodies.profile
         return bool(self.scene.shares or profile.deviations or profile.alternatives)
 
     @cached_property
     def model(self) -> Particles:
-        """The model of the chain that runs."""
+        """The particles of the model, those of the chain that runs in LAMMPS."""
         return reduced(self.scene, self.settings)
 
     @cached_property
     def path(self) -> Trace:
-        """What the script makes of it."""
+        """The trace of the model that the script has driven."""
         return self._driven.trace()
 
     @cached_property
@@ -103,31 +97,35 @@ class Reduction:
 
     @cached_property
     def readings(self) -> Mapping[str, Reading]:
-        """What is read of that."""
+        """The readings of the trace of the model."""
         return self.read(self.path)
 
     @cached_property
-    def own(self) -> Values:
-        """Its results."""
+    def results(self) -> Values:
+        """The results of the model, by name."""
         return self.values(self.model) if self.passed else values_of(self.readings)
 
     @cached_property
-    def seen(self) -> Values:
-        """`own`, and where springs are not linear what the pressures of its states go with."""
+    def results_and_pressures(self) -> Values:
+        """The results, and where springs are not linear the logarithms of the pressures of reported states."""
         if self.passed or self.scene.keeps_springs:
-            return self.own
+            return self.results
         whole = self._driven.trace(whole=True)
         states = {name: i for i, names in self._driven.marks.items() for name in names}
         states[""] = int(whole.displacement.argmax())
-        found = {PRESSURE + name: _on_axis(whole.profile(i)) for name, i in states.items()}
-        return self.own | {name: math.log(one) for name, one in found.items() if one > 0.0}
+        pressures = {PRESSURE + name: _on_axis(whole.profile(i)) for name, i in states.items()}
+        return self.results | {name: math.log(pressure) for name, pressure in pressures.items() if pressure > 0.0}
 
-    def followed(self, values: Values) -> Values:
-        """`lattice` of results in time; where the model does not follow the motion, by how much they differ."""
-        off = {name: np.abs(values[name] - self.own.get(name, 0.0)) for name in values.keys() & self.lattice.keys()}
+    def lattice_in_time(self, values: Values, share: float = 0.5) -> Values:
+        """Return the discretisation error of results in time, by name.
+
+        Where the model differs from the motion by more than a share of the value, it is that difference at least.
+        """
+        names = values.keys() & self.lattice.keys()
+        off = {name: np.abs(values[name] - self.results.get(name, 0.0)) for name in names}
         return {
-            name: np.maximum(self.lattice[name], one * (one > FOLLOWED * np.abs(values[name])))
-            for name, one in off.items()
+            name: np.maximum(self.lattice[name], difference * (difference > share * np.abs(values[name])))
+            for name, difference in off.items()
         }
 
     @cached_property
@@ -142,98 +140,102 @@ class Reduction:
 
     @cached_property
     def lattice(self) -> Values:
-        """By name of a result, its discretisation error; a result that another lattice does not have may be 0."""
-        beside, finer = self._lattices
-        if not (beside or finer):
+        """The discretisation error of each result, by name; a result that another lattice does not have may be 0."""
+        shifted, finer = self._lattices
+        if not (shifted or finer):
             return {}
-        found = self._apart(beside)
+        errors = self._largest_changes(shifted)
         if finer:
-            others = [self.values(model) for model in finer]
-            for name, value in self.own.items():
-                found[name] = np.maximum(found[name], extrapolated(value, *(one.get(name, 0.0) for one in others)))
-        return {name: MARGIN * error for name, error in found.items()}
+            results = [self.values(model) for model in finer]
+            for name, value in self.results.items():
+                change = extrapolated(value, *(values.get(name, 0.0) for values in results))
+                errors[name] = np.maximum(errors[name], change)
+        return {name: MARGIN * error for name, error in errors.items()}
 
     @cached_property
     def moves(self) -> tuple[Move, ...]:
-        """Of the scene, each number with ± moved both ways; of each pair of bodies half of their difference.
+        """The moves of each number with ± to both ends, and of each pair of bodies half of their difference.
 
-        So of a number, too, that moves so little that its results are read off no better: it is moved further.
+        A number with ± below 5 % is moved by 5 %, since the reader has errors; of its changes, scaled to first order,
+        half of the difference counts as well.
         """
         scene, moves = self.scene, list[Move]()
         for key, share in scene.shares.items():
-            ends, times = [scene.moved(key, 1.0 + way * share) for way in WAYS], max(1.0, LEAST_MOVE / share)
+            ends, times = [scene.moved(key, 1.0 + sign * share) for sign in SIGNS], max(1.0, 0.05 / share)
             try:
-                both = [self._of(scene.moved(key, 1.0 + way * times * share)) for way in WAYS]
+                results = [self._results_of(scene.moved(key, 1.0 + sign * times * share)) for sign in SIGNS]
             except SettingsError:
-                times, both = 1.0, [self._of(end) for end in ends]
-            moves += self._changes(key, ends, both, times, apart=times > 1.0)
+                times, results = 1.0, [self._results_of(end) for end in ends]
+            moves += self._changes(key, ends, results, times, apart=times > 1.0)
         for number, pair in enumerate(scene.bodies.profile.deviations, 1):
             ends = [scene.with_profile(shape) for shape in pair]
             try:
-                both = [self._of(end) for end in ends]
-            except SettingsError:  # one of them is no contact
+                results = [self._results_of(end) for end in ends]
+            except SettingsError:  # a body that is no contact
                 continue
-            moves += self._changes(f"bodies.profile: deviation {number}", ends, both, 1.0, apart=True)
+            moves += self._changes(f"bodies.profile: deviation {number}", ends, results, 1.0, apart=True)
         return tuple(moves)
 
     def _changes(
-        self, key: str, ends: Sequence[Scene], both: Sequence[Values], times: float, apart: bool
+        self, key: str, ends: Sequence[Scene], results: Sequence[Values], times: float, apart: bool
     ) -> list[Move]:
-        """What an input does at its ends, from results so many times as far; `apart`: half of their difference."""
-        found = []
-        for end, one, other in zip(ends, both, both[::-1], strict=True):
-            middle = {n: 0.5 * (one[n] + other[n]) for n in one.keys() & other.keys()} if apart else self.seen
-            shared = self.seen.keys() & middle.keys()
-            changes = {name: (one.get(name, middle[name]) - middle[name]) / times for name in shared}
-            found.append(Move(key, end, changes))
-        return found
+        """Return the moves of an input to its ends, from results `times` as far; `apart`: half of their difference."""
+        moves = []
+        for end, values, opposite in zip(ends, results, results[::-1], strict=True):
+            middle = self.results_and_pressures
+            if apart:
+                middle = {name: 0.5 * (values[name] + opposite[name]) for name in values.keys() & opposite.keys()}
+            shared = self.results_and_pressures.keys() & middle.keys()
+            changes = {name: (values.get(name, middle[name]) - middle[name]) / times for name in shared}
+            moves.append(Move(key, end, changes))
+        return moves
 
-    def _of(self, scene: Scene) -> Values:
-        """The results of the model of another scene."""
-        return self.of(scene, settings_for(scene, self.settings.tolerance)).seen
+    def _results_of(self, scene: Scene) -> Values:
+        """Return the results of the model of another scene."""
+        return self.of(scene, settings_for(scene, self.settings.tolerance)).results_and_pressures
 
     @cached_property
     def inputs(self) -> Values:
-        """By name of a result, what the scene leaves open: independent changes in squares, and other bodies in sum.
+        """The uncertainty due to the inputs, by name: independent changes in squares, plus those of other bodies.
 
         Raises:
-            SettingsError: most curves through the points of a profile are no contact, so that nothing tells the error.
+            SettingsError: most curves through the points of a profile are no contact, so that no error is known.
         """
         profile = self.scene.bodies.profile
-        others = [model for shape in profile.alternatives if (model := self._of_shape(shape))]
-        if len(others) < len(profile.alternatives):
-            others += [model for shape in profile.coarser if (model := self._of_shape(shape))]
-        if len(others) < min(FEWEST_BODIES, len(profile.alternatives)):
+        models = [model for shape in profile.alternatives if (model := self._model_of(shape))]
+        if len(models) < len(profile.alternatives):
+            models += [model for shape in profile.coarser if (model := self._model_of(shape))]
+        if len(models) < min(2, len(profile.alternatives)):
             raise SettingsError(
                 "the points of bodies.profile allow a corner at which the contact edge would jump, and too few other "
                 "curves through them are a contact to tell the uncertainty: give more points where the slope changes"
             )
-        each = [self._apart([other]) for other in others]
-        return {name: sum(one[name] for one in each) + in_squares(self.moves, name) for name in self.own}
+        changes = [self._largest_changes([model]) for model in models]
+        return {name: sum(change[name] for change in changes) + in_squares(self.moves, name) for name in self.results}
 
-    def _of_shape(self, shape: Shape) -> Particles | None:
-        """The model of another body; None of one that is no contact, as where its edge would jump at a corner."""
+    def _model_of(self, shape: Shape) -> Particles | None:
+        """Return the model of another body; None where it is no contact, as with a jump of its edge at a corner."""
         scene = self.scene.with_profile(shape)
         try:
             return reduced(scene, replace(self.settings, law=settings_for(scene).law))
         except SettingsError:
             return None
 
-    def _apart(self, models: Sequence[Particles]) -> Values:
-        """How far results of other models are off, at most."""
-        found = {name: np.zeros_like(value) for name, value in self.own.items()}
-        for one in map(self.values, models):
-            for name, value in self.own.items():
-                found[name] = np.maximum(found[name], np.abs(one.get(name, 0.0) - value))
-        return found
+    def _largest_changes(self, models: Sequence[Particles]) -> Values:
+        """Return the largest difference of each result of other models from that of the model, by name."""
+        largest = {name: np.zeros_like(value) for name, value in self.results.items()}
+        for values in map(self.values, models):
+            for name, value in self.results.items():
+                largest[name] = np.maximum(largest[name], np.abs(values.get(name, 0.0) - value))
+        return largest
 
 
 def values_of(readings: Mapping[str, Reading]) -> Values:
-    """Numbers of a reading."""
-    return {name: one.value for name, one in readings.items()}
+    """Return the values of readings, by name."""
+    return {name: reading.value for name, reading in readings.items()}
 
 
 def _on_axis(profile: Profile) -> float:
-    """p(0) but for a factor, ∫ −dq/x from the first particle on."""
+    """Return p(0) without a constant factor, ∫ −dq/x from the first particle on."""
     x, q = profile.x[profile.x > 0.0], profile.pressure[profile.x > 0.0]
     return -float(np.sum(np.diff(q) / (x[1:] + x[:-1])))

@@ -1,6 +1,6 @@
-"""A branch of states that depend on the loading history, since pairs snap: the schedule is run again from the start.
+"""A branch of states that depend on the loading history, since pairs snap: the schedule is repeated from the start.
 
-Each time it has the required positions in their order, more of them near the force maximum.
+Each time it has the required positions in order, more of them near the force maximum.
 """
 
 from __future__ import annotations
@@ -12,34 +12,26 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from contact1d.analysis.curve_marks import Peak, rivals, smooth_crossing
-from contact1d.workflow.continuation.branch import READ_SHARE, Branch
+from contact1d.workflow.continuation.branch import Branch
 from contact1d.workflow.continuation.context import RunContext
-from contact1d.workflow.continuation.marks import cut_short, early_loss, radius_rate
+from contact1d.workflow.continuation.marks import early_detachment, missed_tension
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trust import UntrustedError
 from contact1d.workflow.deck.steps import Phase, displacements, numbered
 
 SEPARATING = "separating"
 """Phase of the load steps beyond a force maximum."""
-MOST_REPLAYS = 8
-GROWTH = 1.2
-"""Of moves apart: longer ones lose particles early."""
-SAME = 1e-9
-"""Distance of two load steps over the way that are one."""
-WINDOW_ROWS, ZOOM_FACTOR, RIVAL_SHARE = 8, 0.25, 0.05
-"""Of a schedule that is run again: load steps on either side of the force maximum, width of that window over the one
-before, and maxima within this share of the largest that are all examined in the first one."""
 
 
 @dataclass
 class Stretch:
-    """What a script has done on a leg, up to a position that it looked for or gave.
+    """A part of a leg, up to a position that the script gave or searched for.
 
     Attributes:
         leg: number of the leg.
-        phase: its name, without a number.
+        phase: name of its phase, without a number.
         last: number of its last state.
-        force: that it reached, of the contact [FU]; NaN: it went to a displacement, or to the force maximum.
+        force: of the contact at its end [FU]; NaN: it ends at a displacement, or at the force maximum.
         marks: names under which its last state is reported.
     """
 
@@ -51,10 +43,10 @@ class Stretch:
 
 
 class ReplayedBranch(Branch):
-    """States where pairs snap."""
+    """The states of a contact whose pairs snap."""
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
-        """Prepare a contact."""
+        """Prepare a contact whose schedule is repeated; see `ContactBranch` for `meanwhile`."""
         super().__init__(context, meanwhile)
         self._passed: tuple[Phase, ...] = ()
         self._stretches: list[Stretch] = []
@@ -68,64 +60,68 @@ class ReplayedBranch(Branch):
         super().mark(name)
         self._stretches[-1].marks.append(name)
 
-    def maximum(self) -> None:
-        """Pull the bodies apart, then run the schedule again and again, each time finer about the force maximum.
+    def maximum(self, most_replays: int = 8, zoom: float = 0.25) -> None:
+        """Pull the bodies apart, then repeat the schedule, each time with smaller steps at the force maximum.
 
-        The numbers are those of the last schedule, which holds the positions of the forces that the script reached and
-        of the force maximum; it ends when two of them agree.
+        The results are those of the last schedule, which contains the positions of the forces that the script reached
+        and of the force maximum; the search ends when two schedules agree.
+
+        Args:
+            most_replays: of the schedule.
+            zoom: width of the window about the force maximum over that of the schedule before.
 
         Raises:
-            UntrustedError: they never do.
+            UntrustedError: no two schedules agree.
         """
         self._turn(rises=False)
         self._separate(self._last.displacement)
-        self._came(math.nan)
+        self._record_target(math.nan)
         top, window = self._stretches[-1], self._unloading_step(self.leg[0].displacement)
-        for number in range(MOST_REPLAYS):
+        for number in range(most_replays):
             before = self.peak
             self._replay(self._about_maximum(window, first=number == 0))
-            window *= ZOOM_FACTOR
+            window *= zoom
             if self._agrees(before, self.states[top.last]):
-                teeth = rivals(*self.unloading.lists, self.peak)
-                self._found(abs(self.peak.smooth - before.smooth) + max((0.0, *teeth.values())))
+                excess = rivals(*self.unloading.lists, self.peak)
+                self._record_maximum(abs(self.peak.smooth - before.smooth) + max((0.0, *excess.values())))
                 self._top = top
                 return
         raise UntrustedError(
             f"the pull-off force has not converged: {before.tension:.6g} and {self.peak.tension:.6g} FU after "
-            f"{MOST_REPLAYS} refinements differ by more than a tolerance of {self.settings.tolerance:g} allows. "
+            f"{most_replays} refinements differ by more than a tolerance of {self.settings.tolerance:g} allows. "
             "Use a larger [accuracy] tolerance, or stiffer springs or a longer range, which avoid the instability"
         )
 
     def open(self) -> None:
-        """Nothing: a schedule that was run again has separated the bodies."""
+        """Do nothing: the repeated schedule has separated the bodies."""
 
     def _turn(self, rises: bool) -> bool:
-        """See `ContactBranch`; after a force maximum a new schedule begins behind the one that is known."""
+        """Begin a leg where the loading turns; after a force maximum a new schedule follows the one before."""
         if self._top:
             self._passed, self._stretches, self._top = self.contact.phases, [], None
         return super()._turn(rises)
 
-    def _came(self, force: float) -> None:
-        super()._came(force)
+    def _record_target(self, force: float) -> None:
+        super()._record_target(force)
         phase = self._last.phase.partition("_")[0]
         self._stretches.append(Stretch(self._number, phase, len(self.states) - 1, force))
 
-    def _about_maximum(self, window: float, first: bool) -> list[float]:
-        """Displacements [LU] of the last leg, with a window about its force maximum [LU]."""
-        way, peak = self.unloading, self.peak
-        d, force = way.displacement, way.force
-        half, step = max(window, early_loss(way, peak, self.settings)), window / WINDOW_ROWS
+    def _about_maximum(self, window: float, first: bool, count: int = 8) -> list[float]:
+        """Return displacements [LU] of the last leg, with `count` steps in a window [LU] beside its force maximum."""
+        trace, peak = self.unloading, self.peak
+        d, force = trace.displacement, trace.force
+        half, step = max(window, early_detachment(trace, peak, self.settings)), window / count
         high, low = peak.position + half, peak.position - half
-        if first:  # which tooth is the highest can't be told from coarse rows
-            close = d[-force >= (1.0 - RIVAL_SHARE) * peak.tension]
+        if first:  # coarse load steps do not show which of the maxima within 5 % is the highest
+            close = d[-force >= 0.95 * peak.tension]
             high, low = max(high, float(close.max())), min(low, float(close.min()))
         fine = high - step * np.arange(round((high - low) / step) + 1)
-        ends = [self._end(one) for one in self._stretches[:-1] if one.leg == self._number]
+        ends = [self._end(stretch) for stretch in self._stretches[:-1] if stretch.leg == self._number]
         fine = fine[fine < min(ends, default=math.inf)]
         return [*d[(d > fine[0]) | (d < fine[-1])].tolist(), *fine.tolist()]
 
     def _end(self, stretch: Stretch) -> float:
-        """Displacement [LU] at which a stretch ends, as far as the states of its leg show it."""
+        """Return the displacement [LU] at which a stretch ends, interpolated between the states of its leg."""
         if stretch.phase == SEPARATING:
             return -math.inf
         if math.isnan(stretch.force):
@@ -136,62 +132,62 @@ class ReplayedBranch(Branch):
         return _displacement_of(self._of_leg(stretch.leg), stretch.force)
 
     def _of_leg(self, number: int) -> list[State]:
-        """The states of a leg."""
+        """Return the states of a leg in order."""
         return [state for state, leg in zip(self.states, self.legs, strict=True) if leg == number]
 
     def _replay(self, falling: list[float]) -> None:
-        """Run the schedule again: each leg straight to where the script was, the last one until apart."""
+        """Repeat the schedule: each leg goes straight to its ends, the last until the bodies are apart."""
         passed, names = sum(len(phase.rows) for phase in self._passed), [phase.name for phase in self._passed]
-        place, leg, phases = self.states[passed].displacement, -1, list[Phase]()
-        same = SAME * (max(s.displacement for s in self.states) - min(falling))
+        start, leg, phases = self.states[passed].displacement, -1, list[Phase]()
+        near = 1e-9 * (max(s.displacement for s in self.states) - min(falling))  # nearer load steps are one
         stretches = [*self._stretches, Stretch(self._number, SEPARATING, 0)]
-        for one in stretches:
-            every = falling if one.leg == self._number else [state.displacement for state in self._of_leg(one.leg)]
-            end = self._end(one)
-            way = 1.0 if end > place else -1.0
-            rows = [row for row in every if way * (row - place) > same and way * (end - row) > same]
-            rows += [place] * (one.leg != leg) + [end] * math.isfinite(end)
-            name = numbered(one.phase, names)
+        for stretch in stretches:
+            is_last = stretch.leg == self._number
+            positions = falling if is_last else [state.displacement for state in self._of_leg(stretch.leg)]
+            end = self._end(stretch)
+            sign = 1.0 if end > start else -1.0
+            rows = [d for d in positions if sign * (d - start) > near and sign * (end - d) > near]
+            rows += [start] * (stretch.leg != leg) + [end] * math.isfinite(end)
+            name = numbered(stretch.phase, names)
             names.append(name)
-            is_marked = bool(one.marks) or one is self._stretches[-1]
-            phases.append(Phase(name, displacements(sorted(set(rows), key=lambda row: way * row)), state=is_marked))
-            place, leg = end, one.leg
+            is_marked = bool(stretch.marks) or stretch is self._stretches[-1]
+            phases.append(Phase(name, displacements(sorted(set(rows), key=lambda d: sign * d)), state=is_marked))
+            start, leg = end, stretch.leg
         self._open.close()
         purpose = "repeating the path with smaller steps at the force maximum"
         self.contact = self._open.enter_context(self.context.contact(purpose))
         self.states, self.legs = self.contact.replay([*self._passed, *phases]), self.legs[:passed]
         self.wanted = {number: force for number, force in self.wanted.items() if number < passed}
-        for phase, one in zip(phases, stretches, strict=True):
-            self.legs += [one.leg] * len(phase.rows)
-            one.last = len(self.legs) - 1
-            self.marked |= dict.fromkeys(one.marks, self.states[one.last])
-            if not math.isnan(one.force):
-                self.wanted[one.last] = one.force
+        for phase, stretch in zip(phases, stretches, strict=True):
+            self.legs += [stretch.leg] * len(phase.rows)
+            stretch.last = len(self.legs) - 1
+            self.marked |= dict.fromkeys(stretch.marks, self.states[stretch.last])
+            if not math.isnan(stretch.force):
+                self.wanted[stretch.last] = stretch.force
 
     def _agrees(self, before: Peak, critical: State) -> bool:
-        """Whether two schedules give the same results, and the states of the latest one are where they belong."""
-        peak, way = self.peak, self.unloading
-        allowed, radius = self.tolerance * peak.smooth, critical.radius_or_spot
-        rate = radius_rate(way, int(np.argmin(np.abs(way.displacement - critical.displacement))))
+        """Return whether two schedules have the same results, and the latest its states at the required positions."""
+        peak = self.peak
+        allowed = self.tolerance * peak.smooth
+        missed = abs(self._radius_rate(critical) * (peak.position - critical.displacement))  # of the contact radius
         return (
             abs(peak.smooth - before.smooth) <= allowed
-            and peak.uncertainty + cut_short(way, peak, self.settings) <= allowed
+            and peak.uncertainty + missed_tension(self.unloading, peak, self.settings) <= allowed
             and all(
                 abs(self.states[i].force - force) <= (self.tolerance * abs(force) or allowed)
                 for i, force in self.wanted.items()
             )
             and peak.smooth + critical.force <= allowed
-            and abs(rate * (peak.position - critical.displacement))
-            <= max(self.tolerance * radius.value, READ_SHARE * radius.uncertainty)
+            and missed <= self._radius_limit(critical)
         )
 
     def _growth(self, state: State, largest: float) -> float:
-        """They grow only where no maximum can be higher any more."""
-        return GROWTH if self._still_held(state) < largest else 1.0
+        """Return 1.2 where no maximum can be higher any more, else 1: pairs of longer moves detach prematurely."""
+        return 1.2 if self._remaining_tension(state) < largest else 1.0
 
 
 def _displacement_of(states: Sequence[State], force: float) -> float:
-    """Displacement [LU] of a force [FU] on a rising branch, through its two nearest load steps."""
+    """Return the displacement [LU] of a force [FU] on a rising branch, through its two nearest load steps."""
     near = sorted(states, key=lambda s: abs(s.force - force))[:2]
     if len(near) < 2 or near[0].force == near[1].force:
         return near[0].displacement

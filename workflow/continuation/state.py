@@ -15,7 +15,7 @@ from contact1d.workflow.scene import Scene
 
 
 def radius_rule(scene: Scene, tolerance: float) -> RadiusRule:
-    """The one of a scene; `tolerance` limits the residual of a pressure."""
+    """Return the rule for the contact radius of a scene; `tolerance` limits the residual of a pressure."""
     return law_of(scene).rule(scene)(scene.bodies, CALIBRATION.residual * tolerance)
 
 
@@ -32,15 +32,15 @@ class State:
         smallest_distance: between particles of opposite bodies, or of a particle from the plane [LU].
         depth: how far an upper particle lies below the lower surface [LU]; 0 where none does.
         residual: largest unbalanced force of a particle along a direction in which it may move [FU].
-        plate_x: position of the plate along x [LU], from where it is in system.data.
+        plate_x: position of the plate along x [LU], relative to that in system.data.
         step: LAMMPS timestep.
         pushed: force of other effects that presses the upper body onto the lower one [FU].
         plate_velocity: [LU/TU], 0 where the plate's position is prescribed.
         cantilever_force: [FU].
-        missing: force that LAMMPS adds up on the plate beside those that are known [FU]; None: it tells none.
+        missing: force that LAMMPS adds up on the plate beyond those that are known [FU]; None: not available.
         time: of a history [TU].
-        motion: of a slide, what `contact.MOTION` and `contact.HEAT` name.
-        number: of its row, over all phases.
+        motion: of a slide, the quantities of `contact.MOTION` and `contact.HEAT`.
+        number: of its load step, over all phases.
     """
 
     phase: str

@@ -21,14 +21,12 @@ from contact1d.workflow.scene import Impact, Scene
 
 Array = NDArray[np.float64]
 BRANCH_DISTANCE = 0.02
-"""Distance of two displacements over the whole path from which on a change is more than interpolation error."""
-BESIDE = 2
-"""Particles beside a contact that carry nothing: a radius is read between the last that carries and the next."""
+"""Least distance of two displacements over the whole path at which a change exceeds the interpolation error."""
 
 
 @dataclass(frozen=True)
 class Search:
-    """What the search for a force maximum leaves open.
+    """The uncertainty of a force maximum that is due to the search for it.
 
     Attributes:
         doubt: error of the maximum by source [FU].
@@ -41,13 +39,13 @@ class Search:
 
 @dataclass(frozen=True)
 class Perturbation:
-    """By how much a trace differs from what was measured.
+    """The difference of a trace from the measured one.
 
     Attributes:
         force: added, (m,) [FU].
-        radius_shift: by how many of its own uncertainties each radius is taken too large, (m,).
-        radius_factor: by which radii are taken larger.
-        moved: added to displacements, and lengths go along, (m,) [LU].
+        radius_shift: added to each radius, in multiples of its uncertainty, (m,).
+        radius_factor: by which radii are multiplied.
+        moved: added to displacements; lengths follow with their slope, (m,) [LU].
     """
 
     force: Array | float = 0.0
@@ -92,7 +90,7 @@ class Trace:
     perturbation: Perturbation = Perturbation()
 
     def __len__(self) -> int:
-        """How many states."""
+        """Return the number of states."""
         return len(self.displacement)
 
     @property
@@ -107,87 +105,90 @@ class Trace:
 
     @property
     def search(self) -> Search:
-        """That of the last leg, its bracket perturbed as the force of the last state is, which it holds."""
-        own = self.searches.get(int(self.leg[-1]), Search())
-        if own.bracket is None:
-            return own
-        shift = _of(self.perturbation.force, -1)
-        return replace(own, bracket=(own.bracket[0] - shift, own.bracket[1] - shift))
+        """The search on the last leg; its bracket is perturbed as the force of the last state."""
+        search = self.searches.get(int(self.leg[-1]), Search())
+        if search.bracket is None:
+            return search
+        shift = _value_at(self.perturbation.force, -1)
+        return replace(search, bracket=(search.bracket[0] - shift, search.bracket[1] - shift))
 
     @property
     def limit(self) -> float:
         """The first limit point below the first state [LU]; −inf where there is none."""
-        return max((one for one in self.model.limits if one < self.displacement[0]), default=-np.inf)
+        return max((limit for limit in self.model.limits if limit < self.displacement[0]), default=-np.inf)
 
     def radius(self, state: int) -> float | None:
-        """Contact radius [LU]; None where the bodies do not touch."""
+        """Return the contact radius of a state [LU]; None where the bodies do not touch."""
         return self.radius_or_spot(state) if self.contact(state) else None
 
     def radius_or_spot(self, state: int) -> float:
-        """The same; 0 where no particle is in tension."""
-        found = self._read(state)
-        value = found.value + self._further(state, lambda i: self._read(i).value)
-        if found.uncertainty == 0.0:  # a body that ends at an edge
+        """Return the contact radius of a state [LU]; 0 where no particle is in tension."""
+        radius = self._contact_or_spot(state)
+        value = radius.value + self._length_change(state, lambda i: self._contact_or_spot(i).value)
+        if radius.uncertainty == 0.0:  # a body that ends at an edge
             return value
-        return max(0.0, self.perturbation.radius_factor * (value + self.shift_of(state) * found.uncertainty))
+        return max(0.0, self.perturbation.radius_factor * (value + self.shift_of(state) * radius.uncertainty))
 
-    def _read(self, state: int) -> ContactRadius:
+    def _contact_or_spot(self, state: int) -> ContactRadius:
         return self.contact(state) or self.rule.or_spot(self.profile(state))
 
     def reach(self, state: int) -> float | None:
-        """How far an attraction goes beyond the contact, c [LU]; None where it ends with that."""
-        own = self.profile(state)
-        if not isinstance(own, ZonedProfile) or own.reach <= own.edge:
+        """Return the outer radius of the cohesive zone, c [LU]; None where the attraction ends with the contact."""
+        profile = self.profile(state)
+        if not isinstance(profile, ZonedProfile) or profile.reach <= profile.edge:
             return None
 
         def reach(i: int) -> float:
             return float(getattr(self.profile(i), "reach", 0.0))
 
-        return reach(state) + self._further(state, reach)
+        return reach(state) + self._length_change(state, reach)
 
-    def _further(self, state: int, length: Callable[[int], float]) -> float:
-        """How much larger a length [LU] is where a state is moved to."""
-        moved = _of(self.perturbation.moved, state)
+    def _length_change(self, state: int, length: Callable[[int], float]) -> float:
+        """Return the change of a length [LU] by the displacement that is added to a state."""
+        moved = _value_at(self.perturbation.moved, state)
         if not moved:
             return 0.0
         d = self.displacement - self.perturbation.moved
         return moved * (slope(d, state, length) or self.model.law.radius_rate(float(d[state])))
 
     def phases(self, *names: str) -> Trace:
-        """The states of these phases, "unloading_2" being one of "unloading"."""
+        """Return the states of these phases; "unloading_2" is a phase "unloading"."""
         return self.chosen(np.flatnonzero([name.partition("_")[0] in names for name in self.phase]))
 
     def shift_of(self, state: int) -> float:
-        """By how many of its uncertainties the radius of a state is taken too large."""
-        return _of(self.perturbation.radius_shift, state)
+        """Return the shift that is added to the radius of a state, in multiples of its uncertainty."""
+        return _value_at(self.perturbation.radius_shift, state)
 
     def falling(self) -> Trace:
-        """The states that are held, by falling displacement, each once, the last that was measured there."""
+        """Return the states in contact, by falling displacement; of several at one displacement the last measured."""
         _, last = np.unique(self.displacement[::-1], return_index=True)
         falling = (len(self) - 1 - last)[::-1]
-        limit = max((one for one in self.model.limits if one < self.displacement.max()), default=-np.inf)
+        limit = max((limit for limit in self.model.limits if limit < self.displacement.max()), default=-np.inf)
         return self.chosen(falling[self.displacement[falling] >= limit])
 
     def chosen(self, states: Sequence[int] | NDArray[np.intp]) -> Trace:
-        """The states of these numbers, in this order."""
-        at, own = np.asarray(states, dtype=np.intp), self.perturbation
-        parts = own.force, own.radius_shift, own.moved
-        force, shift, moved = (one if isinstance(one, float) else one[at] for one in parts)
+        """Return the states of these numbers, in this order."""
+        index, perturbation = np.asarray(states, dtype=np.intp), self.perturbation
+        parts = perturbation.force, perturbation.radius_shift, perturbation.moved
+        force, shift, moved = (part if isinstance(part, float) else part[index] for part in parts)
         return replace(
             self,
-            phase=tuple(map(self.phase.__getitem__, at.tolist())),
-            leg=self.leg[at],
-            displacement=self.displacement[at],
-            force=self.force[at],
-            along=self.along[at],
-            time=self.time[at],
-            perturbation=replace(own, force=force, radius_shift=shift, moved=moved),
-            profile=lambda i: self.profile(int(at[i])),
-            contact=lambda i: self.contact(int(at[i])),
+            phase=tuple(map(self.phase.__getitem__, index.tolist())),
+            leg=self.leg[index],
+            displacement=self.displacement[index],
+            force=self.force[index],
+            along=self.along[index],
+            time=self.time[index],
+            perturbation=replace(perturbation, force=force, radius_shift=shift, moved=moved),
+            profile=lambda i: self.profile(int(index[i])),
+            contact=lambda i: self.contact(int(index[i])),
         )
 
-    def again(self, scene: Scene, settings: Settings, model: Particles) -> dict[str, Array]:
-        """What is not prescribed of each state, on another model of the particles; a free motion is its own."""
+    def recomputed(self, scene: Scene, settings: Settings, model: Particles) -> dict[str, Array]:
+        """Return the columns that are not prescribed, (m,) each, on another model of the particles.
+
+        A free motion is computed anew, and interpolated at the times of the states.
+        """
         if self.given == "force":
             return {"displacement": model.displacements_under(self.time, self.force)[0]}
         if self.given:
@@ -195,7 +196,7 @@ class Trace:
         assert isinstance(scene.experiment, Impact)
         path = impact(scene, settings, model, scene.experiment.velocity)
         columns = {"force": model.follow(path).total, "displacement": path.displacement}
-        return {name: np.interp(self.time, path.time, one) for name, one in columns.items()}
+        return {name: np.interp(self.time, path.time, column) for name, column in columns.items()}
 
     def perturbed(
         self,
@@ -204,29 +205,29 @@ class Trace:
         radius_factor: float = 1.0,
         moved: Array | float = 0.0,
     ) -> Trace:
-        """With forces changed [FU], radii by multiples of their uncertainties and a factor, states moved [LU]."""
+        """Return the trace with other forces [FU], radii and displacements [LU]; see `Perturbation`."""
         changed = self.force + force
-        own = Perturbation(changed - self.force, radius_shift, radius_factor, moved)
-        return replace(self, displacement=self.displacement + moved, force=changed, perturbation=own)
+        perturbation = Perturbation(changed - self.force, radius_shift, radius_factor, moved)
+        return replace(self, displacement=self.displacement + moved, force=changed, perturbation=perturbation)
 
 
-def _of(values: Array | float, state: int) -> float:
-    """What a state has of values, (m,), or of one that all have."""
+def _value_at(values: Array | float, state: int) -> float:
+    """Return the value of a state, from values (m,) or from a number for all states."""
     return values if isinstance(values, float) else float(values[state])
 
 
 def slope(displacement: Array, state: int, value: Callable[[int], float], least: float = BRANCH_DISTANCE) -> float:
-    """dv/dd at a state, from the nearest other one that is farther than a share `least` of the whole path."""
-    away = np.abs(displacement - displacement[state])
-    others = np.flatnonzero(away > least * float(away.max()))
-    if others.size == 0:
+    """Return dv/dd at a state, from the nearest state that is farther than a share `least` of the whole path."""
+    distance = np.abs(displacement - displacement[state])
+    far = np.flatnonzero(distance > least * float(distance.max()))
+    if far.size == 0:
         return 0.0
-    near = int(others[np.argmin(away[others])])
+    near = int(far[np.argmin(distance[far])])
     return (value(near) - value(state)) / float(displacement[near] - displacement[state])
 
 
 def legs_by_phase(phases: Sequence[str]) -> NDArray[np.int64]:
-    """A leg for each phase, (m,)."""
+    """Return the number of the leg of each state, (m,), where each phase is a leg."""
     changes = [int(i > 0 and name != phases[i - 1]) for i, name in enumerate(phases)]
     return np.cumsum(changes, dtype=np.int64)
 
@@ -238,7 +239,7 @@ def of_states(
     searches: Mapping[int, Search] | None = None,
     time_step: float = 0.0,
 ) -> Trace:
-    """The trace of measured states; their radii are kept with them.
+    """Return the trace of measured states, which keep their radii.
 
     Args:
         states: in order.
@@ -266,20 +267,23 @@ def of_states(
 def of_model(
     phase: Sequence[str], leg: Sequence[int], path: Path, followed: Followed, rule: RadiusRule, model: Particles
 ) -> Trace:
-    """The trace of the reduced model along a path, with unloaded particles on both sides of the contact."""
+    """Return the trace of the reduced model along a path, with two unloaded particles on both sides of the contact.
+
+    A radius is read between the last particle that carries a load and the next.
+    """
     spacing = model.law.spacing
-    beside = spacing * np.arange(1, BESIDE + 1)
-    x = np.concatenate([followed.x[0] - beside[::-1], followed.x, followed.x[-1] + beside])
+    margin = spacing * np.arange(1, 3)
+    x = np.concatenate([followed.x[0] - margin[::-1], followed.x, followed.x[-1] + margin])
     none = np.zeros_like(x)
 
     def of_all(forces: Array) -> Array:
-        return np.concatenate([none[:BESIDE], forces, none[:BESIDE]]) / spacing
+        return np.pad(forces, margin.size) / spacing
 
     def profile(state: int) -> Profile:
         pressure = of_all(followed.force(state))
         shear = none if followed.shear is None else of_all(followed.shear(state))
         if followed.zone:
-            return ZonedProfile(x, none, none, pressure, shear, *(float(one[state]) for one in followed.zone))
+            return ZonedProfile(x, none, none, pressure, shear, *(float(column[state]) for column in followed.zone))
         return Profile(x, none, none, pressure, shear)
 
     return Trace(

@@ -22,54 +22,47 @@ from contact1d.workflow.model.settings import Settings, settings_for
 from contact1d.workflow.scene import Damping, Plate, Scene
 from contact1d.workflow.scene.remedies import against_passing, longer_chain
 
-END_SHARE_LIMIT = 1.0
-"""Pressure at a chain's end over the largest one, per unit of tolerance, from which on the chain cuts the contact."""
-RESIDUAL_LIMIT = 0.1
-"""Largest residual force of a particle over the force scale, per unit of tolerance, for a converged state."""
-SLOWNESS_RATIO = 10.0
-"""Timesteps to settle over those with automatic values from which on it is reported: seconds become minutes."""
-
 
 def require_trust(scene: Scene, settings: Settings, state: State, moving: bool = False) -> None:
-    """Refuse a state that is no result; one of a motion has to be at rest only where it is not looked at as `moving`.
+    """Refuse a state that is no result; it must be at rest unless the motion itself is examined (`moving`).
 
     Raises:
         UntrustedError: bodies that went through each other, particles not at rest, a contact that reaches the end of
             a chain.
     """
-    at = f"at displacement {state.displacement:.4g} LU (phase {state.phase})"
+    where = f"at displacement {state.displacement:.4g} LU (phase {state.phase})"
     if state.depth > 0.0:
         heat = " at this temperature" if scene.noise else ""
         raise ThroughError(
-            f"the bodies went through each other {at}: a particle lies {state.depth:.3g} LU below the opposite "
+            f"the bodies went through each other {where}: a particle lies {state.depth:.3g} LU below the opposite "
             f"surface. One layer of particles cannot carry this load{heat}",
             f"{_against_passing(scene)}lower the load or the displacement, or take a stronger repulsion",
             against_passing(scene),
         )
     if not (moving or scene.plate or scene.noise or is_converged(settings, state)):
-        residual, limit = apart(state.residual, RESIDUAL_LIMIT * settings.tolerance * settings.forces.scale, 2)
+        residual, limit = apart(state.residual, residual_limit(settings), 2)
         if scene.is_stepped:
             raise DigitsError(
-                f"the forces are too small to resolve {at}: the round-off error of a position corresponds to "
+                f"the forces are too small to resolve {where}: the round-off error of a position corresponds to "
                 f"{residual} FU, and a tolerance of {settings.tolerance:g} allows {limit} FU",
                 "use a larger load or displacement, or a larger [accuracy] tolerance",
             )
         raise UntrustedError(
-            f"not converged {at}: a particle has a residual force of {residual} FU, above the {limit} FU "
+            f"not converged {where}: a particle has a residual force of {residual} FU, above the {limit} FU "
             f"that a tolerance of {settings.tolerance:g} allows. Use "
             + ("more [damping]" if scene.method == "dynamic" else "a smaller load or smaller displacements")
             + ", or a larger [accuracy] tolerance"
         )
     if state.rule.is_cut(state.profile):
         raise ChainEndError(
-            f"the contact reaches the end of the chain {at}",
+            f"the contact reaches the end of the chain {where}",
             f"use {_more_particles(scene, settings)}, or a smaller load",
             longer_chain(scene),
         )
 
 
 def _against_passing(scene: Scene) -> str:
-    """What else keeps particles from passing each other; "" where there is nothing."""
+    """Return what else the user can do against particles that pass each other; "" for nothing."""
     cooler = f"lower noise.temperature from {scene.temperature:g} FU·LU, " if scene.noise else ""
     if not scene.horizontal or scene.experiment.motion_is_result:  # a slide needs it
         return cooler
@@ -77,15 +70,20 @@ def _against_passing(scene: Scene) -> str:
 
 
 def _more_particles(scene: Scene, settings: Settings) -> str:
-    """Which number to increase: that of the upper chain, if given."""
+    """Return the number of particles to increase: that of the upper chain, if the scene gives it."""
     if scene.bodies.upper_particles is not None:
         return f"more bodies.upper_particles than {settings.chains.upper}, or leave it out"
     return f'more bodies.particles than {settings.chains.upper} (or "auto")'
 
 
+def residual_limit(settings: Settings, share: float = 0.1) -> float:
+    """Return the largest residual force of a particle in a converged state [FU], a share of the tolerance."""
+    return share * settings.tolerance * settings.forces.scale
+
+
 def is_converged(settings: Settings, state: State) -> bool:
-    """Whether the residual force on every particle is below RESIDUAL_LIMIT."""
-    return state.residual <= RESIDUAL_LIMIT * settings.tolerance * settings.forces.scale
+    """Return whether the residual force on every particle is within `residual_limit`."""
+    return state.residual <= residual_limit(settings)
 
 
 def require_no_contradiction(settings: Settings, tension: float, uncertainty: float, states: Iterable[State]) -> None:
@@ -103,8 +101,8 @@ def require_no_contradiction(settings: Settings, tension: float, uncertainty: fl
             )
 
 
-def _cut(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[str, str]:
-    """A warning where a chain ends too near to its contact."""
+def _chain_end(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[str, str]:
+    """Return a warning where a chain ends too near to its contact."""
     share = max(end_pressure_share(state.profile) for state in states)
     ends = reflected(scene, settings.law, settings.largest_displacement, settings.chains.upper)
     if ends > settings.tolerance:
@@ -113,7 +111,7 @@ def _cut(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[st
             f"{settings.chains.upper} particles ends so near to the contact that up to {ends:.1g} of it is reflected "
             "by its end"
         )
-    elif share > END_SHARE_LIMIT * settings.tolerance:
+    elif share > settings.tolerance:
         why = (
             f"the outermost particles carry up to {share:.2g} of the largest pressure, so the chain of "
             f"{settings.chains.upper} particles truncates the contact"
@@ -124,19 +122,19 @@ def _cut(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[st
 
 
 def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[str, str]:
-    """Named warnings about states that are results, but limited ones."""
-    found = _cut(scene, settings, states) if states[0].rule.ends_with_chain else {}
+    """Return warnings, by name, about what limits the accuracy of states that are results."""
+    warnings = _chain_end(scene, settings, states) if states[0].rule.ends_with_chain else {}
     share = settings.forces.share(scene)
     if share > settings.tolerance:
-        found["cutoff"] = (
+        warnings["cutoff"] = (
             f"the truncation error of the interaction (a cutoff of {settings.forces.cutoff:.3g} LU, its table near "
             f"zero distance, or the finite stiffness of the plane) changes a force by up to "
             f'{share:.1g} of it, and the radii with it: use a longer interaction.cutoff, or "auto", or a smaller load'
         )
     if slow := slowness(scene, settings):
-        found["slow"] = slow
+        warnings["slow"] = slow
     if settings.law.snaps and not scene.experiment.history_is_given:
-        found["snaps"] = (
+        warnings["snaps"] = (
             "the gradient of a pair's attraction exceeds the stiffness of its springs, so that pairs snap in and snap "
             "out: there are several equilibria under one load, and the loading history decides which one is reached. "
             "The uncertainties hold for this history; another preload or method may end in another "
@@ -146,47 +144,50 @@ def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[
     closest, forces = min(state.smallest_distance for state in states), settings.forces
     if forces.table is not None and closest < forces.table_from:
         error = forces.table.error_beyond(max(closest, forces.table.core))
-        found["table_core"] = (
+        warnings["table_core"] = (
             f"opposite particles came as close as {closest:.3g} LU; the table was made for {forces.table_from:.3g} "
             f"LU and beyond, and its error is {error:.1e} FU there"
         )
-    return found
+    return warnings
 
 
-def slowness(scene: Scene, settings: Settings) -> str:
-    """The reason why the scene is slow; empty where it is not, or where the motion itself is studied (a slide)."""
+def slowness(scene: Scene, settings: Settings, least: float = 10.0) -> str:
+    """Return why relaxation is at least `least` times slower than with automatic values: seconds become minutes.
+
+    Empty where it is not, or where the motion itself is studied (a slide).
+    """
     if scene.method != "dynamic" or not scene.damping or scene.experiment.motion_is_result:
         return ""
     plate = Plate(free=scene.plate.free) if scene.plate else None
-    same = scene.model_copy(update={"damping": Damping(coefficient="auto"), "plate": plate})
-    if same == scene:
+    automatic = scene.model_copy(update={"damping": Damping(coefficient="auto"), "plate": plate})
+    if automatic == scene:
         return ""
-    automatic = settings_for(same, settings.tolerance)
-    times = _steps(scene, settings) / _steps(same, automatic)
-    if times < SLOWNESS_RATIO:
+    usual = settings_for(automatic, settings.tolerance)
+    times = _steps(scene, settings) / _steps(automatic, usual)
+    if times < least:
         return ""
-    drag, usual = (_drag(s, c) for s, c in ((scene, settings), (same, automatic)))
     return (
-        f"a total drag of {drag:.3g} FU·TU/LU on {_mass(scene, settings):.3g} MU, in place of the automatic "
-        f"{usual:.3g} FU·TU/LU on {_mass(same, automatic):.3g} MU, makes relaxation under a load about {times:.0f} "
+        f"a total drag of {_drag(scene, settings):.3g} FU·TU/LU on {_mass(scene, settings):.3g} MU, in place of the "
+        f"automatic {_drag(automatic, usual):.3g} FU·TU/LU on {_mass(automatic, usual):.3g} MU, makes "
+        f"relaxation under a load about {times:.0f} "
         'times slower: use "auto" for [damping] coefficient and [plate] mass and damping, unless the motion itself '
         "is studied"
     )
 
 
 def _mass(scene: Scene, settings: Settings) -> float:
-    """What moves [MU]: plate and upper particles, or without a plate each particle by itself."""
-    alone = scene.bodies.mass
-    return settings.motion.plate_mass + settings.chains.upper * alone if scene.plate else alone
+    """Return the moving mass [MU]: of plate and upper particles, or without a plate of each particle."""
+    particle = scene.bodies.mass
+    return settings.motion.plate_mass + settings.chains.upper * particle if scene.plate else particle
 
 
 def _drag(scene: Scene, settings: Settings) -> float:
-    """Drag on that [FU·TU/LU]."""
+    """Return the drag on the moving mass [FU·TU/LU]."""
     return settings.drag() if scene.plate else settings.motion.damping
 
 
 def _steps(scene: Scene, settings: Settings) -> float:
-    """Timesteps of T; the settling time is 2π √(M/K)."""
+    """Return the timesteps of a relaxation; the settling time is 2π √(M/K)."""
     mass, drag = _mass(scene, settings), _drag(scene, settings)
     stiffness = mass * (2.0 * math.pi / settings.motion.settle_time) ** 2
     return max(2.0 * mass / drag, drag / stiffness) / settings.motion.time_step

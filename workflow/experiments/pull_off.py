@@ -13,7 +13,7 @@ from contact1d.analysis.polynomial import through
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.holding import held_phase, overshoot
-from contact1d.workflow.continuation.load_control import FEWEST_HELD, SPREAD, top_of
+from contact1d.workflow.continuation.load_control import top_of
 from contact1d.workflow.continuation.marks import unloading
 from contact1d.workflow.continuation.outcome import Outcome, Reading
 from contact1d.workflow.continuation.trace import Trace
@@ -200,16 +200,15 @@ def _critical_radius(rested: Trace) -> Reading:
 
     The radius is a parabola through the last three states, the error the change with a parabola for the force.
     """
-    count = min(FEWEST_HELD, len(rested))
+    few, margin = 4, 2.0  # error over the change with one state less
+    count = min(few, len(rested))
     chosen = np.arange(len(rested) - count, len(rested))
     d, force = rested.displacement[chosen], rested.force[chosen]
-    tops = (
-        [top_of(d[-few:], force[-few:]) for few in (FEWEST_HELD, FEWEST_HELD - 1)] if count == FEWEST_HELD else [None]
-    )
+    tops = [top_of(d[-used:], force[-used:]) for used in (few, few - 1)] if count == few else [None]
     last = rested.radius_or_spot(int(chosen[-1]))
     if any(top is None for top in tops) or any(rested.radius(int(i)) is None for i in chosen[1:]):
         return Reading(last, LENGTH, {"sampling": last})
     d, radii = d[1:], np.asarray([rested.radius_or_spot(int(i)) for i in chosen[1:]])
     width = float(np.ptp(d))
     radius, coarser = (float(through((d - top[0]) / width, radii)[0]) for top in tops if top is not None)
-    return Reading(radius, LENGTH, {"sampling": SPREAD * abs(radius - coarser)})
+    return Reading(radius, LENGTH, {"sampling": margin * abs(radius - coarser)})

@@ -13,7 +13,7 @@ from typing import ClassVar
 
 from contact1d.analysis.friction import FEWEST_PERIODS
 from contact1d.digits import apart
-from contact1d.workflow.continuation.contact import TOLD, Contact
+from contact1d.workflow.continuation.contact import HEAT_FRAGMENT, Contact
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.holding import MOST_HOLDS, Start, at_rest, hold, hold_row
 from contact1d.workflow.continuation.outcome import Outcome
@@ -129,7 +129,7 @@ class ThermalSlide(SlideExperiment):
     """A slide under noise: it begins when the contact has forgotten its start, and its heat baths are measured."""
 
     is_statistical = True
-    start = ("steps/drive", TOLD)
+    start = ("steps/drive", HEAT_FRAGMENT)
 
     def loading(self, scene: Scene, settings: Settings, force: float) -> Phase:
         """Return the phase of the run-in under the normal force [FU]."""
