@@ -23,8 +23,8 @@ PRONOUNS = frozenset(
 POINTS_ELSEWHERE = re.compile(
     r"(the same|see |as above|likewise|ditto|both ways|of (it|them|these|those)\b)", re.IGNORECASE
 )
-MOST = {"constants": 250, "pronouns": 30, "short docstrings": 0, "docstrings that point elsewhere": 0,
-        "functions without a docstring": 216, "long functions": 0}  # fmt: skip
+MOST = {"constants": 145, "pronouns": 0, "short docstrings": 0, "docstrings that point elsewhere": 0,
+        "functions without a docstring": 180, "long functions": 0}  # fmt: skip
 LONGEST = 60
 
 
