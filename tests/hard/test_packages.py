@@ -79,7 +79,7 @@ def checked_in(*folders: str) -> list[str]:
 
 
 def test_both_hold_every_file_of_the_installed_folders_and_no_other(built: dict[str, Path]) -> None:
-    package = [name for name in checked_in("src/contact1d") if name.endswith(".py")]
+    package = [name for name in checked_in("src/contact1d") if name.endswith((".py", ".typed"))]
     source = {*checked_in(*FOLDERS), *package}
     installed = {"contact1d/" + name.removeprefix("src/contact1d/") for name in source}
     assert {name for name in files_of(built["wheel"]) if ".dist-info/" not in name} == installed
