@@ -163,7 +163,10 @@ def stick_slip(
 
 
 def _bars(x: Array, load: Array, first: NDArray[np.bool_], names: tuple[str, str] = ("", "")) -> Iterator[Series]:
-    """Yield the bars of all particles, half-way to their neighbours, the `first` ones and the others in two colours."""
+    """Yield two outlines of bars, of the line load [FU/LU] of the `first` particles and of the others, in two colours.
+
+    A bar reaches half-way to the neighbours of its particle at x [LU].
+    """
     edges = np.repeat(np.concatenate([x[:1], (x[1:] + x[:-1]) / 2.0, x[-1:]]), 2)
     for zone, name, colour in zip((first, ~first), names, (COMPRESSION, TENSION), strict=True):
         yield Series(edges, np.pad(np.repeat(np.where(zone, load, 0.0), 2), 1), name, colour, FILL)

@@ -127,7 +127,9 @@ def body_pressures(
 
 
 def _pressure(state: LoadedState, share: float, given: float, most: int = 1000) -> BodyPressure | None:
-    """Return p(r) of a state; None where too few particles touch, or they are not symmetric.
+    """Return p(r) [FU/LU²] of the axisymmetric body from the line load of a state, with its uncertainty.
+
+    None where too few particles touch, or they are not symmetric.
 
     Args:
         state: the line load of the state.

@@ -135,7 +135,11 @@ def beyond_jkr(sphere: MaugisDugdale, assumed: bool) -> str:
 
 
 def _tabor(case: Case) -> Iterator[Check]:
-    """Yield the check of the Tabor parameter of an adhesive sphere with a range."""
+    """Yield the check that the Tabor parameter of an adhesive sphere is one of JKR.
+
+    Without a range in the scene that of a typical attraction is assumed, and the check may fail; a law with a range
+    holds for any Tabor parameter.
+    """
     sphere = case.with_range
     if sphere is not None and case.scene.work_of_adhesion:
         message = "" if case.law.range_of(case.scene, 0.0) else beyond_jkr(sphere, True)

@@ -132,7 +132,10 @@ def contact_curve(scene: Scene) -> tuple[Array, Array, Array]:
 
 
 def contact_radius(scene: Scene) -> float:
-    """Return the contact radius [LU] in which particles are counted: under the load, at F = 0 for a pull-off.
+    """Return the contact radius [LU] in which particles are counted, by the closed theory of the body, without a run.
+
+    It is that under the load, at the largest prescribed displacement, where an impact turns, or at F = 0 for a
+    pull-off.
 
     Raises:
         SettingsError: the bodies do not touch.

@@ -166,7 +166,10 @@ def hertz(body: Body, modulus: float, work: float, reach: float) -> Branch:
 
 
 def dmt(body: Body, modulus: float, work: float, reach: float) -> Branch:
-    """Return the branch of the DMT contact, to whose load adhesion of long range adds 2πWR."""
+    """Return the branch of the DMT contact: a and d [LU] of Hertz, and F = F_Hertz − 2πWR [FU], compression positive.
+
+    The attraction is outside of the contact; its `reach` does not matter.
+    """
     assert body.radius is not None
     branch = hertz(body, modulus, work, reach)
     return replace(branch, forces=branch.forces - 2.0 * math.pi * work * body.radius)

@@ -175,7 +175,9 @@ def jkr_target(contact_modulus: float, surface_energy: float, radius: float) -> 
 
 
 def estimated(scene: Scene, target: Target) -> Scene:
-    """Return the scene with the interaction for which independent pairs reach the target, without a run.
+    """Return the scene with amplitudes and ranges scaled so that F_A [FU] and a₀ [LU] are the target, without a run.
+
+    F_A and a₀ are those of the predictor, whose pairs of particles are independent.
 
     Raises:
         IdentifyError: no interaction of this shape has the target.

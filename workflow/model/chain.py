@@ -100,7 +100,11 @@ def decay_length(scene: Scene) -> float:
 
 
 def reflected(scene: Scene, estimate: Law, largest: float, particles: int) -> float:
-    """Return the share of a displacement that the end of the chain, L from the contact edge, reflects: exp(−2 L/ℓ)."""
+    """Return the share of a displacement that the end of the chain reflects, exp(−2 L/ℓ); 0 without neighbours.
+
+    L is the distance [LU] of the end from the edge of the contact at the displacement `largest` [LU], with an
+    attraction from the largest tension, and ℓ the decay length [LU].
+    """
     decay = decay_length(scene)
     beyond = 0.5 * particles * scene.bodies.spacing - _edge(estimate, largest)
     return math.exp(-2.0 * max(beyond, 0.0) / decay) if decay > 0.0 else 0.0

@@ -201,7 +201,10 @@ def _smallest_digit(z: tuple[float, ...]) -> float:
 
 @lru_cache(maxsize=8)
 def _rough_curve(r: tuple[float, ...], z: tuple[float, ...], corners: bool) -> Any:
-    """Return the curve through the points, straight in rough cells, or with a corner there."""
+    """Return the height above the apex [LU] over r [LU], a `PPoly`: monotone cubics, and chords in rough cells.
+
+    Rough cells show no smooth curve (`_is_rough`). With `corners` the chords of both sides go on up to where they meet.
+    """
     spline = _spline(r, z)
     x, y = _with_chord_corners(r, z) if corners else (np.asarray(r), np.asarray(z) - z[0])
     radii = np.union1d(spline.x, x)
