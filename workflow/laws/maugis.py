@@ -22,6 +22,7 @@ from contact1d.workflow.laws.dugdale import DOUBLINGS, Dugdale, Zone, covered
 from contact1d.workflow.laws.jkr import POINTS, Jkr
 from contact1d.workflow.laws.numerics import ROUND_OFF
 from contact1d.workflow.laws.path import Path, legs
+from contact1d.workflow.laws.radius import WithRange
 from contact1d.workflow.laws.shape import Profile, Splined, beside_kinks
 from contact1d.workflow.laws.zoned import Zoned, ZonedCells
 from contact1d.workflow.scene import Adhesion, Scene
@@ -45,6 +46,7 @@ class Maugis(Zoned):
     """
 
     table = Splined
+    rules = (WithRange, WithRange)
     closed_forms = ("adhesive", "zone", "dmt")
     exact = ("zone",)
 

@@ -90,6 +90,10 @@ class Given(RadiusRule):
         """Return whether the attraction reaches the end of the chain."""
         return bool(profile.pressure[-1] != 0.0)
 
+
+class WithRange(Given):
+    """Contact with an attraction beyond its edge, both as the law computes them for each state."""
+
     def lengths(self, profile: Profile) -> Mapping[str, float]:
         """Return the radius c [LU] up to which the attraction acts, as `cohesive_radius`."""
         return {"cohesive_radius": profile.reach} if isinstance(profile, ZonedProfile) else {}
