@@ -44,7 +44,9 @@ lowest: $(READY) ## test what reads scenes and writes decks with the lowest vers
 		wanted = [*project["dependencies"], *project["optional-dependencies"]["test"][:3], "click>=8.1.8"]; \
 		print(*(re.sub(">=([0-9.]+).*", r"==\1", one) for one in wanted), sep="\n")' > .lowest/versions.txt
 	@.lowest/bin/python -m pip install -qq --disable-pip-version-check -r .lowest/versions.txt
-	@.lowest/bin/python -m pip install -qq --disable-pip-version-check --no-deps -e .
+	@# The wheel is built with the locked tools: the build backend needs newer packages than the program does.
+	@rm -f .lowest/*.whl && $(BIN)/python -m pip wheel -qq --disable-pip-version-check --no-deps --no-build-isolation -w .lowest .
+	@.lowest/bin/python -m pip install -qq --disable-pip-version-check --no-deps --force-reinstall .lowest/*.whl
 	@OPENBLAS_NUM_THREADS=1 .lowest/bin/python -m pytest -q -n auto tests/unit/test_scene*.py tests/unit/test_fit.py \
 		tests/unit/test_quantities.py tests/unit/test_wrong_inputs.py tests/unit/test_states.py tests/decks
 
