@@ -80,6 +80,6 @@ $(LOCKED): requirements.lock
 	@pwd -P > $@
 
 $(READY): $(LOCKED) pyproject.toml
-	@$(BIN)/python -m pip install -qq --disable-pip-version-check --no-deps -e .
+	@$(BIN)/python -m pip install -qq --disable-pip-version-check --no-deps --no-build-isolation -e .
 	@$(BIN)/python -m compileall -q src workflow analysis potentials  # nor does the first command wait for it
 	@touch $@

@@ -13,13 +13,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-PRONOUNS = frozenset(
-    re.split(
-        "[ ]",
-        "found one ones own at other others beside said it its them that there here such same so all both each what "
-        "which way told",
-    )
-)
+PRONOUNS = {
+    "found", "one", "ones", "own", "at", "other", "others", "beside", "said", "it", "its", "them", "that", "there",
+    "here", "such", "same", "so", "all", "both", "each", "what", "which", "way", "told",
+}  # fmt: skip
 POINTS_ELSEWHERE = re.compile(
     r"(the same|see |as above|likewise|ditto|both ways|of (it|them|these|those)\b)", re.IGNORECASE
 )
