@@ -11,11 +11,11 @@ from typing import Any
 import pytest
 from hypothesis import settings
 
+from contact1d import Scene, read_scene
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.session import Engine, Session
 from contact1d.workflow.model.settings import settings_for
-from contact1d.workflow.scene import Scene, scene_from_dict
 from tests.approx import relative
 from tests.limits import LIMIT, SLOW_LIMIT, time_limit
 from tests.records import record_slow_tests
@@ -74,7 +74,7 @@ def make_scene() -> MakeScene:
 
     def make(**tables: Any) -> Scene:
         bodies = SMALL["bodies"] | tables.pop("bodies", {})
-        return scene_from_dict(SMALL | {"bodies": bodies} | tables)
+        return read_scene(SMALL | {"bodies": bodies} | tables)
 
     return make
 
@@ -84,7 +84,7 @@ def plane() -> MakeScene:
     """`plane(force=…)`: some particles on a rigid plane, the quickest run there is; keys are of its load."""
 
     def make(**experiment: Any) -> Scene:
-        return scene_from_dict(PLANE | {"experiment": {"kind": "load", "force": 0.5} | experiment})
+        return read_scene(PLANE | {"experiment": {"kind": "load", "force": 0.5} | experiment})
 
     return make
 

@@ -17,11 +17,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from contact1d import Run, Scene, read_scene
 from contact1d.analysis.curve import Columns, profile_columns
 from contact1d.analysis.pressure import Profile
-from contact1d.workflow.runs.finished import Results, Run, read_run
+from contact1d.workflow.runs.finished import Results, read_run
 from contact1d.workflow.runs.report import quantities_in
-from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.units import Quantity
 from validation.paper.fig9 import asperity
 
@@ -100,7 +100,7 @@ def _run(name: str, entry: dict[str, Any]) -> Run:
         profiles[state] = Profile(x, 0.0 * x, 0.0 * x, pressure, 0.0 * x)
     friction = {key: _numbers(column) for key, column in entry.get("friction", nothing).items()}
     curve = {key: np.asarray(columns[key]) if key == "branch" else _numbers(columns[key]) for key in COLUMNS}
-    scene = scene_from_dict(entry["scene"])
+    scene = read_scene(entry["scene"])
     tables = {"curve": Columns(curve | friction if scene.experiment.goes_along else curve)}
     tables |= {"profile": Columns(profile_columns(profiles))} if profiles else {}
     tables |= {"friction": Columns(friction)} if friction else {}

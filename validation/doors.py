@@ -52,8 +52,6 @@ from contact1d.workflow.scene import (
     SceneError,
     Slide,
     read_scene,
-    scene_from_dict,
-    scene_to_toml,
 )
 from contact1d.workflow.sweep.axes import points, read_sweep
 from contact1d.workflow.units import Quantity, rounded
@@ -97,7 +95,7 @@ def finish(scenes: Mapping[str, Scene], folder: Path, workers: int) -> None:
 @contextmanager
 def contact_of(tables: dict[str, Any], folder: Path, **motion: Any) -> Iterator[Contact]:
     """The contact of a scene, at displacement 0; numbers of its `motion` in place of the chosen ones."""
-    scene = scene_from_dict({"title": folder.name} | tables)
+    scene = read_scene({"title": folder.name} | tables)
     settings = settings_for(scene)
     deck = Deck(scene, replace(settings, motion=replace(settings.motion, **motion)))
     folder.mkdir(parents=True, exist_ok=True)

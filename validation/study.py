@@ -116,7 +116,7 @@ class Bench:
         folder = self.folder / name
         try:
             with at_most_seconds(self.patience):
-                checked = doors.scene_from_dict({"title": name} | dict(scene))
+                checked = doors.read_scene({"title": name} | dict(scene))
                 if (found := doors.finished(checked, folder)) is None:
                     doors.run(checked, folder, float(self.patience))
                     found = doors.finished(checked, folder)

@@ -12,9 +12,9 @@ from itertools import product
 from typing import Any, get_args
 from zlib import crc32
 
-from contact1d import read_scene
+from contact1d import Scene, SceneError, read_scene
 from contact1d.workflow.experiments import KINDS
-from contact1d.workflow.scene import EFFECTS, Profile, Scene, SceneError
+from contact1d.workflow.scene import EFFECTS, Profile
 from contact1d.workflow.scene.experiments import KINDS as TABLES
 from contact1d.workflow.scene.kinds import Method
 

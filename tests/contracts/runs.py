@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from contact1d import RunError, run
-from contact1d.workflow.runs.finished import Run
+from contact1d import Run, RunError, run
 from tests.contracts.members import MODEL, Combination, Q, Units, scene_of
 
 POWERS = {

@@ -15,12 +15,13 @@ from typing import Any
 
 import pytest
 
+from contact1d import Scene
 from contact1d.potentials.table import write_table
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.experiments import planned
 from contact1d.workflow.model.settings import Settings, settings_for
-from contact1d.workflow.scene import EFFECTS, Scene
+from contact1d.workflow.scene import EFFECTS
 
 MakeScene = Callable[..., Scene]
 

@@ -13,10 +13,10 @@ from pathlib import Path
 
 import pytest
 
+from contact1d import read_scene
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.experiments import planned
 from contact1d.workflow.model.settings import settings_for
-from contact1d.workflow.scene import read_scene
 
 ROOT = Path(__file__).parents[2]
 GOLDEN = Path(__file__).parent / "golden"

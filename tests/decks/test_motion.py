@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from contact1d import Scene, read_scene
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.engine.session import Session
 from contact1d.workflow.model.settings import settings_for
-from contact1d.workflow.scene import Scene, scene_from_dict
 from tests.scenes import LAW, chains
 from validation.references.interaction import Exponential, PairInteraction
 
@@ -43,7 +43,7 @@ STABLE = 1.0
 def timed(drag: float = DRAG, **tables: Any) -> Scene:
     """Two chains in time, whose plate bears no load."""
     bodies = {"particles": PARTICLES, "mass": MASS} | tables.pop("bodies", {})
-    return scene_from_dict(
+    return read_scene(
         chains(
             1000.0,
             STIFFNESS,

@@ -10,10 +10,9 @@ import ase.io
 import numpy as np
 import pytest
 
+from contact1d import Run, run
 from contact1d.analysis.atoms import atoms
 from contact1d.analysis.curve import read_states
-from contact1d.workflow.runs.campaign import run
-from contact1d.workflow.runs.finished import Run
 from tests.decks.test_run_folder import PLANE, READ, lmp
 from tests.decks.test_run_folder import SCENES as OTHERS
 from tests.scenes import chains

@@ -18,10 +18,8 @@ import pytest
 from numpy.typing import NDArray
 from typer.testing import CliRunner
 
-from contact1d.workflow.cli.app import app
-from contact1d.workflow.runs.campaign import run
-from contact1d.workflow.runs.finished import Run, load_run
-from contact1d.workflow.scene import scene_from_dict
+from contact1d import Run, load_run, read_scene, run
+from contact1d.__main__ import app
 
 Array = NDArray[np.float64]
 
@@ -96,7 +94,7 @@ SCENES: dict[str, dict[str, Any]] = {
 @pytest.fixture(scope="module", params=SCENES)
 def finished(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Run:
     """One run of each kind, shared by the tests of this file."""
-    scene = scene_from_dict({"title": request.param} | SCENES[request.param])
+    scene = read_scene({"title": request.param} | SCENES[request.param])
     return run(scene, tmp_path_factory.mktemp(request.param), figures=False)
 
 
@@ -268,7 +266,7 @@ def test_deck_of_a_shipped_scene_runs_under_lmp(name: str, tmp_path: Path) -> No
 def test_a_path_far_apart_stays_in_the_box(tables: dict[str, Any], far: float, tmp_path: Path) -> None:
     """No particle is lost, in the run or by `lmp`, and nothing pulls at that distance."""
     path = {"experiment": {"kind": "path", "displacements": [0.0, far]}}
-    finished = run(scene_from_dict({"title": "far"} | tables | path), tmp_path, figures=False)
+    finished = run(read_scene({"title": "far"} | tables | path), tmp_path, figures=False)
     assert finished.curve.displacement[-1] == pytest.approx(far, rel=1e-12)
     assert finished.curve.force[-1] == 0.0
     assert lmp(finished.folder).returncode == 0

@@ -16,8 +16,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from contact1d import Run, run
-from contact1d.workflow.scene import scene_from_dict
+from contact1d import Run, read_scene, run
 
 PARTICLES, DRAG, PLATE_DRAG, MASS, PLATE_MASS = 30, 0.3, 20.0, 1.0, 30.0
 STIFFNESS, VELOCITY, DISTANCE = 20.0, 0.05, 6.0
@@ -45,7 +44,7 @@ def sliding(**changes: Any) -> dict[str, Any]:
 
 @pytest.fixture(scope="module")
 def slid(tmp_path_factory: pytest.TempPathFactory) -> Run:
-    return run(scene_from_dict(sliding()), tmp_path_factory.mktemp("slide") / "run", figures=False)
+    return run(read_scene(sliding()), tmp_path_factory.mktemp("slide") / "run", figures=False)
 
 
 def test_the_cantilever_pulls_as_much_as_friction_and_drag_hold_back(slid: Run) -> None:

@@ -14,7 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from contact1d.workflow.engine.session import Engine, EngineError, Session
+from contact1d import EngineError
+from contact1d.workflow.engine.session import Engine, Session
 
 PAIR = """
 units           lj

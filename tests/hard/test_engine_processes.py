@@ -11,8 +11,9 @@ from pathlib import Path
 
 import pytest
 
+from contact1d import EngineError
 from contact1d.workflow.engine.process import stop_idle
-from contact1d.workflow.engine.session import Engine, EngineError
+from contact1d.workflow.engine.session import Engine
 
 ROOT = Path(__file__).parents[2]
 

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import Run, run
-from contact1d.workflow.scene import SceneError, scene_from_dict
+from contact1d import Run, SceneError, read_scene, run
 from validation.references.spring_sliders import SpringSliders
 
 LOAD, RADIUS, MU = 40.0, 1000.0, 0.3
@@ -31,7 +30,7 @@ def scene(places: Any, coefficient: float = MU, bodies: dict[str, Any] | None = 
 
 
 def finished(folder: Path, tables: dict[str, Any]) -> Run:
-    return run(scene_from_dict(tables), folder, figures=False)
+    return run(read_scene(tables), folder, figures=False)
 
 
 def value(run: Run, name: str) -> float:
@@ -123,7 +122,7 @@ def test_a_flat_punch_sticks_and_then_slips_as_a_whole(tmp_path: Path) -> None:
 def test_so_small_a_load_that_one_or_two_particles_carry_it(tmp_path: Path, count: Any, load: float) -> None:
     """Figures and all; each carries its share and gives as its spring and slider say."""
     tables = scene([0.1 * load, 2.0 * load, 1.5 * load], bodies={"particles": count}, normal_force=load)
-    done = run(scene_from_dict(tables), tmp_path)
+    done = run(read_scene(tables), tmp_path)
     touching = int((done.profiles["final"].pressure > 0.0).sum())
     expected = np.array([0.08 * touching, MU, max(MU - 0.4 * touching, -MU)]) * load
     assert touching == (1 if count == 3 else 2)
@@ -143,6 +142,6 @@ def test_so_small_a_load_that_one_or_two_particles_carry_it(tmp_path: Path, coun
 )
 def test_a_load_that_is_none_or_two_or_too_many_is_refused(load: dict[str, Any], words: str) -> None:
     with pytest.raises(SceneError) as caught:
-        scene_from_dict(scene([0.1, 0.2], **load))
+        read_scene(scene([0.1, 0.2], **load))
     assert words in str(caught.value)
     assert len(caught.value.problems) == 1

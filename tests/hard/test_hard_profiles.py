@@ -10,11 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import Run, RunError
+from contact1d import Run, RunError, read_scene, run
 from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.model.settings import settings_for
-from contact1d.workflow.runs.campaign import run
-from contact1d.workflow.scene import scene_from_dict
 from validation.references.interaction import Exponential, PairInteraction
 from validation.references.model import ChainModel
 from validation.references.pull_off import pull_off
@@ -49,7 +47,7 @@ def path(*displacements: float) -> dict[str, Any]:
 
 
 def done(folder: Path, data: dict[str, Any], figures: bool = False) -> Run:
-    return run(scene_from_dict(data), folder / "run", figures=figures)
+    return run(read_scene(data), folder / "run", figures=figures)
 
 
 def exact(finished: Run, heights: np.ndarray[Any, Any]) -> float:
@@ -118,7 +116,7 @@ def test_profile_narrower_than_three_particles_is_refused(reach: float, tmp_path
     with pytest.raises(SettingsError, match=f"ends at {reach:g} LU, .* a bodies.spacing below {reach / 1.5:g} LU"):
         done(tmp_path, tables(narrow, path(0.1)))
     for asked, spacing, found in (("auto", 0.999 * reach / 1.5, 4), (3, 0.999 * reach, 3)):
-        of = scene_from_dict(tables(narrow, path(0.1), spacing=spacing, particles=asked))
+        of = read_scene(tables(narrow, path(0.1), spacing=spacing, particles=asked))
         assert settings_for(of).chains.upper == found
 
 
@@ -178,7 +176,7 @@ def test_steep_and_nearly_flat_cones(slope: float, depth: float, reduction: str,
 
 def test_cone_so_flat_that_no_chain_is_long_enough_is_refused() -> None:
     with pytest.raises(SettingsError, match="particles per body, more than"):
-        settings_for(scene_from_dict(tables({"kind": "cone", "slope": 1e-9}, path(0.1))))
+        settings_for(read_scene(tables({"kind": "cone", "slope": 1e-9}, path(0.1))))
 
 
 def test_needle_touches_with_the_two_particles_at_its_apex(tmp_path: Path) -> None:

@@ -11,9 +11,8 @@ from typing import Any
 
 import pytest
 
-from contact1d import Run, run
+from contact1d import Run, Scene, read_scene, run
 from contact1d.workflow.continuation.outcome import Outcome
-from contact1d.workflow.scene import Scene, scene_from_dict
 
 TOLERANCE = 1e-4
 PLANE: dict[str, Any] = {
@@ -54,12 +53,12 @@ SCENES: dict[str, tuple[dict[str, Any], set[str]]] = {
 
 def done(tables: dict[str, Any], folder: Path, more: int | None = None) -> tuple[Scene, Run]:
     """The scene, with a given number of particles if `more` is one: that of the automatic chain and so many more."""
-    scene = scene_from_dict(tables)
+    scene = read_scene(tables)
     found = run(scene, folder / "auto", figures=False)
     if more is None:
         return scene, found
     count = len(found.outcome.states[0].profile.x) + more
-    scene = scene_from_dict(tables | {"bodies": tables["bodies"] | {"particles": count}})
+    scene = read_scene(tables | {"bodies": tables["bodies"] | {"particles": count}})
     return scene, run(scene, folder / "given", figures=False)
 
 

@@ -12,9 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import RunError
-from contact1d.workflow.runs.campaign import run
-from contact1d.workflow.scene import scene_from_dict
+from contact1d import RunError, read_scene, run
 from tests.pair_lattice import PairLattice
 from validation.references.interaction import Exponential, PairInteraction
 
@@ -50,7 +48,7 @@ def scene(tension: float) -> dict[str, Any]:
 @pytest.mark.parametrize("share", [0.99999, 1.00003])
 def test_within_the_tolerance_a_warning_says_so(tmp_path: Path, share: float) -> None:
     try:
-        found = run(scene_from_dict(scene(share * largest_tension())), tmp_path, figures=False)
+        found = run(read_scene(scene(share * largest_tension())), tmp_path, figures=False)
     except RunError as error:
         assert share > 1.0, error
         assert "does not sustain" in str(error)
@@ -60,11 +58,11 @@ def test_within_the_tolerance_a_warning_says_so(tmp_path: Path, share: float) ->
 
 def test_beyond_the_tolerance_it_parts(tmp_path: Path) -> None:
     with pytest.raises(RunError, match="does not sustain"):
-        run(scene_from_dict(scene((1.0 + 2.0 * TOLERANCE) * largest_tension())), tmp_path, figures=False)
+        run(read_scene(scene((1.0 + 2.0 * TOLERANCE) * largest_tension())), tmp_path, figures=False)
 
 
 @pytest.mark.parametrize("share", [0.5, 0.99, 0.9997])
 def test_well_below_nothing_is_doubted(tmp_path: Path, share: float) -> None:
     """The last within a tolerance of it, which a refinement, run because the displacement goes with a root, tells."""
-    found = run(scene_from_dict(scene(share * largest_tension())), tmp_path, figures=False)
+    found = run(read_scene(scene(share * largest_tension())), tmp_path, figures=False)
     assert "near_pull_off" not in {warning["name"] for warning in found.document["warnings"]}

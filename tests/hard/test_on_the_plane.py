@@ -9,10 +9,9 @@ from typing import Any
 
 import pytest
 
-from contact1d import RunError, run
+from contact1d import RunError, SceneError, read_scene, run
 from contact1d.analysis.theory.indenters import PowerLaw
 from contact1d.workflow.continuation import contact
-from contact1d.workflow.scene import SceneError, scene_from_dict
 from validation.references.indenters import jkr
 from validation.references.mdr import ReducedContact
 
@@ -50,7 +49,7 @@ def along(force: float, friction: float, *places: float) -> dict[str, Any]:
 def test_nothing_is_pulled_off_that_nothing_holds() -> None:
     tables = scene(adhesion={"surface_energy": 0.0}, experiment={"kind": "pull_off", "preload": 1.0})
     with pytest.raises(SceneError, match=r"adhesion\.surface_energy = 0\.0: must be greater than 0"):
-        scene_from_dict(tables)
+        read_scene(tables)
 
 
 @pytest.mark.parametrize("more", [{}, {"range": 0.1}])
@@ -232,5 +231,5 @@ def test_dashpots_on_a_table_are_those_of_the_paraboloid_that_it_samples(tmp_pat
     for name, profile in {"table": table, "formula": {"kind": "parabola", "radius": RADIUS}}.items():
         tables = scene(**more)
         tables["bodies"] |= {"profile": profile}
-        peaks.append(run(scene_from_dict(tables), tmp_path / name, figures=False).results["peak_force"])
+        peaks.append(run(read_scene(tables), tmp_path / name, figures=False).results["peak_force"])
     assert abs(peaks[0].value - peaks[1].value) <= peaks[0].uncertainty

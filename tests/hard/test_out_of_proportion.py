@@ -7,11 +7,10 @@ from typing import Any
 
 import pytest
 
+from contact1d import read_scene, run
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.model.settings import settings_for
-from contact1d.workflow.runs.campaign import run
-from contact1d.workflow.scene import read_scene, scene_from_dict
 from tests.scenes import chains
 
 SHIPPED = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
@@ -91,13 +90,13 @@ def test_a_spacing_of_nothing_is_refused_at_once() -> None:
 def test_it_is_refused_in_words_before_anything_runs(name: str, tmp_path: Path) -> None:
     tables, words = REFUSED[name]
     with pytest.raises(SettingsError, match=words):
-        run(scene_from_dict(tables), tmp_path / "run")
+        run(read_scene(tables), tmp_path / "run")
     assert not (tmp_path / "run").exists()
 
 
 def test_a_single_pair_under_a_steep_body_runs(tmp_path: Path) -> None:
     """Its ends rise to 7e7 LU, beyond all forces: the box has larger bins, and the pair is the closed form's."""
-    scene = scene_from_dict(
+    scene = read_scene(
         chains(1e-4, bodies={"particles": 61, "spacing": 4.0}, experiment={"kind": "load", "force": 0.3})
     )
     deck = Deck(scene, settings_for(scene))
@@ -121,7 +120,7 @@ def test_neighbours_a_million_times_stiffer_than_the_bulk_run_sideways(tmp_path:
         experiment={"kind": "path", "displacements": [0.0]},
         accuracy={"tolerance": 1e-2},
     )
-    scene = scene_from_dict(tables)
+    scene = read_scene(tables)
     done = run(scene, tmp_path / "run", figures=False)
     assert done.outcome.states[-1].residual < CLAIMED
     assert "bin_edge" in Deck(scene, settings_for(scene)).head

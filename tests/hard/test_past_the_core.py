@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from contact1d import read_scene
 from contact1d.workflow.model.chain import SettingsError
 from contact1d.workflow.model.settings import settings_for
-from contact1d.workflow.scene import scene_from_dict
 from tests.scenes import chains
 
 
@@ -14,4 +14,4 @@ from tests.scenes import chains
 def test_a_punch_says_how_much_it_carries(load: dict[str, object]) -> None:
     bodies = {"profile": {"kind": "flat_punch", "radius": 5.0}}
     with pytest.raises(SettingsError, match="exceeds what the repulsion"):
-        settings_for(scene_from_dict(chains(100.0, bodies=bodies, experiment=load)))
+        settings_for(read_scene(chains(100.0, bodies=bodies, experiment=load)))

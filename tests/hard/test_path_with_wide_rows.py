@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import run
-from contact1d.workflow.scene import scene_from_dict
+from contact1d import read_scene, run
 from tests.pair_lattice import PairLattice
 from validation.hard.cases import TENSION, PairCase, reach, shaped
 from validation.references.interaction import Exponential, PairInteraction
@@ -53,7 +52,7 @@ def scene(ratio: float, wide: float, method: str = "quasistatic") -> dict[str, A
 
 @pytest.mark.parametrize(("ratio", "wide"), [(1.2, 0.5), (1.2, 3.0), (6.0, 3.0)])
 def test_every_row_is_on_its_branch(tmp_path: Path, ratio: float, wide: float) -> None:
-    asked = scene_from_dict(scene(ratio, wide))
+    asked = read_scene(scene(ratio, wide))
     states = run(asked, tmp_path, figures=False).outcome.states
     pairs = PairLattice(LAW, float(asked.bulk_stiffness), asked.bodies.height(states[0].profile.x))
     stuck = pairs.stuck_after(DEEPEST)
@@ -78,7 +77,7 @@ def test_a_sharp_maximum_between_two_rows_is_within_the_claim(
     case = PairCase("rows", ratio, shaped(kind, particles, 1.5 * reach(ratio)), particles, TENSION, 1e-3)
     pairs = case.exact()
     way = {"from": -reach(ratio), "to": pairs.deepest(TENSION), "steps": steps}
-    scene = scene_from_dict({"title": "rows"} | case.scene() | {"experiment": {"kind": "path", "displacements": way}})
+    scene = read_scene({"title": "rows"} | case.scene() | {"experiment": {"kind": "path", "displacements": way}})
     found = run(scene, tmp_path / "run", figures=False).results.adhesion_force
     exact, _ = pairs.adhesion(TENSION)
     assert abs(found.value - exact) <= found.uncertainty

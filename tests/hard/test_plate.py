@@ -10,12 +10,11 @@ from typing import Any
 
 import pytest
 
-from contact1d import RunError, run
+from contact1d import RunError, Scene, read_scene, run
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.engine.session import Session
 from contact1d.workflow.experiments import planned
 from contact1d.workflow.model.settings import settings_for
-from contact1d.workflow.scene import Scene, scene_from_dict
 from tests.scenes import chains
 from validation.hard.cases import TENSION, PairCase, reach, shaped
 from validation.references.interaction import Exponential, PairInteraction
@@ -65,7 +64,7 @@ def test_a_plate_with_momentum_does_not_break_the_contact_too_early(tmp_path: Pa
         accuracy={"tolerance": 1e-2},
         experiment={"kind": "pull_off", "method": "dynamic", "preload": 0.5},
     )
-    finished = run(scene_from_dict(tables), tmp_path / "run", figures=False)
+    finished = run(read_scene(tables), tmp_path / "run", figures=False)
     law = PairInteraction(Exponential(*repulsion), Exponential(*attraction))
     model = ChainModel(finished.outcome.states[0].profile.x.size, 0.83, law, radius=50.0)
     exact = pull_off(model, 0.5, step=0.06).adhesion_force
@@ -78,10 +77,10 @@ def test_a_plate_that_swings_past_a_tooth_has_no_pull_off_force(tmp_path: Path) 
     """With little drag it loses pairs that it would have held: F_A is uncertain by more than half, and not reported."""
     case = PairCase("tooth", 1.5, shaped("parabola", 9, reach(1.5)), 9, 3.0 * TENSION, 1e-2, dynamic=True)
     tables = {"title": "tooth"} | case.scene()
-    drag = 0.1 * settings_for(scene_from_dict(tables)).motion.damping
+    drag = 0.1 * settings_for(read_scene(tables)).motion.damping
     tables |= {"damping": {"coefficient": drag}, "plate": {"damping": 0.0}}
     with pytest.raises(RunError, match=r"not reported.*adhesion_force \(± 0\.05"):
-        run(scene_from_dict(tables), tmp_path / "run", figures=False)
+        run(read_scene(tables), tmp_path / "run", figures=False)
 
 
 @pytest.mark.parametrize("mass", [1e-3, 0.1, 1e3])
@@ -90,7 +89,7 @@ def test_a_light_plate_and_a_heavy_one_come_to_rest_where_pairs_say(mass: float,
     case = PairCase("mass", 0.3, shaped("flat_punch", 10, 0.0), 10, 0.0, 1e-3, dynamic=True)
     load = 5.0 * TENSION
     tables = case.scene() | {"title": "mass", "plate": {"mass": mass}, "experiment": {"kind": "load", "force": load}}
-    found = run(scene_from_dict(tables), tmp_path / "run", figures=False).results.displacement
+    found = run(read_scene(tables), tmp_path / "run", figures=False).results.displacement
     exact = case.exact().deepest(load)
     assert abs(found.value - exact) <= found.uncertainty
     assert found.uncertainty <= 1e-2 * abs(exact)

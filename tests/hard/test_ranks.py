@@ -17,13 +17,12 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from contact1d import read_scene, run
-from contact1d.workflow.cli.app import app
+from contact1d import EngineError, read_scene, run
+from contact1d.__main__ import app
 from contact1d.workflow.engine import launcher
 from contact1d.workflow.engine.launcher import RanksError
 from contact1d.workflow.engine.process import stop_idle
-from contact1d.workflow.engine.session import Engine, EngineError
-from contact1d.workflow.scene import scene_to_toml
+from contact1d.workflow.engine.session import Engine
 from tests.scenes import chains
 from tests.slurm import slurm
 
@@ -217,7 +216,7 @@ def test_ranks_that_are_no_use_are_refused_before_anything_is_written(tmp_path: 
 
 def test_the_command_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "scene.toml"
-    file.write_text(scene_to_toml(read_scene(SCENES["load"])))
+    file.write_text(str(read_scene(SCENES["load"])))
     monkeypatch.setattr(launcher, "find_spec", lambda name: None)
     result = CliRunner().invoke(app, ["run", str(file), "--out", str(tmp_path / "out"), "--ranks", "2"])
     assert (result.exit_code, (tmp_path / "out").exists()) == (2, False)
@@ -228,11 +227,9 @@ def test_the_command_says_what_to_install(tmp_path: Path, monkeypatch: pytest.Mo
 @pytest.mark.parametrize("nodes", [1, 2])
 def test_in_a_job_of_slurm_the_ranks_have_its_nodes(tmp_path: Path, nodes: int) -> None:
     script, scene, said = tmp_path / "job.sh", tmp_path / "scene.toml", tmp_path / "said"
-    scene.write_text(scene_to_toml(read_scene(SCENES["load"])))
+    scene.write_text(str(read_scene(SCENES["load"])))
     here = run(SCENES["load"], tmp_path / "here", figures=False)
-    command = (
-        f"{sys.executable} -m contact1d.workflow.cli.app run {scene} --out {tmp_path}/there --no-figures --ranks 2"
-    )
+    command = f"{sys.executable} -m contact1d run {scene} --out {tmp_path}/there --no-figures --ranks 2"
     script.write_text(f"#!/bin/bash\n{command} >{said} 2>&1\n")
     with slurm(tmp_path / "slurm", nodes) as environment:
         job = ["sbatch", "--wait", "--ntasks=2", f"--nodes={nodes}", f"--output={tmp_path}/job.out", str(script)]

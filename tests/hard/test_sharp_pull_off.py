@@ -12,8 +12,7 @@ from typing import Any
 
 import pytest
 
-from contact1d import run
-from contact1d.workflow.scene import scene_from_dict
+from contact1d import read_scene, run
 from tests.pair_lattice import PairLattice
 from validation.references.interaction import Exponential, PairInteraction
 
@@ -51,7 +50,7 @@ CASES = [(profile, ratio, tolerance) for profile in PROFILES
 
 @pytest.mark.parametrize(("profile", "ratio", "tolerance"), CASES)
 def test_adhesion_force_is_within_its_claim(tmp_path: Path, profile: str, ratio: float, tolerance: float) -> None:
-    asked = scene_from_dict(scene(profile, ratio, tolerance))
+    asked = read_scene(scene(profile, ratio, tolerance))
     outcome = run(asked, tmp_path, figures=False).outcome
     heights = asked.bodies.height(outcome.states[0].profile.x)
     pairs = PairLattice(LAW, float(asked.bulk_stiffness), heights)

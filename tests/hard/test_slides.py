@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import RunError, SceneError, read_scene, run
+from contact1d import RunError, Scene, SceneError, read_scene, run
 from contact1d.workflow.deck.lattice import start_offset
 from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.runs.campaign import run as run_alone
-from contact1d.workflow.scene import Scene
 from validation.references.slide import Integrator
 from validation.slides import slide_model
 

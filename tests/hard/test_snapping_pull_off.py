@@ -12,9 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import run
+from contact1d import read_scene, run
 from contact1d.workflow.model.settings import settings_for
-from contact1d.workflow.scene import scene_from_dict
 from tests.pair_lattice import PairLattice
 from validation.hard.cases import TENSION, PairCase, reach, shaped
 from validation.references.interaction import Exponential, PairInteraction
@@ -65,7 +64,7 @@ CASES = [
 
 @pytest.mark.parametrize(("profile", "ratio"), CASES)
 def test_adhesion_force_is_that_of_the_highest_tooth(tmp_path: Path, profile: str, ratio: float) -> None:
-    asked = scene_from_dict(scene(profile, ratio))
+    asked = read_scene(scene(profile, ratio))
     outcome = run(asked, tmp_path, figures=False).outcome
     heights = asked.bodies.height(outcome.states[0].profile.x)
     pairs = PairLattice(LAW, float(asked.bulk_stiffness), heights)

@@ -10,10 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import RunError
+from contact1d import RunError, Scene, read_scene, run
 from contact1d.workflow.model.settings import settings_for
-from contact1d.workflow.runs.campaign import run
-from contact1d.workflow.scene import Scene, scene_from_dict
 from tests.scenes import LAW, chains
 from validation.references.interaction import Exponential, PairInteraction
 from validation.references.model import ChainModel
@@ -82,7 +80,7 @@ def carried(scene: Scene) -> tuple[float, float]:
 @cache
 def share(seed: int) -> float:
     """Largest force of a pair over its core's on the solver's way to the load of a random scene; infinite: too much."""
-    return carried(scene_from_dict(random_load(seed)))[1]
+    return carried(read_scene(random_load(seed)))[1]
 
 
 KINDS = {
@@ -102,7 +100,7 @@ def refused(seeds: Sequence[int], folder: Path, kind: str = "load", timed: bool 
         solvable += 1
         tables |= {"experiment": KINDS[kind](tables["experiment"]["force"])} | (IN_TIME if timed else {})
         try:
-            run(scene_from_dict(tables), folder / str(seed), figures=False)
+            run(read_scene(tables), folder / str(seed), figures=False)
         except RunError as error:
             failures[seed] = str(error)
     return solvable, failures
@@ -117,7 +115,7 @@ DIGITS = 2e-3
 def test_scenes_that_the_solver_carries_run(tmp_path: Path) -> None:
     assert share(8) == pytest.approx(SHARES[8], abs=DIGITS)
     for seed in SHARES:
-        assert run(scene_from_dict(random_load(seed)), tmp_path / str(seed), figures=False).status == "done"
+        assert run(read_scene(random_load(seed)), tmp_path / str(seed), figures=False).status == "done"
 
 
 def slowly(kind: str, seed: int) -> Any:
@@ -147,7 +145,7 @@ def test_pairs_that_snap_together_under_a_small_load_stay_in_front_of_each_other
     """A minimiser that moves particles by more than their distance leaves 0.8 of the core unused."""
     law = (0.07053748918211555, 0.11035901885810362, 0.14768431485963754, 0.27926018055122087)
     experiment = {"kind": "load", "force": 0.00495479304644468}
-    scene = scene_from_dict(
+    scene = read_scene(
         chains(60.108596439880785, 0.4050983890352833, law, accuracy={"tolerance": 1e-2}, experiment=experiment)
     )
     wanted, share = carried(scene)
@@ -165,7 +163,7 @@ def test_a_dynamic_path_comes_to_rest_where_pairs_snap(ratio: float, tmp_path: P
     tables = chains(100.0, stiffness, LAW, bodies={"particles": 60}, accuracy={"tolerance": 1e-2})
     forces = []
     for timed in ({}, {"damping": {"coefficient": "auto"}}):
-        scene = scene_from_dict(tables | timed | {"experiment": experiment})
+        scene = read_scene(tables | timed | {"experiment": experiment})
         states = run(scene, tmp_path / str(len(timed)), figures=False).outcome.states
         forces.append([state.force for state in states])
     if ratio < 1.0:

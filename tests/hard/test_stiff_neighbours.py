@@ -11,9 +11,8 @@ from typing import Any
 import pytest
 from scipy.optimize import brentq
 
-from contact1d import run
+from contact1d import read_scene, run
 from contact1d.workflow.model.settings import settings_for
-from contact1d.workflow.scene import scene_from_dict
 from validation.references.interaction import Exponential, PairInteraction
 from validation.references.model import ChainModel
 from validation.references.solver import ChainSolver
@@ -38,7 +37,7 @@ def scene(neighbours: float, particles: int | str = "auto") -> dict[str, Any]:
 
 @pytest.mark.parametrize("ratio", [0.3, 1000.0])
 def test_an_automatic_chain_is_long_enough(tmp_path: Path, ratio: float) -> None:
-    outcome = run(scene_from_dict(scene(0.83 * ratio)), tmp_path, figures=False).outcome
+    outcome = run(read_scene(scene(0.83 * ratio)), tmp_path, figures=False).outcome
     law = PairInteraction(Exponential(0.18, 0.13), Exponential(0.09, 0.26))
     longer = 2 * len(outcome.states[-1].profile.x)
     solver = ChainSolver(ChainModel(longer, 0.83, law, radius=200.0, neighbour_stiffness=0.83 * ratio))
@@ -51,10 +50,10 @@ def test_an_automatic_chain_is_long_enough(tmp_path: Path, ratio: float) -> None
 
 
 def test_a_given_chain_that_ends_too_soon_is_warned_of(tmp_path: Path) -> None:
-    outcome = run(scene_from_dict(scene(830.0, 60)), tmp_path, figures=False).outcome
+    outcome = run(read_scene(scene(830.0, 60)), tmp_path, figures=False).outcome
     assert "spread the load over 31.6 LU" in outcome.warnings["chain_end"]
 
 
 def test_soft_neighbours_make_no_chain_longer() -> None:
-    alone = scene_from_dict(ASKED)
-    assert settings_for(scene_from_dict(scene(0.3))).chains.upper == settings_for(alone).chains.upper
+    alone = read_scene(ASKED)
+    assert settings_for(read_scene(scene(0.3))).chains.upper == settings_for(alone).chains.upper

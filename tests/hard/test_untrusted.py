@@ -9,10 +9,8 @@ from typing import Any
 
 import pytest
 
-from contact1d import RunError
+from contact1d import RunError, Scene, read_scene, run
 from contact1d.workflow.model.settings import Settings
-from contact1d.workflow.runs.campaign import run
-from contact1d.workflow.scene import Scene, scene_from_dict
 from tests.scenes import LAW, chains
 from validation.references.interaction import Exponential, PairInteraction
 from validation.references.model import ChainModel
@@ -55,7 +53,7 @@ SLOW = {"through each other: too deep"}
 def test_no_number_comes_out(name: str, tmp_path: Path) -> None:
     scene, words = UNTRUSTED[name]
     with pytest.raises(RunError, match=words):
-        run(scene_from_dict(scene), tmp_path / "run", figures=False)
+        run(read_scene(scene), tmp_path / "run", figures=False)
     document = json.loads((tmp_path / "run" / "results.json").read_text())
     assert document["status"] == "failed"
     assert words in document["error"]["message"]
@@ -82,7 +80,7 @@ def test_a_time_step_that_explodes_is_no_result(tmp_path: Path, monkeypatch: pyt
     spoil(monkeypatch, "motion", time_step=50.0)
     scene = tables({"kind": "load", "force": 0.3, "method": "dynamic"}, plate={}, damping={"coefficient": "auto"})
     with pytest.raises(RunError, match=r"finite|left the box|went through|LAMMPS stopped"):
-        run(scene_from_dict(scene), tmp_path / "run", figures=False)
+        run(read_scene(scene), tmp_path / "run", figures=False)
     assert json.loads((tmp_path / "run" / "results.json").read_text())["status"] == "failed"
 
 
@@ -92,7 +90,7 @@ def test_a_run_that_takes_too_long_is_stopped(tmp_path: Path) -> None:
         damping={"coefficient": "auto"}, accuracy={"tolerance": 1e-6},
     )  # fmt: skip
     with pytest.raises(RunError, match="time limit"):
-        run(scene_from_dict(scene), tmp_path / "run", figures=False, time_limit=0.5)
+        run(read_scene(scene), tmp_path / "run", figures=False, time_limit=0.5)
     assert json.loads((tmp_path / "run" / "results.json").read_text())["status"] == "failed"
 
 
@@ -101,7 +99,7 @@ def doubts(results: dict[str, Any]) -> set[str]:
 
 
 def test_a_chain_that_cuts_the_tail_of_the_contact_gets_a_warning(tmp_path: Path) -> None:
-    results = run(scene_from_dict(tables(PULL, {"particles": 34})), tmp_path / "run", figures=False).document
+    results = run(read_scene(tables(PULL, {"particles": 34})), tmp_path / "run", figures=False).document
     assert results["status"] == "done"
     assert doubts(results) == {"chain_end"}
 
@@ -110,10 +108,10 @@ def test_particles_closer_than_the_table_was_chosen_for_get_a_warning(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     scene = tables({"kind": "path", "displacements": [0.0, 1.7]})  # one leap: the rows between are the program's
-    results = run(scene_from_dict(scene), tmp_path / "run", figures=False).document
+    results = run(read_scene(scene), tmp_path / "run", figures=False).document
     assert "table_core" not in doubts(results)
     spoil(monkeypatch, "forces", table_from=0.1)
-    results = run(scene_from_dict(scene), tmp_path / "run", figures=False).document
+    results = run(read_scene(scene), tmp_path / "run", figures=False).document
     assert "table_core" in doubts(results)
 
 
@@ -121,24 +119,24 @@ def test_atoms_that_fly_apart_are_no_result(tmp_path: Path, monkeypatch: pytest.
     spoil(monkeypatch, "motion", damping=1e4)  # over the time step it takes away many times the momentum that there is
     scene = tables({"kind": "load", "force": 0.3, "method": "dynamic"}, plate={}, damping={"coefficient": "auto"})
     with pytest.raises(RunError, match=r"left the box|missing"):
-        run(scene_from_dict(scene), tmp_path / "run", figures=False)
+        run(read_scene(scene), tmp_path / "run", figures=False)
     assert json.loads((tmp_path / "run" / "results.json").read_text())["status"] == "failed"
 
 
 def test_a_minimisation_that_is_cut_short_is_no_result(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("contact1d.workflow.deck.parts.MINIMISER_ITERATIONS", 1)
     with pytest.raises(RunError, match="not converged"):
-        run(scene_from_dict(tables({"kind": "path", "displacements": [0.3]})), tmp_path / "run", figures=False)
+        run(read_scene(tables({"kind": "path", "displacements": [0.3]})), tmp_path / "run", figures=False)
     assert json.loads((tmp_path / "run" / "results.json").read_text())["status"] == "failed"
 
 
 def test_a_failed_run_leaves_nothing_of_the_run_before(tmp_path: Path) -> None:
     """Numbers of an older run beside a failure would be taken for its results."""
-    scene = scene_from_dict(tables({"kind": "load", "force": 0.3}))
+    scene = read_scene(tables({"kind": "load", "force": 0.3}))
     run(scene, tmp_path / "run", figures=False)
     assert {"curve.csv", "profile.csv"} <= {path.name for path in (tmp_path / "run").iterdir()}
     with pytest.raises(RunError):
-        run(scene_from_dict(tables({"kind": "load", "force": -5.0})), tmp_path / "run", figures=False)
+        run(read_scene(tables({"kind": "load", "force": -5.0})), tmp_path / "run", figures=False)
     left = {path.name for path in (tmp_path / "run").iterdir()}
     assert not left & {"curve.csv", "profile.csv", "pressure.png"}
     assert json.loads((tmp_path / "run" / "results.json").read_text())["status"] == "failed"
@@ -158,7 +156,7 @@ def test_a_tension_is_held_up_to_the_adhesion_force_and_no_further(tmp_path: Pat
 
     def held(tension: float) -> float:
         scene = tables({"kind": "load", "method": method, "force": -tension}, **more)
-        return float(run(scene_from_dict(scene), tmp_path / "run", figures=False).document["force"]["value"])
+        return float(run(read_scene(scene), tmp_path / "run", figures=False).document["force"]["value"])
 
     below, above = (1.0 - NEAR[method]) * adhesion, (1.0 + NEAR[method]) * adhesion
     assert held(below) == pytest.approx(-below, rel=1e-3)  # the tolerance of the scene

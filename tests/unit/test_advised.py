@@ -9,11 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from contact1d import Contact1dError, RunError, load_run, read_scene, run
+from contact1d import Contact1dError, RunError, Scene, SceneError, load_run, read_scene, run
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.errors import SceneEdit, TensionError
 from contact1d.workflow.runs.advised import in_words
-from contact1d.workflow.scene import Scene, SceneError, scene_from_dict
 from contact1d.workflow.scene.remedies import less_compression
 from tests.scenes import STEEL_ON_GLASS, chains
 
@@ -52,7 +51,7 @@ def changed(scene: Scene, message: str) -> Scene:
 def test_message_names_a_change_with_which_the_scene_gives_a_result(
     tables: dict[str, object], tried: str, tmp_path: Path
 ) -> None:
-    scene, trials = scene_from_dict(tables), Trials()
+    scene, trials = read_scene(tables), Trials()
     if "particles=auto" in tried:
         scene = scene.with_({"experiment.preload": 1.0})
     with pytest.raises(RunError, match=f"Tried: {tried}") as caught:
@@ -73,7 +72,7 @@ def test_law_that_is_none_is_mended_by_trying(tmp_path: Path) -> None:
 
 def test_load_that_no_pair_carries_is_refused_at_once_and_what_failed_too_is_said(tmp_path: Path) -> None:
     """200 pairs of A/a = 1.38 FU each; half of that is not carried where particles may step aside."""
-    scene, trials = scene_from_dict(SIDEWAYS | {"experiment": {"kind": "load", "force": 1e6}}), Trials()
+    scene, trials = read_scene(SIDEWAYS | {"experiment": {"kind": "load", "force": 1e6}}), Trials()
     with pytest.raises(Contact1dError, match=r"about 276\.9 FU.*Tried without a result") as caught:
         run(scene.with_({"bodies.particles": 200}), tmp_path / "run", progress=trials)
     assert trials.count == 1
@@ -100,5 +99,5 @@ def test_an_error_and_its_changes_survive_pickling() -> None:
 
 
 def test_a_smaller_load_leaves_a_number_alone_that_happens_to_be_as_large() -> None:
-    scene = scene_from_dict(chains(1000.0, experiment={"kind": "pull_off", "preload": 1.0, "cycles": 1}))
+    scene = read_scene(chains(1000.0, experiment={"kind": "pull_off", "preload": 1.0, "cycles": 1}))
     assert list(less_compression(scene)) == [SceneEdit({"experiment.preload": 0.333})]

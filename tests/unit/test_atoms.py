@@ -7,10 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from contact1d import read_scene, run
 from contact1d.analysis.atoms import atoms
 from contact1d.analysis.curve import by_state, read_columns
-from contact1d.workflow.runs.campaign import run
-from contact1d.workflow.scene import scene_from_dict
 from tests.scenes import chains
 
 ROUND_OFF = 1e-13  # the same doubles, divided by the spacing in between
@@ -20,7 +19,7 @@ ROUND_OFF = 1e-13  # the same doubles, divided by the spacing in between
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     pull = {"kind": "pull_off", "preload": 0.2}
     tables = chains(50.0, bodies={"particles": 40}, accuracy={"tolerance": 1e-2}, experiment=pull)
-    return run(scene_from_dict(tables), tmp_path_factory.mktemp("run") / "small", figures=False).folder
+    return run(read_scene(tables), tmp_path_factory.mktemp("run") / "small", figures=False).folder
 
 
 def test_every_state_agrees_with_its_profile(folder: Path) -> None:

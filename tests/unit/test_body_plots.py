@@ -9,10 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import Run, run
+from contact1d import Run, read_scene, run
 from contact1d.analysis import figures, plots
 from contact1d.analysis.chart import Axis, Chart, Panel, Series
-from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.units import Scales, scale_of
 
 SCALES = Scales(2e-9, 3e-6)
@@ -98,7 +97,7 @@ def pressed(folder: Path, form: bool | str) -> Run:
         "material": {"contact_modulus": 55e9, "length_unit": 1e-6, "force_unit": 1.0},
         "experiment": {"kind": "load", "force": 1.0},
     }  # fmt: skip
-    return run(scene_from_dict(scene), folder, figures=form)
+    return run(read_scene(scene), folder, figures=form)
 
 
 @pytest.mark.parametrize("form", FORMATS)

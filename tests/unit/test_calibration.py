@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
+from contact1d import Scene
 from contact1d.workflow.model.calibration import CALIBRATION, FILE, Calibration, calibration_of
 from contact1d.workflow.model.settings import settings_for
-from contact1d.workflow.scene import Scene
 from validation.tools.calibration import (
     LADDERS,
     PART,

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 import contact1d
-from contact1d import Scene
+from contact1d import Scene, run, write_deck
 from contact1d.workflow.errors import FolderError, RunError
-from contact1d.workflow.runs.campaign import prepare, run, write_deck
+from contact1d.workflow.runs.campaign import prepare
 
 MakeScene = Callable[..., Scene]
 ALWAYS = {

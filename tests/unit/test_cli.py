@@ -14,7 +14,7 @@ import pytest
 from click.testing import Result
 from typer.testing import CliRunner
 
-from contact1d.workflow.cli.app import app
+from contact1d.__main__ import app
 
 ROOT = Path(__file__).parents[2]
 SCENE = """

@@ -16,15 +16,15 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
+from contact1d import EngineError, SceneError
+from contact1d.__main__ import app
 from contact1d.workflow.cli import ending
-from contact1d.workflow.cli.app import app
 from contact1d.workflow.engine.progress import Silent
-from contact1d.workflow.engine.session import EngineError
 from contact1d.workflow.errors import FolderError, RunError, SettingsError
 from contact1d.workflow.identify import IdentifyError
-from contact1d.workflow.scene import Problem, SceneError
+from contact1d.workflow.scene import Problem
 
-CONTACT1D = [sys.executable, "-m", "contact1d.workflow.cli.app"]
+CONTACT1D = [sys.executable, "-m", "contact1d"]
 SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 NOWHERE = Path("/nowhere/at/all")
 SMALL = 2000

@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner, Result
 
+from contact1d import Scene, read_scene
 from contact1d.workflow.cli.app import Kind, app
 from contact1d.workflow.cli.starter import DATA, starter, starter_scene
-from contact1d.workflow.scene import Scene, read_scene
 from contact1d.workflow.scene.quantities import keys_of, places
 from contact1d.workflow.scene.schema import meaning, schema_text
 

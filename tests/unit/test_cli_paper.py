@@ -12,7 +12,7 @@ import pytest
 from click.testing import Result
 from typer.testing import CliRunner
 
-from contact1d.workflow.cli.app import app
+from contact1d.__main__ import app
 
 ROUGH = 2e-2
 """Of the loose runs here, and of the two printed digits of the paper's units."""
@@ -26,7 +26,7 @@ def contact1d(*arguments: str | Path, cwd: Path) -> Result:
 
 def test_a_sphere_gets_a_scene_whose_run_is_jkrs(tmp_path: Path) -> None:
     command = [
-        sys.executable, "-m", "contact1d.workflow.cli.app", "identify", "--contact-modulus", "200e9",
+        sys.executable, "-m", "contact1d", "identify", "--contact-modulus", "200e9",
         "--surface-energy", "1", "--radius", "6.1e-6", "--tolerance", "0.01", "--out", "sphere",
     ]  # fmt: skip
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False)

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from contact1d import read_scene
 from contact1d.workflow.body.cases import Case
 from contact1d.workflow.body.theory import applying, theory
-from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.units import Quantity, Scales
 from tests.scenes import chains
 
@@ -42,7 +42,7 @@ def case(profile: str, experiment: dict[str, Any], **more: Any) -> Case:
     bodies = {"profile": PROFILES[profile], "spacing": 2.0} | plane | more.pop("bodies", {})
     tables = chains(R, 2.0 * E, experiment=experiment, **{"interaction": None} | more, bodies=bodies)
     found = {name: Quantity(F if name == "force" else 1.0, 0.0, "1") for name in NAMES[experiment["kind"]]}
-    return Case(scene_from_dict(tables), found)
+    return Case(read_scene(tables), found)
 
 
 def values(of: Case) -> dict[str, float]:
@@ -94,7 +94,7 @@ def test_jkr_beside_what_adheres() -> None:
     scene = chains(R, 2.0 * E, experiment=pulled, interaction=None,
                    bodies={"profile": PROFILES["parabola"], "spacing": 2.0, "lower": "rigid_plane"},
                    adhesion={"work_of_adhesion": work})  # fmt: skip
-    of = Case(scene_from_dict(scene), {})
+    of = Case(read_scene(scene), {})
     (form,) = applying(of)
     assert form.name == "JKR"
     said = form.values(of)
@@ -107,7 +107,7 @@ def test_jkr_beside_what_adheres() -> None:
     # Of a path the deepest state is reported, d = a²/R − √(2πaW/E*): not that without a load.
     deeper = 1.3 * a
     deepest = deeper**2 / R - math.sqrt(2.0 * math.pi * work * deeper / E)
-    path = scene_from_dict(scene | {"experiment": {"kind": "path", "displacements": [0.0, deepest]}})
+    path = read_scene(scene | {"experiment": {"kind": "path", "displacements": [0.0, deepest]}})
     central = 2.0 * E * deeper / (math.pi * R) - math.sqrt(2.0 * E * work / (math.pi * deeper))
     assert form.values(Case(path, {}))["central_pressure"] == pytest.approx(central, rel=1e-9)
 
@@ -132,7 +132,7 @@ def test_maugis_and_dugdale_beside_a_range() -> None:
         scene = chains(R, 2.0 * E, experiment={"kind": "pull_off", "preload": 2.0}, interaction=None,
                        bodies={"profile": PROFILES["parabola"], "spacing": 2.0, "lower": "rigid_plane"},
                        adhesion={"work_of_adhesion": work, "range": span})  # fmt: skip
-        of = Case(scene_from_dict(scene), {})
+        of = Case(read_scene(scene), {})
         jkr, maugis, *others = applying(of)
         assert maugis.name == "Maugis and Dugdale"
         assert [(one.name, one.values(of)["adhesion_force"] / (math.pi * work * R)) for one in others] == (

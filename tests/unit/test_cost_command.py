@@ -9,7 +9,7 @@ import pytest
 from click.testing import Result
 from typer.testing import CliRunner
 
-from contact1d.workflow.cli.app import app
+from contact1d.__main__ import app
 from contact1d.workflow.cost.report import CostRecord
 from tests.costs import read_record
 from tests.unit.test_cost import SCENES, SPACING, STEPS, TOLERANCE

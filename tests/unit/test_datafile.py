@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from contact1d import Scene
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.lattice import bodies
 from contact1d.workflow.deck.system import System, assemble, write_data, write_system
 from contact1d.workflow.engine.session import Session
 from contact1d.workflow.model.settings import settings_for
-from contact1d.workflow.scene import Scene
 
 MakeScene = Callable[..., Scene]
 OpenDeck = Callable[[Scene], tuple[Deck, Session]]

@@ -15,7 +15,6 @@ import pytest
 
 import contact1d
 from contact1d import Contact1dError, Scene, SceneError, load_run, read_scene, run
-from contact1d.workflow.scene import scene_to_toml
 from tests.scenes import STEEL_ON_GLASS
 
 MakeScene = Callable[..., Scene]
@@ -53,7 +52,7 @@ def test_every_error_for_a_person_has_one_base() -> None:
 
 def test_a_scene_comes_from_a_path_text_tables_or_a_scene(plane: MakeScene, tmp_path: Path) -> None:
     scene = plane()
-    text = scene_to_toml(scene)
+    text = str(scene)
     (tmp_path / "scene.toml").write_text(text)
     tables = scene.model_dump(by_alias=True)
     for source in (tmp_path / "scene.toml", str(tmp_path / "scene.toml"), text, tables, scene):

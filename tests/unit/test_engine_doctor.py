@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from contact1d import EngineError
 from contact1d.workflow.cli import doctor
 from contact1d.workflow.engine.process import stop_idle
-from contact1d.workflow.engine.session import Engine, EngineError
+from contact1d.workflow.engine.session import Engine
 
 
 def failed(checks: list[doctor.Check]) -> list[str]:

@@ -14,12 +14,12 @@ import pytest
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from contact1d import read_scene
 from contact1d.potentials import DoubleExponential, Exponential
 from contact1d.workflow.laws import Independent, Law, Maugis, law_of
 from contact1d.workflow.laws.law import NotCarriedError
 from contact1d.workflow.laws.pairs import of_pairs, on_plane, row_force
 from contact1d.workflow.laws.shape import Profile, Tabulated
-from contact1d.workflow.scene import scene_from_dict
 from tests.scenes import LAW, chains
 
 Array = NDArray[np.float64]
@@ -44,7 +44,7 @@ CUTOFF, REST, ROW = 4.0, PAIR.force_free_distance(), 0.8
 
 def body(shape: str) -> Profile:
     load = {"kind": "load", "force": 0.1}
-    return scene_from_dict(chains(1.0, bodies={"profile": SHAPES[shape], "spacing": ROW}, experiment=load)).bodies
+    return read_scene(chains(1.0, bodies={"profile": SHAPES[shape], "spacing": ROW}, experiment=load)).bodies
 
 
 def pairs(shape: str, stiffness: float = 0.7, points: int = 4000) -> Law:
@@ -229,7 +229,7 @@ def test_a_cone_lets_go_of_a_weak_attraction_without_a_jump(work: float, reach: 
     bodies = {"profile": SHAPES["cone"], "spacing": 0.2, "bulk_stiffness": 0.2, "lower": "rigid_plane"}
     adhesion = {"work_of_adhesion": work, "range": reach}
     pull = {"kind": "pull_off", "preload": 0.2}
-    scene = scene_from_dict(chains(1.0, bodies=bodies, adhesion=adhesion, interaction=None, experiment=pull))
+    scene = read_scene(chains(1.0, bodies=bodies, adhesion=adhesion, interaction=None, experiment=pull))
     estimate = law_of(scene).of(scene, scene.bodies)
     assert isinstance(estimate, Maugis)
     assert (4.0 * work / reach / math.pi > 0.2) == jumps

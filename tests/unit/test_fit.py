@@ -13,8 +13,8 @@ import pytest
 from typer.testing import CliRunner
 
 from contact1d import Contact1dError, SceneError, fit, fit_many
+from contact1d.__main__ import app
 from contact1d.workflow.body.cases import ASSUMED_RANGE
-from contact1d.workflow.cli.app import app
 from validation.references.force_curves import Sphere, measured, noise
 
 MODULUS, WORK, RADIUS = 2e6, 0.05, 5e-6

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 import contact1d.workflow.deck.fragments as fragments_module
+from contact1d import Scene
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.effects import EFFECTS, Contribution
 from contact1d.workflow.deck.effects.neighbours import neighbours
@@ -19,7 +20,6 @@ from contact1d.workflow.deck.fragments import DeckError, fragment
 from contact1d.workflow.deck.steps import Displace, Hold, Phase, UnderLoad
 from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import EFFECTS as SCENE_EFFECTS
-from contact1d.workflow.scene import Scene
 
 MakeScene = Callable[..., Scene]
 

@@ -10,10 +10,10 @@ from typing import Any
 
 import pytest
 
+from contact1d import SceneError
 from contact1d.workflow.identify import IdentifyError
 from contact1d.workflow.identify.choice import choose, theories_of
 from contact1d.workflow.identify.contact import KEYS, read_contact
-from contact1d.workflow.scene import SceneError
 from validation.references.maugis import LAMBDA_OVER_TABOR, marks
 
 ROUND_OFF = 1e-12

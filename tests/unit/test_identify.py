@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
+from contact1d import Scene, read_scene
 from contact1d.workflow.identify import IdentifyError, Target, identify, jkr_target, material_scene, require_reachable
-from contact1d.workflow.scene import Scene, scene_from_dict
 from tests.scenes import chains
 
 ROUND_OFF = 1e-13
@@ -27,7 +27,7 @@ def scene_of(profile: dict[str, Any] | None = None, experiment: dict[str, Any] |
     """A pull-off of R = 200 LU."""
     changed = bodies if profile is None else bodies | {"profile": profile}
     accuracy = {"tolerance": TOLERANCE}
-    return scene_from_dict(chains(200.0, law=LAW, bodies=changed, accuracy=accuracy, experiment=experiment or PULL))
+    return read_scene(chains(200.0, law=LAW, bodies=changed, accuracy=accuracy, experiment=experiment or PULL))
 
 
 # The target.
@@ -155,7 +155,7 @@ def test_search_ends_at_its_target_and_keeps_the_shape_of_the_law(tmp_path: Path
     force, radius = results["adhesion_force"]["value"], results["zero_load_radius"]["value"]
     assert force / target.adhesion_force - 1.0 == pytest.approx(found.deviations[0], abs=ROUND_OFF)
     assert radius / target.zero_load_radius - 1.0 == pytest.approx(found.deviations[1], abs=ROUND_OFF)
-    assert scene_from_dict(results["scene"]) == found.scene
+    assert read_scene(results["scene"]) == found.scene
     law = found.scene.interaction
     assert law is not None
     assert law.attraction is not None

@@ -10,10 +10,10 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
+from contact1d import Scene, read_scene
 from contact1d.workflow.body.derived import formulas, implied
 from contact1d.workflow.identify import estimated, jkr_target, material_scene
 from contact1d.workflow.model.settings import settings_for
-from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.units import Quantity
 from tests.scenes import chains
 
@@ -26,7 +26,7 @@ LAW = (0.4, 0.25, 0.2, 0.5)
 
 
 def scene_of(**bodies: Any) -> Scene:
-    return scene_from_dict(chains(200.0, law=LAW, bodies=bodies, experiment={"kind": "pull_off", "preload": 0.5}))
+    return read_scene(chains(200.0, law=LAW, bodies=bodies, experiment={"kind": "pull_off", "preload": 0.5}))
 
 
 def row_work(spacing: float) -> float:
@@ -85,7 +85,7 @@ def test_law_that_has_jkrs_force_and_radius_has_its_work_too(modulus: float, ene
 def test_nothing_is_implied_without_attraction() -> None:
     data = chains(200.0, law=LAW, experiment={"kind": "load", "force": 0.5})
     del data["interaction"]["attraction"]
-    scene = scene_from_dict(data)
+    scene = read_scene(data)
     assert implied(scene, settings_for(scene), {"contact_radius": Quantity(20.0, 0.0, "LU")}) == {}
     assert formulas(scene, {}) == {}
 

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from contact1d import Scene, read_scene
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.lattice import bodies
 from contact1d.workflow.deck.steps import DisplaceInTime
 from contact1d.workflow.engine.session import Session
 from contact1d.workflow.model.settings import settings_for
-from contact1d.workflow.scene import Scene, scene_from_dict
 from tests.scenes import chains
 
 MakeScene = Callable[..., Scene]
@@ -202,7 +202,7 @@ def test_anchors_of_a_plate_are_hardly_no_line(particles: int, spacing: float) -
     load = {"kind": "load", "method": "dynamic", "force": 0.5}
     law = (0.18, 0.13 * spacing, 0.09, 0.26 * spacing)
     body = {"particles": particles, "spacing": spacing}
-    scene = scene_from_dict(
+    scene = read_scene(
         chains(1e9 * spacing, law=law, bodies=body, plate={}, damping={"coefficient": 0.3}, experiment=load)
     )
     anchors = bodies(scene, settings_for(scene))[1].anchors

@@ -6,8 +6,9 @@ import math
 
 import pytest
 
+from contact1d import read_scene
 from contact1d.workflow.runs.scales import jkr_scales, scales_of
-from contact1d.workflow.scene import Elastic, Material, scene_from_dict
+from contact1d.workflow.scene import Elastic, Material
 from contact1d.workflow.units import Quantity, Scales
 from tests.materials import E_STAR, PATH, RUBBER, STEEL, UNITS, tables
 
@@ -61,7 +62,7 @@ def test_layer_has_the_contact_modulus_with_the_mdr_and_half_of_it_with_geike_an
 @pytest.mark.parametrize(("reduction", "share"), [("geike_popov", 0.5), ("mdr", 1.0)])
 def test_springs_of_the_material_make_its_layer(lower: str, reduction: str, share: float) -> None:
     """In SI: the springs of all chains in series, k/χ newtons per metre each 0.5 nm, are the layer c h."""
-    scene = scene_from_dict(
+    scene = read_scene(
         tables(E_STAR | UNITS, PATH, bulk_stiffness="auto", lower=lower, reduction=reduction, spacing=0.5)
     )
     chains = 2 if lower == "particles" else 1
@@ -76,13 +77,13 @@ def test_springs_of_the_material_make_its_layer(lower: str, reduction: str, shar
 @pytest.mark.parametrize(("reduction", "share"), [("geike_popov", 0.5), ("mdr", 1.0)])
 def test_force_unit_follows_from_a_given_stiffness(lower: str, reduction: str, share: float) -> None:
     given = E_STAR | {"length_unit": 1e-9}
-    scene = scene_from_dict(tables(given, PATH, lower=lower, reduction=reduction, spacing=0.5))
+    scene = read_scene(tables(given, PATH, lower=lower, reduction=reduction, spacing=0.5))
     scales = scales_of(scene, {})
     assert scales.known
     assert scales.length == 1e-9
     assert 0.83 * scales.force / 1e-9 / scene.chains == pytest.approx(share * 200e9 * 0.5e-9, rel=ROUND_OFF)
     assert (scales.length_uncertainty, scales.force_uncertainty) == (0.0, 0.0)
-    back = scene_from_dict(
+    back = read_scene(
         tables(given | {"force_unit": scales.force}, PATH, lower=lower, reduction=reduction, spacing=0.5,
                bulk_stiffness="auto")
     )  # fmt: skip
@@ -92,16 +93,16 @@ def test_force_unit_follows_from_a_given_stiffness(lower: str, reduction: str, s
 def test_tangential_springs_are_the_materials_share_unless_given() -> None:
     both = {"upper": STEEL, "lower": STEEL, "length_unit": 1e-9}
     share = 2.0 * 0.7 / 1.7
-    assert scene_from_dict(tables(both)).tangential_stiffness == pytest.approx(share * 0.83, rel=ROUND_OFF)
-    automatic = scene_from_dict(tables(both | {"force_unit": 1e-6}, bulk_stiffness="auto"))
+    assert read_scene(tables(both)).tangential_stiffness == pytest.approx(share * 0.83, rel=ROUND_OFF)
+    automatic = read_scene(tables(both | {"force_unit": 1e-6}, bulk_stiffness="auto"))
     assert automatic.tangential_stiffness == pytest.approx(share * automatic.bulk_stiffness, rel=ROUND_OFF)
-    assert scene_from_dict(tables(both, bulk_stiffness_tangential=0.5)).tangential_stiffness == 0.5
-    assert scene_from_dict(tables(E_STAR | {"length_unit": 1e-9})).tangential_stiffness == 0.83
-    assert scene_from_dict(tables()).tangential_stiffness == 0.83
+    assert read_scene(tables(both, bulk_stiffness_tangential=0.5)).tangential_stiffness == 0.5
+    assert read_scene(tables(E_STAR | {"length_unit": 1e-9})).tangential_stiffness == 0.83
+    assert read_scene(tables()).tangential_stiffness == 0.83
 
 
 def test_no_material_has_no_scales() -> None:
-    assert not scales_of(scene_from_dict(tables()), {}).known
+    assert not scales_of(read_scene(tables()), {}).known
 
 
 # Units by JKR.
@@ -142,7 +143,7 @@ def test_uncertainty_of_the_units_is_that_of_the_run() -> None:
 
 @pytest.mark.parametrize("found", [{}, {"adhesion_force": 1.0}, {"zero_load_radius": 1.0}])
 def test_path_without_f_a_or_a_0_has_no_units(found: dict[str, float]) -> None:
-    scene = scene_from_dict(tables(E_STAR | {"surface_energy": 1.0}, PATH))
+    scene = read_scene(tables(E_STAR | {"surface_energy": 1.0}, PATH))
     assert not scales_of(scene, {name: Quantity(value, 0.0, "") for name, value in found.items()}).known
 
 

@@ -11,9 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import Run, run
+from contact1d import Run, read_scene, run
 from contact1d.analysis.curve import read_columns
-from contact1d.workflow.scene import scene_from_dict
 from tests.materials import JKR, PATH, STEEL, tables
 
 ROUND_OFF = 1e-13
@@ -37,9 +36,7 @@ FRAME = {
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Run]:
     scenes = {"plane": PLANE, "sticky": STICKY, "bare": BARE}
-    return {
-        name: run(scene_from_dict(data), tmp_path_factory.mktemp(name), figures=False) for name, data in scenes.items()
-    }
+    return {name: run(read_scene(data), tmp_path_factory.mktemp(name), figures=False) for name, data in scenes.items()}
 
 
 def document(finished: Run) -> dict[str, Any]:
@@ -119,7 +116,7 @@ def test_without_a_material_nothing_is_in_si(finished: dict[str, Run]) -> None:
 def test_contact_of_one_pair_has_no_units_by_jkr(tmp_path: Path) -> None:
     """The radius of so sharp a parabola may be 0."""
     sharp = tables(JKR, {"kind": "pull_off", "preload": 0.01}, profile={"kind": "parabola", "radius": 0.05})
-    results = run(scene_from_dict(sharp), tmp_path / "run", figures=False).document
+    results = run(read_scene(sharp), tmp_path / "run", figures=False).document
     assert "units" not in results
     limited, doubt = (one for one in results["warnings"] if one["name"] not in ("lattice", "tolerance"))
     assert limited["name"] == "unknown"
@@ -129,7 +126,7 @@ def test_contact_of_one_pair_has_no_units_by_jkr(tmp_path: Path) -> None:
 
 
 def test_path_that_finds_no_units_runs_and_has_none(tmp_path: Path) -> None:
-    done = run(scene_from_dict(tables(JKR, PATH) | {"accuracy": {"tolerance": 1e-2}}), tmp_path / "run", figures=False)
+    done = run(read_scene(tables(JKR, PATH) | {"accuracy": {"tolerance": 1e-2}}), tmp_path / "run", figures=False)
     results = document(done)
     assert results["status"] == "done"
     assert "units" not in results

@@ -15,10 +15,10 @@ import pytest
 from typer.testing import CliRunner
 
 import contact1d
-from contact1d.workflow.cli.app import app
+from contact1d import SceneError, read_scene
+from contact1d.__main__ import app
 from contact1d.workflow.identify.contact import read_contact
 from contact1d.workflow.runs.plausibility import SOFTEST, STIFFEST
-from contact1d.workflow.scene import SceneError, scene_from_dict, scene_to_toml
 from contact1d.workflow.scene.materials import MATERIALS
 from contact1d.workflow.scene.si_text import si_value
 
@@ -47,7 +47,7 @@ def scene(upper: Any, lower: Any = "glass") -> dict[str, Any]:
 
 def message(upper: Any) -> str:
     with pytest.raises(SceneError) as caught:
-        scene_from_dict(scene(upper))
+        read_scene(scene(upper))
     return str(caught.value)
 
 
@@ -66,19 +66,19 @@ def test_steel_on_glass_is_hertzs_and_keeps_its_numbers() -> None:
     [("Stainless Steel", "stainless_steel"), ("rubber", "natural-rubber"), ("pdms", "PDMS"), ("sapphire", "alumina")],
 )
 def test_names_are_read_as_they_are_meant(name: str, same: str) -> None:
-    assert scene_from_dict(scene(name)) == scene_from_dict(scene(same))
+    assert read_scene(scene(name)) == read_scene(scene(same))
 
 
 @pytest.mark.parametrize("name", MATERIALS)
 def test_every_material_is_one_of_a_scene_and_has_a_source(name: str) -> None:
-    read = scene_from_dict(scene(name)).material
+    read = read_scene(scene(name)).material
     assert read is not None
     assert read.upper is not None
     assert read.upper.youngs_modulus == float(si_value(MATERIALS[name]["youngs_modulus"], "Pa")[0])
     assert SOFTEST < read.upper.youngs_modulus < STIFFEST
     assert 0.0 < read.upper.poisson_ratio <= 0.5
     assert len(MATERIALS[name]["source"]) > 10
-    assert scene_from_dict(tomllib.loads(scene_to_toml(scene_from_dict(scene(name))))).material == read
+    assert read_scene(tomllib.loads(str(read_scene(scene(name))))).material == read
 
 
 @pytest.mark.parametrize(
@@ -99,9 +99,9 @@ def test_a_name_that_is_none_is_one_sentence(upper: Any, words: str) -> None:
 def test_a_contact_and_a_change_take_names_too() -> None:
     contact = read_contact({"radius": "10 mm", "upper": "rubber", "lower": "rigid", "load": "1 mN"})
     assert contact.contact_modulus == pytest.approx(2e6 / 0.75, rel=1e-12)  # round-off
-    changed = scene_from_dict(scene("steel")).with_({"material.upper": "diamond"})
-    assert changed == scene_from_dict(scene("diamond"))
-    assert changed == scene_from_dict(scene("steel"), ["material.upper=diamond"])
+    changed = read_scene(scene("steel")).with_({"material.upper": "diamond"})
+    assert changed == read_scene(scene("diamond"))
+    assert changed == read_scene(scene("steel"), ["material.upper=diamond"])
 
 
 def test_the_command_lists_them() -> None:

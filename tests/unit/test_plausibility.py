@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
+from contact1d import Scene, read_scene
 from contact1d.workflow.runs.plausibility import implausible
-from contact1d.workflow.scene import Scene, scene_from_dict
 from contact1d.workflow.units import Quantity, Scales
 
 STEEL = {"youngs_modulus": "210 GPa", "poisson_ratio": 0.3}
@@ -19,7 +19,7 @@ def scene(material: dict[str, Any], **bodies: Any) -> Scene:
     profile = {"kind": "parabola", "radius": "10 mm"}
     own = {"particles": "auto", "spacing": "4 µm", "bulk_stiffness": "auto", "lower": "rigid_plane", "reduction": "mdr"}
     experiment = {"kind": "load", "force": "10 N"}
-    return scene_from_dict(
+    return read_scene(
         {"title": "t", "bodies": own | {"profile": profile} | bodies, "material": material, "experiment": experiment}
     )
 

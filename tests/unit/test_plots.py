@@ -10,15 +10,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import Run
+from contact1d import Run, read_scene, run
 from contact1d.analysis import figures, plots
 from contact1d.analysis.chart import Axis, Chart
 from contact1d.analysis.curve import Columns
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import ContactRadius
 from contact1d.workflow.report.report import report
-from contact1d.workflow.runs.campaign import run
-from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.units import scale_of
 from tests.scenes import chains
 
@@ -123,7 +121,7 @@ def test_the_branches_are_drawn_as_measured(curve: Columns) -> None:
 def pulled(tmp_path_factory: pytest.TempPathFactory) -> Run:
     pull = {"kind": "pull_off", "preload": 0.2}
     tables = chains(50.0, bodies={"particles": 40}, accuracy={"tolerance": 1e-2}, experiment=pull)
-    return run(scene_from_dict(tables), tmp_path_factory.mktemp("pulled"), figures=False)
+    return run(read_scene(tables), tmp_path_factory.mktemp("pulled"), figures=False)
 
 
 def test_jkr_over_displacement_obeys_its_own_equations(pulled: Run) -> None:
@@ -146,7 +144,7 @@ def test_hertz_is_the_integral_of_the_springs_under_the_parabola(reduction: str,
     """∫ c (d − x²/2R₁) dx over |x| < √(2R₁d), with c = k/s; x²/R by the MDR and x²/2R as drawn."""
     bodies = {"lower": "rigid_plane", "spacing": 0.5, "reduction": reduction}
     path = {"kind": "path", "displacements": [0.0, 0.5, 1.0, 2.0]}
-    done = run(scene_from_dict(chains(100.0, 0.8, interaction=None, bodies=bodies, experiment=path)), tmp_path / "run",
+    done = run(read_scene(chains(100.0, 0.8, interaction=None, bodies=bodies, experiment=path)), tmp_path / "run",
                figures=False)  # fmt: skip
     half = 50.0 if reduction == "mdr" else 100.0
     d, force = lines(done.plot("force_displacement").axes[0])["Hertz"].T
@@ -185,7 +183,7 @@ def test_a_hold_is_drawn_over_time(kind: str, tmp_path: Path) -> None:
     """What is free over the time of its states; in a file and on the page."""
     held = {"force": {"displacement": 0.5}, "displacement": {"force": 4.0}}[kind] | {"kind": "hold", "duration": 5.0}
     plate = {"plate": {"mass": 20.0}} if kind == "displacement" else {}
-    done = run(scene_from_dict(HELD | plate | {"experiment": held}), tmp_path / "run")
+    done = run(read_scene(HELD | plate | {"experiment": held}), tmp_path / "run")
     (axis,) = done.plot().axes
     assert axis.get_xlabel() == "time (TU)"
     assert axis.get_ylabel().startswith(kind)
@@ -210,7 +208,7 @@ def test_the_pull_off_force_is_drawn_across_with_its_uncertainty(pulled: Run) ->
 def test_each_cycle_of_a_pull_off_has_its_own_legs(tmp_path: Path) -> None:
     pull = {"kind": "pull_off", "preload": 0.2, "cycles": 2}
     tables = chains(50.0, bodies={"particles": 40}, accuracy={"tolerance": 1e-2}, experiment=pull)
-    done = run(scene_from_dict(tables), tmp_path / "run", figures=False)
+    done = run(read_scene(tables), tmp_path / "run", figures=False)
     legs = [line for line in done.plot().axes[0].get_lines() if line.get_label() in ("loading", "unloading")]
     assert [line.get_label() for line in legs] == ["loading", "unloading"] * 2
     for number, line in enumerate(legs):
@@ -223,7 +221,7 @@ def test_particles_within_the_stick_radius_stick_and_the_others_slip(tmp_path: P
     bodies = {"lower": "rigid_plane", "reduction": "mdr", "bulk_stiffness_tangential": 0.4}
     move = {"kind": "tangential", "normal_force": 40.0, "displacements": [0.0, 0.2, 0.4, 0.2, 0.1]}
     scene = chains(1000.0, 0.5, interaction=None, bodies=bodies, friction={"coefficient": 0.3}, experiment=move)
-    done = run(scene_from_dict(scene), tmp_path / "run", figures=False)
+    done = run(read_scene(scene), tmp_path / "run", figures=False)
     radii = {"farthest": done.curve.stick_radius[2], "final": done.results.stick_radius.value}
     assert 0.0 < radii["final"] < done.results.contact_radius.value
     for axis, (state, radius) in zip(done.plot("stick_slip").axes, radii.items(), strict=True):

@@ -11,8 +11,8 @@ from typing import Any
 
 import pytest
 
-from contact1d import run
-from contact1d.workflow.scene import Measured, Scene, SceneError, read_scene, scene_from_dict, scene_to_toml
+from contact1d import Scene, SceneError, read_scene, run
+from contact1d.workflow.scene import Measured
 
 RADII, HEIGHTS = [0.0, 0.5, 1.0, 1.5, 2.0], [0.0, 0.25, 1.0, 2.25, 4.0]
 ROWS = [f"{r},{z}" for r, z in zip(RADII, HEIGHTS, strict=True)]
@@ -73,7 +73,7 @@ def points(scene: Scene) -> tuple[tuple[float, ...] | None, tuple[float, ...] | 
 
 def lines(data: dict[str, Any], folder: Path) -> list[str]:
     with pytest.raises(SceneError) as caught:
-        scene_from_dict(data, folder=folder)
+        read_scene(data, folder=folder)
     return str(caught.value).split("\n")
 
 
@@ -87,7 +87,7 @@ def file(tmp_path: Path) -> Path:
 @pytest.mark.parametrize("name", READABLE)
 def test_points_are_read(name: str, file: Path) -> None:
     file.write_text(READABLE[name], encoding="utf-8", newline="")
-    assert points(scene_from_dict(tables(file="p.csv"), folder=file.parent)) == (tuple(RADII), tuple(HEIGHTS))
+    assert points(read_scene(tables(file="p.csv"), folder=file.parent)) == (tuple(RADII), tuple(HEIGHTS))
 
 
 UNREADABLE = {
@@ -163,21 +163,21 @@ def test_a_file_is_looked_for_beside_the_scene_and_needed_once(
     scene = read_scene("../scene.toml")
     assert scene == read_scene(tmp_path / "scene.toml")
     assert points(read_scene("../scene.toml", ["bodies.profile.scale=2"]))[0] == tuple(2.0 * r for r in RADII)
-    assert points(scene_from_dict(tables(file=str(file)))) == (tuple(RADII), tuple(HEIGHTS))
+    assert points(read_scene(tables(file=str(file)))) == (tuple(RADII), tuple(HEIGHTS))
     finished = run(scene, tmp_path / "run", figures=False)
     file.unlink()
     again = read_scene(finished.folder / "scene.toml")
-    assert again == scene == scene_from_dict(finished.document["scene"])
+    assert again == scene == read_scene(finished.document["scene"])
     assert hash(again) == hash(scene)
-    assert scene_from_dict(tomllib.loads(scene_to_toml(again))) == scene
+    assert read_scene(tomllib.loads(str(again))) == scene
 
 
 def test_scale_multiplies_radii_and_heights(file: Path) -> None:
     data = tables(file="p.csv", scale=4)
-    scene = scene_from_dict(data, folder=file.parent)
-    assert scene == scene_from_dict(tables(r=[4.0 * r for r in RADII], z=[4.0 * z for z in HEIGHTS]))
+    scene = read_scene(data, folder=file.parent)
+    assert scene == read_scene(tables(r=[4.0 * r for r in RADII], z=[4.0 * z for z in HEIGHTS]))
     assert data == tables(file="p.csv", scale=4)
-    radii = points(scene_from_dict(in_si(file="p.csv", scale="2 µm"), folder=file.parent))[0]
+    radii = points(read_scene(in_si(file="p.csv", scale="2 µm"), folder=file.parent))[0]
     assert radii == pytest.approx([2e-6 * r for r in RADII], rel=1e-15, abs=0.0)
 
 
@@ -190,7 +190,7 @@ def test_units_in_the_names_are_those_of_the_numbers(names: str, file: Path) -> 
     part = ";" if ";" in names else "\t" if "\t" in names else ","
     file.write_text("\n".join([names, *(part.join(row.split(",")[::order]) for row in ROWS)]), encoding="utf-8")
     units = {"length_unit": 1e-6, "force_unit": 1e-6}
-    scene = scene_from_dict(tables(file="p.csv") | {"material": units}, folder=file.parent)
+    scene = read_scene(tables(file="p.csv") | {"material": units}, folder=file.parent)
     assert points(scene)[0] == tuple(RADII)
     # 1e-3 is rounded once, and each product once more
     assert points(scene)[1] == pytest.approx([1e-3 * z for z in HEIGHTS], rel=1e-15, abs=0.0)
@@ -210,7 +210,7 @@ def test_a_file_and_a_scene_have_units_both_or_neither(file: Path) -> None:
 def test_both_sides_are_averaged(file: Path) -> None:
     sides = "-2,4.1\n-1.5,2.3\n-1,1\n-0.5,0.3\n1e-9,0\n0.5,0.2\n1,1\n1.5,2.2\n2,3.9\n"
     file.write_text("x,z\n" + sides)
-    r, z = points(scene_from_dict(tables(file="p.csv"), folder=file.parent))
+    r, z = points(read_scene(tables(file="p.csv"), folder=file.parent))
     assert r == tuple(RADII)
     assert z == pytest.approx(HEIGHTS, rel=1e-15, abs=0.0)
 
@@ -220,5 +220,5 @@ def test_both_sides_are_averaged(file: Path) -> None:
 )
 def test_columns_are_found_by_their_names(text: str, file: Path) -> None:
     file.write_text(text, encoding="utf-8")
-    found = points(scene_from_dict(tables(file="p.csv"), folder=file.parent))
+    found = points(read_scene(tables(file="p.csv"), folder=file.parent))
     assert found == ((0.0, 1.0, 2.0, 3.0), (0.0, 0.5, 2.0, 4.5))

@@ -10,11 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d.workflow.scene import (
-    SceneError,
-    scene_from_dict,
-    scene_to_toml,
-)
+from contact1d import SceneError, read_scene
 from tests.shapes import SHAPES
 
 # Faults: the points, and words that the message has.
@@ -49,7 +45,7 @@ def scene_of(profile: dict[str, Any], **bodies: Any) -> dict[str, Any]:
 
 def message(profile: dict[str, Any], **bodies: Any) -> str:
     with pytest.raises(SceneError) as caught:
-        scene_from_dict(scene_of(profile, **bodies))
+        read_scene(scene_of(profile, **bodies))
     return str(caught.value)
 
 
@@ -63,7 +59,7 @@ def test_points_that_are_no_profile_are_refused(name: str) -> None:
 
 
 def test_steps_up_to_the_longest_are_no_gap() -> None:
-    scene = scene_from_dict(scene_of({"kind": "table", "r": [0, 1, 2, 3, 13], "z": [0, 1, 2, 3, 4]}))
+    scene = read_scene(scene_of({"kind": "table", "r": [0, 1, 2, 3, 13], "z": [0, 1, 2, 3, 4]}))
     assert scene.bodies.reach == 13.0
 
 
@@ -112,8 +108,8 @@ def test_each_kind_has_its_own_keys_and_ranges(profile: dict[str, Any], words: s
 
 def test_a_scene_with_a_table_is_hashable_equal_and_survives_pickling() -> None:
     tables = scene_of({"kind": "table", "r": [0, 1, 2, 3], "z": [0, 1, 4, 9]})
-    scene, same = scene_from_dict(tables), scene_from_dict(tables)
-    other = scene_from_dict(scene_of({"kind": "table", "r": [0, 1, 2, 3], "z": [0, 1, 4, 9.5]}))
+    scene, same = read_scene(tables), read_scene(tables)
+    other = read_scene(scene_of({"kind": "table", "r": [0, 1, 2, 3], "z": [0, 1, 4, 9.5]}))
     assert scene == same
     assert hash(scene) == hash(same)
     assert scene != other
@@ -127,6 +123,6 @@ def test_a_scene_with_a_table_is_hashable_equal_and_survives_pickling() -> None:
 
 @pytest.mark.parametrize("name", SHAPES)
 def test_every_kind_reads_back_from_the_text_of_its_scene(name: str) -> None:
-    scene = scene_from_dict(scene_of(SHAPES[name][0].model_dump(by_alias=True, exclude_none=True), reduction="mdr"))
+    scene = read_scene(scene_of(SHAPES[name][0].model_dump(by_alias=True, exclude_none=True), reduction="mdr"))
     assert scene.bodies.profile == SHAPES[name][0]
-    assert scene_from_dict(tomllib.loads(scene_to_toml(scene))) == scene
+    assert read_scene(tomllib.loads(str(scene))) == scene

@@ -16,7 +16,7 @@ import pytest
 from typer.testing import CliRunner
 
 from contact1d import read_scene
-from contact1d.workflow.cli.app import app
+from contact1d.__main__ import app
 from contact1d.workflow.identify.contact import read_contact
 from contact1d.workflow.sweep.axes import read_sweep
 from tests.costs import read_record

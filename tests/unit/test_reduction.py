@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 from scipy.optimize import brentq
 
+from contact1d import Scene, SceneError, read_scene
 from contact1d.analysis.theory.indenters import PowerLaw
 from contact1d.workflow.body.reading import doubt_of_the_image, of_the_body
-from contact1d.workflow.scene import Scene, SceneError, scene_from_dict, scene_to_toml
 from contact1d.workflow.scene.tables import wider_than_body
 from contact1d.workflow.units import Quantity
 from tests.scenes import chains
@@ -33,7 +33,7 @@ def scene(profile: dict[str, Any] | None = None, plane: bool = False, **more: An
     if plane:
         more["interaction"] = None
         bodies["lower"] = "rigid_plane"
-    return scene_from_dict(chains(100.0, bodies=bodies, experiment=PATH, **more))
+    return read_scene(chains(100.0, bodies=bodies, experiment=PATH, **more))
 
 
 def test_the_paper_s_own_plane_model_has_the_paper_s_reduction() -> None:
@@ -63,9 +63,9 @@ def test_what_is_chosen_by_default_is_chosen_anew_when_the_scene_changes() -> No
 
 def test_the_file_of_a_run_states_its_reduction() -> None:
     for asked in (scene(), scene(CONE)):
-        text = scene_to_toml(asked)
+        text = str(asked)
         assert tomllib.loads(text)["bodies"]["reduction"] == asked.bodies.reduction
-        assert scene_from_dict(tomllib.loads(text)) == asked
+        assert read_scene(tomllib.loads(text)) == asked
 
 
 @pytest.mark.parametrize(("profile", "words"), [
@@ -120,7 +120,7 @@ def test_where_both_reductions_say_the_same_nothing_is_doubted() -> None:
     units = {"contact_modulus": 70e9, "surface_energy": 1.0}
     pull_off = {"kind": "pull_off", "preload": 0.3}
     by_run = chains(100.0, material=units, experiment=pull_off, bodies={"reduction": "geike_popov"})
-    for asked in (scene(PUNCH, True, bodies={"reduction": "geike_popov"}), scene(), scene_from_dict(by_run)):
+    for asked in (scene(PUNCH, True, bodies={"reduction": "geike_popov"}), scene(), read_scene(by_run)):
         radius = {"contact_radius": Quantity(8.0, 0.1, "LU")}
         assert of_the_body(asked, radius) == radius
         assert not doubt_of_the_image(asked)

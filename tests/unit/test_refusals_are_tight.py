@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from contact1d import Scene, read_scene
 from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.laws.shape import tabulated
 from contact1d.workflow.model.chain import in_words, require_reach, require_rows, require_steps
 from contact1d.workflow.model.dynamics import drive_steps
 from contact1d.workflow.model.motion import require_way, too_fast
 from contact1d.workflow.model.settings import Settings, settings_for
-from contact1d.workflow.scene import Scene, scene_from_dict
 from tests.scenes import chains
 
 LOAD = {"kind": "load", "force": 0.05}
@@ -68,7 +68,7 @@ def test_what_is_said_to_be_possible_is_and_no_more(
     tables: Callable[[float], dict[str, Any]], refused: float, told: str, step: float
 ) -> None:
     def try_out(value: float) -> None:
-        scene = scene_from_dict(tables(value))
+        scene = read_scene(tables(value))
         require_way(scene, settings_for(scene))
 
     with pytest.raises(SettingsError, match=told) as caught:
@@ -83,7 +83,7 @@ def test_what_is_said_to_be_possible_is_and_no_more(
 
 
 def test_a_cutoff_reaches_over_five_thousand_particles_at_most() -> None:
-    scene = scene_from_dict(slide(spacing=0.5))
+    scene = read_scene(slide(spacing=0.5))
     with pytest.raises(SettingsError, match=r"cutoff below 1250 LU"):
         require_reach(scene, 2000.0)
     require_reach(scene, 1249.9)
@@ -93,11 +93,11 @@ def test_a_cutoff_reaches_over_five_thousand_particles_at_most() -> None:
 
 def test_springs_that_are_said_to_be_possible_are_within_a_factor_of_what_is() -> None:
     with pytest.raises(SettingsError, match=r"(\S+) FU/LU, which") as caught:
-        settings_for(scene_from_dict(stiff(1e13)))
+        settings_for(read_scene(stiff(1e13)))
     possible = float(str(caught.value).partition(" FU/LU, which")[0].split()[-1])
-    settings_for(scene_from_dict(stiff(possible)))
+    settings_for(read_scene(stiff(possible)))
     with pytest.raises(SettingsError, match="practically rigid"):
-        settings_for(scene_from_dict(stiff(5.0 * possible)))
+        settings_for(read_scene(stiff(5.0 * possible)))
 
 
 def falling(scene: Scene, from_step: float, to_step: float) -> float:
@@ -114,7 +114,7 @@ def falling(scene: Scene, from_step: float, to_step: float) -> float:
 
 def test_a_path_may_take_a_million_rows() -> None:
     """Only ways towards the other body are done in steps: 3 LU here, in 10⁶ of them."""
-    scene = scene_from_dict(
+    scene = read_scene(
         chains(100.0, bodies={"particles": 20}, experiment={"kind": "path", "displacements": [1.0, -1.0, 1.0]})
     )
     assert falling(scene, 1e-9, 1.0) == pytest.approx(3e-6, rel=1e-4)
@@ -126,7 +126,7 @@ def test_a_path_may_take_a_million_rows() -> None:
 def test_a_drive_is_too_fast_above_the_velocity_that_is_told() -> None:
     def told(velocity: float) -> str:
         tables = slide(particles=60)
-        return too_fast(scene_from_dict(tables | {"cantilever": {"stiffness": 0.5, "velocity": velocity}}))
+        return too_fast(read_scene(tables | {"cantilever": {"stiffness": 0.5, "velocity": velocity}}))
 
     words = told(3.0)
     limit = float(re.findall(r"velocity below (\S+) LU/TU", words)[0])
@@ -142,7 +142,7 @@ def test_a_drive_is_too_fast_above_the_velocity_that_is_told() -> None:
 def test_rows_and_timesteps_make_the_drives_way_exactly(longest: float) -> None:
     """No timestep is longer than it may be, none needlessly short, and every spacing has its rows."""
     path = [[0.1, 3.7], [0.0, 0.5], [-0.31, 2.0]]
-    scene = scene_from_dict(slide(particles=60) | {"experiment": {"kind": "slide", "normal_force": 1.0, "path": path}})
+    scene = read_scene(slide(particles=60) | {"experiment": {"kind": "slide", "normal_force": 1.0, "path": path}})
     for leg, (velocity, distance) in zip(drive_steps(scene, longest), path, strict=True):
         time = distance / (abs(velocity) or 0.1)
         assert leg.velocity == velocity
@@ -164,7 +164,7 @@ def test_a_light_plate_swings_no_longer_against_its_particles_than_one_of_their_
     plate = share * particles
     load = LOAD | {"method": "dynamic"}
     tables = chains(100.0, bodies={"particles": 40, "mass": 1.0}, damping={"coefficient": "auto"}, experiment=load)
-    chosen = settings_for(scene_from_dict(tables | {"plate": {"mass": plate}})).motion
+    chosen = settings_for(read_scene(tables | {"plate": {"mass": plate}})).motion
     rate, drag = chosen.damping, chosen.plate_damping
     motion = np.array([
         [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0],
@@ -195,7 +195,7 @@ def test_the_stiffest_motion_of_two_chains_is_no_stiffer_than_what_the_timestep_
     tables = chains(100.0, bodies={"particles": 30, "bulk_stiffness_tangential": 1.1}, experiment=LOAD)
     if neighbours is not None:
         tables["neighbours"] = {"stiffness": neighbours}
-    scene = scene_from_dict(tables | {"horizontal": {}})
+    scene = read_scene(tables | {"horizontal": {}})
     settings = settings_for(scene)
     assert settings.forces.law is not None
     pair = float(settings.forces.law.stiffness(settings.forces.closest))
@@ -210,14 +210,14 @@ def test_the_stiffest_motion_of_two_chains_is_no_stiffer_than_what_the_timestep_
 @pytest.mark.parametrize("neighbours", [0.3, 20.0])
 def test_so_is_the_stiffest_motion_of_a_chain_on_a_plane(neighbours: float) -> None:
     tables = chains(100.0, bodies={"particles": 30, "lower": "rigid_plane"}, interaction=None, experiment=LOAD)
-    settings = settings_for(scene_from_dict(tables | {"neighbours": {"stiffness": neighbours}}))
+    settings = settings_for(read_scene(tables | {"neighbours": {"stiffness": neighbours}}))
     each = settings.forces.bulk_stiffness + settings.forces.plane_stiffness
     stiffest = float(np.linalg.eigvalsh(each * np.eye(30) + neighbours * between(30)).max())
     assert stiffest <= sampled_stiffness(settings) <= 1.3 * stiffest
 
 
 def test_a_large_system_is_told_with_how_many_each_particle_feels() -> None:
-    scene = scene_from_dict(slide(spacing=0.5))
+    scene = read_scene(slide(spacing=0.5))
     assert in_words(scene, 19_000, 2.0) == ""
     assert "20000 particles per body, each within reach of 10 opposite ones" in in_words(scene, 20_000, 2.0)
     assert "each within reach of 162 opposite ones" in in_words(scene, 2_000, 40.0)
@@ -230,7 +230,7 @@ def test_a_rigid_plane_has_neither_snaps_nor_teeth() -> None:
         (chains(100.0, law=(0.018, 0.03, 0.009, 0.06), bodies={"particles": 40}, experiment=LOAD), False),
         (chains(100.0, law=(0.18, 0.03, 0.09, 0.06), bodies={"particles": 40}, experiment=LOAD), True),
     ):
-        settings = settings_for(scene_from_dict(tables))
+        settings = settings_for(read_scene(tables))
         assert settings.snaps == snaps
         if snaps or settings.forces.law is None:
             assert settings.has_several_maxima == snaps
@@ -238,7 +238,7 @@ def test_a_rigid_plane_has_neither_snaps_nor_teeth() -> None:
 
 @pytest.mark.parametrize("spacing", [0.01, 1.0, 8.0])
 def test_a_tabulated_body_is_the_body_down_to_a_fraction_of_its_first_spacing(spacing: float) -> None:
-    body = scene_from_dict(wide(20)).bodies.model_copy(update={"spacing": spacing})
+    body = read_scene(wide(20)).bodies.model_copy(update={"spacing": spacing})
     x = np.geomspace(0.0101 * spacing, 20.0, 500)
     assert tabulated(body, spacing).height(x) == pytest.approx(body.height(x), rel=5e-4)
     assert tabulated(body, spacing).reach == pytest.approx(body.reach, rel=1e-12)

@@ -12,10 +12,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import Contact1dError, FolderError, Run, run, sphere, sweep
+from contact1d import Contact1dError, FolderError, Run, read_scene, run, sphere, sweep
 from contact1d.workflow.report.animation import animate, ovito_script
 from contact1d.workflow.report.report import report
-from contact1d.workflow.scene import read_scene
 from tests.scenes import chains
 
 SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"

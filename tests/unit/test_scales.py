@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize_scalar
 
+from contact1d import Scene, read_scene
 from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.laws.law import NotCarriedError
 from contact1d.workflow.model.calibration import CALIBRATION
@@ -22,7 +23,6 @@ from contact1d.workflow.model.chain import require_apex, require_memory, require
 from contact1d.workflow.model.cutoff import innermost_distance, thermal_motion
 from contact1d.workflow.model.motion import inertia
 from contact1d.workflow.model.settings import Settings, settings_for
-from contact1d.workflow.scene import Scene, scene_from_dict
 from tests.scenes import LAW, chains
 
 SPRING, SPACING = 0.7, 0.8
@@ -34,7 +34,7 @@ EXACT = 1e-9
 
 def scene(**tables: Any) -> Scene:
     bodies = {"spacing": SPACING} | tables.pop("bodies", {})
-    return scene_from_dict(chains(100.0, SPRING, **{"experiment": LOAD} | tables, bodies=bodies))
+    return read_scene(chains(100.0, SPRING, **{"experiment": LOAD} | tables, bodies=bodies))
 
 
 def pair(r: float) -> float:
@@ -225,7 +225,7 @@ def test_a_system_is_refused_that_the_machine_has_no_memory_for(monkeypatch: pyt
 
 
 def slid(rows: int, steps: int, time: float, drag: float) -> tuple[Scene, Settings]:
-    of = scene_from_dict(
+    of = read_scene(
         chains(
             30.0, 2.0, law=(1.0, 0.5, 0.5, 1.0), horizontal={}, damping={"coefficient": drag},
             plate={"free": ["x", "z"], "mass": 5.0, "damping": 0.1}, cantilever={"stiffness": 0.5, "velocity": 0.1},
@@ -270,7 +270,7 @@ def test_pairs_that_nearly_snap_let_go_one_by_one_and_weak_ones_together(
 ) -> None:
     law = (0.18 * share, 0.03, 0.09 * share, 0.06)
     path = {"kind": "path", "displacements": [0.05]}
-    settings = settings_for(scene_from_dict(chains(10.0, law=law, bodies={"particles": 12}, experiment=path)))
+    settings = settings_for(read_scene(chains(10.0, law=law, bodies={"particles": 12}, experiment=path)))
     assert (settings.snaps, settings.has_several_maxima, settings.is_smooth) == (snaps, toothed, not snaps)
 
 
@@ -292,7 +292,7 @@ def test_what_never_snaps_lets_go_at_the_end_of_its_forces_and_loses_nothing() -
 
 
 def test_where_pairs_snap_a_search_moves_by_a_quarter_of_the_smallest_distance() -> None:
-    settings = settings_for(scene_from_dict(chains(10.0, law=(0.36, 0.03, 0.18, 0.06), experiment=LOAD)))
+    settings = settings_for(read_scene(chains(10.0, law=(0.36, 0.03, 0.18, 0.06), experiment=LOAD)))
     assert settings.snaps
     for distance in (2.0 * settings.forces.closest, 8.0 * settings.forces.closest):
         near = min(settings.increments.loading_step, max(settings.increments.displacement_step, 0.25 * distance))

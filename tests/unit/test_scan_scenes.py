@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from contact1d import load_run, run
-from contact1d.workflow.cli.app import app
-from contact1d.workflow.scene import Measured, Scene, SceneError, read_scene, scene_from_dict, scene_to_toml
+from contact1d import Scene, SceneError, load_run, read_scene, run
+from contact1d.__main__ import app
+from contact1d.workflow.scene import Measured
 
 STEEL_ON_GLASS = "lammps_inputs/scenes/steel_on_glass.toml"
 R, NOISE = 1e4, 3e-3
@@ -50,7 +50,7 @@ def test_a_run_says_what_was_removed_and_keeps_the_points(file: Path, tmp_path: 
     assert abs(done.results.contact_radius.value - exact) <= done.results.contact_radius.uncertainty
     assert (tmp_path / "run" / "scan.png").stat().st_size > 10_000
     again = load_run(tmp_path / "run")
-    assert again.scene == done.scene == scene_from_dict(tomllib.loads(scene_to_toml(done.scene)))
+    assert again.scene == done.scene == read_scene(tomllib.loads(str(done.scene)))
     assert again.scene.bodies.profile.height(np.asarray([1e-4])) == done.scene.bodies.profile.height(np.asarray([1e-4]))
     again.plot("scan")
 

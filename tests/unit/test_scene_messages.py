@@ -7,7 +7,8 @@ from typing import Any
 
 import pytest
 
-from contact1d.workflow.scene import Problem, SceneError, scene_from_dict
+from contact1d import SceneError, read_scene
+from contact1d.workflow.scene import Problem
 from tests.materials import STEEL
 from tests.scenes import chains
 
@@ -30,7 +31,7 @@ SIZES = {
 def lines(*overrides: str, tables: dict[str, Any] | None = None) -> list[str]:
     """What is printed for the base scene with these changes."""
     with pytest.raises(SceneError) as caught:
-        scene_from_dict(BASE | (tables or {}), overrides)
+        read_scene(BASE | (tables or {}), overrides)
     printed = str(caught.value)
     assert printed == "\n".join(map(str, caught.value.problems))
     for word in ("pydantic", "tuple", "literal", "Input should", "union", "discriminat", "function-"):
@@ -117,7 +118,7 @@ def test_a_wrong_table_of_cycles_is_not_taken_for_displacements() -> None:
 
 def test_missing_tables_and_keys() -> None:
     with pytest.raises(SceneError) as caught:
-        scene_from_dict({})
+        read_scene({})
     assert [problem.path for problem in caught.value.problems] == ["title", "bodies", "experiment"]
     assert lines("interaction.repulsion={ range = 0.1 }") == [
         "interaction.repulsion.amplitude: missing; must be a number greater than 0 (FU·LU)"
@@ -132,7 +133,7 @@ def test_a_misspelt_word_counts_as_what_was_meant() -> None:
         (["dampnig.coefficient=-1", "plate={}"], ["damping.coefficient", "dampnig"]),
     ):  # fmt: skip
         with pytest.raises(SceneError) as caught:
-            scene_from_dict(BASE, overrides)
+            read_scene(BASE, overrides)
         assert [problem.path for problem in caught.value.problems] == paths
 
 

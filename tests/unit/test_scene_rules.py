@@ -10,7 +10,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from contact1d.workflow.scene import Problem, Scene, SceneError, scene_from_dict, scene_to_toml
+from contact1d import Scene, SceneError, read_scene
+from contact1d.workflow.scene import Problem
 from tests.materials import E_STAR, JKR, RUBBER, STEEL, UNITS
 from tests.scenes import chains
 
@@ -62,11 +63,11 @@ def changed(words: str, more: dict[str, Any]) -> dict[str, Any]:
 def problems(data: dict[str, Any]) -> tuple[Problem, ...]:
     """The problems of a scene, each with what to do; none if it is accepted, written and read again."""
     try:
-        scene = scene_from_dict(data)
+        scene = read_scene(data)
     except SceneError as error:
         assert all(problem.hint or problem.message.startswith("must be") for problem in error.problems)
         return error.problems
-    assert scene_from_dict(tomllib.loads(scene_to_toml(scene))) == scene == scene.with_()
+    assert read_scene(tomllib.loads(str(scene))) == scene == scene.with_()
     return ()
 
 
@@ -210,7 +211,7 @@ def test_a_remedy_that_is_named_with_its_value_makes_a_scene() -> None:
         (problem,) = problems(data)
         assert len(problem.ways) == 2
         for way in problem.ways:
-            assert isinstance(scene_from_dict(data, [f"{path}={number}" for path, number in way.items()]), Scene)
+            assert isinstance(read_scene(data, [f"{path}={number}" for path, number in way.items()]), Scene)
 
 
 def test_without_a_material_the_message_names_both_ways_to_a_stiffness() -> None:

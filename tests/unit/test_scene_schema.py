@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from contact1d.workflow.scene import SceneError, scene_from_dict
+from contact1d import SceneError, read_scene
 from contact1d.workflow.scene.read import apply_overrides
 from contact1d.workflow.scene.schema import scene_schema, schema_text
 
@@ -132,7 +132,7 @@ def test_a_mistake_in_a_table_is_marked_as_the_program_tells_it(override: str) -
     wrong = shipped("pull_off", override)
     assert not valid(wrong, SCHEMA)
     with pytest.raises(SceneError):
-        scene_from_dict(wrong)
+        read_scene(wrong)
 
 
 def test_a_required_table_that_is_missing_is_marked() -> None:

@@ -10,7 +10,8 @@ from collections.abc import Iterator
 import pytest
 from pydantic import ValidationError
 
-from contact1d.workflow.scene import EFFECTS, Path, Plate, Scene, Span, read_scene, scene_from_dict
+from contact1d import Scene, read_scene
+from contact1d.workflow.scene import EFFECTS, Path, Plate, Span
 from contact1d.workflow.scene.experiments import Hold
 from contact1d.workflow.scene.quantities import Key, Table, keys_of, places, tables_in
 from contact1d.workflow.scene.schema import statement, text_of
@@ -90,7 +91,7 @@ def test_units_of_the_model_have_the_powers_that_pint_gives_them(name: str) -> N
 
 
 def test_defaults() -> None:
-    scene = scene_from_dict(BASE, DYNAMIC)
+    scene = read_scene(BASE, DYNAMIC)
     assert (scene.bodies.mass, scene.bodies.lower, scene.accuracy.tolerance) == (1.0, "particles", 1e-3)
     assert scene.plate == Plate(mass="auto", free=("z",), damping="auto")
     assert scene.interaction is not None
@@ -98,25 +99,25 @@ def test_defaults() -> None:
 
 
 def test_a_whole_number_is_a_number() -> None:
-    spacing = scene_from_dict(BASE, ["bodies.spacing=2"]).bodies.spacing
+    spacing = read_scene(BASE, ["bodies.spacing=2"]).bodies.spacing
     assert (spacing, type(spacing)) == (2.0, float)
 
 
 def test_a_scene_cannot_be_changed_and_can_be_hashed() -> None:
-    scene = scene_from_dict(BASE, ['experiment={ kind = "path", displacements = [0.0, 1.0] }'])
+    scene = read_scene(BASE, ['experiment={ kind = "path", displacements = [0.0, 1.0] }'])
     with pytest.raises(ValidationError):
         scene.bodies.spacing = 2.0
-    assert hash(scene) == hash(scene_from_dict(scene))
+    assert hash(scene) == hash(read_scene(scene))
 
 
 def test_tangential_stiffness_is_the_normal_one_unless_given() -> None:
-    assert scene_from_dict(BASE).tangential_stiffness == 0.83
-    assert scene_from_dict(BASE, ["bodies.bulk_stiffness_tangential=0.5"]).tangential_stiffness == 0.5
+    assert read_scene(BASE).tangential_stiffness == 0.83
+    assert read_scene(BASE, ["bodies.bulk_stiffness_tangential=0.5"]).tangential_stiffness == 0.5
 
 
 def test_effects_come_in_deck_order_and_free_directions_in_one() -> None:
     names = ["neighbours.stiffness=0.3", "noise={ temperature = 0.01, seed = 1 }"]
-    scene = scene_from_dict(BASE, [*names[::-1], *SLIDE])
+    scene = read_scene(BASE, [*names[::-1], *SLIDE])
     assert scene.effects == tuple(name for name in EFFECTS if name not in ("adhesion", "friction", "viscoelasticity"))
     assert scene.plate is not None
     assert scene.plate.free == ("x", "z")
@@ -134,7 +135,7 @@ def test_effects_come_in_deck_order_and_free_directions_in_one() -> None:
     ],
 )
 def test_method_is_the_given_one_else_follows_from_the_tables(overrides: list[str], method: str) -> None:
-    assert scene_from_dict(BASE, overrides).method == method
+    assert read_scene(BASE, overrides).method == method
 
 
 @pytest.mark.parametrize("steps", [1, 3, 7, 49, 1000])
@@ -151,7 +152,7 @@ def test_a_path_has_the_displacements_that_it_was_given() -> None:
         ("{ from = -1, to = 2, steps = 3 }", [-1.0, 0.0, 1.0, 2.0, 1.0, 0.0, -1.0]),
         ("{ from = 0, to = 1, steps = 2, return = false }", [0.0, 0.5, 1.0]),
     ):
-        path = scene_from_dict(BASE, [f'experiment={{ kind = "path", displacements = {given} }}']).experiment
+        path = read_scene(BASE, [f'experiment={{ kind = "path", displacements = {given} }}']).experiment
         assert isinstance(path, Path)
         assert path.places() == listed
 
@@ -175,7 +176,7 @@ def test_lists_and_tables_on_a_plane_take_texts() -> None:
 def test_legs_of_a_slide_take_texts() -> None:
     legs = 'experiment={ kind = "slide", normal_force = 1.0, path = [["1 m/s", "1 nm"], ["-2 m/s", "3 nm"]] }'
     units = "material={ length_unit = 1e-9, force_unit = 1e-9, mass_unit = 1e-27 }"  # TU = √(MU·LU/FU) = 3.2e-14 s
-    experiment = scene_from_dict(BASE, [*SLIDE, legs, units]).experiment
+    experiment = read_scene(BASE, [*SLIDE, legs, units]).experiment
     assert experiment.kind == "slide"
     assert [leg.distance for leg in experiment.legs(0.0)] == [1.0, 3.0]
     time = math.sqrt(1e-27)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from contact1d import Scene, read_scene
 from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.model.chain import (
     in_words,
@@ -17,7 +18,6 @@ from contact1d.workflow.model.chain import (
     require_steps,
 )
 from contact1d.workflow.model.dynamics import DriveLeg
-from contact1d.workflow.scene import Scene, scene_from_dict
 from tests.scenes import chains
 
 MOST = 1_000_000
@@ -25,7 +25,7 @@ PLANE: dict[str, Any] = {"bodies": {"lower": "rigid_plane", "reduction": "mdr"},
 
 
 def scene(experiment: dict[str, Any], **tables: Any) -> Scene:
-    return scene_from_dict(chains(100.0, experiment=experiment, **tables))
+    return read_scene(chains(100.0, experiment=experiment, **tables))
 
 
 def with_rows(count: int) -> Scene:

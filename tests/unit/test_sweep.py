@@ -18,7 +18,7 @@ from typer.testing import CliRunner
 
 import contact1d.workflow.runs.many as running
 from contact1d import FolderError, load_run, sweep
-from contact1d.workflow.cli.app import app
+from contact1d.__main__ import app
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.sweep.sweep import ExecutorError
 from contact1d.workflow.sweep.table import PARQUET, RECORD, TABLE

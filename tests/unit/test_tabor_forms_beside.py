@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
+from contact1d import read_scene
 from contact1d.workflow.body.cases import Case
 from contact1d.workflow.body.theory import applying, tabor
-from contact1d.workflow.scene import scene_from_dict
 from contact1d.workflow.units import Quantity
 from tests.scenes import chains
 
@@ -31,7 +31,7 @@ def said(case: Case) -> dict[str, float]:
 
 def of_interaction(mu: float, **bodies: Any) -> Case:
     """Two chains of which the implied W is such that the Tabor parameter is `mu`."""
-    asked = scene_from_dict(chains(R, experiment=PULL, bodies={"reduction": "mdr"} | bodies))
+    asked = read_scene(chains(R, experiment=PULL, bodies={"reduction": "mdr"} | bodies))
     one = Case(asked, {"work_of_adhesion": Quantity(1.0, 0.0, "FU/LU")})
     at_one = tabor(one)
     work = 1.0 if at_one is None else (mu / at_one) ** 1.5

@@ -7,13 +7,13 @@ import math
 import numpy as np
 import pytest
 
+from contact1d import read_scene
 from contact1d.analysis.friction import standard_error
 from contact1d.workflow.continuation.outcome import Result
 from contact1d.workflow.continuation.trust import UntrustedError
 from contact1d.workflow.experiments.series import Series
 from contact1d.workflow.experiments.thermal import BLOCKS, planned_samples, require_balance
 from contact1d.workflow.model.settings import settings_for
-from contact1d.workflow.scene import scene_from_dict
 from tests.scenes import chains
 
 COUNT, MEMORY, SEEDS = 4000, 8.0, 60
@@ -40,7 +40,7 @@ def test_a_standard_error_is_that_of_the_mean_of_a_correlated_series() -> None:
 
 def test_a_motion_forgets_its_start_before_it_is_sampled() -> None:
     noisy = chains(1000.0, experiment={"kind": "load", "force": 1.0}, damping={"coefficient": "auto"}, plate={})
-    scene = scene_from_dict(noisy | {"noise": {"temperature": 1e-4, "seed": 1}})
+    scene = read_scene(noisy | {"noise": {"temperature": 1e-4, "seed": 1}})
     settings = settings_for(scene)
     settling, _ = planned_samples(settings, 1.0)
     time = sum(getattr(row, "steps", 0) for row in settling.rows) * settings.motion.time_step

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from contact1d import Scene, read_scene
 from contact1d.workflow.model.calibration import CALIBRATION
 from contact1d.workflow.model.settings import Settings, settings_for
-from contact1d.workflow.scene import Scene, scene_from_dict
 from tests.scenes import chains
 
 RADIUS, SPRING, SPACING, MASS = 200.0, 0.7, 0.5, 3.0
@@ -26,12 +26,12 @@ SWING = 0.5
 
 def scene(**tables: Any) -> Scene:
     bodies = {"spacing": SPACING, "mass": MASS} | tables.pop("bodies", {})
-    return scene_from_dict(chains(RADIUS, SPRING, **{"experiment": LOAD, **tables}, bodies=bodies))
+    return read_scene(chains(RADIUS, SPRING, **{"experiment": LOAD, **tables}, bodies=bodies))
 
 
 def slide(tolerance: float, cantilever: float = 0.5, **bodies: Any) -> Scene:
     own = {"spacing": 1.0, "mass": MASS, "upper_offset": 0.5} | bodies
-    return scene_from_dict(
+    return read_scene(
         chains(
             30.0, 2.0, law=(1.0, 0.5, 0.5, 1.0), horizontal={}, damping={"coefficient": 0.3},
             plate={"free": ["x", "z"], "damping": 0.1}, cantilever={"stiffness": cantilever, "velocity": 0.1},

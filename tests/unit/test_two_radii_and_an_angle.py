@@ -14,8 +14,7 @@ from typing import Any
 import pytest
 
 import contact1d
-from contact1d.workflow.runs.finished import Run
-from contact1d.workflow.scene import SceneError, read_scene, scene_from_dict, scene_to_toml
+from contact1d import Run, SceneError, read_scene
 
 E_STAR, R = 1e9, 10e-3
 PLANE = {"particles": "auto", "spacing": "auto", "lower": "rigid_plane"}
@@ -30,7 +29,7 @@ def tables(profile: dict[str, Any], experiment: dict[str, Any] = PATH, **more: A
 
 
 def run(*scene: Any, **more: Any) -> Run:
-    return contact1d.run(scene_from_dict(tables(*scene, **more)), figures=False)
+    return contact1d.run(read_scene(tables(*scene, **more)), figures=False)
 
 
 def si(done: Run, name: str) -> tuple[float, float]:
@@ -43,7 +42,7 @@ def message(profile: dict[str, Any], **bodies: Any) -> str:
     data = tables(profile)
     data["bodies"] |= bodies
     with pytest.raises(SceneError) as caught:
-        scene_from_dict(data)
+        read_scene(data)
     return str(caught.value)
 
 
@@ -65,8 +64,8 @@ def test_the_closed_form_beside_a_cone_is_the_half_angles() -> None:
 
 
 def test_a_scene_keeps_its_half_angle() -> None:
-    scene = scene_from_dict(tables(cone("80°")))
-    assert scene_from_dict(tomllib.loads(scene_to_toml(scene))) == scene
+    scene = read_scene(tables(cone("80°")))
+    assert read_scene(tomllib.loads(str(scene))) == scene
     assert scene.with_({"bodies.profile.half_angle": "70 deg"}) != scene
 
 

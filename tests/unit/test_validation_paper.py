@@ -11,10 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from contact1d import Run, Scene
 from contact1d.analysis.curve import Columns, profile_columns
 from contact1d.analysis.pressure import Profile
-from contact1d.workflow.runs.finished import Run
-from contact1d.workflow.scene import Scene
 from tests.kept_runs import KeptBench, in_model_units, kept_paper, kept_runs, solved_once
 from validation.paper import STUDIES, fig9, tangential
 from validation.paper.scenes import barquins_reduced

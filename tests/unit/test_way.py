@@ -13,13 +13,13 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from contact1d import Scene, read_scene
 from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.model.calibration import CALIBRATION
 from contact1d.workflow.model.chain import decay_length
 from contact1d.workflow.model.cutoff import largest_holding_force
 from contact1d.workflow.model.motion import contact_half_width, require_way, too_fast
 from contact1d.workflow.model.settings import settings_for
-from contact1d.workflow.scene import Scene, scene_from_dict
 from tests.scenes import chains
 
 RADIUS, SPRING, SPACING = 30.0, 2.0, 0.8
@@ -30,7 +30,7 @@ GRID = 3e-3
 
 def slide(distance: float = 9.0, tolerance: float = 1e-3, **bodies: Any) -> Scene:
     own = {"mass": 1.0, "upper_offset": 0.5, "spacing": SPACING} | bodies
-    return scene_from_dict(
+    return read_scene(
         chains(
             RADIUS, SPRING, law=LAW, horizontal={}, damping={"coefficient": "auto"}, plate={"free": ["x", "z"]},
             cantilever={"stiffness": 0.5, "velocity": 0.1}, bodies=own, accuracy={"tolerance": tolerance},
@@ -92,7 +92,7 @@ def test_a_lower_chain_of_another_spacing_is_as_long_as_the_upper_one_and_the_wa
 
 
 def test_no_way_needs_no_more_particles_below() -> None:
-    of = scene_from_dict(chains(RADIUS, experiment={"kind": "load", "force": 0.05}))
+    of = read_scene(chains(RADIUS, experiment={"kind": "load", "force": 0.05}))
     settings = settings_for(of)
     assert settings.chains.lower == settings.chains.upper
     require_way(of, settings)
@@ -136,7 +136,7 @@ def test_a_way_too_short_for_a_mean_is_not_advised() -> None:
 @pytest.mark.parametrize("displacement", [-0.5, 0.3])
 def test_an_automatic_chain_of_bodies_that_only_repel_ends_where_nothing_is_felt(displacement: float) -> None:
     """A tenth further, and two particles on each side."""
-    of = scene_from_dict(
+    of = read_scene(
         chains(
             RADIUS, SPRING, bodies={"spacing": SPACING}, interaction={"repulsion": {"amplitude": 0.2, "range": 0.3}},
             experiment={"kind": "path", "displacements": [displacement]},
@@ -153,7 +153,7 @@ def test_an_automatic_chain_of_bodies_that_only_repel_ends_where_nothing_is_felt
 def test_an_automatic_chain_is_no_longer_than_its_body(spacing: float, particles: int) -> None:
     """Of a circle of 2.1 LU: the outermost particles are on it still, and one more on each side would not be."""
     body = {"spacing": spacing, "profile": {"kind": "circle", "radius": 2.1}}
-    of = scene_from_dict(chains(1.0, law=LAW, bodies=body, experiment={"kind": "path", "displacements": [0.3]}))
+    of = read_scene(chains(1.0, law=LAW, bodies=body, experiment={"kind": "path", "displacements": [0.3]}))
     found = settings_for(of).chains.upper
     assert found == particles
     assert 0.5 * (found - 1) * spacing <= 2.1 < 0.5 * (found + 1) * spacing
@@ -162,7 +162,7 @@ def test_an_automatic_chain_is_no_longer_than_its_body(spacing: float, particles
 @pytest.mark.parametrize("spacing", [0.5, 0.8])
 def test_a_punch_is_as_many_particles_wide_as_it_is(spacing: float) -> None:
     body = {"spacing": spacing, "profile": {"kind": "flat_punch", "radius": 4.0}}
-    of = scene_from_dict(chains(1.0, law=LAW, bodies=body, experiment={"kind": "path", "displacements": [0.3]}))
+    of = read_scene(chains(1.0, law=LAW, bodies=body, experiment={"kind": "path", "displacements": [0.3]}))
     assert settings_for(of).chains.upper == round(8.0 / spacing)
 
 
@@ -191,7 +191,7 @@ def test_a_pair_that_comes_within_reach_changes_neither_the_force_on_it_nor_that
 def test_without_motion_along_x_only_the_springs_across_hold_a_chain() -> None:
     """ℓ = s/arcosh(1 + k/2k_n)."""
     body = {"bulk_stiffness_tangential": 0.1, "spacing": SPACING}
-    of = scene_from_dict(
+    of = read_scene(
         chains(RADIUS, SPRING, bodies=body, neighbours={"stiffness": 3.0}, experiment={"kind": "load", "force": 0.05})
     )
     assert decay_length(of) == pytest.approx(SPACING / math.acosh(1.0 + 0.5 * SPRING / 3.0), rel=1e-12)

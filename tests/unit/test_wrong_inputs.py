@@ -14,9 +14,9 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from contact1d.workflow.cli.app import app
+from contact1d import Scene, SceneError, read_scene
+from contact1d.__main__ import app
 from contact1d.workflow.runs.plausibility import implausible
-from contact1d.workflow.scene import Scene, SceneError, read_scene
 from contact1d.workflow.units import UNKNOWN, Scales
 from tests.scenes import STEEL_ON_GLASS
 

@@ -8,8 +8,7 @@ from typing import Any
 
 import pytest
 
-from contact1d import Run, run
-from contact1d.workflow.scene import scene_from_dict
+from contact1d import Run, read_scene, run
 
 RunTables = Callable[[dict[str, Any]], Run]
 
@@ -20,7 +19,7 @@ def run_tables(tmp_path_factory: pytest.TempPathFactory) -> RunTables:
     numbers = count()
 
     def finished(tables: dict[str, Any]) -> Run:
-        scene = scene_from_dict({"title": f"validation {next(numbers)}"} | tables)
+        scene = read_scene({"title": f"validation {next(numbers)}"} | tables)
         return run(scene, tmp_path_factory.mktemp("run"), figures=False)
 
     return finished

@@ -11,9 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from contact1d import run
+from contact1d import read_scene, run
 from contact1d.analysis.theory.indenters import PowerLaw
-from contact1d.workflow.scene import scene_from_dict
 from validation.hard.claims import Tally
 from validation.paper.tangential import stiffness_ratio
 
@@ -78,7 +77,7 @@ def test_an_automatic_spacing_keeps_the_tolerance(tmp_path: Path) -> None:
     for number in range(SCENES):
         kind = KINDS[number % len(KINDS)]
         scene, exact = drawn(rng, kind)
-        found = run(scene_from_dict(scene), tmp_path / str(number), figures=False)
+        found = run(read_scene(scene), tmp_path / str(number), figures=False)
         tally.add(str(number), kind, found, exact, ROUND_OFF)
     assert not [error for error in tally.errors if error.over_tolerance > 1.0 and not error.told]
     assert not [error for error in tally.errors if error.over_claim > 1.0]

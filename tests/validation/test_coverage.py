@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from contact1d.workflow.runs.finished import Run
+from contact1d import Run
 from validation.references.indenters import jkr
 
 SEED, SCENES, REFERENCE = 20261122, 24, 1e-8

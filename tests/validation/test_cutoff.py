@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from contact1d.workflow.runs.finished import Run
+from contact1d import Run
 from tests.scenes import chains
 
 

@@ -19,8 +19,8 @@ from scipy.integrate import quad
 from typer.testing import CliRunner
 
 from contact1d import Run, SceneError, read_scene, run
+from contact1d.__main__ import app
 from contact1d.analysis.theory.mindlin import mindlin_cycle_energy
-from contact1d.workflow.cli.app import app
 from tests.pages import ROOT, require_shown
 from validation.references.mindlin import mindlin_force
 

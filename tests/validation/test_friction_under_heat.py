@@ -11,9 +11,8 @@ from typing import Any
 
 import pytest
 
-from contact1d import Run, run, run_many
+from contact1d import Run, Scene, read_scene, run, run_many
 from contact1d.workflow.runs.processors import pool
-from contact1d.workflow.scene import Scene, read_scene
 from tests.kept_runs import KeptBench
 from validation.paper import heat
 

@@ -16,9 +16,8 @@ from pathlib import Path
 
 import pytest
 
-from contact1d import run
+from contact1d import read_scene, run
 from contact1d.workflow.identify import Identified, identify, jkr_target, material_scene
-from contact1d.workflow.scene import scene_from_dict, scene_to_toml
 
 ROUND_OFF = 1e-12
 STOP = 0.3
@@ -82,7 +81,7 @@ def test_scene_is_of_that_sphere(found: tuple[Sphere, Identified]) -> None:
 
 def test_run_of_the_scene_as_it_is_written_down_repeats(found: tuple[Sphere, Identified], tmp_path: Path) -> None:
     _, identified = found
-    scene = scene_from_dict(tomllib.loads(scene_to_toml(identified.scene)))
+    scene = read_scene(tomllib.loads(str(identified.scene)))
     again = run(scene, tmp_path / "again", figures=False).document
     for name in ("adhesion_force", "zero_load_radius"):
         assert again[name]["si"]["value"] == pytest.approx(identified.run.document[name]["si"]["value"], rel=REPEATED)

@@ -12,8 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from contact1d import run
-from contact1d.workflow.scene import scene_from_dict
+from contact1d import read_scene, run
 from validation.references.incommensurate import threshold
 
 LAW, LOAD = (1.0, 0.5, 0.5, 1.0), 0.2
@@ -25,7 +24,7 @@ PINNED, FREE = 1.7, 3.5
 
 def friction(stiffness: float, velocity: float, folder: Path) -> float:
     """⟨F⟩ of a particle [FU]."""
-    found = run(scene_from_dict({
+    found = run(read_scene({
         "title": "Frenkel-Kontorova-Tomlinson",
         "bodies": {
             "particles": LOWER, "upper_particles": UPPER, "upper_spacing": LOWER / UPPER, "spacing": 1.0,

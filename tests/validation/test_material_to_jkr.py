@@ -20,7 +20,7 @@ import pytest
 from typer.testing import CliRunner
 
 from contact1d import from_material
-from contact1d.workflow.cli.app import app
+from contact1d.__main__ import app
 from contact1d.workflow.identify import MaterialRun
 from validation.references.maugis import LAMBDA_OVER_TABOR, marks
 

@@ -24,13 +24,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from contact1d import read_scene
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import Session
 from contact1d.workflow.model.settings import settings_for
-from contact1d.workflow.scene import scene_from_dict
 from tests.scenes import chains
 
 Array = NDArray[np.float64]
@@ -78,7 +78,7 @@ def sample(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Sample]:
         if tangential is not None:
             scene["horizontal"] = {}
             scene["bodies"]["bulk_stiffness_tangential"] = tangential
-        checked = scene_from_dict(scene)
+        checked = read_scene(scene)
         deck = Deck(checked, settings_for(checked))
         folder = tmp_path_factory.mktemp("noise")
         write_system(deck, folder)

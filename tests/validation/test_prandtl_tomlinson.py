@@ -12,9 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import Run, run
+from contact1d import Run, Scene, read_scene, run
 from contact1d.workflow.model.settings import settings_for
-from contact1d.workflow.scene import Scene, scene_from_dict
 from validation.references.prandtl_tomlinson import Corrugation, corrugation, slow_friction
 from validation.references.slide import Integrator
 from validation.slides import slide_model
@@ -32,7 +31,7 @@ SINUSOID = {1.0: 0.0, 2.0: 0.2015, 5.0: 0.5710}
 def scene_of(eta: float, velocity: float, distance: float, **bodies: Any) -> Scene:
     """A particle whose spring to the drive, its own and the cantilever's in series, is max(−U″)/η."""
     stiffness = corrugation(LAW, 1.0, LOAD).steepest / eta
-    return scene_from_dict({
+    return read_scene({
         "title": "Prandtl-Tomlinson",
         "bodies": {
             "particles": 32, "upper_particles": 1, "upper_offset": 0.0, "spacing": 1.0, "lower": "rigid_chain",

@@ -15,10 +15,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import Run, RunError, run_many
+from contact1d import Run, RunError, Scene, read_scene, run, run_many
 from contact1d.workflow.model.settings import settings_for
-from contact1d.workflow.runs.campaign import run
-from contact1d.workflow.scene import Scene, scene_from_dict
 from validation.slides import integrated, mean_friction
 
 TRACE = 3e-4
@@ -98,7 +96,7 @@ def slides() -> Iterator[tuple[int, Scene]]:
     """Random slides without end, with their numbers."""
     random, number = Random(SEED), 0
     while True:
-        yield number, scene_from_dict(random_slide(random))
+        yield number, read_scene(random_slide(random))
         number += 1
 
 

@@ -18,8 +18,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import Run, run
-from contact1d.workflow.scene import SceneError, scene_from_dict
+from contact1d import Run, SceneError, read_scene, run
 from validation.references.mdr import ReducedContact
 
 REACHED = 2e-4
@@ -120,7 +119,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def finished(folder: Path) -> dict[str, Run]:
     return {
-        name: run(scene_from_dict(tables(contact), folder=folder), folder / name, figures=False)
+        name: run(read_scene(tables(contact), folder=folder), folder / name, figures=False)
         for name, contact in CONTACTS.items()
     }
 
@@ -142,9 +141,9 @@ def test_the_paper_s_reduction_is_refused_or_carries_the_factor(folder: Path, na
     asked = tables(CONTACTS[name], reduction="geike_popov")
     if name != "sphere":
         with pytest.raises(SceneError, match="was derived for two equal spheres"):
-            scene_from_dict(asked, folder=folder)
+            read_scene(asked, folder=folder)
         return
-    found = run(scene_from_dict(asked), folder / "paper", figures=False)
+    found = run(read_scene(asked), folder / "paper", figures=False)
     doubt = found.warnings["reduction"]
     image, own = (found.results[key].si for key in ("image_contact_radius", "contact_radius"))
     assert image is not None

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import Run, run
-from contact1d.workflow.scene import Scene, scene_from_dict
+from contact1d import Run, Scene, read_scene, run
 from validation.paper.heat import FLAT_PAIR, TEMPERATURE
 
 SIGMAS = 3.0
@@ -24,7 +23,7 @@ def scene_of(**tables: Any) -> Scene:
     """A flat pair of eight particles that slides slowly under heat."""
     base = FLAT_PAIR | {"experiment": {"kind": "slide", "normal_force": 1.6, "distance": 12.0}}
     changed = {name: base.get(name, {}) | tables.get(name, {}) for name in {**base, **tables}}
-    return scene_from_dict({"title": "slide under heat"} | changed)
+    return read_scene({"title": "slide under heat"} | changed)
 
 
 @pytest.fixture(scope="module")

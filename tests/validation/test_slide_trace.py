@@ -11,9 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import Run, run
+from contact1d import Run, Scene, read_scene, run
 from contact1d.workflow.model.settings import Settings, settings_for
-from contact1d.workflow.scene import Scene, scene_from_dict
 from validation.references.slide import Integrator, Trace
 from validation.slides import slide_model
 
@@ -43,7 +42,7 @@ def scene_of(**tables: Any) -> Scene:
         "experiment": {"kind": "slide", "normal_force": 1.0, "distance": 4.0},
     }  # fmt: skip
     changed = {name: base.get(name, {}) | tables.get(name, {}) for name in {**base, **tables}}
-    return scene_from_dict({"title": "slide"} | changed)
+    return read_scene({"title": "slide"} | changed)
 
 
 def integrated(scene: Scene, settings: Settings) -> Trace:

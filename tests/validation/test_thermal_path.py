@@ -10,9 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from contact1d import Run, load_run, run
+from contact1d import Run, load_run, read_scene, run
 from contact1d.analysis.curve_marks import largest_tension
-from contact1d.workflow.scene import scene_from_dict
 from validation.paper import detachment
 
 SIGMAS = 4.0
@@ -65,7 +64,7 @@ def test_the_folder_can_be_read_and_drawn(heated: Run) -> None:
 
 def test_the_same_places_there_and_back_are_the_same(tmp_path: Path) -> None:
     """Without pairs that snap nothing is lost on the way, within what the means are known to."""
-    scene = scene_from_dict({
+    scene = read_scene({
         "title": "there and back under heat",
         "bodies": {
             "particles": 5, "spacing": 3.0, "profile": {"kind": "flat_punch", "radius": 7.5}, "bulk_stiffness": 2.0,

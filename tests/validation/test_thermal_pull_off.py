@@ -12,10 +12,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import Run, run, run_many
+from contact1d import Run, read_scene, run, run_many
 from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.runs.processors import pool
-from contact1d.workflow.scene import read_scene
 from tests.kept_runs import KeptBench
 from validation.paper import detachment
 from validation.references.detachment import detachment as quasi_stationary

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from contact1d import Run, SceneError, run
-from contact1d.workflow.scene import scene_from_dict
+from contact1d import Run, SceneError, read_scene, run
 
 E, R = 1.0, 1.0
 SOLID = [{"share": 0.5, "time": 1.0}]
@@ -24,7 +23,7 @@ def scene(experiment: dict[str, Any], spacing: float = 0.02, profile: Any = None
 
 
 def done(experiment: dict[str, Any], folder: Path | None = None, **given: Any) -> Run:
-    return run(scene_from_dict(scene(experiment, **given)), folder, figures=False)
+    return run(read_scene(scene(experiment, **given)), folder, figures=False)
 
 
 def inside(found: Run, name: str, exact: float, relative: float) -> bool:
@@ -87,4 +86,4 @@ def test_what_is_wrong_is_a_sentence(name: str) -> None:
     right = scene(history("displacement", (0, 0), (1, 0.1), (2, 0)), viscoelasticity={"terms": SOLID})
     changes, words = WRONG[name]
     with pytest.raises(SceneError, match=words):
-        scene_from_dict(right | changes)
+        read_scene(right | changes)

@@ -18,9 +18,7 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 from scipy.stats import binom
 
-from contact1d import RunError
-from contact1d.workflow.runs.campaign import run
-from contact1d.workflow.scene import scene_from_dict
+from contact1d import RunError, read_scene, run
 from validation.hard.random_scenes import SOLVER, exact_results, model_of, random_scene
 
 SEED, SCENES = 20071, 60
@@ -48,7 +46,7 @@ class Error:
 
 
 def errors_of(scene: dict[str, Any], folder: Path) -> list[Error]:
-    finished = run(scene_from_dict(scene), folder, figures=False)
+    finished = run(read_scene(scene), folder, figures=False)
     model = model_of(scene, finished.outcome.states[0].profile.x.size)
     near = finished.document.get("displacement", {"value": 0.0})["value"]
     errors = []

@@ -22,7 +22,7 @@ from scipy.optimize import brentq
 from typer.testing import CliRunner
 
 from contact1d import Quantity, Run, read_scene
-from contact1d.workflow.cli.app import app
+from contact1d.__main__ import app
 from tests.pages import ROOT, require_shown
 
 FOLDER = "docs/tutorials"

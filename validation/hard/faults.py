@@ -10,13 +10,13 @@ import sys
 import time
 from pathlib import Path
 
-from validation.doors import scene_from_dict, scene_to_toml
+from validation.doors import read_scene
 from validation.hard.cases import PAPER_LAW
 from validation.row import so
 from validation.study import Bench, Findings, Study
 
 NAME = "faults"
-COMMAND = (sys.executable, "-m", "contact1d.workflow.cli.app", "run")
+COMMAND = (sys.executable, "-m", "contact1d", "run")
 MOST = 1800.0
 """Wall time of one command [s]."""
 CODES, RESULTS = (0, 2, 3), "results.json"
@@ -38,7 +38,7 @@ SCENE = {
 def measure(bench: Bench) -> Findings:
     """All three kinds; the reference is the same run undisturbed, whose phases and files are those of the others."""
     scene = bench.folder / "scene.toml"
-    scene.write_text(scene_to_toml(scene_from_dict(SCENE)), encoding="utf-8")
+    scene.write_text(str(read_scene(SCENE)), encoding="utf-8")
     whole = bench.folder / "undisturbed"
     phases = _lines(_start(scene, whole))
     undisturbed = _force(whole)

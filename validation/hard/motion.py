@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 
-from validation.doors import EngineError, Session, contact_of, scene_from_dict, settings_for
+from validation.doors import EngineError, Session, contact_of, read_scene, settings_for
 from validation.hard.cases import BODIES, PAPER_LAW, PAPER_NUMBERS
 from validation.references.energy import EnergySurface
 from validation.references.interaction import PairInteraction
@@ -164,7 +164,7 @@ def _energy(folder: Path, step: float, steps: int, looks: int) -> Any:
 def _time_step(more: dict[str, Any], words: str) -> Row:
     """ωΔt/2 of the time step that the program chooses, ω from the solver's Hessian under the load."""
     tables = TIMED | LOADED | more
-    step = settings_for(scene_from_dict({"title": "time step"} | tables)).motion.time_step
+    step = settings_for(read_scene({"title": "time step"} | tables)).motion.time_step
     law = PairInteraction.of(*PAPER_NUMBERS)
     neighbours = more.get("neighbours", {"stiffness": 0.0})["stiffness"]
     model = ChainModel(12, 0.83, law, radius=40.0, neighbour_stiffness=neighbours)

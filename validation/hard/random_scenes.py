@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.doors import IN_TIME, Run, law_table, scene_from_dict, settings_for
+from validation.doors import IN_TIME, Run, law_table, read_scene, settings_for
 from validation.hard.claims import Tally
 from validation.references.interaction import Exponential, PairInteraction
 from validation.references.model import ChainModel
@@ -57,7 +57,7 @@ def varied(scene: dict[str, Any], random: Random) -> dict[str, Any]:
     if experiment["kind"] == "pull_off" and "horizontal" not in scene and "plate" not in scene and path:
         far, deepest = (
             scene["interaction"]["attraction"]["range"],
-            settings_for(scene_from_dict(scene)).largest_displacement,
+            settings_for(read_scene(scene)).largest_displacement,
         )
         way = {"from": -APART * far, "to": deepest, "steps": random.randrange(40, 200)}
         return scene | {"experiment": {"kind": "path", "displacements": way}}
@@ -190,7 +190,7 @@ def exact_results(scene: dict[str, Any], model: ChainModel, near: float) -> dict
 def _exact(scene: dict[str, Any], run: Run | Refused) -> dict[str, float]:
     """The solver's numbers. Raises RuntimeError where it does not carry the scene."""
     if isinstance(run, Refused):
-        expected = settings_for(scene_from_dict({"title": "expected"} | scene))
+        expected = settings_for(read_scene({"title": "expected"} | scene))
         return exact_results(scene, model_of(scene, expected.chains.upper), expected.largest_displacement)
     near = run.results["displacement"].value if "displacement" in run.results else 0.0
     return exact_results(scene, model_of(scene, next(iter(run.profiles.values())).x.size), near)

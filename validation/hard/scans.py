@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from scipy.signal import lfilter
 
-from validation.doors import Quantity, modelled, scene_from_dict
+from validation.doors import Quantity, modelled, read_scene
 from validation.references.axisymmetric import Body, Contact
 from validation.row import Row, at_most
 from validation.study import Bench, Findings, Refused, Study
@@ -122,7 +122,7 @@ def measure(bench: Bench) -> Findings:
     rows = list[Row]()
     for case in cases(bench.full):
         exact, seeds = case.exact(), range(FIRST_SEED, FIRST_SEED + (FULL_SEEDS if bench.full else SEEDS))
-        found = [modelled(scene_from_dict(case.scene(seed))) for seed in seeds]
+        found = [modelled(read_scene(case.scene(seed))) for seed in seeds]
         for name, value in exact.items():
             rows += judged(case, name, [one[name] for one in found], value)
         run = bench.run(case.words.replace(" ", "_").replace(",", ""), case.scene(FIRST_SEED))

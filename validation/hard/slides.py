@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.doors import Run, law_table, scene_from_dict, settings_for
+from validation.doors import Run, law_table, read_scene, settings_for
 from validation.references.prandtl_tomlinson import corrugation
 from validation.references.slide import Trace
 from validation.row import Row, at_most, so
@@ -99,7 +99,7 @@ def measure(bench: Bench) -> Findings:
     """Three rows of each slide, what is special of each, and two that end nowhere."""
     checks: list[Row] = []
     for name, tables in CASES.items():
-        scene = scene_from_dict({"title": name} | _clean(tables))
+        scene = read_scene({"title": name} | _clean(tables))
         found = bench.run(name.replace(" ", "_"), _clean(tables))
         if isinstance(found, Refused):
             checks.append(at_most(f"trace, {name}", math.nan, 0.0, SOURCE, said("–", found)))

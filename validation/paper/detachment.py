@@ -11,7 +11,7 @@ from functools import cache
 
 import numpy as np
 
-from validation.doors import Scene, law_table, scene_from_dict
+from validation.doors import Scene, law_table, read_scene
 from validation.figures import Array, Panel, Series, figure
 from validation.page import agreement, number, share, worst_deviation
 from validation.references.boltzmann_pairs import BoltzmannPairs
@@ -46,7 +46,7 @@ LAGGING = {"lagging": "the reference has the same drag"}
 
 def scene(rate: float, repeats: int = PULLS) -> Scene:
     """The pairs, pulled at a rate [FU/TU]."""
-    return scene_from_dict({
+    return read_scene({
         "title": "nine pairs under heat",
         "bodies": {
             "particles": "auto", "spacing": APART, "profile": {"kind": "flat_punch", "radius": 0.5 * PAIRS * APART},

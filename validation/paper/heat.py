@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.doors import Scene, law_table, scene_from_dict
+from validation.doors import Scene, law_table, read_scene
 from validation.figures import Panel, Series, figure
 from validation.page import agreement, number
 from validation.references.langevin_ensemble import PulledParticle, ensemble_friction
@@ -81,7 +81,7 @@ def body(share: float) -> PulledParticle:
 def scene(share: float, velocity: float, distance: float, seed: int = 1) -> Scene:
     """The same as a scene."""
     particle = body(share)
-    return scene_from_dict({
+    return read_scene({
         "title": "a particle on a row, under heat",
         "bodies": {
             "particles": 32, "upper_particles": 1, "upper_offset": 0.5, "spacing": SPACING, "lower": "rigid_chain",
@@ -101,7 +101,7 @@ def scene(share: float, velocity: float, distance: float, seed: int = 1) -> Scen
 def _plate_at_rest() -> Scene:
     """The flat pair, which does not slide."""
     at_rest = {"kind": "slide", "normal_force": 1.6, "path": [[0.0, 20.0]]}
-    return scene_from_dict({"title": "a plate at rest, under heat"} | FLAT_PAIR | {"experiment": at_rest})
+    return read_scene({"title": "a plate at rest, under heat"} | FLAT_PAIR | {"experiment": at_rest})
 
 
 def run_name(share: float, velocity: float) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.doors import Run, Scene, scene_from_dict
+from validation.doors import Run, Scene, read_scene
 from validation.figures import Panel, Series, figure
 from validation.page import agreement, number
 from validation.references.indenters import jkr
@@ -53,7 +53,7 @@ def _name(particles: float) -> str:
 def _scene(experiment: dict[str, Any], spacing: float) -> Scene:
     profile = {"kind": "parabola", "radius": RADIUS}
     plane = {"particles": "auto", "spacing": spacing, "profile": profile, "reduction": "mdr", "lower": "rigid_plane"}
-    return scene_from_dict(
+    return read_scene(
         {
             "title": "JKR on the plane",
             "bodies": plane | {"bulk_stiffness": MODULUS * spacing},

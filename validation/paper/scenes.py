@@ -25,7 +25,6 @@ from validation.doors import (
     law_of,
     load_run,
     read_scene,
-    scene_from_dict,
     shipped,
     versions,
 )
@@ -95,7 +94,7 @@ def _identified(scene: Scene, target: Target, folder: Path) -> Scene | None:
 
 def changed(scene: Scene, *overrides: str) -> Scene:
     """The scene with `table.key=value` changed."""
-    return scene_from_dict(scene, overrides)
+    return read_scene(scene, overrides)
 
 
 def curve_scene(scene: Scene, deepest: float, steps: int) -> Scene:
@@ -123,7 +122,7 @@ def local(scene: Scene, spacing: float = LOCAL_SPACING) -> Scene:
     }
     for term in ("repulsion", "attraction"):
         data["interaction"][term]["amplitude"] *= spacing / scene.bodies.spacing
-    return scene_from_dict(data)
+    return read_scene(data)
 
 
 def with_radius(scene: Scene, radius: float) -> Scene:

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.doors import Reduction, Run, Scene, scene_from_dict
+from validation.doors import Reduction, Run, Scene, read_scene
 from validation.figures import Panel, Series, figure
 from validation.page import agreement, number, share
 from validation.references import hertz
@@ -56,7 +56,7 @@ SLOPE, EXPONENT, PUNCH, DEPTH = 0.05, 4.0, 20.0, 3.0
 def reduction_scene(reduction: Reduction, d: float, R: float, nu: float, h: float, tolerance: float = 1e-3) -> Scene:
     """A sphere of two equal materials pressed by d [LU]; R the sphere's radius, h the spacing [LU]."""
     body = {"youngs_modulus": MODULUS, "poisson_ratio": nu}
-    return scene_from_dict(
+    return read_scene(
         {
             "title": f"{reduction}: d = {d:g}, R = {R:g}, nu = {nu:g}, h = {h:g}",
             "bodies": {
@@ -90,7 +90,7 @@ def shape_scene(kind: str, reduction: Reduction = "mdr") -> Scene:
     if reduction == "geike_popov":  # refused with a material: a shape as drawn is no body's
         del base["material"]
         base["bodies"]["bulk_stiffness"] = sphere.bulk_stiffness
-    return scene_from_dict(base)
+    return read_scene(base)
 
 
 SHAPES = ("circle", "cone", "flat_punch", "power", "table")

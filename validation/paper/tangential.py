@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.doors import Reduction, Run, Scene, scene_from_dict
+from validation.doors import Reduction, Run, Scene, read_scene
 from validation.figures import Array, Panel, Series, figure
 from validation.page import agreement, number, share
 from validation.paper.section2 import FORCE_UNIT, LENGTH_UNIT, MODULUS
@@ -84,7 +84,7 @@ class Case:
             "reduction": self.reduction, "bulk_stiffness": "auto", "lower": "rigid_plane",
         }  # fmt: skip
         experiment = {"kind": "tangential", "normal_displacement": depths, "displacements": places.tolist()}
-        return scene_from_dict(
+        return read_scene(
             {
                 "title": f"tangential: {self.name}",
                 "bodies": own | bodies,

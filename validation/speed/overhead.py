@@ -11,7 +11,7 @@ import statistics
 from collections.abc import Sequence
 from pathlib import Path
 
-from validation.doors import Deck, Displace, Engine, Session, scene_from_dict, settings_for, write_deck
+from validation.doors import Deck, Displace, Engine, Session, read_scene, settings_for, write_deck
 from validation.hard.cases import PAPER_LAW
 from validation.row import at_most
 from validation.study import Bench, Findings, Study
@@ -63,7 +63,7 @@ def loop_time(session: Session, folder: Path, steps: str) -> float:
 
 def ratio(name: str, folder: Path) -> float:
     """Of a scene, see `over`."""
-    scene = scene_from_dict({"title": name} | SCENES[name])
+    scene = read_scene({"title": name} | SCENES[name])
     settings = settings_for(scene)
     deck = Deck(scene, settings)
     write_deck(scene, folder)

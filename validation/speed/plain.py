@@ -40,7 +40,7 @@ def timed(scene: Scene, method: str, tolerance: float) -> Scene:
     tables = {"damping": {"coefficient": "auto"}, "plate": {"mass": "auto"}} if method == "dynamic" else {}
     data = scene.model_dump(by_alias=True, exclude_none=True) | tables
     data["experiment"]["method"] = method
-    return doors.scene_from_dict(data | {"accuracy": {"tolerance": tolerance}})
+    return doors.read_scene(data | {"accuracy": {"tolerance": tolerance}})
 
 
 def held(contact: Contact, load: float, scale: float) -> bool:

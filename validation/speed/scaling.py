@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from contact1d import read_scene, run
-from validation.doors import Scene, scene_from_dict, shipped
+from validation.doors import Scene, shipped
 from validation.figures import Panel, Series, figure
 from validation.hard.cases import PAPER_LAW
 from validation.row import Row, at_most
@@ -53,7 +53,7 @@ ASKED = "asked for"
 def scaled_scene(particles: int, method: str, steps: int | None = None) -> Scene:
     """A path of a few load steps of two chains; R grows with N², so that heights along the chain are the same."""
     wanted = steps or next((count for size, count in reversed(STEPS.items()) if particles >= size), STEPS[200])
-    return scene_from_dict({
+    return read_scene({
         "title": f"{particles} particles per body",
         "bodies": {
             "particles": particles, "spacing": 1.0, "bulk_stiffness": 0.83,

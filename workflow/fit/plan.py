@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal
 from annotated_types import Gt
 from pydantic import Field, ValidationError
 
-from contact1d.workflow.scene import Problem, Scene, SceneError, read_tables, scene_from_dict
+from contact1d.workflow.scene import Problem, Scene, SceneError, read_scene, read_tables
 from contact1d.workflow.scene.check import mend_words, report_faults
 from contact1d.workflow.scene.conversion import convert
 from contact1d.workflow.scene.problems import shown
@@ -133,7 +133,7 @@ def _base(base: Mapping[str, Any], folder: Path) -> tuple[Scene | None, list[Pro
     given = {"title": "fit", "experiment": LOAD, **base}
     given["bodies"] = {**BODIES, **bodies} if isinstance(bodies, Mapping) else bodies
     try:
-        scene = scene_from_dict(given, folder=folder)
+        scene = read_scene(given, folder=folder)
     except SceneError as error:
         return None, [Problem(f"base.{fault.path}", fault.message, fault.given, fault.hint) for fault in error.problems]
     if scene.bodies.lower != "rigid_plane" or scene.bodies.reduction != "mdr":

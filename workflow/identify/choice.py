@@ -23,7 +23,7 @@ from contact1d.workflow.identify.interaction import (
 from contact1d.workflow.identify.theories import Theories, limitations, require_size
 from contact1d.workflow.runs import advised
 from contact1d.workflow.runs.finished import Run
-from contact1d.workflow.scene import Scene, scene_from_dict
+from contact1d.workflow.scene import Scene, read_scene
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ def on_plane(contact: AskedContact, experiment: Any, **tables: Any) -> Scene:
     data = contact.scene.given
     if not contact.work_of_adhesion:
         data.pop("adhesion", None)
-    return scene_from_dict(data | tables | {"experiment": experiment})
+    return read_scene(data | tables | {"experiment": experiment})
 
 
 def _particles(contact: AskedContact, theories: Theories | None, doubts: dict[str, str]) -> Choice:

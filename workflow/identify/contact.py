@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 from contact1d.workflow.body.cases import ASSUMED_RANGE
 from contact1d.workflow.laws import law_of
-from contact1d.workflow.scene import Problem, Scene, SceneError, read_tables, scene_from_dict
+from contact1d.workflow.scene import Problem, Scene, SceneError, read_scene, read_tables
 from contact1d.workflow.scene.measured import is_scan
 from contact1d.workflow.scene.problems import nearest, shown
 from contact1d.workflow.scene.profile_file import read_profile
@@ -130,7 +130,7 @@ def read_contact(source: AnyContact, complete: bool = True) -> AskedContact:
     reported = {problem.path for problem in problems}
     scene = None
     try:
-        scene = scene_from_dict(_as_scene({key: v for key, v in data.items() if key not in reported}), folder=folder)
+        scene = read_scene(_as_scene({key: v for key, v in data.items() if key not in reported}), folder=folder)
     except SceneError as error:
         of_scene = [_as_given(problem, data) for problem in error.problems]
         keys = {key for key, value in data.items() if value != RIGID} - reported

@@ -31,7 +31,7 @@ from contact1d.workflow.laws.pairs import interaction_law, of_pairs
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.runs.finished import Run, load_run
 from contact1d.workflow.runs.scales import UNIT_FIXING_RESULTS, jkr_scales
-from contact1d.workflow.scene import PullOff, Scene, scene_from_dict
+from contact1d.workflow.scene import PullOff, Scene, read_scene
 from contact1d.workflow.scene.tables import PARABOLA_SHARE, SPHERES
 from contact1d.workflow.units import SI, Scales
 
@@ -124,7 +124,7 @@ def material_scene(
     wanted = Target(target.adhesion_force / force_unit, target.zero_load_radius / unit)
     depth = wanted.zero_load_radius**2 / (radius / unit)
     reach, energy = 0.3 * depth, 0.1 * depth**2  # only a start
-    scene = scene_from_dict(
+    scene = read_scene(
         {
             "title": f"Sphere of R = {radius:.4g} m, E* = {contact_modulus:.4g} Pa",
             "bodies": {
@@ -264,7 +264,7 @@ def scaled(scene: Scene, logarithms: Array) -> Scene:
     for term in ("repulsion", "attraction"):
         for key, factor in zip(("amplitude", "range"), np.exp(logarithms).tolist(), strict=True):
             data["interaction"][term][key] *= factor
-    return scene_from_dict(data)
+    return read_scene(data)
 
 
 def _estimated(scene: Scene, tail: float = 1e-5, points: int = 1000) -> Array:

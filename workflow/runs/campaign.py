@@ -33,7 +33,7 @@ from contact1d.workflow.runs.processors import cores, require_ranks
 from contact1d.workflow.runs.refinement import refined
 from contact1d.workflow.runs.report import FILES, failure, results, tables_of, write_results, write_tables
 from contact1d.workflow.runs.scales import scales_of
-from contact1d.workflow.scene import AnyScene, Scene, read_scene, scene_to_toml
+from contact1d.workflow.scene import AnyScene, Scene, read_scene
 
 LOCK = ".running"
 TIME_LIMIT = 3600.0
@@ -113,7 +113,7 @@ def _prepared(
             if file.name.removesuffix(PART) in FILES:
                 file.unlink()
         write_whole(path / "in.lammps", text)
-        write_whole(path / "scene.toml", scene_to_toml(chosen))
+        write_whole(path / "scene.toml", str(chosen))
         write_system(deck, path)
         yield deck, phases, path
 

@@ -29,7 +29,7 @@ from contact1d.workflow.runs.charts import CURVE_COLUMNS, charts
 from contact1d.workflow.runs.plausibility import IMPLAUSIBLE
 from contact1d.workflow.runs.report import FILES, FORMATS, as_json, in_model_units, quantities_in, read_results
 from contact1d.workflow.runs.scales import scales_of
-from contact1d.workflow.scene import Scene, SceneError, scene_from_dict
+from contact1d.workflow.scene import Scene, SceneError, read_scene
 from contact1d.workflow.units import NUMBER, Quantity, Scales, scale_of
 
 if TYPE_CHECKING:
@@ -267,7 +267,7 @@ def read_run(folder: Path) -> Run:
     """Read a run as `load_run`; one that failed is returned, too, without results and tables."""
     document = read_results(folder)
     try:
-        scene = scene_from_dict(document["scene"])
+        scene = read_scene(document["scene"])
         tables = {}
         if document["status"] == "done":
             needed = {"curve.csv": CURVE_COLUMNS, "profile.csv": (*PROFILE_COLUMNS, "state")}

@@ -18,7 +18,7 @@ from contact1d.workflow.scene.measured import Measured
 from contact1d.workflow.scene.problems import Problem, SceneError
 from contact1d.workflow.scene.profiles import Profile
 from contact1d.workflow.scene.quantities import Table
-from contact1d.workflow.scene.read import AnyScene, Scene, read_scene, read_tables, scene_from_dict, scene_to_toml
+from contact1d.workflow.scene.read import AnyScene, Scene, read_scene, read_tables
 from contact1d.workflow.scene.shapes import Circle, Cone, Ellipsoid, FlatPunch, Parabola, Power, Shape
 from contact1d.workflow.scene.tables import EFFECTS, Bodies, Elastic, Material, Reduction
 
@@ -64,6 +64,4 @@ __all__ = [
     "Viscoelasticity",
     "read_scene",
     "read_tables",
-    "scene_from_dict",
-    "scene_to_toml",
 ]

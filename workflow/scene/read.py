@@ -58,7 +58,7 @@ HINTS = {
 
 
 class Scene(Tables):
-    """A whole scene, whose tables fit together: `read_scene` and `scene_from_dict` make it."""
+    """A whole scene, whose tables fit together: `read_scene` and `read_scene` make it."""
 
     model_config = ConfigDict(defer_build=False)  # with all its tables, once
     _shares: dict[str, float] = PrivateAttr(default_factory=dict)
@@ -125,27 +125,34 @@ AnyScene = Scene | str | PathLike[str] | Mapping[str, Any]
 """The types of a source from which `read_scene` makes a scene."""
 
 
-def read_scene(source: AnyScene, overrides: Iterable[str] = (), without: Iterable[str] = ()) -> Scene:
-    """Return the scene that `source` describes, checked.
+def read_scene(
+    source: AnyScene,
+    overrides: Iterable[str] = (),
+    without: Iterable[str] = (),
+    folder: str | PathLike[str] | None = None,
+) -> Scene:
+    """Return the scene that `source` describes, checked; `source` is not changed.
 
     Args:
         source: a TOML file, by its path; or TOML text, which is a `str` with a line break or "=" in it; or a mapping
-            of tables with the keys of a scene file; or a `Scene`.
+            of tables with the keys of a scene file, where None counts as absent; or a `Scene`.
         overrides: strings "table.key=value", applied in order, the value read as TOML or else as bare text.
         without: names of effects whose tables are removed.
+        folder: where a file with the points of a profile is looked for; None: the folder of `source`, if that is a
+            file, or the current one. The points are read into the scene, which does not need the file afterwards.
 
     Raises:
         SceneError: with every problem at once, also for a file that is missing, unreadable, not UTF-8 or not TOML.
     """
-    if isinstance(source, Mapping | Scene):
-        return scene_from_dict(source, overrides, without)
-    tables = read_tables(source)
-    return scene_from_dict(tables, overrides, without, "." if _is_text(source) else FilePath(source).parent)
-
-
-def scene_to_toml(scene: Scene) -> str:
-    """Return the whole `scene` as a TOML file, with defaults written out, that reads back as an equal scene."""
-    return str(scene)
+    if isinstance(source, Scene):
+        plain: Any = source.given
+    elif isinstance(source, Mapping):
+        plain = plain_data(source)
+    else:
+        plain = read_tables(source)
+        folder = folder or (None if _is_text(source) else FilePath(source).parent)
+    problems = apply_overrides(plain, _listed(overrides)) + remove_effects(plain, _listed(without))
+    return _checked(plain, problems, FilePath(folder or "."))
 
 
 def read_tables(source: str | PathLike[str]) -> dict[str, Any]:
@@ -163,25 +170,6 @@ def read_tables(source: str | PathLike[str]) -> dict[str, Any]:
 
 def _is_text(source: object) -> bool:
     return isinstance(source, str) and ("\n" in source or "=" in source)
-
-
-def scene_from_dict(
-    data: Mapping[str, Any] | Scene,
-    overrides: Iterable[str] = (),
-    without: Iterable[str] = (),
-    folder: str | PathLike[str] = ".",
-) -> Scene:
-    """Return the scene that `data` (keys as in a scene file; None counts as absent) describes; `data` is not changed.
-
-    A profile's file is read from `folder` into the scene, which then does not need it any more. `overrides` are
-    strings "table.key=value", applied in order, the value read as TOML or else as bare text; `without` has names of
-    effects whose tables are then removed. Raises SceneError with every problem at once.
-    """
-    plain = data.given if isinstance(data, Scene) else plain_data(data)
-    if not isinstance(plain, dict):
-        raise SceneError([Problem("scene", "must be a table of tables")])
-    problems = apply_overrides(plain, _listed(overrides)) + remove_effects(plain, _listed(without))
-    return _checked(plain, problems, FilePath(folder))
 
 
 def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -> Scene:

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from contact1d.digits import cleaned
-from contact1d.workflow.scene import Problem, Scene, SceneError, read_tables, scene_from_dict
+from contact1d.workflow.scene import Problem, Scene, SceneError, read_scene, read_tables
 from contact1d.workflow.scene.problems import as_toml, shown, suggestion
 from contact1d.workflow.scene.read import plain_data, set_values
 from contact1d.workflow.scene.si_text import UnitTextError, si_base
@@ -299,7 +299,7 @@ def _scene(plan: SweepPlan, values: tuple[Any, ...]) -> Scene:
     keys = [axis.key for axis in plan.axes]
     if problems := set_values(tables, dict(zip(keys, values, strict=True))):
         raise SceneError(problems)
-    return scene_from_dict(tables, folder=plan.folder)
+    return read_scene(tables, folder=plan.folder)
 
 
 def _is_of_axis(path: str, keys: list[str]) -> bool:

@@ -38,14 +38,14 @@ def load() -> None:
 def curve(contact: str, setting: Setting) -> Curve:
     """Return the curve of one run."""
     from contact1d import run
-    from validation.doors import scene_from_dict
+    from validation.doors import read_scene
 
     d = displacements(contact)
     began, clock = spent(), time.perf_counter()
     data = plane_tables(contact, setting)
     data["experiment"] = {"kind": "path", "displacements": [float(value) for value in d]}
     with tempfile.TemporaryDirectory() as folder:
-        finished = run(scene_from_dict(data), folder, figures=False)
+        finished = run(read_scene(data), folder, figures=False)
         table = np.genfromtxt(finished.folder / "curve.csv", delimiter=",", names=True, dtype=None, encoding="utf-8")
     seconds, wall = spent() - began, time.perf_counter() - clock
     return Curve(table["displacement"], table["force"], seconds, closed_form(contact, d), wall)
