@@ -21,7 +21,9 @@ import pytest
 ROOT = Path(__file__).parents[2]
 MADE = ("runs", "reproduced", "stability", "speed", "__pycache__")
 """What is made by running, and is not copied from the top."""
-HANGS = "they take too long"
+HANGS, BROKEN = "they take too long", "they do not run"
+HANGING = "it hangs: not done after"
+"""What a test says that reaches its own limit, in `tests/limits.py`."""
 LIMIT = 300.0
 """Time limit of a test in `tests/limits.py` [s]; the environment's PATIENCE multiplies it."""
 QUICK = ("-q", "--assert=plain", "-p", "no:cacheprovider")
@@ -106,7 +108,8 @@ def first_failure(folder: Path, tests: Sequence[str], patience: float, longest: 
         @staticmethod
         def pytest_runtest_logreport(report: Any) -> None:
             if report.failed and not noted.exists():
-                noted.write_text(report.nodeid, encoding="utf-8")
+                limit = HANGING in str(report.longrepr)
+                noted.write_text(HANGS if limit else report.nodeid, encoding="utf-8")
 
         pytest_collectreport = pytest_runtest_logreport
 
@@ -115,4 +118,4 @@ def first_failure(folder: Path, tests: Sequence[str], patience: float, longest: 
         return HANGS
     if code in (0, pytest.ExitCode.NO_TESTS_COLLECTED):  # none that ran failed
         return ""
-    return noted.read_text(encoding="utf-8") if noted.exists() else "they do not run"
+    return noted.read_text(encoding="utf-8") if noted.exists() else BROKEN

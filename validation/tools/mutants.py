@@ -1,13 +1,16 @@
 """Random faults: a share of all small ones is put into the code, one at a time, and the tests that reach it must fail.
 
-    python -m validation.tools.mutants [FOLDER ...] [--number 100] [--seed 1] [--tests tests/unit ...] [--out FILE]
+    python -m validation.tools.mutants [FOLDER ...] [--number 100] [--fragments 50] [--seed 1] [--tests tests/unit ...]
+                                       [--out FILE]
 
-A fault changes one operator, comparison or number in a copy of this checkout. A trace of calls says which tests reach
-its function; these run there, quick ones first, up to the first that fails or LONGEST. One that passes them survives:
-it is printed and listed in results/mutants.json, with the reason if one was written there by hand (kept for the same
-change). What no user could meet is not drawn: messages, types, drawings (sizes and colours, not what they show),
-`strict=` and `repr=`. Exit code 1 where fewer than ASKED are noticed. Every processor has a share of the trace, and a
-fault at a time.
+A fault changes one operator, comparison or number in a copy of this checkout, in Python or in a fragment of a deck. A
+trace says which tests call its function, or open its fragment; these run there, quick ones first, up to the first that
+fails or LONGEST. The control: that test then passes in a copy without the fault. One that takes too long tells nothing.
+A fault that is not noticed survives: it is printed and listed in results/mutants.json, with the reason if one was
+written there by hand (kept for the same change). Faults of fragments, of `src` and of chained comparisons, which were
+not drawn before 2026-11-27, are counted apart. What no user could meet is not drawn: messages, types, drawings (sizes
+and colours, not what they show), `strict=` and `repr=`. Exit code 1 where fewer than ASKED of Python or of fragments
+are noticed. Every processor has a share of the trace, and a fault at a time.
 """
 
 from __future__ import annotations
@@ -18,9 +21,11 @@ import json
 import math
 import os
 import random
+import re
 import sys
 import threading
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
@@ -33,10 +38,13 @@ from typing import Any
 import pytest
 
 from validation.age import today
-from validation.tools.copies import ROOT, copy_of_this, first_failure, load, run_tests
+from validation.tools.copies import BROKEN, HANGS, ROOT, copy_of_this, first_failure, load, run_tests
 
 RESULTS = Path(__file__).parents[1] / "results" / "mutants.json"
-FOLDERS = ("workflow", "analysis", "potentials")
+FOLDERS = ("workflow", "analysis", "potentials", "src")
+FRAGMENTS = "lammps_inputs/fragments"
+PYTHON, NEW, DECKS = "Python", "src, chained comparisons", "fragments"
+"""The places that faults are drawn from."""
 TESTS = ("tests/unit", "tests/decks", "tests/validation", "tests/contracts", "tests/hard")
 ASKED = 0.85
 """Asked of the share that is noticed."""
@@ -54,6 +62,12 @@ OPERATORS: dict[type[ast.AST], type[ast.AST]] = {
     ast.Gt: ast.LtE, ast.LtE: ast.Gt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq, ast.Is: ast.IsNot, ast.IsNot: ast.Is,
     ast.In: ast.NotIn, ast.NotIn: ast.In,
 }  # fmt: skip
+SIGNS = {"+": "-", "-": "+", "*": "/", "/": "*", "<": ">=", ">=": "<", ">": "<=", "<=": ">", "==": "!=", "!=": "==",
+         "&&": "||", "||": "&&"}  # fmt: skip
+"""In formulas of LAMMPS."""
+FORMULA = re.compile(r'"[^"]*"|(?<=\bequal )[^"&\n]+|(?<=\batom )[^"&\n]+')
+SIGN = re.compile(r"(?<=[\w)\]} ])(?:&&|\|\||[<>=!]=|[<>]|[-+*/])(?=[\w( $])")
+NUMBER = re.compile(r"(?<![\w.$/{])\d+(?:\.\d*)?(?:e[-+]?\d+)?(?![\w./}])")
 NAMES = {"min": "max", "max": "min", "argmin": "argmax", "argmax": "argmin", "ceil": "floor", "floor": "ceil"}
 LOOKS: dict[str, tuple[int, tuple[str, ...]]] = {
     "Series": (3, ("width", "opacity")), "Panel": (5, ("height",)), "apart": (2, ()), "digits_apart": (2, ()),
@@ -83,8 +97,16 @@ class Mutant:
     function: str
 
     @property
+    def place(self) -> str:
+        """One of PYTHON, NEW, DECKS."""
+        new = self.file.startswith("src") or " of a chain" in self.change
+        return DECKS if self.file.startswith(FRAGMENTS) else NEW if new else PYTHON
+
+    @property
     def source(self) -> str:
         """The whole new text of the file."""
+        if self.place == DECKS:
+            return list(of_fragment((ROOT / self.file).read_text(encoding="utf-8")))[self.number][2]
         tree = ast.parse((ROOT / self.file).read_text(encoding="utf-8"))
         every = [do for node, _ in inner(tree) for _, do in changes(node)]
         every[self.number]()
@@ -92,12 +114,23 @@ class Mutant:
 
 
 class Trace:
-    """A pytest plugin that notes which functions of a copy each test calls, its fixtures included."""
+    """A pytest plugin that notes which functions of a copy each test calls, and the fragments that it opens.
+
+    What its fixtures do is included.
+    """
 
     def __init__(self, folder: Path) -> None:
         """Nothing is noted yet."""
         self._root, self._names = f"{folder}{os.sep}", dict[CodeType, str]()
         self._now, self._failed, self._of_fixtures, self.found = set[str](), set[str](), dict[str, set[str]](), Called()
+        sys.addaudithook(self.opened)
+
+    def opened(self, event: str, arguments: tuple[Any, ...]) -> None:
+        """Note a fragment that is opened."""
+        if event == "open" and (path := str(arguments[0])).endswith(".lmp"):
+            local = os.path.realpath(path).removeprefix(self._root)
+            if local.startswith(FRAGMENTS):
+                self._now.add(f"{local}:")
 
     def note(self, frame: FrameType, event: str, value: object) -> None:
         """A call."""
@@ -176,6 +209,12 @@ def changes(node: ast.AST) -> Iterator[Change]:
         case ast.Compare(ops=[op]) if type(op) in OPERATORS:
             new = OPERATORS[type(op)]
             yield swap(node, "ops", [new()], f"{type(op).__name__} → {new.__name__}")
+        case ast.Compare(ops=ops) if len(ops) > 1:
+            for i, op in enumerate(ops):
+                if type(op) in OPERATORS:
+                    new = OPERATORS[type(op)]
+                    words = f"{type(op).__name__} → {new.__name__}, {i + 1} of a chain"
+                    yield swap(node, "ops", [*ops[:i], new(), *ops[i + 1 :]], words)
         case ast.UnaryOp(op=ast.USub()):
             yield swap(node, "op", ast.UAdd(), "−x → x")
         case ast.UnaryOp(op=ast.Not(), operand=operand):
@@ -221,10 +260,28 @@ def looks(node: ast.AST) -> list[ast.AST]:
     return []
 
 
+def of_fragment(text: str) -> Iterator[tuple[int, str, str]]:
+    """Every change of a fragment's commands: its line (from 1), words, and the whole new text.
+
+    A number of any command is doubled, an operator or comparison of a formula exchanged.
+    """
+    lines = text.splitlines(keepends=True)
+    commands = "".join(" " * (len(line) - 1) + "\n" if line.startswith(("#", "print")) else line for line in lines)
+    formulas = [formula.span() for formula in FORMULA.finditer(commands)]
+    spans = [(sign, SIGNS[sign[0]]) for span in formulas for sign in SIGN.finditer(commands, *span)]
+    spans += [(number, f"{2.0 * float(number[0]) or 1:g}") for number in NUMBER.finditer(commands)]
+    for old, new in spans:
+        row, column = text.count("\n", 0, old.start()) + 1, old.start() - text.rfind("\n", 0, old.start())
+        yield row, f"{old[0]} → {new} in column {column}", text[: old.start()] + new + text[old.end() :]
+
+
 def mutants(file: str) -> list[Mutant]:
     """Every mutant of a file."""
     source = (ROOT / file).read_text(encoding="utf-8")
     lines, found = source.splitlines(), list[Mutant]()
+    if file.startswith(FRAGMENTS):
+        changed = enumerate(of_fragment(source))
+        return [Mutant(file, i, line, lines[line - 1].strip(), words, "") for i, (line, words, _) in changed]
     for node, function in inner(ast.parse(source)):
         line = getattr(node, "lineno", 1)
         for words, _ in changes(node):
@@ -257,13 +314,35 @@ def tests_of(mutant: Mutant, called: Called) -> list[str]:
 
 
 def killed_by(mutant: Mutant, tests: dict[str, float]) -> str:
-    """The first of these tests (and their times [s]) that fails with the mutant; empty where none does."""
+    """The first of these tests (and their times [s]) that fails with the mutant, and passes without it.
+
+    Empty where there is none, and where one takes too long.
+    """
     if not tests:
         return ""
+    longest, whole = (STARTING + SLOWNESS * seconds for seconds in (max(tests.values()), sum(tests.values())))
     with copy_of_this() as folder:
-        (folder / mutant.file).write_text(mutant.source, encoding="utf-8")
-        longest, whole = (STARTING + SLOWNESS * seconds for seconds in (max(tests.values()), sum(tests.values())))
-        return first_failure(folder, list(tests), whole, longest)
+        path = folder / mutant.file
+        before = path.read_text(encoding="utf-8")
+        path.write_text(mutant.source, encoding="utf-8")
+        by = first_failure(folder, list(tests), whole, longest)
+        path.write_text(before, encoding="utf-8")
+        again = [*tests][:1] if by == BROKEN else [by]
+        return "" if by in ("", HANGS) or first_failure(folder, again, whole, longest) else by
+
+
+def drawn(folders: Sequence[str], number: int, fragments: int, seed: int) -> list[Mutant]:
+    """So many mutants of Python files in the folders, and of fragments; links are not followed."""
+    draw = random.Random(seed)
+    files = [path.relative_to(ROOT) for name in folders for path in sorted((ROOT / name).rglob("*.py"))]
+    own = [str(file) for file in files if (ROOT / file).resolve() == ROOT.resolve() / file]
+    decks = [str(path.relative_to(ROOT)) for path in sorted((ROOT / FRAGMENTS).rglob("*.lmp"))]
+    every = [[mutant for file in chosen for mutant in mutants(file)] for chosen in (own, decks)]
+    return [
+        mutant
+        for of, count in zip(every, (number, fragments), strict=True)
+        for mutant in draw.sample(of, min(count, len(of)))
+    ]
 
 
 def main() -> int:
@@ -271,19 +350,19 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folders", nargs="*", default=FOLDERS)
     parser.add_argument("--number", type=int, default=100)
+    parser.add_argument("--fragments", type=int, default=50)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--tests", nargs="+", default=TESTS, help="folders or files")
     parser.add_argument("--out", type=Path, default=RESULTS)
     options = parser.parse_args()
     if missing := [name for name in (*options.folders, *options.tests) if not (ROOT / name).exists()]:
         parser.error(f"there is no {', '.join(missing)}")
-    files = [str(path.relative_to(ROOT)) for name in options.folders for path in sorted((ROOT / name).rglob("*.py"))]
-    every = [mutant for file in files for mutant in mutants(file)]
-    chosen = random.Random(options.seed).sample(every, min(options.number, len(every)))
+    chosen = drawn(options.folders, options.number, options.fragments, options.seed)
     old = json.loads(RESULTS.read_text(encoding="utf-8")).get("survivors", []) if RESULTS.exists() else []
     reasons = {(row["file"], row["text"], row["change"]): row["reason"] for row in old}
     load()
-    alive, began = [], time.monotonic()
+    began, found = time.monotonic(), Counter[tuple[str, bool]]()
+    alive = list[Mutant]()
     with ProcessPoolExecutor(mp_context=get_context("fork")) as pool:
         called = Called()
         for one in pool.map(traced, shares(options.tests)):
@@ -291,27 +370,28 @@ def main() -> int:
         print(f"{len(called)} tests are traced: {time.monotonic() - began:.0f} s", flush=True)
         tests = [{name: called[name][0] for name in tests_of(mutant, called)} for mutant in chosen]
         for mutant, those, by in zip(chosen, tests, pool.map(killed_by, chosen, tests), strict=True):
+            found[mutant.place, bool(by)] += 1
             if not by:
                 alive.append(mutant)
             word = "killed  " if by else "SURVIVES" if those else "NO TEST "
             print(f"{word} {mutant.file}:{mutant.line}: {mutant.change}   {by or mutant.text}", flush=True)
+    places = {
+        place: {"faults": count, "noticed": found[place, True] / count}
+        for place in (PYTHON, NEW, DECKS)
+        if (count := found[place, True] + found[place, False])
+    }
     rows = [
         {"file": m.file, "line": m.line, "text": m.text, "change": m.change,
          "reason": reasons.get((m.file, m.text, m.change), "")}
         for m in alive
     ]  # fmt: skip
-    noticed = 1.0 - len(alive) / len(chosen)
-    record = {
-        "asked": ASKED,
-        "seed": options.seed,
-        **vars(today()),
-        "faults": len(chosen),
-        "noticed": noticed,
-        "survivors": rows,
-    }
+    record = {"asked": ASKED, "seed": options.seed, **vars(today()), "places": places, "survivors": rows}
     options.out.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    print(f"{len(chosen)} faults, {len(alive)} survive: {100.0 * noticed:.1f} % noticed")
-    return int(noticed < ASKED)
+    for place, row in places.items():
+        print(f"{place}: {row['faults']} faults, {100.0 * row['noticed']:.1f} % noticed")
+    decks = [mutant.place == DECKS for mutant in chosen]
+    lost = [sum(mutant.place == DECKS for mutant in alive), sum(mutant.place != DECKS for mutant in alive)]
+    return int(any(n > (1.0 - ASKED) * of for n, of in zip(lost, (sum(decks), len(decks) - sum(decks)), strict=True)))
 
 
 if __name__ == "__main__":
