@@ -1,4 +1,4 @@
-"""Claim: whatever profile, law, experiment and method a scene puts together, five contracts and six checks hold.
+"""Claim: whatever profile, law, experiment and method a scene puts together, six contracts and six checks hold.
 
 Units: the same scene in other units has the same numbers. Refinement: with half the spacing every number stays within
 both uncertainties. Reference: closed forms and solvers that share no code are within the uncertainty. Cap: it is no
@@ -10,7 +10,9 @@ every member at least twice; the whole product is slow.
 
 from __future__ import annotations
 
+import json
 import math
+import os
 import re
 import shutil
 from collections.abc import Callable
@@ -35,6 +37,9 @@ WIDEST = 10.0
 """Uncertainty over the root mean square error over LATTICES."""
 LATTICES = [0.93 + 0.02 * i for i in range(8)]
 """Spacings, of which no two have the edge at the same place between particles."""
+RECORD = Path(__file__).with_name("numbers.json")
+MOVED, WIDENED = 0.05, 0.1
+"""What a number may move from the record in its uncertainty, and this relatively."""
 SAID = ("plan", "pressure", "asked", "balance", "energy", "closed_form")
 FORCED = (
     "load", "pull_off", "pull_off twice", "pull_off at a velocity", "tangential", "tangential cycles",
@@ -142,6 +147,22 @@ def test_the_checks_are_there_and_hold(made: Runs, one: Combination) -> None:
     if outcome is not None and "critical" in outcome.marked and one.method == "quasistatic":
         least = min(state.force for state in outcome.states)
         assert outcome.marked["critical"].force <= (1.0 - run.done.scene.accuracy.tolerance) * least
+
+
+@pytest.mark.parametrize("one", [one for one in CHOSEN if "noise" not in one.tables], ids=str)
+def test_numbers_are_those_of_the_record(made: Runs, one: Combination) -> None:
+    """Those of thermal fluctuations are other ones on another processor."""
+    here = finished(made(one)).numbers
+    kept = json.loads(RECORD.read_text(encoding="utf-8")) if RECORD.exists() else {}
+    if "WRITE_DOCS" in os.environ:
+        RECORD.write_text(json.dumps(dict(sorted((kept | {str(one): here}).items())), indent=1) + "\n", encoding="utf-8")
+    there = kept.get(str(one), here)
+    assert here.keys() == there.keys()
+    for name, (value, doubt) in here.items():
+        before, told = there[name]
+        least = ROUND_OFF * abs(before) + NOTHING
+        assert abs(value - before) <= MOVED * told + least, name
+        assert abs(doubt - told) <= WIDENED * told + 10.0 * least, f"± of {name}"
 
 
 @cases("units", lambda one: True, long=("rate",))
