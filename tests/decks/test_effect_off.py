@@ -54,7 +54,7 @@ FRAGMENTS = {name: (name,) for name in EFFECTS} | {"horizontal": ("horizontal", 
 STEPS = {
     "interaction": ("steps/measuring_opposite", "steps/measured_opposite"),
     "noise": ("steps/heat", "steps/heating"),
-    "cantilever": ("steps/drive", "steps/told", "steps/measuring_energy", "steps/measured_energy"),
+    "cantilever": ("steps/drive", "steps/tallied_heat", "steps/measuring_energy", "steps/measured_energy"),
 }
 
 

@@ -46,7 +46,8 @@ TERMS = {
 }
 """A pattern without a legitimate use, and the standard terms."""
 WORD = re.compile("|".join(f"(?P<t{i}>{pattern})" for i, pattern in enumerate(TERMS)), re.IGNORECASE)
-PAGES = ("README.md", "VALIDATION.md", "CONTRIBUTING.md", "CHANGELOG.md", *(ROOT / "docs").rglob("*.md"))
+PAGES = ("README.md", "VALIDATION.md", "CONTRIBUTING.md", "CHANGELOG.md")
+TEXTS = [*(ROOT / page for page in PAGES), *(ROOT / "docs").rglob("*.md"), *(ROOT / "lammps_inputs").rglob("*.lmp")]
 CODE = [path for folder in ("workflow", "analysis", "potentials", "src") for path in (ROOT / folder).rglob("*.py")]
 
 
@@ -64,11 +65,11 @@ def strings(source: str) -> Iterator[tuple[int, str]]:
             yield node.lineno, node.value
 
 
-def test_pages_use_standard_terms() -> None:
-    paths = [ROOT / page for page in PAGES]
+def test_pages_and_fragments_use_standard_terms() -> None:
+
     wrong = [
         f"{path.relative_to(ROOT)}:{line}: {what}"
-        for path in paths
+        for path in TEXTS
         for line, what in found_in(path.read_text(encoding="utf-8"))
     ]
     assert not wrong, "\n".join(wrong)

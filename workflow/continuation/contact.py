@@ -35,7 +35,7 @@ MOTION = {
 }  # fmt: skip
 """Of a slide: means since the start over every fifth step of the cantilever's force and of the kinetic energies of
 particles and plate; energies; velocities and positions."""
-HEAT_FRAGMENT = "steps/told"
+HEAT_FRAGMENT = "steps/tallied_heat"
 """The fragment after which a heat bath reports the energy that it takes."""
 FRAMES = "rows.bin"
 """File of a frame for each load step of a single run: id, z, force along z, and along x if that is prescribed."""
