@@ -155,7 +155,9 @@ def test_numbers_are_those_of_the_record(made: Runs, one: Combination) -> None:
     here = finished(made(one)).numbers
     kept = json.loads(RECORD.read_text(encoding="utf-8")) if RECORD.exists() else {}
     if "WRITE_DOCS" in os.environ:
-        RECORD.write_text(json.dumps(dict(sorted((kept | {str(one): here}).items())), indent=1) + "\n", encoding="utf-8")
+        RECORD.write_text(
+            json.dumps(dict(sorted((kept | {str(one): here}).items())), indent=1) + "\n", encoding="utf-8"
+        )
     there = kept.get(str(one), here)
     assert here.keys() == there.keys()
     for name, (value, doubt) in here.items():

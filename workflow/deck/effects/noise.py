@@ -26,7 +26,9 @@ def noise(scene: Scene, settings: Settings) -> Contribution:
             settings.motion.plate_mass / settings.chains.upper / settings.motion.plate_damping
         )
         variables["noise_plate_id"] = str(first_upper_anchor(scene, settings))
-    if settings.motion.drive and settings.motion.settling_damping != settings.motion.damping:  # until `steps/tallied_heat`
+    if (
+        settings.motion.drive and settings.motion.settling_damping != settings.motion.damping
+    ):  # until `steps/tallied_heat`
         fragments += ("noise_settling",)
         variables["noise_settling_damp"] = number(scene.bodies.mass / settings.motion.settling_damping)
     if not settings.motion.drive:  # the heat is no result
