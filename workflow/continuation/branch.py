@@ -240,7 +240,10 @@ class Branch(ContactBranch):
         while not _is_passed(rows) or (through and -min(s.force for s in rows) <= self._remaining_tension(rows[-1])):
             rows.append(self._load_step(zero.displacement - (skipped + len(rows)) * step))
             if len(rows) > MOST_INCREMENTS:
-                raise UntrustedError("the search does not pass the force maximum")
+                raise UntrustedError(
+                    f"the search has not passed the force maximum after {MOST_INCREMENTS} load steps, at a displacement "
+                    f"of {rows[-1].displacement:.6g} LU; a larger accuracy.tolerance has fewer and longer steps"
+                )
         return step
 
     def _halve(self, positions: tuple[float, float]) -> float:

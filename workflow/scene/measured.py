@@ -46,16 +46,16 @@ def fault_of(r: tuple[float, ...], z: tuple[float, ...]) -> str | None:
     steps = [after - before for before, after in pairwise(r)]
     if min(steps) <= 0.0:
         i = next(i for i, step in enumerate(steps) if step <= 0.0)
-        return f"radii must increase; {r[i + 1]:.6g} follows {r[i]:.6g}"
+        return f"radii must increase; {r[i + 1]:.6g} LU follows {r[i]:.6g} LU"
     if r[0] != 0.0:
-        return f"must begin at the radius 0, not {r[0]:.6g}: the transform needs the slope from the axis on"
+        return f"must begin at the radius 0, not {r[0]:.6g} LU: the transform needs the slope from the axis on"
     median = statistics.median(steps)
     largest = 10.0 * median
     for i, step in enumerate(steps):
         if step > largest:
             return (
-                f"has a gap from r = {r[i]:.6g} to {r[i + 1]:.6g}: the median step is {median:.4g}, and "
-                f"the largest gap allowed {largest:.4g}; add points there"
+                f"has a gap from r = {r[i]:.6g} LU to {r[i + 1]:.6g} LU: the median step is {median:.4g} LU, and "
+                f"the largest gap allowed {largest:.4g} LU; add points there"
             )
     if z[0] - min(z) > max(z) - z[0]:
         return "has heights that decrease from the axis: heights are measured from the plane; change the sign"
