@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import sys
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import closing, contextmanager
 from functools import partial
@@ -49,18 +50,26 @@ def stop(message: str, code: int) -> NoReturn:
     raise SystemExit(code)
 
 
+def show(text: str) -> None:
+    """Print to standard output; where its reader has ended (`| head`), the command goes on and prints no more."""
+    try:
+        typer.echo(text)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
 def print_lines(lines: Iterable[str], warnings: Mapping[str, str], path: object = None) -> None:
     """Print lines, warnings on standard error, and the path of the files."""
-    typer.echo("\n".join(lines))
+    show("\n".join(lines))
     for name, message in warnings.items():
         typer.secho(f"warning {name}: {message}", err=True, fg="yellow")
     if path is not None:
-        typer.echo(f"\n{path}")
+        show(f"\n{path}")
 
 
 def print_counts(counts: Mapping[str, int], table: Path) -> None:
     """Print the number of points by status, and the path of their table; exit code 3 if any is not done."""
-    typer.echo(f"{', '.join(f'{count} {status}' for status, count in sorted(counts.items()))}; {table}")
+    show(f"{', '.join(f'{count} {status}' for status, count in sorted(counts.items()))}; {table}")
     if set(counts) != {"done"}:
         raise typer.Exit(RUN_FAILED)
 
