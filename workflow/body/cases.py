@@ -1,4 +1,8 @@
-"""The case of a finished run: the quantities from which a closed form makes its predictions."""
+"""The case of a finished run: the quantities from which a closed form makes its predictions.
+
+F [FU], d [LU], a [LU]: force, compression positive, displacement and contact radius; E* is the contact modulus
+[FU/LU²], R the radius of curvature [LU], W the work of adhesion [FU/LU], h₀ the range of the attraction [LU].
+"""
 
 from __future__ import annotations
 
@@ -22,7 +26,7 @@ ASSUMED_RANGE = 0.3e-9
 
 @dataclass(frozen=True)
 class Case:
-    """Body, load and results of a finished run, in model units.
+    """Body, load and results of a finished run, in units of the model.
 
     Attributes:
         scene: the scene of the run.
@@ -42,7 +46,10 @@ class Case:
 
     @property
     def radius(self) -> float | None:
-        """Effective R [LU] of a sphere on a plane, or of the paper's two equal spheres, R/2; None for no sphere."""
+        """Effective radius R [LU] of a sphere on a plane, or of the paper's two equal spheres, R/2.
+
+        None where the profile has no radius of curvature, and with the paper's reduction for any other body.
+        """
         curvature = self.scene.bodies.profile.curvature_radius
         if curvature is None or self.scene.bodies.reduction == "mdr":
             return curvature
@@ -50,14 +57,15 @@ class Case:
 
     @property
     def kind(self) -> str:
-        """The kind of the profile, as a scene has it."""
+        """The kind of the profile, as a scene has it: "parabola", "cone", "power", …"""
         return self.scene.bodies.profile.kind
 
     @property
     def force(self) -> float | None:
-        """F [FU] of the reported state, where the scene gives it; else None.
+        """F [FU], compression positive, of the reported state; None where the run has no result "force".
 
-        With adhesion a force has two displacements, so that F at a given displacement determines no state.
+        None also with adhesion where displacements are given: a force has two displacements, so that it determines no
+        state.
         """
         if self.law.attracts(self.scene) and self.scene.experiment.places():
             return None
@@ -65,7 +73,10 @@ class Case:
 
     @property
     def displacement(self) -> float | None:
-        """d [LU] of the reported state, where the scene gives it: of a path the largest, of `tangential` the last."""
+        """d [LU] of the reported state where the scene gives it; None where it does not, or `force` is known.
+
+        Of a path it is the largest, of `tangential` the last.
+        """
         displacements = self.scene.experiment.places()
         if not displacements or self.force is not None:
             return None
@@ -75,18 +86,25 @@ class Case:
 
     @property
     def work(self) -> float:
-        """W [FU/LU]: given, or implied by the interaction at the resulting radius; 0 without adhesion."""
+        """Work of adhesion W [FU/LU]: given, or implied by the interaction at the resulting radius.
+
+        0 without adhesion.
+        """
         implied = self.quantities.get("work_of_adhesion")
         return self.scene.work_of_adhesion if implied is None else float(implied.value)
 
     @property
     def range(self) -> float:
-        """h₀ [LU]: given or assumed, or of Lennard-Jones surfaces with an interaction's force-free distance; else 0."""
+        """Range h₀ of the attraction [LU]: of the scene, or assumed as 0.3 nm.
+
+        0 without attraction, or where LU is unknown. For an interaction it is that of Lennard-Jones surfaces with its
+        force-free distance.
+        """
         return self.law.range_of(self.scene, ASSUMED_RANGE / self.scales.length if self.scales.known else 0.0)
 
     @property
     def law(self) -> type[Law]:
-        """The contact law of the scene."""
+        """The contact law of the scene, as a class."""
         return law_of(self.scene)
 
     @property
@@ -96,20 +114,27 @@ class Case:
 
     @property
     def sphere(self) -> tuple[float, float, float]:
-        """R [LU], E* [FU/LU²] and W [FU/LU] of a sphere."""
+        """(R [LU], E* [FU/LU²], W [FU/LU]) of a sphere, which the body must be."""
         assert self.radius is not None
         return self.radius, self.contact_modulus, self.work
 
     @property
     def with_range(self) -> MaugisDugdale | None:
-        """The contact of an adhesive sphere whose attraction has a range; None for anything else."""
+        """The contact of an adhesive sphere whose attraction has a range, by Maugis and Dugdale.
+
+        None for anything else.
+        """
         if self.radius is None or not (self.work > 0.0 and self.range > 0.0):
             return None
         return MaugisDugdale(*self.sphere, self.range)
 
     @cached_property
     def body(self) -> PowerLaw | Ellipsoid:
-        """The contact of a cone, a power, an ellipsoid or a sphere, with W where it adheres, without a range."""
+        """The contact, in closed form, of a cone, a power, an ellipsoid or a circle.
+
+        Of any other profile that of a paraboloid. With W where it adheres, without a range. The profile must then have
+        a radius of curvature.
+        """
         profile: Any = self.scene.bodies.profile
         if self.kind == "cone":
             return PowerLaw(profile.rise, 1.0, self.contact_modulus, self.work)
@@ -135,7 +160,7 @@ class Case:
 
     @cached_property
     def punch(self) -> tuple[FlatPunch, float]:
-        """The contact of a flat punch, and its d [LU]."""
+        """(Contact of a flat punch, its d [LU] ≥ 0 or F over its stiffness); d is 0 where neither is given."""
         profile: Any = self.scene.bodies.profile
         punch = FlatPunch(profile.radius, self.contact_modulus, self.work)
         return punch, max(self.displacement or 0.0, 0.0) if self.force is None else self.force / punch.stiffness

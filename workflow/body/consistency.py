@@ -15,10 +15,11 @@ from contact1d.workflow.units import Quantity
 
 
 def pressure(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressure]) -> dict[str, Agreement]:
-    """Return the check of ∫ p dA against the force, of the reported state that differs most; none for an interaction.
+    """Return {"pressure": `Agreement`} of ∫ p dA and the force, of the reported state that differs most.
 
-    The force has the uncertainty of the forces of the run; under a given force the displacement has one, which changes
-    ∫ p dA.
+    {} with an interaction, or without pressures. The difference is relative to ∫ |p| dA. The force has the uncertainty
+    of the forces of the run; under a given force the displacement has one, which changes ∫ p dA. `pressures`: by the
+    name of a state.
     """
     if scene.interaction is not None:
         return {}
@@ -42,13 +43,14 @@ def pressure(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressur
 
 
 def closed_form(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Agreement]:
-    """Return the check of the results against the closed forms that are exact for the run, of the largest difference.
+    """Return {"closed_form": `Agreement`} of the result that differs most from a closed form that is exact.
 
-    Closed forms hold for a contact radius between 10 spacings and 90 % of the half-width of the body.
+    Closed forms hold for a contact radius between 10 spacings and 90 % of the half-width of the body. {} outside of
+    that, with given particles, or where none is exact.
 
     Args:
         scene: the scene of the run.
-        quantities: the results as if the inputs were exact.
+        quantities: the results as if the inputs were exact, by name.
     """
     radius = max((quantity.value for name, quantity in quantities.items() if name.endswith("radius")), default=0.0)
     bodies, reach = scene.bodies, scene.bodies.profile.reach
@@ -68,7 +70,7 @@ def closed_form(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, A
 
 
 def _worst(name: str, agreements: Sequence[Agreement]) -> dict[str, Agreement]:
-    """Return, by a name, the agreement whose difference is largest relative to the allowed one; none of none."""
+    """Return {name: the agreement whose difference is largest relative to the allowed one}; {} without agreements."""
     if not agreements:
         return {}
     return {name: max(agreements, key=lambda agreement: agreement.difference / agreement.allowed)}

@@ -59,7 +59,7 @@ def first_of(results: Mapping[str, Quantity], *names: str) -> Quantity | None:
 
 
 def with_implied(scene: Scene, settings: Settings, outcome: Outcome) -> Outcome:
-    """Return the outcome of a run with the results that its interaction implies."""
+    """Return the outcome of a run with the results that its interaction implies; unchanged without an attraction."""
     quantities = implied(scene, settings, outcome.quantities)
     return _with_results(outcome, {name: (quantity, 0.0) for name, quantity in quantities.items()})
 
@@ -67,7 +67,8 @@ def with_implied(scene: Scene, settings: Settings, outcome: Outcome) -> Outcome:
 def _with_results(outcome: Outcome, made: Made) -> Outcome:
     """Return the outcome with further results; the uncertainty of W is that of the model, of others of the input.
 
-    A pressure that may be 0, as under a punch without load, has the scale of the largest force over a².
+    `made`: (quantity, uncertainty of inputs) by name. A pressure that may be 0, as under a punch without load, has the
+    scale of the largest force over a².
     """
     sources = {"work_of_adhesion": MODEL}
     radii = (quantity.value for name, quantity in outcome.quantities.items() if name.endswith("radius"))
@@ -82,12 +83,12 @@ def _with_results(outcome: Outcome, made: Made) -> Outcome:
 
 
 def implied(scene: Scene, settings: Settings, results: Mapping[str, Quantity]) -> dict[str, Quantity]:
-    """Return `separation_energy`, w/s [FU], and of a sphere `work_of_adhesion` [FU/LU]; nothing without an attraction.
+    """Return `separation_energy`, w/s [FU], and of a sphere `work_of_adhesion` [FU/LU]; {} without an attraction.
 
     Args:
         scene: the scene of the run.
         settings: its settings.
-        results: its results; without a radius there is no W.
+        results: its results; without a radius above 0 there is no W.
     """
     if settings.forces.law is None or settings.forces.law.attraction is None:
         return {}
@@ -106,7 +107,10 @@ def implied(scene: Scene, settings: Settings, results: Mapping[str, Quantity]) -
 
 
 def formulas(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, dict[str, str]]:
-    """Return the entry `formulas` of results.json: the formula of each result that has more than one definition."""
+    """Return {"formulas": {result: formula in words}} for results.json, of results with more than one definition.
+
+    {} where the run has none of these.
+    """
     texts = {
         "separation_energy": "w/s: w = ∫ −f dr separates one particle from the opposite chain, s the spacing; energy "
         "per length of chain",
@@ -118,13 +122,16 @@ def formulas(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, dict
 
 @lru_cache(maxsize=16)  # scenes run one after the other mostly share their law
 def _work(law: DoubleExponential, spacing: float, points: int = 8000) -> Quantity:
-    """Return w [FU·LU] by the trapezoidal rule, with the difference from twice the step as its uncertainty."""
+    """Return w [FU·LU] ≥ 0 of one particle and a chain of this spacing [LU], by the trapezoidal rule.
+
+    Its uncertainty is the difference from twice the step. `points`: of the distance, up to the end of the range.
+    """
     end = law.cutoff_for(1e-10)
     r = np.linspace(end / points, end, points)
     force = row_force(law, r, spacing, end)
 
     def work(values: Array, step: float) -> float:
-        """Return the largest work [FU·LU] of the attraction from a distance to the end of the range."""
+        """Return the largest work [FU·LU] ≥ 0 of the attraction from a distance on, by forces (n,) at a `step` [LU]."""
         inwards = np.cumsum(0.5 * (values[1:] + values[:-1])[::-1]) * step
         return float(max(-inwards.min(), 0.0))
 
@@ -133,7 +140,10 @@ def _work(law: DoubleExponential, spacing: float, points: int = 8000) -> Quantit
 
 
 def pressures_of(scene: Scene, outcome: Outcome) -> dict[str, BodyPressure]:
-    """Return p(r) of the reported states of the body, as uncertain as the results of which it is a function."""
+    """Return p(r) of the reported states by name, as uncertain as the results of which it is a function.
+
+    {} where the run represents no body; a state without a contact radius is left out.
+    """
     exact = outcome.exact
     shares = {
         name: result.uncertainty / outcome.results[name].size
@@ -150,7 +160,10 @@ def pressures_of(scene: Scene, outcome: Outcome) -> dict[str, BodyPressure]:
 
 
 def _pressure_share(scene: Scene, outcome: Outcome, state: str) -> float:
-    """Return the relative change of the pressures of a state over the uncertainty of the scene's numbers."""
+    """Return the relative change of the pressures of a state due to the uncertain numbers of the scene.
+
+    0 without any.
+    """
     names = {PRESSURE, PRESSURE + state} & {name for move in outcome.moves for name in move.changes}
     if names and scene.is_stepped:
         return float(in_squares(outcome.moves, max(names)))
@@ -158,7 +171,11 @@ def _pressure_share(scene: Scene, outcome: Outcome, state: str) -> float:
 
 
 def _pressure_size(scene: Scene, results: Mapping[str, Quantity]) -> dict[str, Quantity]:
-    """Return E* g(a)/a [FU/LU²], to which pressures are proportional: exact of a power, with adhesion at F = 0."""
+    """Return {"pressure": E* g(a)/a [FU/LU²]}, to which pressures are proportional.
+
+    That is exact of a power, with adhesion at F = 0. {} without a contact radius above 0, and of a body with an edge.
+    The uncertainty is 0.
+    """
     radius = first_of(results, *RADII)
     if radius is None or not radius.value > 0.0 or scene.bodies.profile.has_edge:
         return {}
@@ -170,10 +187,13 @@ def _pressure_size(scene: Scene, results: Mapping[str, Quantity]) -> dict[str, Q
 def with_body(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressure]) -> Outcome:
     """Return the outcome with the results of the body: pressures, stiffness, adhesion energy and Tabor parameter.
 
+    "central_pressure", "peak_pressure" and "mean_pressure" [FU/LU²], "contact_stiffness" [FU/LU], "adhesion_energy"
+    [FU·LU] and "tabor_parameter", as far as there are any; unchanged where the run represents no body.
+
     Args:
         scene: the scene of the run.
         outcome: its outcome.
-        pressures: p(r) of its states; a singular pressure is no result.
+        pressures: p(r) of its states by name; a singular pressure is no result.
     """
     if not is_of_a_body(scene):
         return outcome
@@ -199,12 +219,19 @@ def with_body(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressu
 
 
 def reported_state(outcome: Outcome) -> list[str]:
-    """Return a list of the state whose pressures are results, empty where a run has no such state."""
+    """Return a list of the one state whose pressures are results: "deepest", "final" or "zero_load".
+
+    Empty without these.
+    """
     return [name for name in REPORTED if name in outcome.profiles][:1]
 
 
 def _contact_results(scene: Scene, results: Mapping[str, Quantity]) -> dict[str, Quantity]:
-    """Return F/πa² where the experiment has none, and dF/dd = 2E*a of elastic bodies (others: `BodyPressure`)."""
+    """Return F/πa² [FU/LU²], where the experiment has none, and dF/dd = 2E*a [FU/LU] of elastic bodies, by name.
+
+    "mean_pressure" and "contact_stiffness", without the latter for an interaction. {} without a force, or a radius
+    above 0.
+    """
     force = first_of(results, "force", "largest_force")
     radius = first_of(results, "contact_radius", "largest_radius")
     made: dict[str, Quantity] = {}
@@ -219,13 +246,16 @@ def _contact_results(scene: Scene, results: Mapping[str, Quantity]) -> dict[str,
 
 
 def _tabor(scene: Scene, results: Mapping[str, Quantity]) -> dict[str, Quantity]:
-    """Return the Tabor parameter µ of a body with a radius of curvature, where the attraction has a range."""
+    """Return {"tabor_parameter": µ} of a body with a radius of curvature, where the attraction has a range; else {}."""
     mu = tabor(Case(scene, results)) if scene.work_of_adhesion else None
     return {} if mu is None else {"tabor_parameter": Quantity(mu, 0.0, NUMBER)}
 
 
 def _adhesion_energy(scene: Scene, results: Mapping[str, Quantity]) -> dict[str, Quantity]:
-    """Return the adhesion energy: πa²W on a plane with adhesion, 2a w/s with an interaction."""
+    """Return {"adhesion_energy": …} [FU·LU]: πa²W on a plane with adhesion, 2a w/s with an interaction.
+
+    {} without a radius or an adhesion; with a range most of the energy is that of the cohesive zone.
+    """
     a, line = first_of(results, "zero_load_radius", "contact_radius"), results.get("separation_energy")
     # With a range most of the energy is that of the cohesive zone.
     if a is not None and scene.work_of_adhesion and not law_of(scene).range_of(scene, 0.0):

@@ -27,12 +27,17 @@ def _is_image(scene: Scene) -> bool:
 
 
 def stands_for_spheres(scene: Scene) -> bool:
-    """Whether the results are those of the paper's two equal spheres, reported beside those of the image."""
+    """Whether the results are those of the paper's two equal spheres, and lengths of the image are reported as well."""
     return _is_image(scene) and scene.bodies.profile.kind in SPHERES
 
 
 def of_the_body(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Quantity]:
-    """Return the quantities of a run, by names that state the body to which they belong."""
+    """Return the quantities of a run by names that state the body to which they belong.
+
+    Unchanged where that is the image's. Lengths of the image have the prefix "image_"; of the paper's spheres there are
+    a contact radius of half, and a mean pressure of four times, those of the image; a mean pressure of other bodies is
+    left out.
+    """
     if not _is_image(scene):
         return dict(quantities)
     named: dict[str, Quantity] = {}
@@ -51,7 +56,10 @@ def of_the_body(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Q
 
 
 def doubt_of_the_image(scene: Scene) -> dict[str, str]:
-    """Return the warning `reduction`: the body for which the results hold, and the factors for another one."""
+    """Return {"reduction": warning}: the body for which the results hold, and the factors for another one.
+
+    {} where the results are those of the body.
+    """
     if not _is_image(scene):
         return {}
     kind = scene.bodies.profile.kind
@@ -72,7 +80,7 @@ def doubt_of_the_image(scene: Scene) -> dict[str, str]:
 
 
 def product(factor: float, unit: str, *powers: tuple[Quantity, float]) -> Quantity:
-    """Return `factor` times the product of quantities, each to its power; their uncertainties add up."""
+    """Return `factor` times the product of quantities, each to its power, in `unit`; their uncertainties add up."""
     value, spread = factor, 0.0
     for quantity, power in powers:
         part = quantity.value**power

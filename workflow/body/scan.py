@@ -14,13 +14,13 @@ from contact1d.workflow.units import LENGTH, Scales
 
 
 def scan_entry(scene: Scene, scales: Scales) -> dict[str, Any]:
-    """Return the entry `scan` of results.json, lengths in SI where the units are known; nothing without a scan."""
+    """Return {"scan": entry of results.json}, lengths in SI where the units are known; {} without a scan."""
     taken = scene.bodies.profile.taken
     if taken is None:
         return {}
 
     def length(value: float, uncertainty: float = 0.0) -> Mapping[str, object]:
-        """Return value, uncertainty and unit of a length [LU]."""
+        """Return {"value", "uncertainty", "unit"} of a length with its uncertainty [LU], in SI where this is known."""
         if scales.known:
             return scales.in_si(value, uncertainty, LENGTH)
         return {"value": value, "uncertainty": uncertainty, "unit": LENGTH}
@@ -43,7 +43,7 @@ def scan_entry(scene: Scene, scales: Scales) -> dict[str, Any]:
 
 
 def misfit(scene: Scene) -> dict[str, str]:
-    """Return the warning `scan_fit` where a scan is not the shape that was fitted to it."""
+    """Return {"scan_fit": warning} where a scan is not the shape that was fitted to it; else {}."""
     taken = scene.bodies.profile.taken
     if taken is None or not taken.missed:
         return {}
@@ -58,13 +58,13 @@ CURVED = ("parabola", "circle")
 
 
 def _radius(taken: Taken) -> tuple[float, float]:
-    """Return R and its uncertainty [LU], from the parameter 1/R."""
+    """Return (R, its uncertainty) [LU] of a fitted parabola or circle, from the parameter 1/R."""
     curvature = float(taken.parameters[0])
     return 1.0 / curvature, 0.5 * float(abs(np.diff(taken.deviations[1, :, 0])[0])) / curvature**2
 
 
 def in_words(taken: Taken) -> str:
-    """Return the evaluation of a scan as a sentence, lengths in LU."""
+    """Return the evaluation of a scan as a sentence without a full stop, lengths in LU."""
     removed = [f"apex at {_length_text(*taken.centre)}", f"offset {taken.offset[0]:.4g} LU"]
     if taken.tilt[1] > 0.0:
         angle, spread = (math.degrees(math.atan(slope)) for slope in taken.tilt)
@@ -85,7 +85,7 @@ def in_words(taken: Taken) -> str:
 
 
 def _length_text(value: float, uncertainty: float) -> str:
-    """Return a length [LU] with its uncertainty as text, if it has one."""
+    """Return a length [LU] as text, with its uncertainty where that is not 0: "12.3 LU ± 0.1 LU"."""
     spread = f" ± {uncertainty:.2g} LU" if uncertainty else ""
     digits = max(3, 2 + math.floor(math.log10(abs(value) / uncertainty))) if value and uncertainty else 4
     return f"{value:.{digits}g} LU{spread}"

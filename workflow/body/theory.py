@@ -7,6 +7,9 @@ Maugis and Dugdale or DMT by the Tabor parameter. Tangential displacement with f
 results.json has them as `theory`: a list of {"name", "source", "applies", "values"}, and "tabor" where the values
 depend on it; of each result in `values` the closed form's "value" and "unit", with known units "si", and "deviation",
 the run's value over it minus 1.
+
+F [FU], compression positive, d and a [LU]: force, displacement and contact radius; F_A is the pull-off force, a_cr the
+radius there, a₀ that at F = 0.
 """
 
 from __future__ import annotations
@@ -41,8 +44,8 @@ class ClosedForm:
         name: its usual name: "Hertz".
         source: its publication.
         applies: returns why it holds for a case of its family, in a few words; "" where it does not.
-        values: returns its predictions, by the names of results, in their model units.
-        pressure: returns p(r) [FU/LU²] at r [LU] in the reported state; None where it predicts no pressure.
+        values: returns its predictions, by the names of results, in their units of the model.
+        pressure: returns p(r) [FU/LU²] at r (n,) [LU] in the reported state; None where it predicts no pressure.
         has_range: whether the predictions depend on the Tabor parameter.
     """
 
@@ -55,12 +58,12 @@ class ClosedForm:
 
 
 def applying(case: Case) -> list[ClosedForm]:
-    """Return the closed forms that hold for a case."""
+    """Return the closed forms that hold for a case, in the order of the families of its law; [] for none."""
     return _applying(case, case.law.closed_forms)
 
 
 def exact(case: Case) -> list[ClosedForm]:
-    """Return the closed forms that are exact for a case: for springs on a plane by the MDR."""
+    """Return the closed forms that are exact for a case: for springs on a plane by the MDR; [] for any other."""
     scene = case.scene
     by_mdr = scene.bodies.lower == "rigid_plane" and scene.bodies.reduction == "mdr"
     known = by_mdr and scene.is_modelled and scene.is_stepped
@@ -68,18 +71,24 @@ def exact(case: Case) -> list[ClosedForm]:
 
 
 def _applying(case: Case, families: Sequence[str]) -> list[ClosedForm]:
-    """Return the closed forms of the families that hold for a case."""
+    """Return the closed forms of the families, in their order, that hold for a case."""
     return [form for family in families for form in FORMS[family] if form.applies(case)]
 
 
 def theory(scene: Scene, quantities: Mapping[str, Quantity], scales: Scales) -> list[dict[str, Any]]:
-    """Return the entry `theory` of results.json, from the quantities of the body and the scales of the run."""
+    """Return the entry `theory` of results.json: a list of closed forms with their values; [] where none holds.
+
+    `quantities`: results of the body, in units of the model; `scales`: those of the run.
+    """
     case = Case(scene, quantities, scales)
     return [_entry(form, case, scales) for form in applying(case)]
 
 
 def _entry(form: ClosedForm, case: Case, scales: Scales) -> dict[str, Any]:
-    """Return the entry of a closed form in results.json, with the deviations of the run."""
+    """Return the entry of a closed form in results.json, with the deviations of the run, value over prediction minus 1.
+
+    Predictions of results that the run lacks are left out; the deviation from a prediction of 0 is None.
+    """
     values: dict[str, Any] = {}
     for name, value in form.values(case).items():
         if name not in case.quantities:
@@ -95,7 +104,10 @@ def _entry(form: ClosedForm, case: Case, scales: Scales) -> dict[str, Any]:
 
 
 def in_words(results: Mapping[str, Any], name: str) -> Iterator[str]:
-    """Yield the prediction of each closed form for a result, with the deviation: `Hertz 110.37 µm (+0.001 %)`."""
+    """Yield the prediction of each closed form for a result, with the deviation: `Hertz 110.37 µm (+0.001 %)`.
+
+    `results`: the content of results.json; `name`: of the result. Nothing is yielded where no closed form has it.
+    """
 
     def named(form: Mapping[str, Any]) -> str:
         """Return the name of a closed form, with the Tabor parameter if it depends on it."""
@@ -114,7 +126,10 @@ def in_words(results: Mapping[str, Any], name: str) -> Iterator[str]:
 
 
 def _without_adhesion(kind: str, body: str) -> Callable[[Case], str]:
-    """Return the condition: an elastic contact of a kind of profile without adhesion, kept by the reduction."""
+    """Return the condition of an elastic contact of a kind of profile without adhesion, kept by the reduction.
+
+    It is a function of a case: text, "" where it does not hold. `body`: name of the body in the text.
+    """
 
     def applies(case: Case) -> str:
         """Return the body and its load in words; "" where the closed form does not hold."""
@@ -127,7 +142,11 @@ def _without_adhesion(kind: str, body: str) -> Callable[[Case], str]:
 
 
 def _contact(case: Case, a: float, d: float, force: float) -> Values:
-    """Return the predictions of a contact with a [LU], d [LU], F [FU], without F or d where the scene gives it."""
+    """Return the predictions of a contact with a [LU], d [LU], F [FU], without F or d where the scene gives it.
+
+    By the names of results: lengths [LU], forces [FU], "contact_stiffness" [FU/LU], and where a > 0 "mean_pressure"
+    [FU/LU²].
+    """
     values = {
         "displacement": d, "force": force, "contact_radius": a, "largest_force": force, "largest_radius": a,
         "contact_stiffness": 2.0 * case.contact_modulus * a,
@@ -139,7 +158,10 @@ def _contact(case: Case, a: float, d: float, force: float) -> Values:
 
 
 def _elastic_values(case: Case) -> Values:
-    """Return the predictions of a body without adhesion, the finite pressures among them."""
+    """Return the predictions of a body without adhesion by name, "central_pressure" and "peak_pressure" where finite.
+
+    In units of the model: lengths [LU], forces [FU], stiffness [FU/LU], pressures [FU/LU²].
+    """
     body, a = case.body, case.contact_radius
     pressures = {"central_pressure": body.central_pressure(a), "peak_pressure": body.peak_pressure(a)}
     bounded = {name: pressure for name, pressure in pressures.items() if math.isfinite(pressure)}
@@ -147,14 +169,17 @@ def _elastic_values(case: Case) -> Values:
 
 
 def _pressure(case: Case, r: Array) -> Array:
-    """Return p(r) [FU/LU²] of a paraboloid or a cone, (n,)."""
+    """Return p(r) [FU/LU²], compression positive, of a paraboloid or a cone at radii r (n,) [LU], (n,)."""
     body = case.body
     assert isinstance(body, PowerLaw)
     return body.pressure(r, case.contact_radius)
 
 
 def _punch_values(case: Case) -> Values:
-    """Return the predictions of a flat punch, p(0) = E*d/πa among them; the pressure at the edge is singular."""
+    """Return the predictions of a flat punch by name, p(0) = E*d/πa [FU/LU²] among them, without its radius.
+
+    The pressure at the edge is singular.
+    """
     punch, d = case.punch
     values = _contact(case, punch.radius, d, punch.stiffness * d)
     del values["contact_radius"], values["largest_radius"]
@@ -162,7 +187,7 @@ def _punch_values(case: Case) -> Values:
 
 
 def _punch_pressure(case: Case, r: Array) -> Array:
-    """Return p(r) [FU/LU²] of a flat punch, (n,)."""
+    """Return p(r) [FU/LU²], compression positive, of a flat punch at radii r (n,) [LU], (n,)."""
     punch, d = case.punch
     return punch.pressure(r, d)
 
@@ -171,12 +196,15 @@ def _punch_pressure(case: Case, r: Array) -> Array:
 
 
 def _adhesive(kind: str, body: str) -> Callable[[Case], str]:
-    """Return the condition: a kind of profile on a plane with a work of adhesion."""
+    """Return the condition of a kind of profile on a plane with a work of adhesion: a function of a case.
+
+    It returns text, "" where it does not hold. `body`: name of the body in the text.
+    """
     return lambda case: f"{body} that adheres, without a range" if case.kind == kind else ""
 
 
 def _marks(case: Case, contact: Contact) -> Values:
-    """Return F_A, a_cr, a₀, and a and d under a load that the contact sustains."""
+    """Return F_A [FU] > 0, a_cr and a₀ [LU], and a and d [LU] under a given load that the contact sustains, by name."""
     values = {
         "adhesion_force": contact.pull_off_force(), "critical_radius": contact.critical_radius(),
         "zero_load_radius": contact.zero_load_radius(),
@@ -188,12 +216,16 @@ def _marks(case: Case, contact: Contact) -> Values:
 
 
 def _jkr_values(case: Case) -> Values:
-    """Return the predictions of JKR for a sphere with an interaction."""
+    """Return the predictions of JKR for a sphere with an interaction, by name: forces [FU], lengths [LU]."""
     return _marks(case, case.body)
 
 
 def _adhesive_values(case: Case) -> Values:
-    """Return the predictions of JKR and its extensions for a body on a plane."""
+    """Return the predictions of JKR and its extensions for a body on a plane, by name in units of the model.
+
+    Those of `_marks`, "fixed_grips_displacement" [LU], "adhesion_energy" [FU·LU], and of a paraboloid in contact and
+    under a force also pressures [FU/LU²].
+    """
     body, values = case.body, _marks(case, case.body)
     values["fixed_grips_displacement"] = body.displacement(body.fixed_grips_radius())
     reported = case.contact_radius if "displacement" in case.quantities else values["zero_load_radius"]
@@ -207,19 +239,25 @@ def _adhesive_values(case: Case) -> Values:
 
 
 def _adhesive_punch_values(case: Case) -> Values:
-    """Return F_A = √(8πE*Wa³) of a flat punch, and d = F/2E*a under a given force."""
+    """Return F_A = √(8πE*Wa³) [FU] of a flat punch, and d = F/2E*a [LU] under a given force, by name."""
     punch, d = case.punch
     values = {"adhesion_force": punch.pull_off_force()}
     return values if case.force is None else values | {"displacement": d}
 
 
 def tabor(case: Case) -> float | None:
-    """Return the Tabor parameter µ = (R W²/E*² h₀³)^{1/3} of a sphere with a range; None for anything else."""
+    """Return the Tabor parameter µ = (R W²/E*² h₀³)^{1/3} (dimensionless) of a sphere with a range.
+
+    None for anything else.
+    """
     return None if case.with_range is None else case.with_range.tabor
 
 
 def _with_a_range(of_any: bool) -> Callable[[Case], str]:
-    """Return the condition: a paraboloid with a range on a plane, where JKR does not hold or `of_any` µ."""
+    """Return the condition of a paraboloid with a range on a plane, where JKR does not hold or `of_any` µ.
+
+    It is a function of a case: text, "" where it does not hold.
+    """
 
     def applies(case: Case) -> str:
         """Return the Tabor parameter and its theory in words; "" where the closed form does not hold."""
@@ -232,7 +270,11 @@ def _with_a_range(of_any: bool) -> Callable[[Case], str]:
 
 
 def _by_tabor(theory: Theory) -> Callable[[Case], str]:
-    """Return the condition: a paraboloid with the MDR, so that E* and R are the body's, and an interaction alone."""
+    """Return the condition of a paraboloid with an interaction alone, at Tabor parameters where `theory` holds.
+
+    It is a function of a case: text, "" where it does not hold. The reduction is the MDR, so that E* and R are the
+    body's.
+    """
 
     def applies(case: Case) -> str:
         """Return the Tabor parameter in words; "" where the closed form does not hold."""
@@ -246,7 +288,10 @@ def _by_tabor(theory: Theory) -> Callable[[Case], str]:
 
 
 def _maugis_values(case: Case) -> Values:
-    """Return the predictions of Maugis and Dugdale for a sphere with a range."""
+    """Return the predictions of Maugis and Dugdale for a sphere with a range, by name: forces [FU], lengths [LU].
+
+    Without "displacement" for an interaction, which has another origin.
+    """
     values = _marks(case, MaugisDugdale(*case.sphere, case.range))
     if case.scene.interaction:  # its displacement has another origin
         values.pop("displacement", None)
@@ -254,7 +299,7 @@ def _maugis_values(case: Case) -> Values:
 
 
 def _dmt_values(case: Case) -> Values:
-    """Return the predictions of DMT for a sphere, without a critical radius."""
+    """Return the predictions of DMT for a sphere, by name, without a critical radius: forces [FU], lengths [LU]."""
     values = _marks(case, Dmt(*case.sphere))
     del values["critical_radius"]
     return values
@@ -265,7 +310,7 @@ def _dmt_values(case: Case) -> Values:
 
 
 def drawn_along(case: Case) -> str:
-    """Return the condition of Cattaneo and Mindlin in words: a sphere under a constant load; "" where it fails."""
+    """Return the condition of Cattaneo and Mindlin in words: a paraboloid under a constant load; "" where it fails."""
     experiment: Any = case.scene.experiment
     if not experiment.goes_along or case.kind != "parabola" or case.scene.the(Friction).coefficient == 0.0:
         return ""
@@ -276,7 +321,7 @@ def drawn_along(case: Case) -> str:
 
 
 def sliding_contact(case: Case) -> tuple[float, float, float, float]:
-    """Return N [FU], μ, u* [LU] and a [LU] of a case that meets `drawn_along`."""
+    """Return (N [FU], μ, u* [LU], a [LU]) of a case that meets `drawn_along`; u* is that of full sliding."""
     experiment: Any = case.scene.experiment
     scene, body, loads = case.scene, case.body, experiment.normal_forces()
     edge = body.contact_radius(loads[0]) if loads else body.radius_at(experiment.places()[0])
@@ -285,7 +330,11 @@ def sliding_contact(case: Case) -> tuple[float, float, float, float]:
 
 
 def _mindlin_values(case: Case) -> Values:
-    """Return the predictions of Cattaneo and Mindlin at the end of the path and of a cycle; N unless it is given."""
+    """Return the predictions of Cattaneo and Mindlin at the end of the path and of a cycle, by name.
+
+    N unless it is given. "tangential_force" and "normal_force" [FU], "contact_radius" and "stick_radius" [LU],
+    "dissipated_energy_per_cycle" [FU·LU].
+    """
     experiment: Any = case.scene.experiment
     *contact, edge = sliding_contact(case)
     positions = experiment.along()
@@ -302,7 +351,10 @@ def _mindlin_values(case: Case) -> Values:
 
 
 def indented(case: Case) -> Indented | None:
-    """Return the indentation of a viscoelastic body; None of other cases, or with more than one indentation."""
+    """Return the indentation of a viscoelastic paraboloid, cone or power by a given displacement; else None.
+
+    None also with more than one indentation.
+    """
     given: Any = case.scene.experiment
     exponents = {"parabola": 2.0, "cone": 1.0}
     exponent = exponents.get(case.kind) or getattr(case.scene.bodies.profile, "exponent", None)
@@ -317,12 +369,15 @@ def indented(case: Case) -> Indented | None:
 
 
 def _relaxes(case: Case) -> str:
-    """Return the condition of Ting in words; "" where it fails."""
+    """Return the condition of Ting in words; "" where it fails: a viscoelastic body, pressed once by a displacement."""
     return "a body that relaxes, pressed once by a given displacement" if indented(case) else ""
 
 
 def _ting_values(case: Case) -> Values:
-    """Return the predictions of Ting: the force, its maximum at 200 times and the corners, and the time of contact."""
+    """Return the predictions of Ting: "peak_force" and "force" [FU], and where it separates "contact_time" [TU].
+
+    The largest force is that at 200 times and the corners of the history.
+    """
     history = indented(case)
     assert history is not None
     corners, separated = history.times, history.lost(history.times[-1])

@@ -89,7 +89,10 @@ class BodyShear:
 
 
 def is_of_a_body(scene: Scene) -> bool:
-    """Whether the line load of a run is that of an axisymmetric body, in equilibrium without noise."""
+    """Whether the line load of a run is that of an axisymmetric body, in equilibrium without noise.
+
+    So that it has pressures p(r). A slide has none.
+    """
     bodies = scene.bodies
     represents_body = bodies.reduction == "mdr" or stands_for_spheres(scene)
     is_round = bodies.profile.kind != "flat" and bodies.lower in ("particles", "rigid_plane")
@@ -103,11 +106,11 @@ def body_pressures(
     of_all: float,
     given: Mapping[str, float],
 ) -> dict[str, BodyPressure]:
-    """Return p(r) of the reported states with a contact radius; none where the run represents no body.
+    """Return p(r) of the reported states with a contact radius, by name; {} where the run represents no body.
 
     Args:
         scene: the scene of the run.
-        profiles: the profiles of the reported states.
+        profiles: the profiles of the reported states, by name.
         of_radius: relative uncertainty of each contact radius, of which pressures under elastic springs are functions.
         of_all: sum of the relative uncertainties of all results, for the pressure under other springs.
         given: relative uncertainty of the pressures of each state by the uncertain numbers of the scene.
@@ -127,9 +130,9 @@ def body_pressures(
 
 
 def _pressure(state: LoadedState, share: float, given: float, most: int = 1000) -> BodyPressure | None:
-    """Return p(r) [FU/LU²] of the axisymmetric body from the line load of a state, with its uncertainty.
+    """Return p(r) [FU/LU²], compression positive, of the axisymmetric body from the line load of a state.
 
-    None where too few particles touch, or they are not symmetric.
+    With its uncertainty; None where too few particles touch, or they are not symmetric.
 
     Args:
         state: the line load of the state.
@@ -182,11 +185,19 @@ def _pressure(state: LoadedState, share: float, given: float, most: int = 1000) 
 def _with_discretisation(
     state: LoadedState, stride: int, spread: Array, levels: Sequence[Array], pressure: Callable[[LineLoad], Array]
 ) -> Array:
-    """Return the error of p with the discretisation error, (n,), by the differences between levels of particles.
+    """Return the error of p with the discretisation error, (n,) [FU/LU²], by differences between levels of particles.
 
     A known shape has none: where the particles are too few to show it, its edge alone is uncertain. Where the shape is
     not known, the error is 2.5 times the largest one at seven radii around; measured with rings that come into contact
     again, between whose particles a slope jumps.
+
+    Args:
+        state: the line load of the state.
+        stride: every how many particles are used.
+        spread: error of p so far, (n,).
+        levels: p through every, every second and every fourth of these particles, as far as there are enough, (n,)
+            each.
+        pressure: p at the same radii of a line load.
     """
     p, *coarser = levels
     known = not coarser and state.body is not None
@@ -204,7 +215,10 @@ def _with_discretisation(
 
 
 def _sum_error(state: LoadedState) -> float:
-    """Return the largest error [FU] of the sum for ∫ q dx: Δ²/12 of each change of slope (Euler, Maclaurin)."""
+    """Return the largest error [FU] of the sum for ∫ q dx: Δ²/12 of each change of slope (Euler, Maclaurin).
+
+    0 where the line load ends by a jump, known or not.
+    """
     if state.jump != 0.0:
         return 0.0
     bends = np.abs(np.convolve(state.load, (1.0, -2.0, 1.0)))
@@ -214,7 +228,8 @@ def _sum_error(state: LoadedState) -> float:
 def _stiffness(state: LoadedState, share: float) -> Quantity | None:
     """Return dF/dd = −∫ (dq/dh) dx [FU/LU] of springs whose forces are functions of d − h; 2E*a of linear ones.
 
-    Between two particles the slope is that of a straight line; `share` is the relative error of the results.
+    Between two particles the slope is that of a straight line; `share` is the relative error of the results. None of
+    coupled springs, of a body with an edge, and of a load that has no edge or jumps there.
     """
     edge = state.edge
     if not state.is_uncoupled or edge is None or state.jump != 0.0 or state.shape.has_edge:
@@ -235,11 +250,18 @@ def _stiffness(state: LoadedState, share: float) -> Quantity | None:
 def _shape_error(
     state: LoadedState, stride: int, r: Array, p: Array, attraction: Callable[[Array], Array]
 ) -> Callable[[Callable[[Array], Any]], Any]:
-    """Return a function: the change of a reading of p(r) for the possible shapes, independent ones added in squares."""
+    """Return a function of a reader of p(r): the change of its reading for the possible shapes, in its unit.
+
+    Changes with independent shapes are added in squares, those with coarser ones as they are. The reader takes p (n,)
+    at the radii r.
+    """
     shape, x = state.shape, state.x if state.edge is None else np.clip(state.x, -state.edge, state.edge)
 
     def pressures_of(shapes: Sequence[Shape]) -> list[Array]:
-        """Return p(r) of other shapes under the same displacement."""
+        """Return p(r) [FU/LU²] of other shapes under the same displacement, (n,) each.
+
+        Those with too few particles are left out.
+        """
         changes = [state.heights(x) - state.heights(x, alternative) for alternative in shapes]
         lines = [state.through(state.load + change - change[0], stride) for change in changes]
         return [line.pressure(r) - attraction(r) for line in lines if line]
@@ -247,7 +269,7 @@ def _shape_error(
     coarser, deviations = pressures_of(shape.coarser), [pressures_of(pair) for pair in shape.deviations]
 
     def change(read: Callable[[Array], Any]) -> Any:
-        """Return the change of a reading: of coarser shapes the sum, of independent pairs the root of the squares."""
+        """Return the change of a reading, in its unit: of coarser shapes the sum, of independent ones by squares."""
         independent = [[abs(read(varied) - read(p)) for varied in pair] for pair in deviations if pair]
         return sum(abs(read(varied) - read(p)) for varied in coarser) + np.sqrt(
             sum(np.max(pair, axis=0) ** 2 for pair in independent)
@@ -259,9 +281,10 @@ def _shape_error(
 def _bounded_pressures(
     state: LoadedState, fine: LineLoad, r: Array, levels: Sequence[Array], pressure: Callable[[Array], Array]
 ) -> dict[str, tuple[Quantity, int, Callable[[Array], Any]]]:
-    """Return p(0) and the largest pressure where bounded, each with its index in r and the reader of its error.
+    """Return p(0) and the largest pressure [FU/LU²] where bounded, by name, with its index in r and its reader of p.
 
     An uncertainty of 0 is determined later by these; it is infinite where nothing shows that the pressure is bounded.
+    "peak_pressure" is the vertex between radii. One that is singular is left out.
     """
     scene, shape, p = state.scene, state.shape, levels[0] if levels else pressure(r)
     # Smaller differences, relative to the pressure, are those of the minimiser.
@@ -289,7 +312,8 @@ def _bounded_pressures(
 def _is_bounded(state: LoadedState, fine: LineLoad, top: int, noise: float) -> bool:
     """Whether the largest pressure is bounded: a jump at the edge is a pole, a kink inside a logarithmic singularity.
 
-    A jump that the law gives counts however small it is, one that the particles show if it exceeds their errors.
+    A jump that the law gives counts however small it is, one that the particles show if it exceeds their errors. `top`:
+    index of the largest pressure; `noise`: error of a pressure [FU/LU²].
     """
     if state.shape.has_edge or state.has_kinks(state.shape):
         return False
@@ -298,7 +322,7 @@ def _is_bounded(state: LoadedState, fine: LineLoad, top: int, noise: float) -> b
 
 
 def _nodes(state: LoadedState, edge: float, angles: int) -> tuple[Array, Array]:
-    """Return radii r = a sin θ [LU] for the quadrature of p(r) over the contact, and the area of each [LU²].
+    """Return radii r = a sin θ [LU] for the quadrature of p(r) over the contact, and the area of each [LU²], (k,) each.
 
     Args:
         state: the line load of the state.
@@ -321,9 +345,10 @@ def _nodes(state: LoadedState, edge: float, angles: int) -> tuple[Array, Array]:
 
 
 def _attraction(scene: Scene, zone: ZonedProfile | None, growth: float = 0.0) -> tuple[float, Callable[[Array], Array]]:
-    """Return force [FU] and pressure of the attraction, as `Law.cohesive_load` does; 0 without a zone.
+    """Return (force [FU] ≤ 0 of the attraction beyond the edge, tension [FU/LU²] that it causes inside at radii [LU]).
 
-    Edge and reach are larger by a share `growth`.
+    The force is that of `Law.cohesive_load`, the tension a function of radii (n,); 0 and zeros without a zone. Edge and
+    reach are larger by a share `growth`.
     """
     if zone is None:
         return 0.0, np.zeros_like
@@ -334,7 +359,8 @@ def _attraction(scene: Scene, zone: ZonedProfile | None, growth: float = 0.0) ->
 def _edge_sensitivity(load: LineLoad, body: Callable[[Array], Array], r: Array, sign: float) -> Array:
     """Return |a ∂p/∂a| [FU/LU²] under springs on a plane at most, without the J/2a of a growing jump, (n,).
 
-    The sign of the jump's part is −1 where both parts are known to have the same edge, else 1.
+    `body`: function of a position that returns E* g [FU/LU]; r: radii inside the edge, (n,) [LU]. `sign` of the jump's
+    part is −1 where both parts are known to have the same edge, else 1.
     """
     square = (load.edge - r) * (load.edge + r)
     rise = np.diff(body(load.edge * np.asarray([1.0, 1.0 + STEP]))) / STEP
@@ -342,9 +368,11 @@ def _edge_sensitivity(load: LineLoad, body: Callable[[Array], Array], r: Array, 
 
 
 def _converges(levels: Sequence[float], noise: float, ratio: float = 0.45) -> bool:
-    """Whether a value through every, every second and every fourth particle converges; fewer levels cannot show it.
+    """Whether a value through every, every second and every fourth particle converges.
 
-    |p₁ − p₂|/|p₁ − p₄| is 1/(1 + 2ᵖ) for an order of convergence p, ½ for a logarithm, and more for a pole.
+    True with fewer of these `levels`. |p₁ − p₂|/|p₁ − p₄| is 1/(1 + 2ᵖ) for an order of convergence p, ½ for a
+    logarithm, and more for a pole. `noise`: relative change that is none; `ratio`: largest quotient that counts as
+    convergence.
     """
     if len(levels) < 3:
         return True
@@ -354,10 +382,10 @@ def _converges(levels: Sequence[float], noise: float, ratio: float = 0.45) -> bo
 
 
 def _level_difference(values: Array, *coarser: Array) -> Array:
-    """Return |fine − coarse| and a quarter of the next difference; the value itself where there is no coarser one.
+    """Return |fine − coarse| and a quarter of the next difference, (n,).
 
-    The first difference may be small by accident where a kink lies between particles; a quarter of the next one is as
-    large at an order of convergence of 2.
+    Where there is no coarser one, the magnitude of the value. The first difference may be small by accident where a
+    kink lies between particles; a quarter of the next one is as large at an order of convergence of 2.
     """
     levels = (values, *(coarser or (0.0,)))
     pairs = zip((1.0, 0.25), levels, levels[1:], strict=False)
@@ -368,9 +396,9 @@ def _level_difference(values: Array, *coarser: Array) -> Array:
 def body_shears(
     scene: Scene, profiles: Mapping[str, Profile], columns: Mapping[str, Array], contact_radii: Array
 ) -> dict[str, BodyShear]:
-    """Return q(r) of the reported states with a contact radius; none where the run represents no body.
+    """Return q(r) of the reported states with a contact radius, by name; {} where the run represents no body.
 
-    A flat punch has none: the shear at its edge is as singular as the pressure.
+    A flat punch has none: the shear at its edge is as singular as the pressure. Nor has the paper's reduction.
 
     Args:
         scene: the scene of the run.
@@ -391,16 +419,24 @@ def body_shears(
 
 
 def row_of(state: str, columns: Mapping[str, Array]) -> int:
-    """Return the number of the load step of a reported state: the last one, or the first of those farthest along x."""
+    """Return the number of the load step of a reported state: of "final" the last, else the first farthest along x."""
     positions = columns["tangential_displacement"]
     return len(positions) - 1 if state == "final" else int(np.argmax(np.abs(positions)))
 
 
 def _shear(scene: Scene, profile: Profile, edge: float, kinks: Sequence[float], stick: float) -> BodyShear | None:
-    """Return q(r) of a state, at 100 radii and the kinks; None where too few particles touch."""
+    """Return q(r) of a state, at 100 radii and the kinks; None where too few particles touch.
+
+    Args:
+        scene: the scene of the run.
+        profile: of the state.
+        edge: contact radius [LU].
+        kinks: radii at which q has kinks [LU].
+        stick: stick radius [LU].
+    """
 
     def load(chosen: Array) -> LineLoad:
-        """Return the line shear through chosen particles."""
+        """Return the line shear through particles of the chosen numbers."""
         return shear_load(profile.x[chosen], -profile.shear[chosen], edge, kinks, has_apex(scene))
 
     levels = [level for stride in (1, 2) if (level := through(profile.x.size, stride, load))]

@@ -54,13 +54,16 @@ class Check:
     message: str
 
     def entry(self) -> dict[str, Any]:
-        """Return the entry of the check in results.json; an infinite value is null."""
+        """Return the entry of the check in results.json, without its message; an infinite value is None."""
         value = self.value if math.isfinite(self.value) else None
         return {"name": self.name, "quantity": self.quantity, "value": value, "limit": self.limit, "holds": self.holds}
 
 
 def checks(scene: Scene, outcome: Outcome, quantities: Mapping[str, Quantity], scales: Scales) -> list[Check]:
-    """Return the checks of a run at its widest state; `quantities` are its results, of the body."""
+    """Return the checks of a run at its widest state; [] where it represents no body, or the bodies do not touch.
+
+    `quantities`: its results, of the body, by name; `scales`: those of the run.
+    """
     if not is_of_a_body(scene):
         return []
     wider = WIDER_THAN_SPHERES if stands_for_spheres(scene) else 1.0
@@ -73,7 +76,10 @@ def checks(scene: Scene, outcome: Outcome, quantities: Mapping[str, Quantity], s
 
 
 def _slope(case: Case, radius: float, limit: float = 0.1) -> Iterator[Check]:
-    """Yield the check of the slope at the contact edge; the limit is a convention."""
+    """Yield the check of the slope at the contact edge, radius [LU].
+
+    Nothing of a body with an edge, which is plane there. The limit is a convention.
+    """
     profile = case.scene.bodies.profile.steepest
     if profile.has_edge:  # it is plane at the edge
         return
@@ -91,7 +97,10 @@ def _slope(case: Case, radius: float, limit: float = 0.1) -> Iterator[Check]:
 
 
 def _difference_of_ball(case: Case, radius: float) -> str:
-    """Return in words how the contact radius of a ball differs from a paraboloid's under the same force."""
+    """Return in words how the contact radius of a ball differs from a paraboloid's under the same force.
+
+    "" for other profiles, and for two balls.
+    """
     profile = case.scene.bodies.profile
     if profile.kind != "parabola" or profile.counter_radius is not None:  # two balls are no profile here
         return ""
@@ -105,7 +114,10 @@ def _difference_of_ball(case: Case, radius: float) -> str:
 
 
 def _half_width(case: Case, radius: float, limit: float = 0.5) -> Iterator[Check]:
-    """Yield the check of the contact radius over the half-width of the body; the limit is a convention."""
+    """Yield the check of the contact radius [LU] over the half-width of the body.
+
+    Nothing where that has none, or an edge. The limit is a convention.
+    """
     profile = case.scene.bodies.profile
     width = profile.reach if math.isfinite(profile.reach) else profile.curvature_radius  # of a paraboloid its ball's
     if width is None or profile.has_edge:
@@ -137,8 +149,8 @@ def beyond_jkr(sphere: MaugisDugdale, assumed: bool) -> str:
 def _tabor(case: Case) -> Iterator[Check]:
     """Yield the check that the Tabor parameter of an adhesive sphere is one of JKR.
 
-    Without a range in the scene that of a typical attraction is assumed, and the check may fail; a law with a range
-    holds for any Tabor parameter.
+    Nothing without a sphere or adhesion. Without a range in the scene that of a typical attraction is assumed, and the
+    check may fail; a law with a range holds for any Tabor parameter.
     """
     sphere = case.with_range
     if sphere is not None and case.scene.work_of_adhesion:
@@ -147,7 +159,10 @@ def _tabor(case: Case) -> Iterator[Check]:
 
 
 def _yield(case: Case, outcome: Outcome, limit: float = 1.6) -> Iterator[Check]:
-    """Yield the check of the largest pressure over the yield strength; a ball yields below the surface at `limit`."""
+    """Yield the check of the largest pressure over the yield strength; a ball yields below the surface at `limit`.
+
+    Nothing where no yield strength is given, or the units are unknown.
+    """
     material, scales = case.scene.material, case.scales
     bodies = () if material is None else material.elastic.values()
     strength = min((body.yield_strength or math.inf for body in bodies), default=math.inf)

@@ -2,6 +2,9 @@
 
 A state does not depend on the loading history here, so that any position can be visited at any time; `replayed` has
 states that depend on it.
+
+A leg is a part of the path between two turns of the loading, numbered from 0 on. Displacements d [LU] and forces F [FU]
+are positive in compression. A snap is the instability in which a pair of opposite particles joins or separates.
 """
 
 from __future__ import annotations
@@ -37,26 +40,30 @@ JUMPS = (
 
 
 class Branch(ContactBranch):
-    """The states of a contact under displacement control; `tolerance` is the relative error of a search."""
+    """The states of a contact under displacement control.
+
+    Attributes:
+        tolerance: relative error of a force maximum that a search may leave.
+    """
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
-        """Prepare a contact under displacement control; see `ContactBranch` for `meanwhile`."""
+        """Prepare a contact under displacement control; `meanwhile` is called while LAMMPS reads the bodies."""
         super().__init__(context, meanwhile)
         self.tolerance = 0.3 * self.settings.tolerance  # the share of a search
         self._expected = cache(self.model.displacement_at)
 
     @property
     def unloading(self) -> Trace:
-        """The states of the leg under way in contact, by falling displacement."""
+        """The trace of the states of the leg under way that are in contact, by falling displacement."""
         return of_states(self.leg, self.model).falling()
 
     @property
     def peak(self) -> Peak:
-        """The force maximum of the leg under way."""
+        """The force maximum of the leg under way, tension positive [FU], with its position [LU]."""
         return peak_of(self.unloading)
 
     def visit(self, positions: Sequence[float] | Array, along: Sequence[float] | None = None) -> None:
-        """Run load steps at displacements [LU] that are known beforehand, in one direction."""
+        """Run load steps at displacements [LU] that are known beforehand, in one direction; `along` is ignored."""
         self._turn(not self.states or positions[-1] >= self._last.displacement)
         self._visit(positions)
         self._record_target(math.nan)
@@ -67,7 +74,10 @@ class Branch(ContactBranch):
         self._append(self.contact.rows(displacements([float(position) for position in positions])))
 
     def hold(self, duration: float, displacement: float | None, force: float | None, approach_steps: int = 20) -> None:
-        """Hold a displacement [LU] for a time [TU], in which particles move; each move there takes some timesteps."""
+        """Hold a displacement [LU] for a time [TU], in which particles move; `force` is ignored.
+
+        Each move of the approach takes `approach_steps` timesteps.
+        """
         assert displacement is not None
         self.moves, name = True, self._phase
         moves = max(1, math.ceil(abs(displacement) / self.settings.increments.longest_move - SAME))
@@ -79,16 +89,19 @@ class Branch(ContactBranch):
         self._move([DisplaceInTime(displacement, steps) for steps in self.settings.steps_of(duration)])
 
     def _move(self, rows: Sequence[DisplaceInTime]) -> None:
+        """Run load steps in time on the leg under way; their states need not be at rest."""
         self._begin_phase()
         self._append(self.contact.rows(rows, moving=True))
 
     # --- a force
 
     def reach(self, force: float, scale: float, accuracy: float = 1e-3) -> None:
-        """Go on until the contact carries a force [FU], to a share `accuracy` of the tolerance of `scale` [FU].
+        """Go on until the contact carries a force [FU], compression positive.
+
+        The accuracy is a share `accuracy` of the tolerance of `scale` [FU], half of that where the force is smooth.
 
         Raises:
-            UntrustedError: see `require_trust`; also where the force cannot be held.
+            UntrustedError: a state is no result (`require_trust`); the force cannot be reached, or not held.
         """
         # Where pairs snap the force at a displacement is less accurate.
         near = (0.5 if self.settings.is_smooth else 1.0) * accuracy * self.settings.tolerance * scale
@@ -98,6 +111,7 @@ class Branch(ContactBranch):
         self._load_step(self._last.displacement if self.states else 0.0)
 
         def goes_beyond(state: State) -> bool:
+            """Return whether a state carries more than the force in loading, or less in unloading."""
             return state.carried > force if rises else state.carried < force
 
         before: State | None = None
@@ -128,6 +142,13 @@ class Branch(ContactBranch):
 
         It is kept within a step, or inside the bracket, off its ends by a share `margin` of it unless the search
         converges by a factor of ten.
+
+        Args:
+            before: state before the force is reached.
+            beyond: state beyond it; None where it is not known.
+            force: that is searched for [FU].
+            step: longest increment, with the sign of the loading [LU].
+            margin: relative distance from the ends of the bracket.
         """
         *_, former, last = [None, *self.leg]
         expected, rate = self._expected, 1.0
@@ -144,7 +165,12 @@ class Branch(ContactBranch):
         return before.displacement + min(max(part, margin), 1.0 - margin) * (beyond.displacement - before.displacement)
 
     def _require_within_reach(self, force: float, rises: bool, before: State, beyond: State | None) -> None:
-        """Refuse a force that the branch jumps past, never reaches, or does not reach in a practicable time."""
+        """Refuse a force [FU] that the branch jumps past, never reaches, or does not reach in a practicable time.
+
+        Raises:
+            TensionError: the bodies are beyond the cutoff, and no state had the tension.
+            UntrustedError: an instability, or too many load steps.
+        """
         states = self.leg
         if beyond is not None and self._is_same(before, beyond):
             raise UntrustedError(
@@ -163,7 +189,7 @@ class Branch(ContactBranch):
             )
 
     def _is_same(self, before: State, beyond: State) -> bool:
-        """Return whether two states are at the same displacement within round-off."""
+        """Return whether two states are at the same displacement, within 1e-12 of the spacing."""
         return abs(before.displacement - beyond.displacement) < SAME * self.scene.bodies.spacing
 
     # --- the force maximum
@@ -179,7 +205,7 @@ class Branch(ContactBranch):
             most_halvings: of the increment for the contact radius at the maximum.
 
         Raises:
-            UntrustedError: see `require_trust`; it is not found.
+            UntrustedError: a state is no result (`require_trust`), or the search does not converge.
         """
         increment = self._pass_maximum()
         expected, halvings, changed = self.peak, 0, math.inf
@@ -208,10 +234,11 @@ class Branch(ContactBranch):
         raise UntrustedError(f"no force maximum is found near {expected.position:.6g} LU: {JUMPS}")
 
     def open(self) -> None:
-        """Pull the bodies apart.
+        """Pull the bodies apart until the tension is, and remains, below 2 % of its maximum.
 
         Raises:
-            UntrustedError: the tension rises above the maximum that was found.
+            SecondMaximumError: the tension rises above the maximum that was found.
+            UntrustedError: the bodies do not separate.
         """
         before = self.peak
         # On from the last position, yet in a move no longer than that of the search beyond the maximum.
@@ -225,9 +252,12 @@ class Branch(ContactBranch):
             )
 
     def _pass_maximum(self) -> float:
-        """Unload until the force maximum is passed, of several all that may exceed it; return the increment [LU].
+        """Unload until the force maximum is passed, of several all that may exceed it; return the increment [LU] > 0.
 
         Each maximum has four load steps, of up to 400 maxima: of more, each is a small part of the force.
+
+        Raises:
+            UntrustedError: the maximum is not passed within 10 000 load steps.
         """
         law, zero = self.settings.law, self._last
         period = law.maxima_distance(self.settings.chains.upper)
@@ -241,13 +271,16 @@ class Branch(ContactBranch):
             rows.append(self._load_step(zero.displacement - (skipped + len(rows)) * step))
             if len(rows) > MOST_INCREMENTS:
                 raise UntrustedError(
-                    f"the search has not passed the force maximum after {MOST_INCREMENTS} load steps, at a displacement "
-                    f"of {rows[-1].displacement:.6g} LU; a larger accuracy.tolerance has fewer and longer steps"
+                    f"the search has not passed the force maximum after {MOST_INCREMENTS} load steps, at a displacement"
+                    f" of {rows[-1].displacement:.6g} LU; a larger accuracy.tolerance has fewer and longer steps"
                 )
         return step
 
     def _halve(self, positions: tuple[float, float]) -> float:
-        """Visit positions [LU] on both sides of the force maximum; return the error of their interpolation [FU]."""
+        """Visit positions [LU] on both sides of the force maximum; return the error of their interpolation [FU], ≥ 0.
+
+        Infinite where there were too few load steps for an interpolation.
+        """
         expected = promised(*self.unloading.lists, positions)
         surprise = 0.0
         for position, tension in zip(positions, expected, strict=True):
@@ -258,7 +291,8 @@ class Branch(ContactBranch):
     def _examine_rivals(self, allowed: float, most: int = 200) -> float:
         """Visit positions near maxima that may be higher than the highest load step by more than `allowed` [FU].
 
-        After `most` of them at the latest, return by how much a maximum may still be higher [FU].
+        Return by how much a maximum may still be higher [FU], 0 where none may; more than `allowed` only after `most`
+        rounds.
         """
         excess = 0.0
         for _ in range(most):
@@ -273,40 +307,43 @@ class Branch(ContactBranch):
         return excess
 
     def _has_radius_of(self, peak: Peak) -> bool:
-        """Return whether the last state has the contact radius of the maximum."""
+        """Return whether the last state has the contact radius of the maximum, within `_radius_limit`."""
         return abs(self._radius_rate(self._last) * (peak.position - self._last.displacement)) <= self._radius_limit(
             self._last
         )
 
     def _is_located(self, peak: Peak) -> bool:
-        """Return whether the position of the maximum is accurate enough for the contact radius there."""
+        """Return whether the position of the maximum is accurate enough for the radius there (`_radius_limit`)."""
         return POSITION_FACTOR * abs(self._radius_rate(self._last)) * peak.misplaced <= self._radius_limit(self._last)
 
     def _radius_rate(self, state: State) -> float:
-        """Return da/dd at a state of the leg under way, from its nearest neighbour."""
+        """Return da/dd [LU/LU] at a state of the leg under way, from its nearest neighbour; 0 where there is none."""
         trace = self.unloading
         return radius_rate(trace, int(np.argmin(np.abs(trace.displacement - state.displacement))))
 
     def _radius_limit(self, state: State) -> float:
-        """Return the allowed error of a contact radius [LU]: half its uncertainty, due to the spacing, at least."""
+        """Return the allowed error of a contact radius [LU]: its tolerance or, if larger, half its uncertainty."""
         radius = state.radius_or_spot
         return max(self.tolerance * radius.value, 0.5 * radius.uncertainty)
 
     # --- moves
 
     def _load_step(self, displacement: float) -> State:
-        """Run one load step at a displacement [LU] and return its state."""
+        """Run one load step at a displacement [LU], add its state to the leg under way, and return it."""
         self._begin_phase()
         state = self.contact.row(Displace(displacement))
         self._append([state])
         return state
 
     def _record_maximum(self, error: float) -> None:
-        """Record the error of the search for the force maximum of the leg under way [FU]."""
+        """Record the error [FU] of the search for the force maximum of the leg under way, as a sampling error."""
         self.searches[self._number] = Search({"sampling": error})
 
     def _revisit(self, displacement: float) -> None:
-        """Visit a displacement [LU]; bodies approach by half the smallest distance of their particles at a time."""
+        """Visit a displacement [LU]; bodies approach by half the smallest distance of their particles at a time.
+
+        But by no less than the longest move of the settings.
+        """
         while displacement - self._last.displacement > (longest := 0.5 * self._last.smallest_distance):
             longest = max(longest, self.settings.increments.longest_move)
             self._load_step(min(self._last.displacement + longest, displacement))
@@ -315,7 +352,11 @@ class Branch(ContactBranch):
     def _separate(self, start: float, share: float = 0.02) -> None:
         """Unload from `start` [LU] until the tension is, and remains, below a share of its maximum.
 
-        Increments grow where the tension is below half its maximum.
+        Or until the bodies are beyond the cutoff of the interaction. Increments grow where the tension is below half
+        its maximum.
+
+        Raises:
+            UntrustedError: the bodies do not separate within 10 000 load steps.
         """
         largest = max((-s.force for s in self.leg), default=0.0)
         self._load_step(start)
@@ -334,11 +375,11 @@ class Branch(ContactBranch):
         raise UntrustedError(f"the bodies did not separate within {MOST_INCREMENTS} increments of the displacement")
 
     def _growth(self, state: State, largest: float) -> float:
-        """Return the factor of successive increments beyond the `largest` tension [FU]."""
+        """Return the factor of successive increments beyond the `largest` tension [FU] (dimensionless)."""
         return 1.6
 
     def _unloading_step(self, start: float, most: float = 1_000.0) -> float:
-        """Return the first increment [LU] of an unloading, which separates the bodies in `most` load steps.
+        """Return the first increment [LU] > 0 of an unloading from `start` [LU], which takes `most` load steps at most.
 
         Soft springs follow the attraction farther than they were pressed.
         """
@@ -346,7 +387,7 @@ class Branch(ContactBranch):
         return max(self.settings.increment(), distance / most)
 
     def _remaining_tension(self, state: State) -> float:
-        """Return the largest tension [FU] that bodies which move apart can have from this state on.
+        """Return the largest tension [FU] ≥ 0 that bodies which move apart can have from this state on.
 
         The tension of a particle beyond the force maximum of its law only falls; any other particle may still reach
         that maximum.
@@ -362,7 +403,7 @@ class SecondMaximumError(UntrustedError):
 
 
 def _is_passed(states: Sequence[State]) -> bool:
-    """Return whether the last load steps lie beyond a force maximum."""
+    """Return whether three load steps or more lie beyond the largest tension of all, which is > 0."""
     tension = [-s.force for s in states]
     largest = max(tension)
     return largest > 0.0 and tension.index(largest) < len(tension) - ROWS_BEYOND_PEAK

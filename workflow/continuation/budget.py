@@ -39,13 +39,17 @@ Array = NDArray[np.float64]
 def curve_errors(
     case: Reduction, trace: Trace, solver: Array, repeated: Mapping[str, Sequence[Trace]] | None = None
 ) -> dict[str, Values]:
-    """Return the errors of the points of curve.csv, (m,), by column and source.
+    """Return the errors of the points of curve.csv, (m,), by column and source: "force" [FU] and "displacement" [LU].
+
+    A prescribed displacement has none. Under a load, an error of the force moves the body: only "solver" and the
+    sources of `repeated` remain at the force, and all others are multiplied by 1/stiffness and stand at the
+    displacement.
 
     Args:
         case: scene, settings, script and reader.
         trace: of all states that were passed.
-        solver: ε of each state.
-        repeated: see `budgeted`.
+        solver: error of the force of each state, (m,) [FU].
+        repeated: traces of repeated measurements, by the source of the error that they show: "time" of a motion.
     """
     rows, repeated = case.along(trace), repeated or {}
     measured = {"force": trace.force, "displacement": trace.displacement}
@@ -70,28 +74,38 @@ def curve_errors(
 
 
 def of_rows(errors: Mapping[str, Values], chosen: NDArray[np.bool_]) -> dict[str, Values]:
-    """Return the errors of the points that are reported, by column and source."""
+    """Return the errors of the points that are reported, by column and source, in the units of `errors`.
+
+    `chosen`: (m,), true for a point that is reported.
+    """
     return {name: {source: error[chosen] for source, error in column.items()} for name, column in errors.items()}
 
 
 def _differences(trace: Trace, repetition: Trace, name: str) -> Array:
-    """Return the differences of a repeated trace, (m,), at the same times, or state by state."""
+    """Return the absolute differences of a column of a repeated trace from that of `trace`, (m,), in the column's unit.
+
+    `name`: "force" [FU] or "displacement" [LU]. They are taken at the same times, without times state by state.
+    """
     values = getattr(repetition, name)
     expected = np.interp(trace.time, repetition.time, values) if trace.time.any() else values
     return np.asarray(np.abs(getattr(trace, name) - expected))
 
 
 def _above_neighbours(errors: Array, share: float = 0.5) -> Array:
-    """Return errors (m,), at least a share of those of their neighbours: an error is small where its sign changes."""
+    """Return errors (m,) of at least a `share` of those of their neighbours, in the same unit; an error of 0 stays 0.
+
+    An error is small where its sign changes.
+    """
     padded = np.pad(errors, 1)
     return np.maximum(errors, share * np.maximum(padded[:-2], padded[2:]) * (errors > 0.0))
 
 
 def sampling_errors(case: Reduction, trace: Trace, fewest: int = 200) -> Values:
-    """Return the sampling error of each result due to the steps of the scene: the change of the model with dense steps.
+    """Return the sampling error of each result, by name in its unit, where the scene gives the steps.
 
-    Where the model is no copy of the deck, the largest change of four shifts of the steps counts. The lattice is made
-    coarser where there are too many forces, down to `fewest` particles: steps miss as much on any lattice.
+    It is the change of the reduced model with dense steps, times a margin. Where the model is no copy of the deck, the
+    largest change of four shifts of the steps counts. The lattice is made coarser where there are too many forces, down
+    to `fewest` particles: steps miss as much on any lattice.
     """
     model, errors = case.model, dict[str, float]()
     step = float(np.median(np.abs(np.diff(trace.displacement)))) if len(trace) > 1 else 0.0
@@ -111,7 +125,7 @@ def sampling_errors(case: Reduction, trace: Trace, fewest: int = 200) -> Values:
 
 @dataclass(frozen=True)
 class ForceErrors:
-    """The errors of the forces of states, (m,) [FU].
+    """The errors of the forces of states, (m,) [FU], ≥ 0.
 
     Attributes:
         common: similar at neighbouring states: the largest sum of residual forces, table, cutoff, stiffness of a plane.
@@ -129,7 +143,15 @@ class ForceErrors:
 def force_errors(
     scene: Scene, settings: Settings, states: Sequence[State], marked: Collection[State], left: float | None = None
 ) -> ForceErrors:
-    """Return the errors of states, interpolated between `marked` ones; `left` [FU] replaces their residual forces."""
+    """Return the errors of the forces of states, (m,) [FU], interpolated over displacement between the `marked` ones.
+
+    Args:
+        scene: of the run.
+        settings: of the run.
+        states: whose errors are required, (m,).
+        marked: states with profiles, one at least.
+        left: error [FU] that replaces the sum of the residual forces of a marked state; None: that sum.
+    """
     count = float(settings.chains.upper)
     law = {state.displacement: settings.forces.error(scene, state.profile) for state in marked}
     errors = {
@@ -151,15 +173,15 @@ def budgeted(
     length: float = 0.0,
     repeated: Mapping[str, Sequence[Trace]] | None = None,
 ) -> dict[str, Result]:
-    """Return the results with their errors by source.
+    """Return the results by name, each with its errors by source, in its own unit.
 
     Args:
         case: scene, settings, script and reader.
         trace: of the measured states.
-        force_error: ε of each state.
+        force_error: error ε of the force of each state [FU].
         sampled: whether the scene gives the steps.
-        length: over which a tilt of the force is ε [LU]; 0 for none.
-        repeated: traces of repeated measurements by the source of the error that they show: "time" of a motion.
+        length: displacement from the anchor [LU] at which a tilt of the force reaches ε; 0 for no tilt.
+        repeated: traces of repeated measurements, by the source of the error that they show: "time" of a motion.
     """
     readings = case.read(trace)
     values = values_of(readings)
@@ -190,7 +212,10 @@ def budgeted(
 def _repetition_errors(
     case: Reduction, trace: Trace, values: Values, repeated: Mapping[str, Sequence[Trace]]
 ) -> dict[str, Values]:
-    """Return the errors that repeated traces show, by source and result, and that of the detachment of a free body."""
+    """Return the errors that repeated traces show, by source and result in its unit.
+
+    A result that a repetition lacks counts as 0. Of a free body, "time" is also the error of its detachment at least.
+    """
     errors = dict[str, Values]()
     for source, traces in repeated.items():
         changes = [_changes(case.read, values, [repetition], missing=True) for repetition in traces]
@@ -203,7 +228,12 @@ def _repetition_errors(
 
 
 def _perturbed(case: Reduction, trace: Trace, force_error: ForceErrors, sampled: bool, length: float) -> list[Trace]:
-    """Return the trace with forces changed by ±ε, or by a part of it that changes its sign; see `budgeted`."""
+    """Return traces with forces changed by ±ε, or by a part of it that changes its sign along the path.
+
+    ε, tilted about the anchor over `length` [LU] (none where that is 0), and where the scene gives the steps
+    (`sampled`) the part that turns with the loading; also with radii wider and narrower by the relative error of the
+    interaction.
+    """
     shapes = [force_error.common]
     if length > 0.0:
         shapes.append(force_error.common * np.clip((trace.displacement - force_error.anchor) / length, -1.0, 1.0))
@@ -219,7 +249,7 @@ def _perturbed(case: Reduction, trace: Trace, force_error: ForceErrors, sampled:
 
 
 def misread(trace: Trace) -> list[Trace]:
-    """Return the trace with radii increased by their uncertainties: all of them, or with alternating sign.
+    """Return two traces with radii increased by their uncertainties: all of them, and with alternating sign.
 
     Results change with radii to first order: smaller radii change them by as much.
     """
@@ -230,7 +260,8 @@ def misread(trace: Trace) -> list[Trace]:
 def _detachment_errors(case: Reduction, trace: Trace) -> Array:
     """Return the error [LU] of the position of a free body, (m,), whose contact is lost within a timestep.
 
-    ½ ΔF Δt/M (t − t₀). The change with another timestep may vanish, since the contact is lost elsewhere in it.
+    ½ ΔF Δt/M (t − t₀), with ΔF the force at the limit point and t₀ the last time in contact; 0 up to t₀, and everywhere
+    without a limit point. The change with another timestep may vanish, since the contact is lost elsewhere in it.
     """
     model, motion = case.model, case.settings.motion
     if not model.limits:
@@ -241,14 +272,15 @@ def _detachment_errors(case: Reduction, trace: Trace) -> Array:
 
 
 def _short_step(model: Particles) -> float:
-    """Return a step [LU] that is small compared with the path of the model."""
+    """Return a step [LU] of a thousandth of the path of the model, from apart to its largest displacement."""
     return 1e-3 * (model.deepest - model.apart)
 
 
 def _target_errors(case: Reduction, trace: Trace, error: Array, margin: float = 1.1) -> Array:
-    """Return the largest distance [LU] of states from the force that they were to carry, (m,); 0 for the rest.
+    """Return how far [LU] states are, at most, from the displacement of the force that they were to carry, (m,).
 
-    `margin` is the error over that to first order, for nothing else may be in error.
+    0 for all others. `error`: of the force of each state, (m,) [FU]. `margin` is the factor over the distance to first
+    order, for nothing else may be in error.
     """
     distances = np.zeros(len(trace))
     for i, wanted in trace.wanted.items():
@@ -261,7 +293,10 @@ def _target_errors(case: Reduction, trace: Trace, error: Array, margin: float = 
 
 
 def _stiffness(case: Reduction, displacement: Array) -> Array:
-    """Return dF/dd [FU/LU] of the model at displacements (m,) [LU], at least that of a particle."""
+    """Return dF/dd [FU/LU] > 0 of the model in unloading at displacements (m,) [LU], at least that of a particle.
+
+    Where the force has several maxima, that of all pairs in contact at the largest displacement, everywhere.
+    """
     settings, model = case.settings, case.model
     if settings.has_several_maxima:
         return np.full_like(displacement, settings.law.stuck_stiffness(settings.largest_displacement))
@@ -271,7 +306,10 @@ def _stiffness(case: Reduction, displacement: Array) -> Array:
 
 
 def _changes(read: Reader, values: Values, perturbed: list[Trace], missing: bool = False) -> Values:
-    """Return the largest change of each value; with `missing`, a value that a perturbed reader lacks is 0."""
+    """Return the largest absolute change of each value over the perturbed traces, by name in its unit.
+
+    A value that a perturbed reader lacks has not changed, or with `missing` is 0 there.
+    """
     changes = dict.fromkeys(values, 0.0)
     for trace in perturbed:
         results = values_of(read(trace))

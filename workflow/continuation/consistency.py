@@ -1,5 +1,7 @@
 """Whether a run contradicts itself: each check compares two numbers that are computed independently.
 
+An `Agreement` has their relative difference, how large it may be (relative), and a sentence with both numbers.
+
     plan      forces of LAMMPS and of the reduced model along the same load steps on a rigid plane
     asked     the force that the scene asks for and that of the state that has it
     balance   the force of the contact and what LAMMPS adds up on the plate
@@ -27,10 +29,11 @@ AT_REST = 1e-8
 
 
 def plan(scene: Scene, states: Sequence[State], forces: Array) -> dict[str, Agreement]:
-    """Compare the forces of LAMMPS with those of the model, (m,) [FU], of all load steps in order.
+    """Return {"plan": `Agreement`} of the forces of LAMMPS and of the model, (m,) [FU], of all load steps in order.
 
-    A difference below the round-off error of the loaded particles is allowed. The remaining difference is divided by
-    the sum of all loads in its step, to which a share of the largest sum of the run is added, for an unloaded step.
+    A difference below the round-off error of the loaded particles does not count. The remaining difference is divided
+    by the sum of all loads in its step, to which a share of the largest sum of the run is added, for an unloaded step;
+    the load step with the largest quotient counts, and 1e-9 is allowed.
     """
     allowed, share = 1e-9, 1e-5  # differences of right runs are 4e-14 to 8e-11
     sizes = np.asarray([_load_sum(scene, state) for state in states])
@@ -46,7 +49,11 @@ def plan(scene: Scene, states: Sequence[State], forces: Array) -> dict[str, Agre
 
 
 def asked(scene: Scene, pairs: Sequence[tuple[float, float]], states: Sequence[State]) -> dict[str, Agreement]:
-    """Compare pairs of forces [FU], required by the scene and carried by its state; a search has a tolerance."""
+    """Return {"asked": `Agreement`} of pairs of forces [FU], (required by the scene, carried by its state).
+
+    {} without pairs. The largest difference counts, less round-off, over the largest sum of loads of a state or the
+    largest required force. A search may differ by the tolerance of the scene, a plan by 1e-8.
+    """
     if not pairs:
         return {}
     largest = max([_load_sum(scene, state) for state in states] + [abs(wanted) for wanted, _ in pairs])
@@ -63,12 +70,15 @@ def _load_sum(scene: Scene, state: State) -> float:
 
 
 def _round_off(state: State) -> float:
-    """Return the largest sum of the residual forces of a state [FU]."""
+    """Return the residual force of a state times the number of its loaded particles [FU]."""
     return state.residual * np.count_nonzero(state.profile.pressure)
 
 
 def balance(scene: Scene, states: Sequence[State]) -> dict[str, Agreement]:
-    """Compare the force of the contact on the plate with that which LAMMPS adds up, but for residual forces."""
+    """Return {"balance": `Agreement`} of the contact's force on the plate with that which LAMMPS adds up.
+
+    {} where it does not. The largest difference counts, less residual forces, over the largest sum of loads of a state.
+    """
     missing = [
         (max(abs(state.missing) - state.profile.x.size * state.residual, 0.0), state)
         for state in states
@@ -91,9 +101,9 @@ class Work:
     """The path of the plate, on which it does work.
 
     Attributes:
-        path: in LAMMPS.
+        path: in LAMMPS, or in free motion of the model.
         forces: of the model along it, (m,) [FU]; None: to be computed, with positions between.
-        kinetic: the first energy of a free body, and the loss of it [FU·LU].
+        kinetic: of a free body, its first kinetic energy and the loss of it [FU·LU]; None with a prescribed motion.
     """
 
     path: Path
@@ -102,9 +112,11 @@ class Work:
 
 
 def energy(case: Reduction, work: Work, doubt: float = 0.0) -> dict[str, Agreement]:
-    """Compare the work with the energy that is stored and lost; nothing where the model has no energies.
+    """Return {"energy": `Agreement`} of the work with the energy that is stored and lost.
 
-    `doubt`: the relative uncertainty of the energy that the run reports.
+    {} where the model has no energies. The difference is relative to the energy lost where that exceeds 5 % of all
+    work, else to all work, and to the energy stored where that is larger; of a free body, to its first kinetic energy.
+    `doubt`: the relative uncertainty of the energy that the run reports, which is allowed in addition.
     """
     checked = _missing(case.model, work, 1)
     if checked is None:
@@ -122,7 +134,11 @@ def energy(case: Reduction, work: Work, doubt: float = 0.0) -> dict[str, Agreeme
 
 
 def _missing(model: Particles, work: Work, finer: int) -> tuple[float, float, float, float] | None:
-    """Return the work that is neither stored nor lost, the work, the energy stored and lost, their scale [FU·LU]."""
+    """Return (work neither stored nor lost, work, energy stored and lost, their scale), all [FU·LU].
+
+    None without energies. `finer`: factor on the number of states of the path. The model has no energies where its law
+    has no expression for them.
+    """
     path = work.path if work.kinetic else model.checked(work.path, finer)
     if (energies := model.energies(path)) is None:
         return None
@@ -146,7 +162,10 @@ def _missing(model: Particles, work: Work, finer: int) -> tuple[float, float, fl
 
 
 def _denser(case: Reduction, work: Work, dense: int = 4) -> Work:
-    """Return the work along a history with so many load steps for each: twice as many may miss as much by chance."""
+    """Return the work along the path with `dense` load steps for each: twice as many may miss as much by chance.
+
+    Unchanged are a free motion, and a path of equilibria, which gets its states from the model.
+    """
     if work.kinetic or case.model.checked(work.path, 1) is not work.path:
         return work
     return Work(case.driven(case.model, dense).path)

@@ -44,7 +44,13 @@ MOST_NUMBERS = 1_000_000
 
 
 class Contact:
-    """A running deck. It records its schedule: `phases` is the content of in.lammps that repeats it."""
+    """A running deck. It records its schedule: `phases` is the content of in.lammps that repeats it.
+
+    Attributes:
+        deck, scene, settings: of the contact.
+        session: LAMMPS.
+        rows_seconds: time in LAMMPS for load steps [s].
+    """
 
     def __init__(self, deck: Deck, session: Session, meanwhile: Callable[[], object] | None = None) -> None:
         """Run the head of a deck, and call `meanwhile` while LAMMPS reads the bodies."""
@@ -64,11 +70,14 @@ class Contact:
 
     @property
     def phases(self) -> tuple[Phase, ...]:
-        """The schedule of the load steps so far."""
+        """The schedule of the load steps so far: named phases of rows; () before the first phase."""
         return tuple(self._phases)
 
     def begin(self, name: str, fragments: tuple[str, ...] = (), expected_steps: int | None = None) -> None:
-        """Begin a phase of load steps, with fragments that are run first."""
+        """Begin a phase of load steps, with fragments that are run first.
+
+        `expected_steps`: timesteps of the whole phase, shown as progress; None where unknown.
+        """
         end = "variable        row_phase delete\n" if self._phases else ""
         self._phases.append(Phase(name, (), begin=fragments))
         self._unfinished += end + self.deck.begin(name, fragments)
@@ -76,11 +85,16 @@ class Contact:
         self.session.execute("", phase=name, expected_steps=expected_steps)
 
     def row(self, row: Row, trusted: bool = True) -> State:
-        """Run one load step of the current phase and measure; see `rows`."""
+        """Run one load step of the current phase and return its measured state; where `trusted`, one that is a result.
+
+        Raises:
+            EngineError: LAMMPS failed, or lost particles.
+            UntrustedError: bodies went through each other, particles are not at rest, or the chain is too short.
+        """
         return self.rows((row,), trusted)[0]
 
     def rows(self, rows: Sequence[Row], trusted: bool = True, moving: bool = False) -> list[State]:
-        """Run load steps of the current phase, which are known beforehand, and measure each.
+        """Run load steps of the current phase, which are known beforehand, and return the measured state of each.
 
         Args:
             rows: of one kind.
@@ -89,7 +103,7 @@ class Contact:
 
         Raises:
             EngineError: LAMMPS failed, or lost particles.
-            UntrustedError: see `require_trust`.
+            UntrustedError: bodies went through each other, particles are not at rest, or the chain is too short.
         """
         states, size = list[State](), BATCH
         if self.deck.stepped:
@@ -112,13 +126,13 @@ class Contact:
         return states
 
     def write_state(self) -> None:
-        """Write the state of the last load step to states.lammpstrj, at the end of the phase."""
+        """Write the atoms of the last load step to states.lammpstrj; the phase then ends with this state."""
         self._phases[-1] = replace(self._phases[-1], state=True)
         self._unfinished += self.deck.state(first=not self._written)
         self._written = True
 
     def finish(self) -> None:
-        """Run the remaining text of the last load step, whose states are not kept."""
+        """Run the remaining text of the last load step, whose states are not kept, and delete the file of frames."""
         self.session.execute(self._unfinished, phase=self._phases[-1].name)
         self._unfinished = ""
         (self.session.folder / FRAMES).unlink(missing_ok=True)
@@ -131,7 +145,12 @@ class Contact:
         Args:
             phases: with load steps, the first of the contact.
             relaxed: whether a load step in time is repeated until at rest.
-            meanwhile: of steps of one run, see `Session.measure`.
+            meanwhile: called while LAMMPS runs, where all load steps are one run; else ignored.
+
+        Raises:
+            EngineError: LAMMPS failed, or lost particles.
+            UntrustedError: a state is no result; not checked where all load steps are one run, nor with noise unless
+                `relaxed`.
         """
         if self.deck.stepped:
             self._phases, rows = [*phases], [(phase.name, row) for phase in phases for row in phase.rows]
@@ -155,7 +174,13 @@ class Contact:
         return states
 
     def _relaxed(self, row: Row, most: int = 200) -> State:
-        """Repeat a load step until it is relaxed, `most` times: near an instability the motion slows without bound."""
+        """Repeat a load step until it is relaxed, `most` times at the most, and return its last state.
+
+        Near an instability the motion slows without bound.
+
+        Raises:
+            UntrustedError: the last state is no result.
+        """
         state, repeats = self.row(row, trusted=False), 0
         while not is_converged(self.settings, state) and repeats < most:
             state, repeats = self.row(row, trusted=False), repeats + 1
@@ -163,6 +188,10 @@ class Contact:
         return state
 
     def _measured(self, rows: Sequence[Row], first: int) -> list[State]:
+        """Run load steps one by one and return the state of each, in units of the scene.
+
+        `first`: number of the first one over all phases.
+        """
         texts = []
         for row in rows:
             texts.append(self._unfinished + self.deck.values(row, not self._written) + self.deck.row(type(row)))
@@ -184,13 +213,20 @@ class Contact:
 
     @property
     def _at_once(self) -> int:
-        """The number of frames that are read at a time, to bound the memory."""
+        """The number of frames that are read at a time, one at least, to bound the memory."""
         return max(1, MOST_NUMBERS // len(self._x))
 
     def _states_of_run(
         self, text: str, rows: Sequence[tuple[str, Row]], first: int, meanwhile: Callable[[], object] | None
     ) -> list[State]:
-        """Return the states of load steps, each with the name of its phase; a phase is one run, without relaxation."""
+        """Return the states of load steps, each a timestep of one run without relaxation.
+
+        Args:
+            text: commands of the run.
+            rows: the load steps, each with the name of its phase.
+            first: number of the first one over all phases.
+            meanwhile: called while LAMMPS runs.
+        """
         began = self.session.timestep
         self.session.measure(text, meanwhile=meanwhile)
         spacing, settings, states = self.scene.bodies.spacing, self.settings, list[State]()
@@ -211,9 +247,9 @@ class Contact:
         return states
 
     def _profiles(self, count: int, part: slice) -> tuple[list[Profile], int]:
-        """Return profiles of a part of the last load steps over x from the body's middle, and the bytes read so far.
+        """Return (profiles of a part of the last `count` load steps, bytes of the file of frames read so far).
 
-        A loaded particle is on the plane.
+        x is from the middle of the body. The surface of a loaded particle is on the plane, at 0.
 
         Raises:
             EngineError: particles were lost, or a number is not finite.
@@ -241,7 +277,7 @@ class Contact:
                 _ = state.radius
 
     def _values(self) -> dict[str, str]:
-        """Return the quantities that are measured besides those of atoms, with their units."""
+        """Return the quantities that are measured besides those of atoms: LAMMPS names, with the units of the scene."""
         names = {"plate_displacement": "LU", "step": "1"}
         if self.scene.plate:
             names |= {"plate_velocity": "LU/TU", "plate_force": "FU"}
@@ -252,9 +288,21 @@ class Contact:
         return names | dict.fromkeys(self._pushes, "FU")
 
     def _lost(self, message: str, step: int) -> EngineError:
+        """Return the error of this message at a timestep, with the phase and the folder of the run."""
         return EngineError(message, self._phases[-1].name, step, self.session.folder, "")
 
     def _state(self, phase: str, numbers: dict[str, float], atoms: dict[str, Array], number: int) -> State:
+        """Return the state of a load step, in units of the scene.
+
+        Args:
+            phase: its name.
+            numbers: measured quantities by name.
+            atoms: measured arrays by name, a row for each atom.
+            number: of the load step over all phases.
+
+        Raises:
+            EngineError: particles are missing.
+        """
         upper, lower = (atoms["type"] == PARTICLES[body] for body in ("upper", "lower"))
         count = int(upper.sum() + lower.sum())
         opposite = 0 if self.scene.bodies.lower == "rigid_plane" else self.settings.chains.lower
@@ -300,7 +348,10 @@ class Contact:
         )
 
     def _missing(self, atoms: dict[str, Array], upper: NDArray[np.bool_]) -> float | None:
-        """Return the sum of contact and spring forces on the upper particles [FU]; None where it may differ from 0."""
+        """Return the sum of contact and spring forces on the upper particles [FU], 0 in equilibrium.
+
+        None where it may differ from 0: without springs, in time, and with long bonds.
+        """
         springs = atoms["type"] == ANCHORS["upper"]
         if not springs.any() or self.scene.method != "quasistatic" or self.settings.chains.far:
             return None
@@ -308,7 +359,10 @@ class Contact:
         return float(atoms["v_opposite_z"][upper].sum()) + self.settings.forces.bulk_stiffness * stretch
 
     def _surface(self, x: Array, z: Array) -> tuple[Array, Array]:
-        """Return the positions of the lower particles, of a periodic chain with its images on both sides."""
+        """Return positions x and heights z [LU] of the lower particles, (k,) each, of a periodic chain with its images.
+
+        These are its copies on both sides, so that there are three times as many.
+        """
         if not self.scene.bodies.periodic:
             return x, z
         length = period(self.scene, self.settings)

@@ -1,4 +1,8 @@
-"""The context in which contacts are opened: one deck, one run folder, the LAMMPS process, and the time spent in it."""
+"""The context in which contacts are opened: one deck, one run folder, the LAMMPS process, and the time spent in it.
+
+A leg is a part of the path between two turns of the loading, numbered from 0 on. Displacements d [LU] and forces F [FU]
+are positive in compression.
+"""
 
 from __future__ import annotations
 
@@ -37,8 +41,8 @@ class Clock:
     """The time that contacts took, also those of other threads.
 
     Attributes:
-        lammps_seconds, lammps_cpu_seconds: in LAMMPS.
-        rows_seconds: the part of lammps_seconds in load steps, without the deck's head and the files of states.
+        lammps_seconds, lammps_cpu_seconds: in LAMMPS, by the clock and on its processors [s].
+        rows_seconds: the part of lammps_seconds in load steps, without the deck's head and the files of states [s].
         steps: timesteps.
     """
 
@@ -50,11 +54,14 @@ class Clock:
 
     @property
     def taken(self) -> tuple[float, float, float, int]:
-        """The arguments of `add`: seconds in LAMMPS, on its CPUs and in load steps, and timesteps."""
+        """Time in LAMMPS, on its processors and in load steps [s], and number of timesteps: the arguments of `add`."""
         return self.lammps_seconds, self.lammps_cpu_seconds, self.rows_seconds, self.steps
 
     def add(self, lammps: float, cpu: float, rows: float, steps: int) -> None:
-        """Add the time [s] and the timesteps of a contact."""
+        """Add the times [s] in LAMMPS, on its processors and in load steps, and the timesteps of a contact.
+
+        Safe with threads.
+        """
         with self._lock:
             self.lammps_seconds += lammps
             self.lammps_cpu_seconds += cpu
@@ -77,7 +84,7 @@ class RunContext:
         clock: the time that all contacts took so far.
         phase, timestep: of the latest contact, now or at its end.
         through: whether a search covers the whole tension: it rises again after its first maximum.
-        left: the outcome of a run that failed, as far as it is of use; its quantities are no results.
+        left: the outcome of a run that failed, as far as it is of use; its quantities are no results. None: nothing.
     """
 
     deck: Deck
@@ -95,9 +102,10 @@ class RunContext:
 
     @contextmanager
     def contact(self, purpose: str = "", meanwhile: Callable[[], object] | None = None) -> Iterator[Contact]:
-        """Open a contact at displacement 0, in a new LAMMPS instance; `purpose` is shown to the user.
+        """Open a contact at displacement 0 in a new LAMMPS instance, which is closed at the end.
 
-        `meanwhile` is called while LAMMPS reads the bodies.
+        Its time is added to `clock`. `purpose` is shown to the user. `meanwhile` is called while LAMMPS reads the
+        bodies.
         """
         if purpose:
             self.progress.note(purpose)
@@ -113,7 +121,10 @@ class RunContext:
 
     @contextmanager
     def aside(self, deck: Deck) -> Iterator[RunContext]:
-        """Open a context of another deck in a temporary folder; its time is added to that of this context."""
+        """Open a context of another deck in a temporary folder, which is deleted at the end.
+
+        Its time is added to `clock`.
+        """
         folder = self.folder / ASIDE
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir()
@@ -126,25 +137,28 @@ class RunContext:
             shutil.rmtree(folder, ignore_errors=True)
 
     def add_time_of(self, context: RunContext) -> None:
-        """Add the time used by another context, possibly in another thread."""
+        """Add the time used by another context, possibly in another thread, to `clock`."""
         self.clock.add(*context.clock.taken)
 
 
 class ContactBranch:
     """The states of one contact, from its approach on; driven by a script.
 
+    A leg is a part of the path between two turns of the loading. Displacements and forces are positive in compression.
+
     Attributes:
         context: opens contacts.
         contact: the one that runs.
+        scene, settings: of its deck.
         model: the particles of the reduced model.
         states: of all load steps, in order.
-        legs: number of the leg of each; see `Trace`.
+        legs: number of the leg of each state, from 0 on.
         searches: for a force maximum, by the number of the leg.
         marked: states that are reported, by name.
         unbalance: unbalanced force of the last state [FU]; None: the sum of its residual forces.
         moves: whether the states are those of a motion, and no equilibria.
         wanted: force [FU] that a state was to carry, by its number.
-        given: see `Trace`.
+        given: what is prescribed: "displacement", "force" over time, a "load", or "" of a free motion.
     """
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
@@ -176,47 +190,53 @@ class ContactBranch:
 
     @property
     def phases(self) -> tuple[Phase, ...]:
-        """The schedule of the load steps so far."""
+        """The schedule of the load steps so far: named phases of rows."""
         return self.contact.phases
 
     @property
     def leg(self) -> list[State]:
-        """The states of the leg under way."""
+        """The states of the leg under way, in order; empty before the first load step."""
         return [state for state, leg in zip(self.states, self.legs, strict=True) if leg == self._number]
 
     @property
     def scale(self) -> float:
-        """The expected force maximum [FU]."""
+        """The expected force maximum (largest tension) [FU], positive; 0 without attraction."""
         return self.settings.law.pull_off_force()
 
     def checks(self, case: Reduction, doubt: float) -> dict[str, Agreement]:
-        """Return whether the states contradict each other; `doubt`: the relative uncertainty of their energies."""
+        """Return {"balance": `Agreement`}: relative difference of contact force and LAMMPS's sum, and its limit.
+
+        {} where the deck has no such sum. `case` and `doubt`, the relative uncertainty of energies, are used by
+        contacts with further checks.
+        """
         return consistency.balance(self.scene, self.states)
 
     def trace(self) -> Trace:
-        """Return the trace of all states, for a reader."""
+        """Return the trace of all states, for a reader; its times [TU] are 0 of equilibria."""
         step = self.settings.motion.time_step if self.moves else 0.0
         trace = of_states(self.states, self.model, self.legs, self.searches, step)
         return replace(trace, wanted=self.wanted, given=self.given)
 
     def begin(self, name: str) -> None:
-        """Begin a phase with the next load step: "loading" for the second time is "loading_2"."""
+        """Begin a phase of this name with the next load step; a repeated name gets a number, "loading_2"."""
         self._phase = name
 
     def visit(self, positions: Sequence[float] | Array, along: Sequence[float] | None = None) -> None:
-        """Go to displacements [LU]. Raises UntrustedError under load control."""
+        """Raise UntrustedError: under load control no displacement is prescribed."""
         raise UntrustedError('a plate under a load has no prescribed displacement: use method = "quasistatic"')
 
     def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
-        """Hold for a time. Raises UntrustedError where load steps take none."""
+        """Raise UntrustedError: quasi-static load steps take no time."""
         raise UntrustedError('a load step at rest takes no time: use method = "dynamic"')
 
     def follow(self, history: History) -> None:
-        """Go through a history. Raises UntrustedError where load steps are not planned (`planned`)."""
+        """Raise UntrustedError: these load steps are not planned on a rigid plane."""
         raise UntrustedError('a history needs springs on a rigid plane: use lower = "rigid_plane"')
 
     def fly(self, velocity: float, longest: int = 100) -> None:
-        """Move freely with an impact velocity [LU/TU] through equal stretches of time, until the bodies part or stick.
+        """Move freely with an impact velocity [LU/TU] until the bodies separate or stick, in equal stretches of time.
+
+        It adds a leg of states in time, in the phases "touching" and "impact".
 
         Raises:
             UntrustedError: they do neither in `longest` times the time of a fall to the deepest displacement.
@@ -233,42 +253,50 @@ class ContactBranch:
             self._append(self.contact.rows([Fly(steps)] * FLIGHT, moving=True))
 
     def mark(self, name: str) -> None:
-        """Report the last state."""
+        """Report the last state under a name, and write its atoms to states.lammpstrj."""
         self.marked[name] = self.states[-1]
         self.contact.write_state()
 
     def finish(self) -> None:
-        """End the schedule of the contact."""
+        """Run the remaining commands of the last load step; the schedule ends."""
         self.contact.finish()
 
     @property
     def _number(self) -> int:
+        """The number of the leg under way; −1 before the first load step."""
         return self.legs[-1] if self.legs else -1
 
     @property
     def _last(self) -> State:
+        """The last state, which there must be."""
         return self.states[-1]
 
     def _turn(self, rises: bool) -> bool:
-        """Begin a leg with the next load step where the direction of the loading changes; return whether it does."""
+        """Begin a leg with the next load step where the direction of the loading changes; return whether it does.
+
+        `rises`: whether the displacement, or the load, rises next.
+        """
         direction = 1 if rises else -1
         turned, self._direction = direction != self._direction, direction
         self._turned = self._turned or turned
         return turned
 
     def _append(self, states: Sequence[State]) -> None:
-        """Add states to the leg under way, or to the one that begins."""
+        """Add states, which follow the ones before, to the leg under way, or to the one that begins."""
         self.legs += [self._number + self._turned] * len(states)
         self.states += states
         self._turned = False
 
     def _record_target(self, force: float) -> None:
-        """Record the force [FU] that the last state was to carry; NaN: it was to be at a displacement."""
+        """Record in `wanted` the force [FU] that the last state was to carry.
+
+        NaN, for a displacement, is not recorded.
+        """
         if not math.isnan(force):
             self.wanted[len(self.states) - 1] = force
 
     def _begin_phase(self) -> None:
-        """Begin the phase that the script has named, before its first load step."""
+        """Begin the phase that the script has named, before its first load step; do nothing where it has named none."""
         if self._phase:
             name, self._phase = self._phase, ""
             self.contact.begin(numbered(name, [phase.name for phase in self.contact.phases]))

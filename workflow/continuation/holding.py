@@ -5,6 +5,8 @@ is measured. With automatic damping each load has the drag that is critical for 
 stiffness falls to zero towards the pull-off, and one drag for all makes the last tensions creep. Where pairs separate
 one by one, it does not fall: F(d) has a maximum for each, as stiff as the pairs in contact, and a plate that oscillates
 past such a maximum detaches pairs prematurely.
+
+Displacements [LU], loads and forces [FU] are positive in compression.
 """
 
 from __future__ import annotations
@@ -42,8 +44,8 @@ class Held:
 
     Attributes:
         load: compression positive [FU].
-        states: measured on the path.
-        held: whether the contact carries the load at rest.
+        states: measured on the path, the last of them under the load.
+        held: whether the contact carries the load at rest; else it is lost.
         unbalance: |carried − load| at the end, and the force of the drag: particles lag behind the plate [FU].
     """
 
@@ -59,16 +61,20 @@ class Held:
 
 
 def stiffness_under(settings: Settings, load: float) -> float:
-    """Return the contact stiffness [FU/LU] under a load [FU]; where pairs separate one by one, of all that touch."""
+    """Return the contact stiffness dF/dd [FU/LU] under a load [FU], compression positive.
+
+    Where pairs separate one by one, whatever the load, that of all pairs in contact at the largest displacement.
+    """
     if settings.has_several_maxima:
         return settings.law.stuck_stiffness(settings.largest_displacement)
     return settings.law.stiffness_under(load)
 
 
 def damping_under(settings: Settings, load: float) -> float:
-    """Return the damping coefficient of a particle [FU·TU/LU]; an automatic one is critical for the contact stiffness.
+    """Return the damping coefficient of a particle [FU·TU/LU] under a load [FU], compression positive.
 
-    In a search that restarts, the damping under a compressive load is critical for each particle, too.
+    That of the scene; an automatic one is critical for the contact stiffness under the load. In a search that restarts,
+    the damping under a compressive load is critical for each particle, too.
     """
     if settings.motion.damped_stiffness == 0.0:
         return settings.motion.damping
@@ -79,9 +85,10 @@ def damping_under(settings: Settings, load: float) -> float:
 
 
 def overshoot(settings: Settings, mass: float, load: float, next_load: float) -> float:
-    """Return the largest overshoot of a plate that goes from rest under `load` to `next_load`, over its path.
+    """Return the largest overshoot of a plate that goes from rest under `load` to `next_load` [FU], over its path.
 
-    exp(−πζ/√(1 − ζ²)) of a linear oscillator with the stiffness under `load`, the largest one under tension.
+    exp(−πζ/√(1 − ζ²)), dimensionless, of a linear oscillator with the stiffness under `load`, the largest one under
+    tension, and the drag under `next_load`; 0 where it does not oscillate. `mass`: of a particle [MU].
     """
     moving = settings.motion.plate_mass + settings.chains.upper * mass
     drag = settings.drag(damping_under(settings, next_load))
@@ -90,10 +97,11 @@ def overshoot(settings: Settings, mass: float, load: float, next_load: float) ->
 
 
 def hold_row(scene: Scene, settings: Settings, load: float, scale: float, start: Start) -> Hold:
-    """Return a `hold` step, which ends where the contact force is within `at_rest` of the load.
+    """Return a `hold` step of a load [FU], which ends where the contact force is within `at_rest` of the load.
 
     With M the mass of the plate, N m that of the particles that move with it and c the drag on both, the contact force
-    differs from the load by (M + N m) Z″ + c Z′; LAMMPS has M Z″ and Z′.
+    differs from the load by (M + N m) Z″ + c Z′; LAMMPS has M Z″ and Z′. `scale`: force [FU] to which the tolerance is
+    relative; `start`: the position at which the load is applied.
     """
     damping = damping_under(settings, load)
     inertia = _inertia(scene, settings)
@@ -109,7 +117,10 @@ def hold_row(scene: Scene, settings: Settings, load: float, scale: float, start:
 def held_phase(
     name: str, scene: Scene, settings: Settings, loads: Sequence[float], scale: float, state: bool = False
 ) -> Phase:
-    """Return a planned phase that holds loads [FU] one after the other."""
+    """Return a planned phase that holds loads [FU] one after the other; with `state` the last state is written.
+
+    `scale`: force [FU] to which the tolerance of equilibrium is relative.
+    """
     return Phase(name, tuple(hold_row(scene, settings, load, scale, Start.KEPT) for load in loads), state)
 
 
@@ -121,13 +132,14 @@ def at_rest(settings: Settings, scale: float, share: float = 0.1) -> float:
 def hold(
     contact: Contact, load: float, scale: float, start: Start = Start.KEPT, settings: Settings | None = None
 ) -> Held:
-    """Apply a load in a `hold` phase and run until the contact holds it at rest, or is lost.
+    """Apply a load [FU] in a `hold` phase and run until the contact holds it at rest, or is lost (`held` is false).
 
-    At rest means that the force of the contact balances the load within `at_rest(settings, scale)`, and that the
-    motion of the plate keeps it there (see `hold_row`). `settings` replace those of the contact, with another drag.
+    At rest means that the force of the contact balances the load, compression positive, within a tenth of the tolerance
+    of `scale` [FU], and that the motion of the plate keeps it there. `settings` replace those of the contact, with
+    another drag; `start`: the position at which the load is applied.
 
     Raises:
-        UntrustedError: the contact neither comes to rest nor is lost, or see `require_trust`.
+        UntrustedError: the contact neither comes to rest nor is lost, or bodies went through each other.
     """
     settings = settings or contact.settings
     near = at_rest(settings, scale)
@@ -160,10 +172,12 @@ def hold(
 
 
 def press(contact: Contact, load: float, scale: float) -> Held:
-    """Hold a load ≥ 0 at once, as in the paper, or in the smaller steps of a search that restarts; keep all states.
+    """Hold a load ≥ 0 [FU] at once, as in the paper, or in the smaller steps of a search that restarts.
+
+    Keep all states. Where the contact is lost on the way, the outcome is that of the load under which it was.
 
     Raises:
-        UntrustedError: see `hold`.
+        UntrustedError: the contact neither comes to rest nor is lost, or bodies went through each other.
     """
     count = max(1, round(1.0 / contact.settings.increments.part)) if load > 0.0 else 1
     states: list[State] = []
@@ -176,7 +190,10 @@ def press(contact: Contact, load: float, scale: float) -> Held:
 
 
 def _inertia(scene: Scene, settings: Settings) -> float:
-    """Return the total moving mass over that of the plate in LAMMPS: particles move with it, or are part of it."""
+    """Return the total moving mass over that of the plate in LAMMPS (dimensionless), ≥ 1.
+
+    Particles move with the plate; where they are part of it, it is 1.
+    """
     return 1.0 if scene.stands else 1.0 + settings.chains.upper * scene.bodies.mass / settings.motion.plate_mass
 
 
@@ -192,7 +209,10 @@ def _passed_displacement(settings: Settings) -> float:
 
 
 def _lost(contact: Contact, state: State, load: float, share: float = 0.7) -> bool:
-    """Return whether a contact is beyond the cutoff, or moves apart with a tension below a share of the load."""
+    """Return whether a contact is beyond the cutoff, or moves apart with a tension below a share of the load.
+
+    `load`: compression positive [FU]; without a cutoff, and under a compressive load, False.
+    """
     if 0.0 < contact.settings.forces.cutoff < state.smallest_distance:
         return True
     return load < 0.0 and state.plate_velocity < 0.0 and -state.force < -share * load

@@ -3,6 +3,8 @@
 A tension that separates the bodies is undone: the next one starts from the state before. The reduced model, which
 is mostly within a tolerance of the pull-off force, chooses the first loads; the result is the bracket of a load that
 is sustained and one that is not. The load steps of the search are the schedule: nothing is run twice.
+
+Loads are positive in compression, tensions in tension [FU]. A leg is a part of the loading between two of its turns.
 """
 
 from __future__ import annotations
@@ -30,14 +32,14 @@ FIRST_RISE = 2.0
 
 @dataclass
 class LoadSearch:
-    """Tensions tried so far.
+    """Tensions tried so far, positive [FU].
 
     Attributes:
         tolerance: of the pull-off force, relative.
-        guess: what is expected [FU].
-        overshoot: of the plate from a tension that held (see `holding.overshoot`).
-        held: the tensions that held, rising, the first of them F = 0.
-        lost: the smallest tension that broke the contact [FU].
+        guess: the expected pull-off force [FU].
+        overshoot: function of a tension that held: overshoot of the plate from there, over its path.
+        held: the outcomes of tensions that held, rising, the first of them F = 0.
+        lost: the smallest tension that broke the contact [FU]; infinite before one did.
         broken: no larger tension holds [FU]; above `lost` by the momentum of the plate that it set going.
     """
 
@@ -50,16 +52,16 @@ class LoadSearch:
 
     @property
     def best(self) -> float:
-        """The largest tensile force that was sustained [FU]."""
+        """The largest tensile force that was sustained [FU], positive."""
         return -self.held[-1].load
 
     @property
     def done(self) -> bool:
-        """Whether the bracket of the tension is as narrow as the tolerance."""
+        """Whether the bracket of the tension, from `best` to `broken`, is as narrow as the tolerance."""
         return self.broken - self.best <= self.tolerance * self.best
 
     def learn(self, result: Held) -> None:
-        """Record the outcome of the latest tensile load."""
+        """Record the outcome of the latest tensile load, in `held` or else in `lost` and `broken`."""
         if result.held:
             self.held.append(result)
             return
@@ -67,7 +69,9 @@ class LoadSearch:
         self.broken = min(self.broken, -result.load + self.overshoot(self.best) * (-result.load - self.best))
 
     def next(self, largest_share: float = 0.8, growth: float = 0.25) -> float:
-        """Return the tension to try next [FU]; the momentum of the plate must not carry it past the pull-off force.
+        """Return the tension to try next, positive [FU].
+
+        The momentum of the plate must not carry it past the pull-off force.
 
         Args:
             largest_share: of the distance to the expected pull-off force, so that the last states lie near it.
@@ -83,7 +87,11 @@ class LoadSearch:
         return low + 0.5 * (high - low) / (1.0 + past) if high < math.inf else (1.0 + growth) * low
 
     def _expected(self) -> float:
-        """Return the guess while it is in the bracket, then the top of a parabola through the last three states."""
+        """Return the expected pull-off force, positive [FU]: the guess while it is in the bracket, or of few states.
+
+        After three that hold, with the guess out of the bracket, it is that of the parabola through the last three
+        states, or the guess where this has no maximum nearby.
+        """
         if len(self.held) < 3 or self.best < self.guess < self.broken:
             return self.guess
         last = [h.last for h in self.held[-3:]]
@@ -96,20 +104,23 @@ class LoadBranch(ContactBranch):
 
     Attributes:
         unbalance: unbalanced force of the last state [FU].
+        given: "load".
     """
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
-        """Prepare a contact under load control; see `ContactBranch` for `meanwhile`."""
+        """Prepare a contact under load control; `meanwhile` is called while LAMMPS reads the bodies."""
         super().__init__(context, meanwhile)
         self.unbalance, self.given = 0.0, "load"
         self._held: Held | None = None
 
     def reach(self, force: float, scale: float) -> None:
-        """Hold a force [FU] to a share of the tolerance of `scale` [FU]; a tension is approached from F = 0 in steps
-        so small that the momentum of the plate breaks no pair.
+        """Hold a force [FU], compression positive, to a share of the tolerance of `scale` [FU].
+
+        A tension is approached from F = 0 in steps so small that the momentum of the plate breaks no pair.
 
         Raises:
-            UntrustedError: see `hold`; the contact can't hold the force.
+            UntrustedError: the contact does not hold the force, does not come to rest, or bodies went through each
+                other.
         """
         least_step = 1e-3 * self.scale  # nearer to a tensile load, the load itself is tried
         self._turn(self._held is None or force > self._held.load)
@@ -131,7 +142,10 @@ class LoadBranch(ContactBranch):
         self._record_target(force + self._last.pushed)
 
     def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
-        """Hold a force [FU] for a time [TU]; a tension is applied at F = 0."""
+        """Hold a force [FU], compression positive, for a time [TU].
+
+        A tension is applied at F = 0. `displacement` is ignored.
+        """
         assert force is not None
         self.moves, name = True, self._phase
         if force < 0.0:
@@ -144,11 +158,14 @@ class LoadBranch(ContactBranch):
         self._append(self.contact.rows(rows, moving=True))
 
     def holds_more(self, force: float, doubtful_share: float = 0.9) -> bool:
-        """Return whether a tensile load larger by FIRST_RISE tolerances is sustained, too, tried on a new contact.
+        """Return whether a tension larger by two tolerances than that of `force` [FU] < 0 is sustained, too.
 
-        A contact at rest balances its load within a share of the tolerance, and near the limit point it creeps: on
-        which side of it a load is cannot be resolved further. A tension below `doubtful_share` of the expected
-        pull-off force is not tried.
+        It is tried on a new contact. A contact at rest balances its load within a share of the tolerance, and near the
+        limit point it creeps: on which side of it a load is cannot be resolved further. True, without a trial, of a
+        tension below `doubtful_share` of the expected pull-off force.
+
+        Raises:
+            ThroughError: the bodies went through each other.
         """
         if force > -doubtful_share * self.scale:
             return True
@@ -166,8 +183,10 @@ class LoadBranch(ContactBranch):
     def maximum(self, most_loads: int = 60) -> None:
         """Try at most so many tensions until the bracket of the pull-off force is narrow, then hold its lower end.
 
+        The last state is that at the lower end, and the bracket is recorded in `searches`.
+
         Raises:
-            UntrustedError: see `hold`; the force maximum is not bracketed, or not held again.
+            UntrustedError: the force maximum is not bracketed, or not held again; a load does not come to rest.
         """
         self._begin_phase()
         search = LoadSearch(self.settings.tolerance, self.scale, partial(_overshoot, self), [self._latest])
@@ -202,30 +221,37 @@ class LoadBranch(ContactBranch):
         """Do nothing: a tension that was not held has separated the bodies."""
 
     def _missed_maxima(self, search: LoadSearch) -> float:
-        """Return the tension [FU] that an oscillating plate may miss, where pairs separate one at each contact edge."""
+        """Return the tension [FU] that an oscillating plate may miss, where pairs separate one at each contact edge.
+
+        Else 0.
+        """
         settings = self.settings
         lost = (settings.law.snap[1] or settings.strongest[1]) if settings.has_several_maxima else 0.0
         return 2.0 * lost * search.overshoot(search.best)
 
     @property
     def _latest(self) -> Held:
+        """The outcome of the latest load, which there must be."""
         assert self._held is not None
         return self._held
 
     def _take(self, held: Held) -> None:
+        """Keep an outcome as the latest, and add its last state to the leg under way."""
         self._held, self.unbalance = held, held.unbalance
         self._append([held.last])
 
 
 def _overshoot(branch: LoadBranch, tension: float) -> float:
+    """Return the overshoot, over its path, of a plate that goes from a tension [FU] to the expected pull-off force."""
     return overshoot(branch.settings, branch.scene.bodies.mass, -tension, -branch.scale)
 
 
 def top_of(displacement: Array, force: Array, longest: float = 5.0) -> tuple[float, float] | None:
     """Return (displacement [LU], tension [FU]) of the force maximum of the polynomial through states at rest.
 
-    None where it has none within `longest` times the width of the states. The forces of the states count, not the
-    loads that they balance within a threshold.
+    None where it has none within `longest` times the width of the states, or where these are too near to each other.
+    The forces of the states, (m,) [FU], compression positive, count, not the loads that they balance within a
+    threshold.
     """
     if not are_apart(displacement):
         return None

@@ -1,4 +1,9 @@
-"""Marks of a curve: the force maximum of an unloading, and displacement or radius as a function of the force."""
+"""Marks of a curve: the force maximum of an unloading, and displacement or radius as a function of the force.
+
+A branch has falling displacements d [LU]; forces F [FU] are positive in compression, and the force maximum F_A is the
+largest tension, −F. a is the contact radius [LU], a_cr at the force maximum and a₀ at F = 0. A limit point is a
+displacement at which the force jumps, since the contact is lost.
+"""
 
 from __future__ import annotations
 
@@ -29,11 +34,12 @@ _top, _crossed = lru_cache(maxsize=4)(largest_tension), lru_cache(maxsize=4)(smo
 
 
 def unloading(branch: Trace, settings: Settings) -> dict[str, Reading]:
-    """Return F_A, a_cr, a₀ and the work of separation of a branch of falling displacement, as far as it has them.
+    """Return the results of a branch of falling displacement by name, with their errors; those it lacks are left out.
 
-    F_A is the force maximum, at the vertex of a smooth curve or at the last load step before a jump, and a_cr the
-    radius there; a₀ is the radius where the force crosses 0. A force maximum at an end of the branch counts only at
-    the limit point of the contact.
+    "adhesion_force" F_A [FU] is the force maximum, as a positive tension, at the vertex of a smooth curve or at the
+    last load step before a jump; "critical_radius" a_cr [LU] the radius there; "zero_load_radius" a₀ and
+    "cohesive_radius" c [LU] the radii where the force crosses 0; "work_of_separation" [FU·LU] the work from there until
+    the bodies are apart. A force maximum at an end of the branch counts only at the limit point of the contact.
     """
     readings: dict[str, Reading] = {}
     peak, last = peak_of(branch), len(branch) - 1
@@ -50,11 +56,11 @@ def unloading(branch: Trace, settings: Settings) -> dict[str, Reading]:
 
 
 def _separation(branch: Trace, peak: Peak, separated: float = 0.02, nodes: int = 128) -> dict[str, Reading]:
-    """Return ∫ −F dd from F = 0 until the bodies are apart; nothing where the branch ends before.
+    """Return {"work_of_separation": ∫ −F dd [FU·LU]} from F = 0 until the bodies part; {} where the branch ends before.
 
     The reduced model has the curve between the states, to which their interpolated difference is added, and the curve
-    below the share `separated` of the force maximum. The error is the change with half the nodes of the quadrature and
-    every second state.
+    below the share `separated` of the force maximum. The error, "sampling", is the change with half the `nodes` of the
+    quadrature and every second state. Where the contact ends at no fixed displacement the states alone are integrated.
     """
     model = branch.model
     d, force = branch.lists
@@ -73,7 +79,10 @@ def _separation(branch: Trace, peak: Peak, separated: float = 0.02, nodes: int =
     positions, forces = np.asarray([*held, (start, 0.0)]).T
 
     def work(nodes: int, every: int) -> float:
-        """Integrate by Gauss's quadrature over u, d = d_end + (d₀ − d_end) u²: a limit point has an infinite slope."""
+        """Return the work [FU·LU] by so many nodes and `every` second, third … state.
+
+        By Gauss's quadrature over u, d = d_end + (d₀ − d_end) u²: a limit point has an infinite slope.
+        """
         if (known := model.work(start, every)) is not None:
             return known
         u, weights = gauss(nodes)
@@ -90,14 +99,15 @@ def _separation(branch: Trace, peak: Peak, separated: float = 0.02, nodes: int =
 
 
 def _every_second(count: int) -> list[int]:
-    """Return the numbers of every second of so many states, and of the last."""
+    """Return the indices 0, 2, 4, … of `count` states, and the last one."""
     return [*range(0, count - 1, 2), count - 1]
 
 
 def _critical_radius(branch: Trace, peak: Peak, settings: Settings, missed: float) -> Reading:
-    """Return a at the force maximum, which may be another maximum that is lower by up to `missed` [FU].
+    """Return the contact radius at the force maximum [LU]; errors: "sampling" and, where pairs snap, "instability".
 
-    A jump comes anywhere before the next load step, after which there may be no contact radius.
+    Another maximum that is lower by up to `missed` [FU] may be the highest: the radius there gives the latter. A jump
+    comes anywhere before the next load step, after which there may be no contact radius.
     """
     d, i = branch.displacement, peak.index
     jumps = i + 1 < len(d) and peak.position == d[i]
@@ -126,9 +136,10 @@ def _critical_radius(branch: Trace, peak: Peak, settings: Settings, missed: floa
 
 
 def _zero_load(branch: Trace) -> dict[str, Reading]:
-    """Return a where the force crosses 0, by a parabola, and the outer radius c of a cohesive zone there.
+    """Return the contact radius where the force crosses 0, "zero_load_radius" [LU], by a parabola through three states.
 
-    A straight line estimates the error. Nothing where the force never crosses 0, or only as the contact is lost.
+    Also the outer radius c of a cohesive zone there, "cohesive_radius" [LU], where there is one. The error, "sampling",
+    is the difference from a straight line. {} where the force never crosses 0, or only as the contact is lost.
     """
     d, force = branch.lists
     try:
@@ -140,6 +151,7 @@ def _zero_load(branch: Trace) -> dict[str, Reading]:
         return {}
 
     def at_zero(length: Callable[[int], float]) -> Reading:
+        """Return a length of states [LU] where the force crosses 0, with its sampling error."""
         line = float(np.interp(position, [d[after], d[index]], [length(after), length(index)]))
         value = _through_nearest(branch, _crossed(d, force, 0.0), length)
         return Reading(value, LENGTH, {"sampling": abs(value - line)})
@@ -151,16 +163,20 @@ def _zero_load(branch: Trace) -> dict[str, Reading]:
 
 
 def early_detachment(branch: Trace, peak: Peak, settings: Settings) -> float:
-    """Return the displacement [LU] by which the move after the force maximum may separate a pair before its limit."""
+    """Return the displacement [LU] by which the load step after the force maximum may separate a pair before its limit.
+
+    0 where no pair snaps.
+    """
     d = branch.displacement
     return settings.premature_detachment(float(d[peak.index] - d[min(peak.index + 1, len(d) - 1)]))
 
 
 def missed_tension(branch: Trace, peak: Peak, settings: Settings, positions: int = 200) -> float:
-    """Return the tension [FU] that premature detachment misses, extrapolated with the slope before it.
+    """Return the tension [FU] ≥ 0 that premature detachment misses; 0 where the maximum is the first or the last state.
 
-    At least by how much the model exceeds it at `positions` between the load steps around the last one in contact:
-    just before a pair separates, its force may have passed its maximum.
+    It is the slope before the maximum times `early_detachment`, where pairs snap at least by how much the model exceeds
+    the states at so many `positions` between the load steps around the maximum: just before a pair separates, its force
+    may have passed its maximum.
     """
     d, force, i = branch.displacement, branch.force, peak.index
     if not 0 < i < len(d) - 1:
@@ -174,14 +190,19 @@ def missed_tension(branch: Trace, peak: Peak, settings: Settings, positions: int
 
 
 def _distance_from_limit(branch: Trace) -> float:
-    """Return the distance of the last load step from the limit point, over the whole branch; infinite without one."""
+    """Return the distance of the last state from the limit point, relative to the width of the branch.
+
+    Infinite without one.
+    """
     return abs(float(branch.displacement[-1]) - branch.limit) / max(float(np.ptp(branch.displacement)), TINY)
 
 
 def peak_of(trace: Trace) -> Peak:
-    """Return the force maximum by falling displacement; at the limit point, where the contact is lost, its force.
+    """Return the force maximum of a trace of falling displacement, as a positive tension.
 
-    The force there exceeds that of the last load step by the change of the model over the same distance before it.
+    Where the branch ends at the limit point (within 1e-6 of its width), at which the contact is lost, it is that of the
+    last load step; its uncertainty is by how much the force there may exceed that: the change of the model over the
+    same distance before.
     """
     peak = _top(*trace.lists)
     last = len(trace) - 1
@@ -195,16 +216,23 @@ def peak_of(trace: Trace) -> Peak:
 
 
 def radius_rate(trace: Trace, state: int, least: float = 0.0) -> float:
-    """Return da/dd at a state, from the nearest state that is farther than a share `least` of the whole path."""
+    """Return da/dd at a state [LU/LU], from the nearest one beyond a share `least` of the path; 0 where none is."""
     return slope(trace.displacement, state, trace.radius_or_spot, least)
 
 
 def radius_at(trace: Trace, position: float) -> float:
-    """Return the contact radius [LU] at a displacement [LU] of a sorted trace, by a parabola through three states."""
+    """Return the contact radius [LU] ≥ 0 at a displacement [LU] of a sorted trace, by a parabola through three states.
+
+    At the displacement of a state, its radius; where the three radii are equal, as of a body with an edge, this one.
+    """
     return _through_nearest(trace, position, trace.radius_or_spot)
 
 
 def _through_nearest(trace: Trace, position: float, length: Callable[[int], float]) -> float:
+    """Return a length [LU] ≥ 0 at a displacement [LU] of a sorted trace, by a parabola through three states.
+
+    `length`: function of a state's number [LU]. At the displacement of a state, its own length.
+    """
     near = int(np.argmin(np.abs(trace.displacement - position)))
     first = min(max(near - 1, 0), max(len(trace) - 3, 0))
     states = range(first, min(first + 3, len(trace)))
@@ -223,8 +251,8 @@ def displacement_under(trace: Trace, state: int, force: float, expected: float) 
 
     x with S x + K x²/2 = ΔF: towards the force maximum the stiffness S = dF/dd falls with K = dS/dd, and x grows as a
     square root, up to √(2 |ΔF|/K). S and K are those of a parabola through up to two neighbours of the state, at
-    distances that differ by a factor of two at least; S is at most `expected` [FU/LU], which replaces it where there
-    are no such neighbours.
+    distances that differ by a factor of two at least; S is at most the `expected` stiffness [FU/LU]. With fewer
+    neighbours the step is straight, with the smaller of that and the one known slope.
     """
     d, missing = float(trace.displacement[state]), force - float(trace.force[state])
     distances, slopes = _neighbours(trace, state)
@@ -243,9 +271,10 @@ def displacement_under(trace: Trace, state: int, force: float, expected: float) 
 
 
 def _neighbours(trace: Trace, state: int) -> tuple[list[float], list[float]]:
-    """Return the signed distances [LU] of up to two neighbours of a state, and dF/dd [FU/LU] up to each.
+    """Return (signed distances [LU], dF/dd [FU/LU] from the state to each) of up to two neighbours of a state.
 
-    Within BRANCH_DISTANCE of the path, a change is smaller than its error.
+    The second is at least twice as far as the first. Neighbours nearer than 2 % of the farthest state are left out:
+    there a change is smaller than its error. Both lists are empty where there are none.
     """
     displacements = trace.displacement - trace.displacement[state]
     least = BRANCH_DISTANCE * float(np.abs(displacements).max())

@@ -1,4 +1,8 @@
-"""The reduced model in place of LAMMPS: driven by the same script and evaluated by the same reader."""
+"""The reduced model in place of LAMMPS: driven by the same script and evaluated by the same reader.
+
+A leg is a part of the path between two turns of the loading, numbered from 0 on. Displacements d [LU] and forces F [FU]
+are positive in compression.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +31,7 @@ UNSEEN = ""
 
 
 class Row(NamedTuple):
-    """A load step: phase, leg, displacement and position along x [LU], time [TU], velocity [LU/TU]."""
+    """A load step: phase, leg, displacement and position along x [LU], time [TU], velocity [LU/TU] (NaN: unknown)."""
 
     phase: str
     leg: int
@@ -40,7 +44,10 @@ class Row(NamedTuple):
 class ModelBranch:
     """The states of the model, with positions of the required density; they are computed together at the end.
 
+    A leg is a part of the path between two turns of the loading. Displacements and forces are positive in compression.
+
     Attributes:
+        scene, settings: of the contact.
         model: the particles.
         dense: positions for each step that the scene gives.
         shift: of the displacements that it gives [LU].
@@ -59,15 +66,18 @@ class ModelBranch:
 
     @property
     def scale(self) -> float:
-        """The expected force maximum [FU]."""
+        """The expected force maximum (largest tension) [FU], positive; 0 without attraction."""
         return self.settings.law.pull_off_force()
 
     def begin(self, name: str) -> None:
-        """Begin a phase with the next load step."""
+        """Begin a phase of this name with the next load step; a repeated name stays as it is."""
         self._phase = name
 
     def visit(self, positions: Sequence[float] | Array, along: Sequence[float] | Array | None = None) -> None:
-        """Go to displacements [LU], with dense positions between them, and to positions along x [LU], else 0."""
+        """Go to displacements [LU] plus `shift`, with dense positions between them, all at x = 0.
+
+        Where the model has one position for each step, it goes to positions `along` x [LU] as well.
+        """
         wanted = np.asarray(positions, dtype=np.float64) + self.shift
         before = self._rows[-1].displacement if self._rows else float(wanted[0])
         self._turn(float(wanted[-1]) >= before)
@@ -88,9 +98,9 @@ class ModelBranch:
         self._add(dense)
 
     def _between(self, ends: Array, count: int) -> tuple[Array, int]:
-        """Return `count` positions [LU] in each step, to its end, and one on either side of each jump of the force.
+        """Return (positions [LU], count of those before the end of the first step) of steps between the `ends` [LU].
 
-        And the number of them before the end of the first step.
+        There are `count` positions in each step, to its end, and one on either side of each jump of the force.
         """
         near = 1e-6 * self.model.law.spacing  # the distance from a jump
         jumps = np.asarray([jump + side for jump in self.model.jumps for side in (-near, near)])
@@ -103,16 +113,20 @@ class ModelBranch:
         return np.interp(shares, steps, ends), int(np.count_nonzero(shares < 1.0))
 
     def reach(self, force: float, scale: float, steps: int = 8) -> None:
-        """Go to the displacement at which the model carries a force [FU], in some steps."""
+        """Go to the displacement at which the model carries a force [FU], compression positive, in so many `steps`.
+
+        `scale` is ignored: the model needs no tolerance. A tension that it never carries leads to its force maximum.
+        """
         end, begun = self.model.displacement_at(force), bool(self._rows)
         start = self._rows[-1].displacement if begun else 0.0
         self._turn(end > start)
         self._add(np.linspace(start, end, steps + 1)[begun:])
 
     def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
-        """Hold a displacement [LU], or a force [FU] on a free plate, for a time [TU]: the first and the last state.
+        """Hold a displacement [LU], or a force [FU] on a free plate, for a time [TU]: add the first and the last state.
 
-        A transient is that of plate and particles under the force of the contact; see `free.swing`.
+        A transient is that of plate and particles under the force of the contact (`free.swing`). A tension is applied
+        at F = 0.
         """
         if displacement is not None:
             self._add(np.asarray([displacement, displacement]), time=(0.0, duration))
@@ -124,7 +138,10 @@ class ModelBranch:
             self._add(swing(self.scene, self.settings, self.model, start, force, duration), time=(0.0, duration))
 
     def follow(self, history: History) -> None:
-        """Go through displacements or forces over time, with dense steps; phases are reported at their ends."""
+        """Go through displacements or forces over time, with dense steps, on a leg of its own.
+
+        Mark the ends of its phases.
+        """
         history = history.denser(self.dense)
         self._leg += 1
         self._given = "force" if history.by_force else self._given
@@ -134,13 +151,15 @@ class ModelBranch:
                 self.marks.setdefault(i, []).append(history.marks[phase])
 
     def fly(self, velocity: float) -> None:
-        """Move freely with an impact velocity [LU/TU] until the bodies part or stick; see `free.impact`."""
+        """Move freely with an impact velocity [LU/TU] until the bodies separate or stick, on a leg of its own."""
         path = impact(self.scene, self.settings, self.model, velocity, self.dense)
         self._leg += 1
         self._add_path(["impact"] * path.time.size, path)
 
     def maximum(self, coarse: int = 24, dense: int = 100, nearest: int = 3) -> None:
-        """Go to the force maximum, with dense positions about it; `open` continues from there.
+        """Go to the force maximum, with dense positions about it, so that the last state is at it.
+
+        `open` continues from there.
 
         Args:
             coarse: positions of the unloading for a contact without a range of the interaction.
@@ -168,11 +187,12 @@ class ModelBranch:
         self._beyond = positions[last:]
 
     def _peak(self, positions: Array, end: float, zooms: int = 2, fine: int = 30) -> tuple[float, float]:
-        """Return the displacement [LU] of the force maximum, and the distance [LU] of dense positions about it.
+        """Return (displacement of the force maximum, distance of dense positions about it), both [LU].
 
         It is sought among `fine` positions between the neighbours of the highest one, and again between those of the
         new one. Not where the curve is smooth: forces of the model are linear between the points of a grid, whose
-        corners would move the maximum.
+        corners would move the maximum. Where the law knows it, it is that, between `end` and the first of the positions
+        [LU].
         """
         zero, top = float(positions[0]), int(np.argmin(self.model.held(positions)))
         low, high = float(positions[min(top + 1, positions.size - 1)]), float(positions[max(top - 1, 0)])
@@ -186,44 +206,47 @@ class ModelBranch:
         return peak, step
 
     def mark(self, name: str) -> None:
-        """Report the last state under a name."""
+        """Report the last state under a name; a state may have several."""
         self.marks.setdefault(self.last, []).append(name)
 
     def open(self) -> None:
-        """Pull the bodies apart, to two states beyond the displacement at which the contact is lost."""
+        """Pull the bodies apart: add the states beyond the force maximum, and two beyond the end of the contact."""
         apart, deepest = self.model.apart, max(row.displacement for row in self._rows)
         self._add(np.append(self._beyond, apart - np.asarray([1e-4, 0.05]) * (deepest - apart)))
         self._beyond = np.empty(0)
 
     @property
     def last(self) -> int:
-        """The number of the last state."""
+        """The number of the last state, from 0 on; −1 without states."""
         return len(self._rows) - 1
 
     @property
     def held(self) -> float:
-        """The force of the last state on an unloading [FU]."""
+        """The force [FU], compression positive, of an unloading at the displacement of the last state."""
         return float(self.model.held(np.asarray([self._rows[-1].displacement]))[0])
 
     @property
     def phases(self) -> list[str]:
-        """The names of the phases of all states."""
+        """The names of the phases of all states, "" for those that are not read."""
         return [row.phase for row in self._rows]
 
     @property
     def legs(self) -> list[int]:
-        """The numbers of the legs of all states."""
+        """The number of the leg of each state, from 0 on."""
         return [row.leg for row in self._rows]
 
     @property
     def path(self) -> Path:
-        """The path of all states, also of those that are not read."""
+        """The path of all states, also of those that are not read; without velocities where one is unknown."""
         columns = list(zip(*self._rows, strict=True))[2:]
         d, along, time, velocity = (np.asarray(column, dtype=np.float64) for column in columns)
         return Path(d, along, time, None if np.isnan(velocity).any() else velocity)
 
     def trace(self, whole: bool = False) -> Trace:
-        """Return the trace for a reader; of the `whole` path also the states before its first one."""
+        """Return the trace of all states for a reader.
+
+        Without `whole` those that lead to its first one are left out.
+        """
         phases, legs, path = self.phases, self.legs, self.path
         rule = radius_rule(self.scene, self.settings.tolerance)
         trace = of_model(phases, legs, path, self.model.follow(path), rule, self.model)
@@ -231,19 +254,23 @@ class ModelBranch:
         return trace if whole else trace.chosen([i for i, name in enumerate(phases) if name != UNSEEN])
 
     def _turn(self, rises: bool) -> None:
-        """Begin a leg where the loading turns."""
+        """Begin a leg where the loading turns; `rises`: whether the displacement rises next."""
         self._leg += rises != self._rises
         self._rises = rises
 
     def _add(
         self, positions: Array, along: Sequence[float] | Array | None = None, time: Sequence[float] | None = None
     ) -> None:
+        """Add states of the phase and leg under way at displacements [LU].
+
+        Positions along x [LU] and times [TU] are else 0.
+        """
         none = np.zeros(len(positions))
         columns = (none if column is None else np.asarray(column) for column in (along, time))
         self._add_path([self._phase] * none.size, Path(positions, *columns))
 
     def _add_path(self, phases: Sequence[str], path: Path) -> None:
-        """Add the states of a path, each with its phase."""
+        """Add the states of a path to the leg under way, each with the name of its phase."""
         unknown = np.full(path.time.size, math.nan)
         columns = path.displacement, path.along, path.time, unknown if path.velocity is None else path.velocity
         rows = zip(*(column.tolist() for column in columns), strict=True)

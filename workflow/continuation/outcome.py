@@ -1,4 +1,7 @@
-"""The outcome of an experiment: results with their error budgets, the curve, profiles, the schedule, and warnings."""
+"""The outcome of an experiment: results with their error budgets, the curve, profiles, the schedule, and warnings.
+
+Units are those of the model: LU, FU, MU, TU.
+"""
 
 from __future__ import annotations
 
@@ -34,9 +37,9 @@ class Reading:
 
     Attributes:
         value: in `unit`.
-        unit: of the model.
-        errors: by source.
-        scale: what the uncertainty is compared with, where the value may be 0.
+        unit: of the model, as "FU" or "FU·LU"; "1" for a number.
+        errors: by source, in `unit`.
+        scale: in `unit`, what the uncertainty is compared with, where the value may be 0; None: the value itself.
         prescribed: whether the scene prescribes it.
     """
 
@@ -53,12 +56,13 @@ class Result:
 
     Attributes:
         value: in `unit`.
-        unit: of the model.
+        unit: of the model, as "FU" or "FU·LU"; "1" for a number.
         errors: by the names of SOURCES, in `unit`.
-        scale: what the uncertainty is compared with, where the value may be 0.
-        prescribed: whether the scene prescribes it, or it closes a balance: no tolerance is asked of it.
-        read: part of the discretisation error by interpolation between particles, whatever the settings.
-        given: part of "input" by numbers with ± and a noisy profile: of the scene, and no error of the program.
+        scale: in `unit`, what the uncertainty is compared with, where the value may be 0; None: the value itself.
+        prescribed: whether the scene prescribes it, or it closes a balance: no tolerance is required of it.
+        read: part of the discretisation error by interpolation between particles, whatever the settings, in `unit`.
+        given: part of "input" by numbers with ± and a noisy profile, in `unit`: of the scene, and no error of the
+            program.
     """
 
     value: float
@@ -70,23 +74,23 @@ class Result:
     given: float = 0.0
 
     def __post_init__(self) -> None:
-        """Refuse a result without errors by source."""
+        """Raise ValueError for a result without errors, or with one from a source that is not in SOURCES."""
         if not self.errors or set(self.errors) - set(SOURCES):
             raise ValueError(f"a result needs errors by source ({', '.join(SOURCES)}), got {dict(self.errors)}")
 
     @property
     def uncertainty(self) -> float:
-        """The sum of the errors of all sources."""
+        """The sum of the errors of all sources, in `unit`."""
         return float(sum(self.errors.values()))
 
     @property
     def size(self) -> float:
-        """The scale that the uncertainty is compared with: the value, unless another is given."""
+        """The scale that the uncertainty is compared with, in `unit`: |value|, unless a `scale` is given."""
         return abs(self.value) if self.scale is None else self.scale
 
     @property
     def share(self) -> float:
-        """The uncertainty over the size; infinite where that is 0."""
+        """The relative uncertainty, `uncertainty` over `size`; infinite where that is 0."""
         return self.uncertainty / self.size if self.size else inf
 
 
@@ -96,8 +100,8 @@ class Agreement:
 
     Attributes:
         difference: of them, relative.
-        allowed: how large it may be.
-        words: both numbers, in units of the model.
+        allowed: how large it may be, relative.
+        words: both numbers in a sentence, in units of the model.
     """
 
     difference: float
@@ -106,7 +110,7 @@ class Agreement:
 
     @property
     def holds(self) -> bool:
-        """Whether the numbers agree; NaN never does."""
+        """Whether the difference is within what is allowed; False where it is NaN."""
         return self.difference <= self.allowed
 
 
@@ -117,7 +121,7 @@ class Move:
     Attributes:
         key: the dotted key of a number, or the name of another input.
         scene: with the input at that end.
-        changes: of the results, by name, on the reduced model, in their units; of points of a curve (m,).
+        changes: of the results, by name, on the reduced model, in the results' units; of points of a curve (m,).
     """
 
     key: str
@@ -126,7 +130,10 @@ class Move:
 
 
 def in_squares(moves: Iterable[Move], name: str) -> Any:
-    """Return √(Σ change²) of a result, or of points (m,), over independent inputs, of each the larger change."""
+    """Return √(Σ change²) of a result, or of points (m,), in its unit: the uncertainty due to independent inputs.
+
+    Of the moves of one input the largest change counts. 0 without moves, or where none changes a result of this `name`.
+    """
     changes = dict[str, Any]()
     for move in moves:
         changes[move.key] = np.maximum(changes.get(move.key, 0.0), np.abs(move.changes.get(name, 0.0)))
@@ -135,7 +142,7 @@ def in_squares(moves: Iterable[Move], name: str) -> Any:
 
 @dataclass(frozen=True)
 class Refinement:
-    """The refinement of a run: the last tolerance of its settings, how often it was lowered, why it ended."""
+    """The refinement of a run: the last (relative) tolerance of its settings, how often it fell, why it ended."""
 
     tolerance: float
     count: int
@@ -152,7 +159,7 @@ class Outcome:
         marked: the states that are reported with their profiles, by name.
         phases: the schedule.
         warnings: about what limits the accuracy, by name.
-        columns: further columns of curve.csv.
+        columns: further columns of curve.csv, by name.
         rows: errors of the points of curve.csv by source, (m,), by the name of a column.
         tables: columns of further files, by the names of the files.
         refinement: None where the settings were given, or are not refined.
@@ -174,21 +181,22 @@ class Outcome:
 
     @property
     def quantities(self) -> dict[str, Quantity]:
-        """The results, each with its uncertainty and unit."""
+        """The results by name, each with its value, uncertainty and unit of the model."""
         return {name: Quantity(result.value, result.uncertainty, result.unit) for name, result in self.results.items()}
 
     @property
     def exact(self) -> dict[str, Quantity]:
-        """The results with the uncertainties that they would have if the scene were known exactly."""
+        """The results by name, with the uncertainties that they would have if the scene were known exactly."""
         return {
             name: Quantity(result.value, result.uncertainty - result.given, result.unit)
             for name, result in self.results.items()
         }
 
     def made(self, scene: Scene, make: Callable[[Scene, Mapping[str, Quantity]], dict[str, Quantity]]) -> Made:
-        """Return quantities that are computed from a scene and its results, and their uncertainties due to the inputs.
+        """Return quantities that `make` computes from a scene and its results, by name, and their input uncertainties.
 
-        They are computed again at each end of an uncertain input.
+        The quantity has the uncertainty of an exactly known scene; the second number, in its unit, is due to the
+        uncertain inputs: `make` is called again at each end of each of them.
         """
         exact = self.exact
         made, moves = make(scene, exact), []
@@ -201,27 +209,32 @@ class Outcome:
 
     @property
     def profiles(self) -> dict[str, Profile]:
-        """The profiles of the marked states, by name."""
+        """The pressure profiles of the marked states, by name."""
         return {name: state.profile for name, state in self.marked.items()}
 
     @property
     def radii(self) -> dict[str, float]:
-        """The contact radius of each marked state [LU], by name; NaN where there is none."""
+        """The contact radius of each marked state [LU], by name; NaN where the bodies do not touch."""
         return {name: nan if state.radius is None else state.radius.value for name, state in self.marked.items()}
 
 
 def in_words(shares: Mapping[str, float], tolerance: float) -> str:
-    """Return a text of relative uncertainties above the tolerance: "critical_radius 3.1e-04, …"."""
+    """Return a text of relative uncertainties above the tolerance: "critical_radius 3.1e-04, …"; "" for no `shares`.
+
+    Each has so many digits that it differs from the `tolerance`.
+    """
     return ", ".join(f"{name} {share:.{digits_apart(share, tolerance, 2) - 1}e}" for name, share in shares.items())
 
 
 def unmet(results: Mapping[str, Result], tolerance: float, without: Iterable[str] = ()) -> dict[str, float]:
     """Return the relative uncertainties that exceed the tolerance, by name, without the part that the scene gives.
 
+    Left out are prescribed results and those of size 0; infinite is the share of a radius of size 0.
+
     Args:
-        results: without those that the scene prescribes.
+        results: by name.
         tolerance: relative.
-        without: sources that are left out.
+        without: sources of errors that are left out of the uncertainty.
     """
     shares = {}
     for name, result in results.items():

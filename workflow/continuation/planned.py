@@ -2,6 +2,9 @@
 
 The model of such a contact has every particle of the deck, with the same numbers, so that its limit points and forces
 are known beforehand; the force of each load step is compared with that of the model (`consistency.plan`).
+
+A leg is a part of the path between two turns of the loading, numbered from 0 on. Displacements d [LU] and forces F [FU]
+are positive in compression.
 """
 
 from __future__ import annotations
@@ -38,7 +41,7 @@ class Plan:
 
     Attributes:
         deck: of the scene.
-        model: of its particles.
+        model: the particles of the reduced model.
         path: displacements, positions along x and times of all load steps.
         names: of their phases, (m,); a phase is numbered where its name is repeated.
         marks: numbers of load steps whose states are written: a phase ends there.
@@ -57,11 +60,12 @@ class Plan:
 
     @cached_property
     def _columns(self) -> dict[str, Array]:
+        """The numbers that LAMMPS reads for each load step, (m,), by name, in units of the scene."""
         return self.deck.as_read(self.model.prescribed(self.path))
 
     @cached_property
     def phases(self) -> tuple[Phase, ...]:
-        """The schedule of the load steps."""
+        """The schedule of the load steps: named phases of rows, numbered where a name is repeated."""
         rows, phases = swept(self._columns), list[Phase]()
         begins = [0, *(i for i, (before, name) in enumerate(pairwise(self.names), 1) if before != name)]
         ends = sorted({*begins, *(mark + 1 for mark in self.marks), len(rows)})
@@ -76,7 +80,11 @@ class Plan:
         return self.model.carried(self._columns)
 
     def checks(self, case: Reduction, states: Sequence[State], doubt: float = 0.0) -> dict[str, Agreement]:
-        """Return whether the states contradict the model, and their energies each other; see `consistency`."""
+        """Return {"plan": …, "energy": …}: the agreement of forces with the model, and of its work with its energies.
+
+        {} where the model lacks an effect of the scene, without "energy" where it has no energies. `doubt`: the
+        relative uncertainty of the energy that the run reports.
+        """
         if not self.deck.scene.is_modelled:
             return {}
         forces = self.followed.total
@@ -87,7 +95,8 @@ class Plan:
         """Return the states that LAMMPS has measured, with the contact edges that the law of the contact gives.
 
         Raises:
-            UntrustedError: see `require_trust`.
+            EngineError: LAMMPS failed.
+            UntrustedError: a state is no result, as where forces are too small for the digits of positions.
         """
         states = contact.replay(self.phases, meanwhile=lambda: self.followed)
         followed, bodies, spring = self.followed, contact.scene.bodies, contact.scene.bulk_stiffness
@@ -106,7 +115,11 @@ class Plan:
 
 
 def _zoned(bodies: Bodies, spring: float, state: State, edge: float, reach: float, *further: float) -> Profile:
-    """Return the profile of a state with its edges [LU]; between them the body is attracted by the plane."""
+    """Return the profile of a state with its contact edge and the `reach` of the attraction [LU].
+
+    Inside the edge its upper surface is on the plane, beyond it at the height of the body on its springs. `spring`: of
+    a particle [FU/LU]; `further`: data of a `ZonedProfile`.
+    """
     profile = state.profile
     if reach > edge:
         heights = bodies.height(profile.x) - state.displacement
@@ -116,7 +129,9 @@ def _zoned(bodies: Bodies, spring: float, state: State, edge: float, reach: floa
 
 
 class PlannedBranch(ContactBranch):
-    """The states of a contact on a rigid plane; LAMMPS runs when the script has ended.
+    """The states of a contact on a rigid plane.
+
+    LAMMPS runs when the script has ended (`finish`), and then there are states.
 
     Attributes:
         plan: the load steps that LAMMPS has run.
@@ -125,7 +140,10 @@ class PlannedBranch(ContactBranch):
     plan: Plan
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
-        """Prepare a contact whose load steps are planned on the model; see `ContactBranch` for `meanwhile`."""
+        """Prepare a contact whose load steps are planned on the model.
+
+        `meanwhile` is called while LAMMPS reads the bodies.
+        """
         super().__init__(context, meanwhile)
         self._driven = ModelBranch(self.scene, self.settings, self.model, 1, 0.0)
         self._largest: float | None = None
@@ -135,11 +153,11 @@ class PlannedBranch(ContactBranch):
         self._driven.begin(name)
 
     def visit(self, positions: Sequence[float] | Array, along: Sequence[float] | None = None) -> None:
-        """Plan load steps at displacements [LU] and positions along x [LU]."""
+        """Plan load steps at displacements [LU] and positions `along` x [LU], by default 0."""
         self._driven.visit(positions, along)
 
     def reach(self, force: float, scale: float) -> None:
-        """Plan load steps until the model carries a force [FU].
+        """Plan load steps until the model carries a force [FU], compression positive; `scale` is ignored.
 
         Raises:
             TensionError: no contact holds the force.
@@ -150,7 +168,7 @@ class PlannedBranch(ContactBranch):
         self.wanted[self._driven.last] = force
 
     def maximum(self) -> None:
-        """Plan load steps to the force maximum of the model."""
+        """Plan load steps to the force maximum of the model, its largest tension."""
         self._driven.maximum()
         self._largest = max(self._largest or 0.0, -self._driven.held)
 
@@ -159,23 +177,30 @@ class PlannedBranch(ContactBranch):
         self._driven.open()
 
     def follow(self, history: History) -> None:
-        """Plan a history; of forces, the load steps are at the displacements at which the model carries them."""
+        """Plan a history of displacements or forces over time.
+
+        Of forces, the load steps are at the displacements at which the model carries them.
+        """
         self._driven.follow(history)
         self.given = "force" if history.by_force else self.given
 
     def mark(self, name: str) -> None:
-        """Report the last state of the plan under a name."""
+        """Report the last state of the plan under a name, once LAMMPS has run."""
         self._driven.mark(name)
 
     def checks(self, case: Reduction, doubt: float) -> dict[str, Agreement]:
-        """Return the checks of the states, and those of the plan against the model."""
+        """Return the checks "balance", "plan" and "energy" of the states, by name, as far as they apply.
+
+        `doubt`: the relative uncertainty of the energy that the run reports.
+        """
         return super().checks(case, doubt) | self.plan.checks(case, self.states, doubt)
 
     def finish(self) -> None:
-        """Run all planned load steps in LAMMPS.
+        """Run all planned load steps in LAMMPS, and keep their states, legs and marks.
 
         Raises:
-            DigitsError: a force maximum is below the round-off error of positions.
+            EngineError: LAMMPS failed.
+            UntrustedError: a state is no result; a force maximum is below the round-off error of positions.
         """
         self.plan = Plan.of(self.contact.deck, self._driven)
         self.states, self.legs = self.plan.measured(self.contact), self._driven.legs
@@ -183,6 +208,11 @@ class PlannedBranch(ContactBranch):
         self._require_digits()
 
     def _require_digits(self) -> None:
+        """Refuse a force maximum of the plan that is below the round-off error of the contact force.
+
+        Raises:
+            DigitsError: names both.
+        """
         digits = self.states[-1].residual * self.settings.chains.upper
         if self._largest is not None and self._largest <= digits:
             raise DigitsError(

@@ -2,6 +2,8 @@
 
 Its script drives the model and its reader evaluates the trace, on any spacing, with the apex anywhere between
 particles, and of each scene that this one may mean (`budget`).
+
+A lattice is the spacing of the particles and the position of the apex between them.
 """
 
 from __future__ import annotations
@@ -41,9 +43,15 @@ Values = dict[str, Any]
 
 @dataclass(frozen=True)
 class Reduction:
-    """The experiment of a scene on the reduced model: script and reader; `of` makes that of another scene.
+    """The experiment of a scene on the reduced model: script and reader.
 
-    With the `passed` states of a trace, it has a value for each state instead of results.
+    Attributes:
+        scene: whose experiment it is.
+        settings: numbers of the run.
+        script: moves the contact.
+        read: reader of a trace: results by name.
+        of: function of another scene and its settings that returns the reduction of that scene.
+        passed: a trace, for whose states the reduction has values, (m,) by column, instead of results; None: results.
     """
 
     scene: Scene
@@ -54,60 +62,76 @@ class Reduction:
     passed: Trace | None = None
 
     def along(self, trace: Trace) -> Reduction:
-        """Return the reduction for each state of a trace, with the models of this one."""
+        """Return the reduction with a value for each state of a trace, (m,) by column, and the models of this one."""
         reduction = replace(self, passed=trace, of=lambda *case: replace(self.of(*case), passed=trace))
         vars(reduction).update(model=self.model, _lattices=self._lattices)
         return reduction
 
     def values(self, model: Particles, dense: int = 1, shift: float = 0.0) -> Values:
-        """Return the results of a model; `shift` is added to the displacements that the scene gives [LU]."""
+        """Return the results of a model by name, or the columns for `passed` states that are not prescribed.
+
+        `dense`: positions for each step that the scene gives; `shift`: added to the displacements that it gives [LU].
+        Both are without effect for passed states.
+        """
         if self.passed:
             return self.passed.recomputed(self.scene, self.settings, model)
         return values_of(self.read(self.trace(model, dense, shift)))
 
     def trace(self, model: Particles, dense: int = 1, shift: float = 0.0, whole: bool = False) -> Trace:
-        """Return the trace of a model that the script has driven."""
+        """Return the trace of a model that the script has driven.
+
+        `dense`: positions for each step that the scene gives; `shift`: added to the displacements that it gives [LU];
+        `whole`: whether positions before the first state of the scene are in it.
+        """
         return self.driven(model, dense, shift).trace(whole)
 
     def driven(self, model: Particles, dense: int = 1, shift: float = 0.0) -> ModelBranch:
-        """Return the branch of a model that the script has driven, at the end of the script."""
+        """Return the branch of a model that the script has driven, at the end of the script.
+
+        `dense`: positions for each step that the scene gives; `shift`: added to the displacements that it gives [LU].
+        """
         branch = ModelBranch(self.scene, self.settings, model, dense, shift)
         self.script(branch)
         return branch
 
     @property
     def has_uncertain_inputs(self) -> bool:
-        """Whether the scene has uncertain inputs."""
+        """Whether the scene has numbers with ±, or its profile deviations or other curves through its points."""
         profile = self.scene.bodies.profile
         return bool(self.scene.shares or profile.deviations or profile.alternatives)
 
     @cached_property
     def model(self) -> Particles:
-        """The particles of the model, those of the chain that runs in LAMMPS."""
+        """The particles of the reduced model, those of the chain that runs in LAMMPS."""
         return reduced(self.scene, self.settings)
 
     @cached_property
     def path(self) -> Trace:
-        """The trace of the model that the script has driven."""
+        """The trace of the model that the script has driven, with the scene's own steps."""
         return self._driven.trace()
 
     @cached_property
     def _driven(self) -> ModelBranch:
+        """The branch of the model that the script has driven, with the scene's own steps."""
         return self.driven(self.model)
 
     @cached_property
     def readings(self) -> Mapping[str, Reading]:
-        """The readings of the trace of the model."""
+        """The readings of the trace of the model, by name of the result."""
         return self.read(self.path)
 
     @cached_property
     def results(self) -> Values:
-        """The results of the model, by name."""
+        """The results of the model by name, each in its own unit; of `passed` states the columns, (m,)."""
         return self.values(self.model) if self.passed else values_of(self.readings)
 
     @cached_property
     def results_and_pressures(self) -> Values:
-        """The results, and where springs are not linear the logarithms of the pressures of reported states."""
+        """The results by name, and where springs are not linear the logarithms of the pressures of reported states.
+
+        Their names are "ln p " and that of the state, "ln p " alone for the deepest state; one without pressure on
+        the axis is left out.
+        """
         if self.passed or self.scene.keeps_springs:
             return self.results
         whole = self._driven.trace(whole=True)
@@ -117,7 +141,7 @@ class Reduction:
         return self.results | {name: math.log(pressure) for name, pressure in pressures.items() if pressure > 0.0}
 
     def lattice_in_time(self, values: Values, share: float = 0.5) -> Values:
-        """Return the discretisation error of results in time, by name.
+        """Return the discretisation error of the results in time that `lattice` has as well, by name in their units.
 
         Where the model differs from the motion by more than a share of the value, it is that difference at least.
         """
@@ -130,7 +154,11 @@ class Reduction:
 
     @cached_property
     def _lattices(self) -> tuple[list[Particles], list[Particles]]:
-        """The model with its particles elsewhere, and on finer spacings."""
+        """The model with its particles elsewhere, and on finer spacings.
+
+        Both are empty where the scene gives the particles, unless cells at the contact edge carry a share of their
+        load.
+        """
         bodies = self.scene.bodies
         is_chosen = bodies.particles == "auto" and bodies.own_count is None  # else positions are part of the scene
         if not (is_chosen or self.model.shares_edges):
@@ -140,7 +168,11 @@ class Reduction:
 
     @cached_property
     def lattice(self) -> Values:
-        """The discretisation error of each result, by name; a result that another lattice does not have may be 0."""
+        """The discretisation error of each result, by name in its unit; {} where the scene gives the particles.
+
+        With given particles there is one still where cells at the contact edge carry a share of their load. A result
+        that another lattice does not have counts as 0 there.
+        """
         shifted, finer = self._lattices
         if not (shifted or finer):
             return {}
@@ -157,7 +189,7 @@ class Reduction:
         """The moves of each number with ± to both ends, and of each pair of bodies half of their difference.
 
         A number with ± below 5 % is moved by 5 %, since the reader has errors; of its changes, scaled to first order,
-        half of the difference counts as well.
+        half of the difference counts. A pair of bodies of which one is no contact is left out.
         """
         scene, moves = self.scene, list[Move]()
         for key, share in scene.shares.items():
@@ -179,7 +211,15 @@ class Reduction:
     def _changes(
         self, key: str, ends: Sequence[Scene], results: Sequence[Values], times: float, apart: bool
     ) -> list[Move]:
-        """Return the moves of an input to its ends, from results `times` as far; `apart`: half of their difference."""
+        """Return the moves of an input to its two ends, with the changes of results over `times`.
+
+        Args:
+            key: of the input.
+            ends: the scenes at both ends.
+            results: at both ends, moved `times` as far.
+            times: factor on the uncertainty of the input.
+            apart: whether a change is half of the difference of both ends, and not that from the scene itself.
+        """
         moves = []
         for end, values, opposite in zip(ends, results, results[::-1], strict=True):
             middle = self.results_and_pressures
@@ -191,12 +231,18 @@ class Reduction:
         return moves
 
     def _results_of(self, scene: Scene) -> Values:
-        """Return the results of the model of another scene."""
+        """Return the results and pressures of the model of another scene, by name.
+
+        Raises:
+            SettingsError: the scene is no contact.
+        """
         return self.of(scene, settings_for(scene, self.settings.tolerance)).results_and_pressures
 
     @cached_property
     def inputs(self) -> Values:
-        """The uncertainty due to the inputs, by name: independent changes in squares, plus those of other bodies.
+        """The uncertainty due to the inputs, by name in the result's unit.
+
+        Independent moves add in squares, and the changes with other curves through the points of a profile are added.
 
         Raises:
             SettingsError: most curves through the points of a profile are no contact, so that no error is known.
@@ -214,7 +260,10 @@ class Reduction:
         return {name: sum(change[name] for change in changes) + in_squares(self.moves, name) for name in self.results}
 
     def _model_of(self, shape: Shape) -> Particles | None:
-        """Return the model of another body; None where it is no contact, as with a jump of its edge at a corner."""
+        """Return the particles of the model of another body, under the same settings.
+
+        None where it is no contact, as with a jump of its edge at a corner.
+        """
         scene = self.scene.with_profile(shape)
         try:
             return reduced(scene, replace(self.settings, law=settings_for(scene).law))
@@ -222,7 +271,10 @@ class Reduction:
             return None
 
     def _largest_changes(self, models: Sequence[Particles]) -> Values:
-        """Return the largest difference of each result of other models from that of the model, by name."""
+        """Return the largest absolute difference of each result over other models, by name in its unit.
+
+        0 without models. A result that another model does not have counts as 0 there.
+        """
         largest = {name: np.zeros_like(value) for name, value in self.results.items()}
         for values in map(self.values, models):
             for name, value in self.results.items():
@@ -231,11 +283,11 @@ class Reduction:
 
 
 def values_of(readings: Mapping[str, Reading]) -> Values:
-    """Return the values of readings, by name."""
+    """Return the values of readings by name, each in its reading's unit."""
     return {name: reading.value for name, reading in readings.items()}
 
 
 def _on_axis(profile: Profile) -> float:
-    """Return p(0) without a constant factor, ∫ −dq/x from the first particle on."""
+    """Return the pressure on the axis but for a constant factor, ∫ −dq/x from the first x > 0 on [FU/LU²]."""
     x, q = profile.x[profile.x > 0.0], profile.pressure[profile.x > 0.0]
     return -float(np.sum(np.diff(q) / (x[1:] + x[:-1])))

@@ -1,6 +1,9 @@
 """A branch of states that depend on the loading history, since pairs snap: the schedule is repeated from the start.
 
 Each time it has the required positions in order, more of them near the force maximum.
+
+A leg is a part of the path between two turns of the loading, numbered from 0 on. Displacements d [LU] and forces F [FU]
+are positive in compression.
 """
 
 from __future__ import annotations
@@ -46,14 +49,14 @@ class ReplayedBranch(Branch):
     """The states of a contact whose pairs snap."""
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
-        """Prepare a contact whose schedule is repeated; see `ContactBranch` for `meanwhile`."""
+        """Prepare a contact whose schedule is repeated; `meanwhile` is called while LAMMPS reads the bodies."""
         super().__init__(context, meanwhile)
         self._passed: tuple[Phase, ...] = ()
         self._stretches: list[Stretch] = []
         self._top: Stretch | None = None
 
     def mark(self, name: str) -> None:
-        """Report the last state; that of the force maximum is written already."""
+        """Report the last state under a name, after a force maximum the one at it; that one is written already."""
         if self._top:
             self.marked[name] = self.states[self._top.last]
             return
@@ -71,7 +74,7 @@ class ReplayedBranch(Branch):
             zoom: width of the window about the force maximum over that of the schedule before.
 
         Raises:
-            UntrustedError: no two schedules agree.
+            UntrustedError: no two schedules agree, or a state is no result.
         """
         self._turn(rises=False)
         self._separate(self._last.displacement)
@@ -96,18 +99,25 @@ class ReplayedBranch(Branch):
         """Do nothing: the repeated schedule has separated the bodies."""
 
     def _turn(self, rises: bool) -> bool:
-        """Begin a leg where the loading turns; after a force maximum a new schedule follows the one before."""
+        """Begin a leg where the loading turns, and return whether it does.
+
+        After a force maximum a new schedule follows the one before.
+        """
         if self._top:
             self._passed, self._stretches, self._top = self.contact.phases, [], None
         return super()._turn(rises)
 
     def _record_target(self, force: float) -> None:
+        """Record the end of a stretch at the last state, and the force [FU] that this was to carry; NaN: none."""
         super()._record_target(force)
         phase = self._last.phase.partition("_")[0]
         self._stretches.append(Stretch(self._number, phase, len(self.states) - 1, force))
 
     def _about_maximum(self, window: float, first: bool, count: int = 8) -> list[float]:
-        """Return displacements [LU] of the last leg, with `count` steps in a window [LU] beside its force maximum."""
+        """Return falling displacements [LU] of the last leg, in steps of `window`/`count` [LU] about its force maximum.
+
+        `first`: whether the load steps are those of the first search, on which another maximum may be the highest.
+        """
         trace, peak = self.unloading, self.peak
         d, force = trace.displacement, trace.force
         half, step = max(window, early_detachment(trace, peak, self.settings)), window / count
@@ -121,7 +131,10 @@ class ReplayedBranch(Branch):
         return [*d[(d > fine[0]) | (d < fine[-1])].tolist(), *fine.tolist()]
 
     def _end(self, stretch: Stretch) -> float:
-        """Return the displacement [LU] at which a stretch ends, interpolated between the states of its leg."""
+        """Return the displacement [LU] at which a stretch ends, interpolated between the states of its leg.
+
+        −inf: apart.
+        """
         if stretch.phase == SEPARATING:
             return -math.inf
         if math.isnan(stretch.force):
@@ -132,11 +145,14 @@ class ReplayedBranch(Branch):
         return _displacement_of(self._of_leg(stretch.leg), stretch.force)
 
     def _of_leg(self, number: int) -> list[State]:
-        """Return the states of a leg in order."""
+        """Return the states of the leg of this number in order; [] where there is no such leg."""
         return [state for state, leg in zip(self.states, self.legs, strict=True) if leg == number]
 
     def _replay(self, falling: list[float]) -> None:
-        """Repeat the schedule: each leg goes straight to its ends, the last until the bodies are apart."""
+        """Repeat the schedule in a new contact: each leg goes straight to its ends, the last until the bodies part.
+
+        `falling`: displacements [LU] of the last leg. Replaces the states, and updates legs, marks and targets.
+        """
         passed, names = sum(len(phase.rows) for phase in self._passed), [phase.name for phase in self._passed]
         start, leg, phases = self.states[passed].displacement, -1, list[Phase]()
         near = 1e-9 * (max(s.displacement for s in self.states) - min(falling))  # nearer load steps are one
@@ -166,7 +182,10 @@ class ReplayedBranch(Branch):
                 self.wanted[stretch.last] = stretch.force
 
     def _agrees(self, before: Peak, critical: State) -> bool:
-        """Return whether two schedules have the same results, and the latest its states at the required positions."""
+        """Return whether two schedules have the same results, and the latest its states at the required positions.
+
+        `before`: the force maximum of the former one; `critical`: the state at that of the latest.
+        """
         peak = self.peak
         allowed = self.tolerance * peak.smooth
         missed = abs(self._radius_rate(critical) * (peak.position - critical.displacement))  # of the contact radius
@@ -182,12 +201,18 @@ class ReplayedBranch(Branch):
         )
 
     def _growth(self, state: State, largest: float) -> float:
-        """Return 1.2 where no maximum can be higher any more, else 1: pairs of longer moves detach prematurely."""
+        """Return the factor of successive increments: 1.2 where no maximum can exceed `largest` [FU] any more, else 1.
+
+        Pairs of longer moves detach prematurely.
+        """
         return 1.2 if self._remaining_tension(state) < largest else 1.0
 
 
 def _displacement_of(states: Sequence[State], force: float) -> float:
-    """Return the displacement [LU] of a force [FU] on a rising branch, through its two nearest load steps."""
+    """Return the displacement [LU] of a force [FU] on a rising branch, by a straight line through two states.
+
+    They are those of nearest force. With one state, or where both have the same force, that of the nearest.
+    """
     near = sorted(states, key=lambda s: abs(s.force - force))[:2]
     if len(near) < 2 or near[0].force == near[1].force:
         return near[0].displacement

@@ -1,4 +1,7 @@
-"""A measured state of a contact, and its contact radius."""
+"""A measured state of a contact, and its contact radius.
+
+Displacements d [LU] are those of the plate towards the other body, forces F [FU] positive in compression.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,11 @@ from contact1d.workflow.scene import Scene
 
 
 def radius_rule(scene: Scene, tolerance: float) -> RadiusRule:
-    """Return the rule for the contact radius of a scene; `tolerance` limits the residual of a pressure."""
+    """Return the rule that reads the contact radius of a scene off a pressure profile (edge, largest tension, …).
+
+    `tolerance`: relative, of the main results; the calibrated share of it is the pressure, over the largest one, that
+    counts as 0.
+    """
     return law_of(scene).rule(scene)(scene.bodies, CALIBRATION.residual * tolerance)
 
 
@@ -24,23 +31,24 @@ class State:
     """One state of a contact, measured in LAMMPS or made by the reduced model.
 
     Attributes:
-        phase: name of its phase.
-        displacement: [LU].
+        phase: name of its phase, "unloading_2" for instance.
+        displacement: of the plate towards the other body [LU]; 0: the undeformed bodies touch, or are at r₀.
         force: of the contact on the plate, compression positive [FU]: the sum over the upper particles.
-        profile: pressure and shear along x.
-        rule: what the contact radius is.
+        profile: pressure and shear along x, (n,) [FU/LU].
+        rule: reads the contact radius off the profile.
         smallest_distance: between particles of opposite bodies, or of a particle from the plane [LU].
         depth: how far an upper particle lies below the lower surface [LU]; 0 where none does.
         residual: largest unbalanced force of a particle along a direction in which it may move [FU].
         plate_x: position of the plate along x [LU], relative to that in system.data.
-        step: LAMMPS timestep.
+        step: number of the LAMMPS timestep at its end.
         pushed: force of other effects that presses the upper body onto the lower one [FU].
-        plate_velocity: [LU/TU], 0 where the plate's position is prescribed.
-        cantilever_force: [FU].
+        plate_velocity: of the approach [LU/TU], negative while the bodies separate; 0 where its position is prescribed.
+        cantilever_force: force of the cantilever [FU]; 0 without one.
         missing: force that LAMMPS adds up on the plate beyond those that are known [FU]; None: not available.
-        time: of a history [TU].
-        motion: of a slide, the quantities of `contact.MOTION` and `contact.HEAT`.
-        number: of its load step, over all phases.
+        time: of a history [TU]; 0 for an equilibrium.
+        motion: of a slide, the quantities of `contact.MOTION` and `contact.HEAT` by name, in the units that stand
+            there.
+        number: of its load step, over all phases, from 0 on.
     """
 
     phase: str
@@ -63,15 +71,19 @@ class State:
 
     @property
     def carried(self) -> float:
-        """The load in equilibrium with the state [FU]: the contact force and other forces on the body."""
+        """The external load in equilibrium with the state [FU], compression positive: `force` minus `pushed`."""
         return self.force - self.pushed
 
     @cached_property
     def radius(self) -> ContactRadius | None:
-        """The contact radius; None where the bodies do not touch."""
+        """The contact radius with its edges and uncertainty [LU]; None where the bodies do not touch.
+
+        Raises:
+            ValueError: the profile has too few particles, or pressures of the wrong sign, for the rule.
+        """
         return self.rule.of(self.profile)
 
     @property
     def radius_or_spot(self) -> ContactRadius:
-        """The contact radius; 0 where no particle is in tension."""
+        """The contact radius with its edges and uncertainty [LU]; where the rule finds none, 0 ± 1.5 spacings."""
         return self.radius or self.rule.or_spot(self.profile)

@@ -1,4 +1,7 @@
-"""Which states are accepted as results, and their limitations."""
+"""Which states are accepted as results, and their limitations.
+
+Displacements [LU] and forces [FU] are positive in compression.
+"""
 
 from __future__ import annotations
 
@@ -24,11 +27,11 @@ from contact1d.workflow.scene.remedies import against_passing, longer_chain
 
 
 def require_trust(scene: Scene, settings: Settings, state: State, moving: bool = False) -> None:
-    """Refuse a state that is no result; it must be at rest unless the motion itself is examined (`moving`).
+    """Refuse a state that is no result. Without `moving`, a plate or noise it must be at rest.
 
     Raises:
-        UntrustedError: bodies that went through each other, particles not at rest, a contact that reaches the end of
-            a chain.
+        UntrustedError: bodies that went through each other, particles not at rest, a contact that reaches the end of a
+            chain.
     """
     where = f"at displacement {state.displacement:.4g} LU (phase {state.phase})"
     if state.depth > 0.0:
@@ -62,7 +65,7 @@ def require_trust(scene: Scene, settings: Settings, state: State, moving: bool =
 
 
 def _against_passing(scene: Scene) -> str:
-    """Return what else the user can do against particles that pass each other; "" for nothing."""
+    """Return advice on the scene against particles that pass each other, with a comma at its end; "" for none."""
     cooler = f"lower noise.temperature from {scene.temperature:g} FU·LU, " if scene.noise else ""
     if not scene.horizontal or scene.experiment.motion_is_result:  # a slide needs it
         return cooler
@@ -70,24 +73,33 @@ def _against_passing(scene: Scene) -> str:
 
 
 def _more_particles(scene: Scene, settings: Settings) -> str:
-    """Return the number of particles to increase: that of the upper chain, if the scene gives it."""
+    """Return the advice to increase the number of particles: of the upper chain, where the scene gives that."""
     if scene.bodies.upper_particles is not None:
         return f"more bodies.upper_particles than {settings.chains.upper}, or leave it out"
     return f'more bodies.particles than {settings.chains.upper} (or "auto")'
 
 
 def residual_limit(settings: Settings, share: float = 0.1) -> float:
-    """Return the largest residual force of a particle in a converged state [FU], a share of the tolerance."""
+    """Return the largest residual force [FU] of a particle in a converged state.
+
+    It is a `share` of the tolerance times the force scale of the settings.
+    """
     return share * settings.tolerance * settings.forces.scale
 
 
 def is_converged(settings: Settings, state: State) -> bool:
-    """Return whether the residual force on every particle is within `residual_limit`."""
+    """Return whether the residual force on every particle is within a tenth of the tolerance times the force scale."""
     return state.residual <= residual_limit(settings)
 
 
 def require_no_contradiction(settings: Settings, tension: float, uncertainty: float, states: Iterable[State]) -> None:
-    """Refuse a force maximum [FU] that a state of the run's own curve exceeds by more than its uncertainty [FU].
+    """Refuse a force maximum that a state of the run's own curve exceeds by more than its uncertainty.
+
+    Args:
+        settings: of the run.
+        tension: the force maximum, tension positive [FU].
+        uncertainty: of it [FU]; the residual forces of a state are added.
+        states: of the curve.
 
     Raises:
         UntrustedError: names the state.
@@ -102,7 +114,11 @@ def require_no_contradiction(settings: Settings, tension: float, uncertainty: fl
 
 
 def _chain_end(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[str, str]:
-    """Return a warning where a chain ends too near to its contact."""
+    """Return {"chain_end": warning} where a chain ends too near to its contact, {} where it does not.
+
+    Too near: its end reflects more of a displacement than the tolerance, or the outermost particles carry more than the
+    tolerance of the largest pressure.
+    """
     share = max(end_pressure_share(state.profile) for state in states)
     ends = reflected(scene, settings.law, settings.largest_displacement, settings.chains.upper)
     if ends > settings.tolerance:
@@ -122,7 +138,10 @@ def _chain_end(scene: Scene, settings: Settings, states: tuple[State, ...]) -> d
 
 
 def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[str, str]:
-    """Return warnings, by name, about what limits the accuracy of states that are results."""
+    """Return warnings about what limits the accuracy of states that are results, by name; {} for none.
+
+    Names: "chain_end", "cutoff", "slow", "snaps", "table_core". `states`: one at least.
+    """
     warnings = _chain_end(scene, settings, states) if states[0].rule.ends_with_chain else {}
     share = settings.forces.share(scene)
     if share > settings.tolerance:
@@ -154,7 +173,7 @@ def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[
 def slowness(scene: Scene, settings: Settings, least: float = 10.0) -> str:
     """Return why relaxation is at least `least` times slower than with automatic values: seconds become minutes.
 
-    Empty where it is not, or where the motion itself is studied (a slide).
+    "" where it is not, without damping, or where the motion itself is studied (a slide).
     """
     if scene.method != "dynamic" or not scene.damping or scene.experiment.motion_is_result:
         return ""
@@ -176,18 +195,24 @@ def slowness(scene: Scene, settings: Settings, least: float = 10.0) -> str:
 
 
 def _mass(scene: Scene, settings: Settings) -> float:
-    """Return the moving mass [MU]: of plate and upper particles, or without a plate of each particle."""
+    """Return the moving mass [MU]: of plate and upper particles together, or without a plate of one particle."""
     particle = scene.bodies.mass
     return settings.motion.plate_mass + settings.chains.upper * particle if scene.plate else particle
 
 
 def _drag(scene: Scene, settings: Settings) -> float:
-    """Return the drag on the moving mass [FU·TU/LU]."""
+    """Return the drag on the moving mass [FU·TU/LU], on plate and particles together.
+
+    Without a plate, on one particle.
+    """
     return settings.drag() if scene.plate else settings.motion.damping
 
 
 def _steps(scene: Scene, settings: Settings) -> float:
-    """Return the timesteps of a relaxation; the settling time is 2π √(M/K)."""
+    """Return the number of timesteps of a relaxation: the longer decay time, 2M/c or c/K, over the timestep.
+
+    K follows from the settling time 2π √(M/K).
+    """
     mass, drag = _mass(scene, settings), _drag(scene, settings)
     stiffness = mass * (2.0 * math.pi / settings.motion.settle_time) ** 2
     return max(2.0 * mass / drag, drag / stiffness) / settings.motion.time_step

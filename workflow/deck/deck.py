@@ -43,22 +43,26 @@ class Deck:
 
     @cached_property
     def units(self) -> DeckUnits:
-        """Return the units of the text and of system.data."""
+        """The units of the text and of system.data."""
         return units_for(self.scene)
 
     @cached_property
     def written(self) -> tuple[Scene, Settings]:
-        """Return scene and settings in the units of the deck."""
+        """Scene and settings in the units of the deck."""
         return self.units.scene(self.scene), self.units.settings(self.settings)
 
     @cached_property
     def stepped(self) -> bool:
-        """Return whether no particle has to relax, so that all rows of a phase are steps of one run."""
+        """Whether no particle has to relax, so that all rows of a phase are steps of one run."""
         return self.scene.is_stepped
 
     @cached_property
     def parts(self) -> tuple[Contribution, ...]:
-        """Return the parts of bodies, lower body, effects and method, in deck order."""
+        """The parts of bodies, lower body, effects and method, in deck order.
+
+        Raises:
+            SettingsError: the box of an interaction has too many bins for LAMMPS.
+        """
         scene, settings = self.written
         mounting = rigidly_mounted if scene.stands else free_to_move
         parts = [*contributions(scene, settings), *mounting(scene, settings)]
@@ -70,7 +74,7 @@ class Deck:
 
     @cached_property
     def head(self) -> str:
-        """Return the text before the schedule.
+        """The LAMMPS text before the schedule, with a title, in units of the deck.
 
         Raises:
             DeckError: if fragments and variables do not fit together.
@@ -97,15 +101,21 @@ class Deck:
         return title + "\n" + "\n".join(blocks)
 
     def begin(self, phase: str, fragments: Sequence[str] = ()) -> str:
-        """Return the commands before the rows of a phase."""
+        """Return the LAMMPS commands before the rows of a phase: its name as a variable, and those of `fragments`."""
         return indexed({"row_phase": phase}) + commands(fragments)
 
     def row(self, kind: type[Row]) -> str:
-        """Return the commands of one row: displacement or load, then measurement."""
+        """Return the LAMMPS commands of one row: displacement or load, then measurement.
+
+        The variables are defined before.
+        """
         return commands(self._row(kind))
 
     def as_read(self, columns: Mapping[str, NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:
-        """Return numbers of load steps, each of one timestep, as LAMMPS reads them from a list: to 15 digits."""
+        """Return numbers of load steps, each of one timestep, as LAMMPS reads them from a list: to 15 digits.
+
+        Columns (m,) by name, before and after in units of the scene.
+        """
         return {
             name: np.asarray(
                 [
@@ -117,10 +127,10 @@ class Deck:
         }
 
     def in_one_run(self, rows: Sequence[Row], skips: Sequence[int] = ()) -> str:
-        """Return the commands of rows that are positions of the plate, all in one run.
+        """Return the LAMMPS commands of rows that are positions of the plate, all in one run, with their variables.
 
         Args:
-            rows: all of one kind.
+            rows: all of one kind, one at least.
             skips: 1 for each row whose state is not written, 0 for the others; by default all are written.
         """
         columns = zip(*(row.texts(self.units.to_deck) for row in rows), strict=True)
@@ -132,16 +142,22 @@ class Deck:
         return indexed(given) + self.row(type(rows[0])) + deleted(given)
 
     def values(self, row: Row, first: bool) -> str:
-        """Return the definitions of the variables of one row; `first`: no state has been written before."""
+        """Return LAMMPS text that defines the variables of one row, in units of the deck.
+
+        `first`: whether no state has been written before it.
+        """
         texts = (*row.texts(self.units.to_deck), NEW if first else APPENDED)
         return indexed(dict(zip(self._columns(type(row)), texts, strict=False)))
 
     def row_end(self, kind: type[Row]) -> str:
-        """Return the end of a row's measurement; its variables are deleted, as by `next` after the last row."""
+        """Return the LAMMPS commands of the end of a row's measurement, and those that delete its variables."""
         return commands(self._measured) + deleted(self._columns(kind))
 
     def state(self, first: bool) -> str:
-        """Return the commands that write the state of the last row; none where rows of one run have written it."""
+        """Return the LAMMPS commands that write the state of the last row; "" where rows of one run have written it.
+
+        `first`: whether no state has been written before.
+        """
         if self.stepped and self.keeps:
             return ""
         append = "row_append" if self.keeps else "state_append"
@@ -149,7 +165,7 @@ class Deck:
         return indexed({append: NEW if first else APPENDED}) + written + deleted([append])
 
     def text(self, phases: Sequence[Phase]) -> str:
-        """Return in.lammps: the head and a loop for each phase.
+        """Return in.lammps: the head and a loop for each phase; phases without rows are left out.
 
         Raises:
             DeckError: if fragments and variables do not fit together, in the head or in a phase.
@@ -159,7 +175,7 @@ class Deck:
         return f"{self.head}\n{self.schedule(schedule)}"
 
     def schedule(self, phases: Sequence[Phase]) -> str:
-        """Return the loops of phases, each of which has rows."""
+        """Return the LAMMPS text of loops over the rows of phases, each of which must have rows."""
         blocks, first = list[str](), True
         for phase in phases:
             loop = self._loop(phase, first)
@@ -170,23 +186,26 @@ class Deck:
 
     @property
     def keeps(self) -> bool:
-        """Return whether states of the whole loading history are kept."""
+        """Whether states of the whole loading history are kept."""
         return self.scene.output is not None
 
     @property
     def _output(self) -> tuple[str, ...]:
+        """The names of the fragments of the output, at the end of the head."""
         if not self.stepped:
             return ("output",)
         return (self._named("output_swept"), *[self._named("output_states")] * self.keeps, "set_up")
 
     def _named(self, fragment: str) -> str:
+        """Return the name of a fragment, with "_in_units" where the deck has units of its own."""
         return f"{fragment}_in_units" if self.units.are_rescaled else fragment
 
     def _columns(self, kind: type[Row]) -> tuple[str, ...]:
+        """Return the names of the LAMMPS variables that each row of a kind has, in order."""
         return (*kind.columns(), *["row_append"] * (self.keeps and not self.stepped))
 
     def _row(self, kind: type[Row]) -> tuple[str, ...]:
-        """Return the fragments of a row up to its measurement."""
+        """Return the names of the fragments of a row of this kind up to its measurement, in order."""
         step, kept = kind.step, [self._state] * self.keeps
         if kind is Displace and not self.stepped:
             step += "_gently" * self.settings.gentle or "_snapping" * self.settings.snaps
@@ -197,10 +216,12 @@ class Deck:
 
     @property
     def _state(self) -> str:
+        """The name of the fragment that writes a state."""
         return self._named("steps/kept" if self.keeps else "steps/state")
 
     @property
     def _measuring(self) -> tuple[str, ...]:
+        """The names of the fragments before a measurement; () where rows are steps of one run."""
         if self.stepped:
             return ()
         measure = "steps/measuring_energy" if self.scene.cantilever else "steps/measuring"
@@ -208,11 +229,16 @@ class Deck:
 
     @property
     def _measured(self) -> tuple[str, ...]:
+        """The names of the fragments after a measurement; () where rows are steps of one run."""
         if self.stepped:
             return ()
         return ("steps/measured", *(name for part in self.parts for name in part.step_end))
 
     def _loop(self, phase: Phase, first: bool) -> str:
+        """Return the LAMMPS text of a phase: its variables and a loop over its rows, or one run of all.
+
+        `first`: whether no state has been written before.
+        """
         title = f"# phase {phase.name}: {len(phase.rows)} rows\n{self.begin(phase.name, phase.begin)}"
         if self.stepped:
             return f"{title}{self.in_one_run(phase.rows, skipped(phase))}variable        row_phase delete\n"
@@ -234,6 +260,9 @@ class Deck:
 
         Every variable is defined once, before it is needed, and used; every ID is defined once; there is one
         `pair_style` at most, and no group has two integrators.
+
+        Raises:
+            DeckError: one of these does not hold.
         """
         for slot in ("pair_style", "atom_style"):
             styles = [part.name for part in self.parts if getattr(part, slot)]
@@ -281,13 +310,16 @@ class Deck:
 
 
 def _define(owners: dict[str, str], name: str, owner: str) -> None:
-    """Add the owner of a name. Raises DeckError where the name has another owner already."""
+    """Add the owner of a name to `owners`. Raises DeckError where the name has another owner already."""
     if owners.setdefault(name, owner) != owner:
         raise DeckError(f"defined twice: {name}, by {owners[name]} and by {owner}")
 
 
 def _add(owners: dict[str, str], piece: Fragment) -> None:
-    """Add the names that a fragment defines. Raises DeckError where it needs or redefines an undefined name."""
+    """Add the names that a fragment defines to `owners`. Raises DeckError where it needs an undefined name.
+
+    Or where it redefines one, or defines one that has another owner already.
+    """
     missing = sorted({*piece.needs, *piece.redefines} - owners.keys())
     if missing:
         raise DeckError(f"used but not defined: {', '.join(missing)}, in {piece.name}")

@@ -41,17 +41,18 @@ class Fragment:
 
     @cached_property
     def commands(self) -> str:
-        """Return the text without its comments."""
+        """The LAMMPS text without its comments."""
         return "".join(line for line in self.text.splitlines(keepends=True) if not line.startswith("#"))
 
 
 @cache
 def fragment(name: str) -> Fragment:
-    """Read `lammps_inputs/fragments/<name>.lmp` and compare its header with its text.
+    """Return the fragment in `lammps_inputs/fragments/<name>.lmp`, whose header is compared with its text.
 
     For a fragment that a deck has several times: with the name "<name>:2" ARM in the text becomes 2, and BEFORE 1.
 
     Raises:
+        FileNotFoundError: there is no such file.
         DeckError: if a header line is missing, or a variable is used that is neither needed nor defined, or named as
             needed and not used.
     """
@@ -74,28 +75,29 @@ def fragment(name: str) -> Fragment:
 
 
 def used_variables(commands: str) -> set[str]:
-    """Return the names of the LAMMPS variables that a piece of LAMMPS text reads."""
+    """Return the names of the LAMMPS variables that a piece of LAMMPS text reads, as ${name} or v_name."""
     return {braced or prefixed for braced, prefixed in VARIABLE_USE.findall(commands)}
 
 
 def _names(line: re.Match[str] | None) -> tuple[str, ...]:
+    """Return the names in a header line, without what is in brackets and without "-"; () where the line is missing."""
     if line is None:
         return ()
     return tuple(word for word in re.sub(r"\([^)]*\)", " ", line[1]).split() if word != "-")
 
 
 def indexed(variables: Mapping[str, str]) -> str:
-    """Return lines that define LAMMPS variables."""
+    """Return LAMMPS lines that define variables, `variable NAME index VALUE`; "" for none."""
     return "".join(f"variable        {name} index {value}\n" for name, value in variables.items())
 
 
 def deleted(names: Iterable[str]) -> str:
-    """Return lines that delete LAMMPS variables."""
+    """Return LAMMPS lines that delete variables of these names; "" for none."""
     return "".join(f"variable        {name} delete\n" for name in names)
 
 
 def block(name: str, variables: Mapping[str, str]) -> str:
-    """Return a fragment with the variables that it needs between its header and its commands."""
+    """Return the text of a fragment, with lines that define `variables` between its header and its commands."""
     piece = fragment(name)
     header = len(KEYS) + bool(piece.redefines)
     comments = piece.text[: len(piece.text) - len(piece.text.split("\n", header)[header])]
@@ -103,11 +105,11 @@ def block(name: str, variables: Mapping[str, str]) -> str:
 
 
 def commands(names: Sequence[str]) -> str:
-    """Return the commands of fragments, one after the other."""
+    """Return the commands of fragments of these names, one after the other and without comments; "" for none."""
     return "".join(fragment(name).commands for name in names)
 
 
 def listed(name: str, texts: Sequence[str], per_line: int = 6) -> str:
-    """Return a `variable … index` with its values over several lines."""
+    """Return a LAMMPS line `variable NAME index …` with its values as text, `per_line` of them on each of its lines."""
     lines = [" ".join(texts[start : start + per_line]) for start in range(0, len(texts), per_line)]
     return f"variable        {name} index " + " &\n                ".join(lines) + "\n"

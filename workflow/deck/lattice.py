@@ -31,7 +31,7 @@ class Body:
 
     Attributes:
         name: "lower" or "upper".
-        particles: undeformed positions.
+        particles: undeformed positions at displacement 0.
         anchors: the bulk's ends of the bulk springs, shape (0, 3) where particles are fixed in the body.
         far_anchors: the bulk's ends of the long bonds, shape (N, 3), or (0, 3).
     """
@@ -42,15 +42,15 @@ class Body:
     far_anchors: Array
 
 
-def places(count: int, spacing: float) -> Array:
-    """Return the positions of particles, x_i = (i − (N−1)/2)·spacing [LU], shape (count,)."""
+def particle_positions(count: int, spacing: float) -> Array:
+    """Return the positions of `count` particles along x, x_i = (i − (N−1)/2)·spacing [LU], shape (count,)."""
     return np.asarray((np.arange(count) - 0.5 * (count - 1)) * spacing, dtype=np.float64)
 
 
 def neighbour_forces(particles: Array, stiffness: float) -> Array:
     """Return the forces r_i [FU], (N, 3), of zero-length neighbour springs on the chain `particles` (N, 3) [LU].
 
-    Their sum is 0. A periodic chain has no such forces.
+    `stiffness`: k_n of the springs [FU/LU]. Their sum is 0. A periodic chain has no such forces.
     """
     pull = stiffness * np.diff(particles, axis=0)
     force = np.zeros_like(particles)
@@ -60,8 +60,8 @@ def neighbour_forces(particles: Array, stiffness: float) -> Array:
 
 
 def bodies(scene: Scene, settings: Settings) -> tuple[Body, ...]:
-    """Return the bodies of a scene, the lower one first; on a rigid plane the upper one alone."""
-    x = places(settings.chains.upper, scene.bodies.own_spacing)
+    """Return the bodies of a scene at displacement 0, (lower, upper); on a rigid plane (upper,) alone."""
+    x = particle_positions(settings.chains.upper, scene.bodies.own_spacing)
     flat = np.zeros_like(x)
     offset = settings.forces.table.plane_offset if settings.forces.table else 0.0
     along = x + start_offset(scene, settings)
@@ -71,7 +71,7 @@ def bodies(scene: Scene, settings: Settings) -> tuple[Body, ...]:
     upper = np.column_stack([along, flat + offset, settings.forces.rest + scene.bodies.height(x)])
     if scene.bodies.lower == "rigid_plane":
         return (_body("upper", upper, scene, settings),)
-    below = places(settings.chains.lower, scene.bodies.spacing)
+    below = particle_positions(settings.chains.lower, scene.bodies.spacing)
     lower = np.column_stack([below, 0.0 * below, 0.0 * below])
     if scene.bodies.lower == "rigid_chain":
         return Body("lower", lower, *2 * (np.empty((0, 3)),)), _body("upper", upper, scene, settings)
@@ -79,12 +79,12 @@ def bodies(scene: Scene, settings: Settings) -> tuple[Body, ...]:
 
 
 def period(scene: Scene, settings: Settings) -> float:
-    """Return the period of periodic bodies [LU]."""
+    """Return the length of a period of periodic bodies along x [LU], whether or not they are periodic."""
     return settings.chains.lower * scene.bodies.spacing
 
 
 def start_offset(scene: Scene, settings: Settings) -> float:
-    """Return the position of the upper body's middle along x [LU]: as given, or 0.
+    """Return the position of the upper body's middle along x [LU]: as given, in a slide half a spacing at most, else 0.
 
     In a slide particles begin between the opposite ones: on top of them the equilibrium is unstable.
     """
@@ -99,6 +99,10 @@ def start_offset(scene: Scene, settings: Settings) -> float:
 
 
 def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body:
+    """Return a body with its anchors, moved so that neighbour springs have no force on the undeformed chain.
+
+    `particles`: positions, (N, 3) [LU].
+    """
     none = np.empty((0, 3))
     if scene.stands:
         return Body(name, particles + _staggered(particles, scene), none, none)
@@ -123,7 +127,7 @@ def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body
 
 
 def _staggered(particles: Array, scene: Scene) -> Array:
-    """Return the shift of a plate's atoms out of the plane, (N, 3) [LU]; 0 without a plate."""
+    """Return the shift of a plate's atoms out of the plane, (N, 3) [LU], of alternating sign; 0 without a plate."""
     shift = np.zeros_like(particles)
     if scene.plate:
         shift[:, 1] = STAGGER_SHARE * len(particles) * scene.bodies.own_spacing * (-1.0) ** np.arange(len(particles))

@@ -25,7 +25,7 @@ CHOSEN_BINS = ("far_bin", "wide_bin")
 
 
 def rigidly_mounted(scene: Scene, settings: Settings) -> list[Contribution]:
-    """Return the parts of a rigid body over a plane that has its springs: in single steps, or moved in time."""
+    """Return the parts of a rigid body over a plane that has its springs: moved in single steps, or in time."""
     if not scene.is_stepped:
         clock = Contribution("dynamic", Stage.MOTION, ("clock",), {"time_step": number(settings.motion.time_step)})
         body = Contribution("bodies", Stage.BODIES, ("standing_plate",))
@@ -55,7 +55,7 @@ def free_to_move(scene: Scene, settings: Settings) -> list[Contribution]:
 
 
 def bins(scene: Scene, settings: Settings, parts: Sequence[Contribution], most: int = 4_000_000) -> list[Contribution]:
-    """Return the part that enlarges the bins, so that the box has `most` at most; none where it has no more anyway.
+    """Return the part that enlarges the bins, so that the box has `most` at most; [] where it has no more anyway.
 
     Without it the edge of a bin is half the reach of the forces, LAMMPS's choice, or what one of the `parts` has set.
     By default bins take some 100 MB.
@@ -69,6 +69,7 @@ def bins(scene: Scene, settings: Settings, parts: Sequence[Contribution], most: 
     default = edge = max([*chosen, 0.5 * reach(scene, settings)])
 
     def exceed(bin_edge: float, limit: float) -> bool:
+        """Return whether the box has more bins of this edge [LU] than the limit."""
         return bool(np.log(np.maximum(edges / bin_edge, 1.0)).sum() > math.log(limit))  # the number may overflow
 
     while exceed(edge, most):
@@ -85,17 +86,18 @@ def bins(scene: Scene, settings: Settings, parts: Sequence[Contribution], most: 
 
 
 def unit_conversion(units: DeckUnits) -> Contribution:
-    """Return the variables that convert the numbers of a deck with rescaled units to LU and FU."""
+    """Return the part with the variables that convert the numbers of a deck with rescaled units to LU and FU."""
     variables = {"unit_length": number(units.length), "unit_force": number(units.force)}
     return Contribution("units", Stage.MOTION, ("units",), variables)
 
 
 def plane_depth(scene: Scene, settings: Settings) -> float:
-    """Return the depth of the wall's origin below the plane [LU]: far below the deepest expected displacement."""
+    """Return the depth of the wall's origin below the plane, positive [LU], far below the deepest displacement."""
     return 1e3 * max(settings.largest_displacement, scene.bodies.spacing)
 
 
 def _plane(fragment: str, scene: Scene, settings: Settings) -> Contribution:
+    """Return the part of a rigid plane: a one-sided wall with its stiffness, by one of its fragments."""
     depth = plane_depth(scene, settings)
     variables = {
         "plane_position": number(-depth),
@@ -108,6 +110,7 @@ def _plane(fragment: str, scene: Scene, settings: Settings) -> Contribution:
 
 
 def _method(scene: Scene, settings: Settings) -> Contribution:
+    """Return the part of a relaxation by the minimiser, or of a motion in time."""
     if scene.method == "quasistatic":
         variables = {
             "force_tolerance": number(settings.forces.residual),
@@ -125,7 +128,7 @@ def _method(scene: Scene, settings: Settings) -> Contribution:
 
 
 def margins(scene: Scene, settings: Settings) -> tuple[float, float, float]:
-    """Return the free space along x, y and z [LU] between the bodies and the walls of the box."""
+    """Return the free space along x, y and z [LU] between the bodies and the walls of the box, whole numbers."""
     spacing = scene.bodies.spacing
     side = 20.0 * spacing + scene.experiment.excursion
     head = 10.0 * max(spacing, settings.forces.cutoff) + 2 * abs(settings.largest_displacement)
@@ -139,5 +142,5 @@ def margins(scene: Scene, settings: Settings) -> tuple[float, float, float]:
 
 
 def reach(scene: Scene, settings: Settings) -> float:
-    """Return the distance [LU] up to which LAMMPS lists neighbours."""
+    """Return the distance [LU] up to which LAMMPS lists neighbours: cutoff and skin."""
     return settings.forces.cutoff + skin(scene)

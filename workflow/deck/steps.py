@@ -38,11 +38,14 @@ class Row:
 
     @classmethod
     def columns(cls) -> tuple[str, ...]:
-        """Return the names of the LAMMPS variables, in order."""
+        """Return the names of the LAMMPS variables, in order: "row_" and the name of each field."""
         return tuple(f"row_{field.name}" for field in fields(cls))
 
     def texts(self, to_deck: Callable[[float, str], float]) -> tuple[str, ...]:
-        """Return the values as LAMMPS text; `to_deck` converts a value with its unit to that of the deck."""
+        """Return the values of the fields as LAMMPS text.
+
+        `to_deck` converts a value with its unit to that of the deck.
+        """
         return tuple(
             str(value) if isinstance(value, int) else number(to_deck(value, UNITS[name]))
             for name, value in vars(self).items()
@@ -83,7 +86,12 @@ class Spend(Displace):
 
 @dataclass(frozen=True)
 class Draw(Row):
-    """The plate moves to a displacement and a position along x [LU], in a straight line, its particles with it."""
+    """The plate moves to a displacement and a position along x [LU], in a straight line, its particles with it.
+
+    Attributes:
+        displacement: towards the other body [LU].
+        place: position along x [LU].
+    """
 
     step: ClassVar[str] = "sweep_along"
     displacement: float
@@ -183,7 +191,10 @@ class Phase:
 
 
 def numbered(name: str, taken: Sequence[str]) -> str:
-    """Return the name of a phase: "loading", and where that is taken "loading_2", "loading_3", …"""
+    """Return the name of a phase: "loading", and where that is taken, "loading_2", "loading_3", …
+
+    `taken`: names of the phases before it.
+    """
     count = 1 + sum(phase.partition("_")[0] == name for phase in taken)
     return name if count == 1 else f"{name}_{count}"
 
@@ -193,15 +204,21 @@ SWEPT: tuple[type[Row], ...] = (Displace, Cohere, Spend, Draw)
 
 
 def swept(columns: Mapping[str, NDArray[np.float64]]) -> list[Row]:
-    """Return the rows of load steps on a rigid plane with these columns, (m,), by their names."""
+    """Return the rows of load steps on a rigid plane with these columns, (m,), by their names: a row for each element.
+
+    The names choose the kind of row.
+
+    Raises:
+        StopIteration: no kind of row has them.
+    """
     variables = tuple(f"row_{name}" for name in columns)
     kind = next(kind for kind in SWEPT if kind.columns() == variables)
     return [kind(*numbers) for numbers in zip(*(column.tolist() for column in columns.values()), strict=True)]
 
 
-def displacements(places: Sequence[float]) -> tuple[Displace, ...]:
-    """Return rows that set the plate to each of the displacements [LU]."""
-    return tuple(Displace(float(place)) for place in places)
+def displacements(positions: Sequence[float]) -> tuple[Displace, ...]:
+    """Return rows that set the plate to each of the displacements [LU], in order."""
+    return tuple(Displace(float(position)) for position in positions)
 
 
 STATES = "states.lammpstrj"
@@ -211,7 +228,11 @@ NONE, NEW, APPENDED = "none", "no", "yes"
 
 
 def chosen(rows: Sequence[int], wanted: int | str, marked: Collection[int] = ()) -> list[int]:
-    """Return the numbers of the rows to keep, rising: all, or as many as `wanted`, evenly spaced, with the `marked`."""
+    """Return the numbers of the rows to keep, rising: all, or as many as `wanted`, evenly spaced, with the `marked`.
+
+    Marked rows take the place of the nearest others, but not of the first and the last; of too many there are more than
+    `wanted`. All where that is "all", or there are no more.
+    """
     if wanted == "all" or len(rows) <= int(wanted):
         return list(rows)
     kept = {rows[i] for i in np.linspace(0, len(rows) - 1, int(wanted)).round().astype(int)}
@@ -225,13 +246,13 @@ def chosen(rows: Sequence[int], wanted: int | str, marked: Collection[int] = ())
 
 
 def marked_rows(phases: Sequence[Phase]) -> list[int]:
-    """Return the numbers, over all phases, of the rows whose state a phase writes at its end."""
+    """Return the numbers, over all phases from 0 on, of the rows whose state a phase writes at its end."""
     ends = np.cumsum([len(phase.rows) for phase in phases]).tolist()
     return [end - 1 for phase, end in zip(phases, ends, strict=True) if phase.state and phase.rows]
 
 
 def keeping(phases: Sequence[Phase], rows: Collection[int]) -> tuple[Phase, ...]:
-    """Return the phases with `kept` set for the rows of these numbers."""
+    """Return the phases with `kept` set: true for the rows of these numbers over all phases, false for the others."""
     result, first = [], 0
     for phase in phases:
         result.append(replace(phase, kept=tuple(first + i in rows for i in range(len(phase.rows)))))
@@ -240,7 +261,11 @@ def keeping(phases: Sequence[Phase], rows: Collection[int]) -> tuple[Phase, ...]
 
 
 def appended(phase: Phase, in_one_run: bool, first: bool) -> list[str]:
-    """Return `row_append` of each row of a phase; `first`: no frame has been written before it."""
+    """Return `row_append` of each row of a phase: "none" writes no state, "no" begins the file, "yes" appends to it.
+
+    `first`: whether no frame has been written before it. Of the last row of a phase with a state the phase writes the
+    frame, unless rows are `in_one_run`.
+    """
     wanted = _kept(phase)
     if phase.state and not in_one_run:
         wanted[-1] = False
@@ -252,11 +277,15 @@ def appended(phase: Phase, in_one_run: bool, first: bool) -> list[str]:
 
 
 def skipped(phase: Phase) -> list[int]:
-    """Return 0 for each row of a phase that is kept, where rows are steps of one run, and 1 for the others."""
+    """Return 0 for each row of a phase whose state is kept and 1 for the others, where rows are steps of one run."""
     return [int(not keep) for keep in _kept(phase)]
 
 
 def _kept(phase: Phase) -> list[bool]:
+    """Return whether the state of each row of a phase is kept.
+
+    Always of the last one where the phase writes its state.
+    """
     wanted = list(phase.kept) if phase.kept is not None else [True] * len(phase.rows)
     if phase.state:
         wanted[-1] = True
@@ -264,9 +293,12 @@ def _kept(phase: Phase) -> list[bool]:
 
 
 def leave_out(folder: Path, phases: Sequence[Phase], in_one_run: bool) -> None:
-    """Rewrite the states of a run without the unwanted ones.
+    """Rewrite the file of states in a folder without the unwanted ones; whole or not at all.
 
     The run has written one frame for each row, and one more where a phase has a state.
+
+    Raises:
+        ValueError: the file has another number of frames.
     """
     wanted: list[bool] = []
     for phase in (phase for phase in phases if phase.rows):
@@ -280,7 +312,7 @@ def leave_out(folder: Path, phases: Sequence[Phase], in_one_run: bool) -> None:
 
 
 def _frames(path: Path) -> Iterator[bytes]:
-    """Yield the frames of a dump, with one in memory at a time."""
+    """Yield the frames of a dump as bytes, with one in memory at a time."""
     lines: list[bytes] = []
     with path.open("rb") as file:
         for line in file:

@@ -64,7 +64,7 @@ def assemble(
     driver: bool = False,
     period: float = 0.0,
 ) -> System:
-    """Number the atoms (particles first, lower body first) and bond them.
+    """Return the atoms and bonds of the bodies: numbered (particles first, lower body first) and bonded.
 
     Args:
         bodies: what `workflow.deck.lattice.bodies` returns.
@@ -99,7 +99,7 @@ def assemble(
 
 
 def _groups(bodies: Sequence[Body], driver: bool) -> dict[int, NDArray[np.float64]]:
-    """Return the positions [LU] of the atoms of each type, each (N, 3)."""
+    """Return the positions [LU] of the atoms by their type, (N, 3) each, in the order of their numbers."""
     groups = {PARTICLES[body.name]: body.particles for body in bodies}
     groups |= {ANCHORS[body.name]: body.anchors for body in bodies}
     if len(bodies[-1].far_anchors):
@@ -110,12 +110,18 @@ def _groups(bodies: Sequence[Body], driver: bool) -> dict[int, NDArray[np.float6
 
 
 def _nexts(chain: Integers, periodic: bool) -> tuple[Integers, Integers]:
-    """Return each particle of a chain and the next one; in a periodic chain the last is followed by the first."""
+    """Return (atom numbers of particles, those of the next ones) of a chain.
+
+    In a periodic one the first follows the last.
+    """
     return (chain, np.roll(chain, -1)) if periodic else (chain[:-1], chain[1:])
 
 
 def write_data(system: System, title: str, path: Path) -> None:
-    """Write a LAMMPS data file for `atom_style bond`, without bonds `atomic`, or `sphere`; whole or not at all."""
+    """Write a LAMMPS data file for `atom_style bond`, without bonds `atomic`, or `sphere`; whole or not at all.
+
+    `title`: its first line.
+    """
     with whole(path) as part, part.open("w") as file:
         file.write(f"# {title}\n\n{len(system.types)} atoms\n{len(system.masses)} atom types\n")
         if system.bond_names:
@@ -144,6 +150,7 @@ def write_data(system: System, title: str, path: Path) -> None:
 
 
 def _bonds(kind: int, first: Integers, second: Integers) -> Integers:
+    """Return rows (type `kind`, first atom, second atom), (n, 3)."""
     return np.column_stack([np.full(len(first), kind), first, second])
 
 
@@ -155,7 +162,7 @@ def _write_rows(file: TextIO, template: str, *columns: NDArray[np.float64] | Int
 
 
 def write_system(deck: Deck, folder: Path) -> None:
-    """Write the input files of a deck: system.data, and interaction.table or adhesion.cells if it has one."""
+    """Write the input files of a deck to a folder: system.data, and interaction.table or the law's file if any."""
     scene, settings = deck.written
     particle_mass, plate_mass = inertia(scene, settings)
     anchor_mass = plate_mass / settings.chains.upper if scene.plate else particle_mass
@@ -181,7 +188,10 @@ def write_system(deck: Deck, folder: Path) -> None:
 
 
 def _write_columns(columns: Mapping[str, NDArray[np.float64]], path: Path) -> None:
-    """Write numbers of each particle for `variable atomfile`, the columns below each other."""
+    """Write numbers of each particle, (n,) by name, for `variable atomfile`, the columns below each other.
+
+    Whole or not at all.
+    """
     blocks = []
     for name, column in columns.items():
         rows = "".join(f"{i} {number(value)}\n" for i, value in enumerate(column, 1))

@@ -41,23 +41,26 @@ class DeckUnits:
 
     @property
     def are_rescaled(self) -> bool:
-        """Return whether the units differ from those of the scene."""
+        """Whether the units differ from those of the scene."""
         return (self.length, self.force) != (1.0, 1.0)
 
     def of(self, unit: str) -> float:
-        """Return one deck unit of this kind, "FU·TU/LU" for instance, in units of the scene."""
+        """Return one deck unit of this kind, "FU·TU/LU" for instance, in units of the scene (a factor)."""
         return _factor(self.length, self.force, unit)
 
     def to_deck(self, value: float, unit: str) -> float:
-        """Return a number of the scene in deck units."""
+        """Return a number of the scene, whose unit there is `unit`, in deck units."""
         return value / self.of(unit) if self.are_rescaled else value
 
     def from_deck(self, value: Value, unit: str) -> Value:
-        """Return a number of the deck, or an array of such, in the scene's units."""
+        """Return a number of the deck, or an array of such, in the scene's `unit`."""
         return value * self.of(unit) if self.are_rescaled else value
 
     def scene(self, scene: Scene) -> Scene:
-        """Return the scene with its numbers in deck units, and with the values that follow from a material."""
+        """Return the scene with its numbers in deck units, and with the values that follow from a material.
+
+        The scene itself where the units are its own.
+        """
         if not self.are_rescaled:
             return scene
         given = {"bulk_stiffness": scene.bulk_stiffness, "bulk_stiffness_tangential": scene.tangential_stiffness}
@@ -69,7 +72,10 @@ class DeckUnits:
         return Scene.model_validate(data)
 
     def settings(self, settings: Settings) -> Settings:
-        """Return the settings in deck units, except for the predictor, which no deck uses."""
+        """Return the settings in deck units, except for the predictor, which no deck uses.
+
+        The settings themselves where the units are those of the scene.
+        """
         if not self.are_rescaled:
             return settings
         converted: Settings = self._converted(settings)
@@ -92,6 +98,7 @@ class DeckUnits:
         return replace(record, **changed)
 
     def _law(self, law: DoubleExponential) -> DoubleExponential:
+        """Return an interaction in deck units."""
         terms = [
             None if term is None else Exponential(self.to_deck(term.amplitude, "FU·LU"), self.to_deck(term.range, "LU"))
             for term in (law.repulsion, law.attraction)
@@ -102,12 +109,15 @@ class DeckUnits:
 
 @cache
 def _factor(length: float, force: float, unit: str) -> float:
-    """Return one deck unit in units of the scene; cached, since each number of each load step needs it."""
+    """Return one deck unit of the kind `unit` in units of the scene.
+
+    Cached, since each number of each load step needs it. `length` and `force`: one deck unit of these [LU], [FU].
+    """
     return float(length ** SI[unit].length * force ** SI[unit].force)
 
 
 def units_for(scene: Scene) -> DeckUnits:
-    """Return the scene's own units where they suit LAMMPS, otherwise powers of ten that give numbers near 1."""
+    """Return the units of a deck: the scene's own where these suit LAMMPS, else powers of ten for numbers near 1."""
     terms = scene.interaction
     shortest = scene.bodies.spacing if terms is None else terms.repulsion.range
     length = force = 1.0

@@ -47,7 +47,9 @@ class EngineError(Contact1dError, RuntimeError):
 
 
 def plain_message(raw: str, log: str = "", commands: str = "") -> str:
-    """Return LAMMPS's error text as one sentence that quotes the failed command or formula.
+    """Return LAMMPS's error text as one sentence, "LAMMPS stopped: …", that quotes the failed command or formula.
+
+    Without the quotation where neither text nor log has it.
 
     Args:
         raw: the text of LAMMPS, with its prefix, source location and pointer to the manual.

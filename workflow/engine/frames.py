@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 def last_frames(
     path: Path, frames: int, atoms: int, columns: int, start: int, part: slice = slice(None)
 ) -> tuple[NDArray[np.float64], int]:
-    """Return the frames from byte `start` on, or a part of them, atoms by ascending id, and the end of the file.
+    """Return (numbers of the frames from byte `start` on, or of a part of them; the end of the file [bytes]).
 
-    A frame is a header, of equal length in all frames, and then its numbers, atom by atom.
+    The numbers have the shape (frames of the part, atoms, columns − 1), atoms by ascending id, without the ids. A frame
+    is a header, of equal length in all frames, and then its numbers, atom by atom.
 
     Args:
         path: the dump.
@@ -22,11 +23,8 @@ def last_frames(
         start: where to begin [bytes].
         part: the frames that are read.
 
-    Returns:
-        Shape (frames of the part, atoms, columns - 1), without the ids; the length of the file [bytes].
-
     Raises:
-        ValueError: the file has other frames.
+        ValueError: the file has other frames, or the atoms change their order between them.
     """
     size, numbers = path.stat().st_size - start, 8 * atoms * columns
     if size % frames or size < frames * numbers:

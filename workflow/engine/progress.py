@@ -17,7 +17,7 @@ class Progress(Protocol):
         """Begin a phase of `expected_steps` steps, or whatever is `counted`; None where the number is unknown."""
 
     def advance(self, steps: int) -> None:
-        """Note that this number of steps of the phase is done."""
+        """Note that this number of further steps of the phase is done."""
 
     def note(self, text: str) -> None:
         """Show one line of text."""
@@ -59,13 +59,13 @@ class Lines:
     _expected: int | None
 
     def phase(self, name: str, expected_steps: int | None = None, counted: str = "step") -> None:
-        """Write the name and the expected steps."""
+        """Write the name and the expected number of steps, if known."""
         self._name, self._expected, self._done, self._counted = name, expected_steps, 0, counted
         self._start = self._last = time.monotonic()
         self.note(name if expected_steps is None else f"{name}: {expected_steps} {counted}s")
 
     def advance(self, steps: int) -> None:
-        """Count; write the count if the last line is old enough."""
+        """Count further steps; write count, rate and expected time left if the last line is old enough."""
         self._done += steps
         now = time.monotonic()
         if now - self._last < self._quiet:
@@ -124,7 +124,7 @@ class Bar:
         self._task = self._rich.add_task(name, total=expected_steps)
 
     def advance(self, steps: int) -> None:
-        """Move the bar by these steps."""
+        """Move the bar by this number of steps; nothing before the first phase."""
         if self._task is not None:
             self._rich.advance(self._task, steps)
 
@@ -138,12 +138,13 @@ class Bar:
         self._rich.stop()
 
     def _drop(self) -> None:
+        """Remove the bar of the phase, if there is one."""
         if self._task is not None:
             self._rich.remove_task(self._task)
             self._task = None
 
 
 def choose_progress(stream: TextIO | None = None) -> Progress:
-    """Return a bar if the stream (standard error by default) is a terminal, otherwise plain lines."""
+    """Return a bar if the stream is a terminal, otherwise plain lines; None: standard error."""
     stream = stream or sys.stderr
     return Bar(stream) if stream.isatty() else Lines(stream)

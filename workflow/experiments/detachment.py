@@ -2,6 +2,8 @@
 
 The detachment force is the tension when the plate last leaves the position of the force maximum: it scatters, and
 grows with the rate, since a slow pull waits longer for a fluctuation that separates the bodies.
+
+Displacements d [LU] are positive in compression, tensions [FU] in tension.
 """
 
 from __future__ import annotations
@@ -44,10 +46,10 @@ class Detachment:
     """Force, time and states of one pull up to the separation.
 
     Attributes:
-        force: tension [FU] when the plate last left the position of the force maximum.
-        time: time since the pull began [TU].
-        phases: the schedule.
-        states: the states of all load steps.
+        force: tension [FU], positive, when the plate last left the position of the force maximum.
+        time: time since the pull began [TU], until then.
+        phases: the schedule; empty but for the scene's own seed.
+        states: the states of all load steps; empty but for the scene's own seed.
         held: the last state before the separation.
     """
 
@@ -60,15 +62,15 @@ class Detachment:
 
 @dataclass(frozen=True)
 class Ramp:
-    """The load ramp: a staircase, of which each load step adds an increment to the load.
+    """The load ramp: a staircase, of which each load step adds an increment to the tension.
 
     With a spring the increment is that of its force on a plate at rest: its far end moves by rise/spring.
 
     Attributes:
         steps, time: timesteps and duration [TU] of a load step.
-        rise: increment of the tension [FU].
-        largest: pull-off force of the predictor [FU].
-        barrier, separated: displacements beyond which the tension is less than F_A, and next to 0 [LU].
+        rise: increment of the tension [FU], positive.
+        largest: pull-off force F_A of the predictor [FU].
+        barrier, separated: displacements below which the tension is less than 99 % and 1 % of F_A [LU].
         escape_energy: energy that no thermal fluctuation gives to the plate [FU·LU].
         spring: stiffness [FU/LU]; 0 where a load pulls.
         slack: displacement at which the spring is slack at the start [LU].
@@ -85,41 +87,45 @@ class Ramp:
     slack: float
 
     def row(self, number: int) -> Row:
-        """Return the load step of a number, counted from 1."""
+        """Return the load step of a number, counted from 1: of a spring, else of a load."""
         if self.spring:
             return DrawnOff(self.spring, self.slack - number * self.rise / self.spring, self.steps)
         return UnderLoad(-number * self.rise, self.steps)
 
     def tension(self, number: float, displacement: float) -> float:
-        """Return the tension [FU] on a plate at a displacement [LU] after a number of load steps."""
+        """Return the tension [FU], compression negative, on a plate at a displacement [LU] after `number` steps."""
         return number * self.rise - self.spring * (self.slack - displacement)
 
     def until(self, tension: float) -> int:
-        """Return the number of load steps after which a plate at the barrier feels a tension [FU]."""
+        """Return the number of load steps after which a plate at the barrier feels a tension [FU], rounded up."""
         return math.ceil((tension - self.tension(0.0, self.barrier)) / self.rise)
 
     @property
     def escape_work(self) -> float:
         """Work [FU·LU] of the load after which a plate cannot come back: more than fluctuations and attraction do.
 
-        The attraction does F_A (d_A − d_0) at most, d_0 the position beyond which there is none.
+        The attraction does F_A (d_A − d_0) at most, d_A the displacement of the barrier and d_0 the one below which
+        there is none.
         """
         return self.largest * (self.barrier - self.separated) + self.escape_energy
 
     @property
     def most(self) -> int:
-        """Number of load steps after which the bodies must have separated."""
+        """Number of load steps after which the bodies must have separated, at ten times the pull-off force and more."""
         far = self.spring * (self.barrier - self.separated) + math.sqrt(2.0 * self.spring * self.escape_work)
         return self.until(MOST_TENSION * self.largest + 2.0 * far)
 
     def has_separated(self, number: int, displacement: float) -> bool:
-        """Whether a plate at a displacement [LU] cannot return: there is no attraction, and the load is tensile."""
+        """Whether a plate at a displacement [LU] after `number` load steps cannot return.
+
+        There is no attraction, and the load did more work than `escape_work` from the barrier on.
+        """
         mean = 0.5 * (self.tension(number, self.barrier) + self.tension(number, displacement))
         return displacement < self.separated and mean * (self.barrier - displacement) > self.escape_work
 
 
 def load_ramp(scene: Scene, settings: Settings, experiment: PullOff, increments: int = 400) -> Ramp:
-    """Return the load ramp of a pull-off under noise.
+    """Return the load ramp of a pull-off under noise, by a spring or a load.
 
     It has `increments` load steps up to the predicted pull-off force, or fewer, so that each has 10 timesteps.
     """
@@ -135,7 +141,7 @@ def load_ramp(scene: Scene, settings: Settings, experiment: PullOff, increments:
 
 
 def planned_detachment(scene: Scene, settings: Settings, experiment: PullOff) -> tuple[Phase, Phase, Phase]:
-    """Return the planned phases of a pull, up to 1.1 times the predicted pull-off force."""
+    """Return the planned phases "loading", "settling" and "pulling", up to 1.1 times the predicted pull-off force."""
     ramp = load_ramp(scene, settings, experiment)
     rows = tuple(ramp.row(number) for number in range(1, ramp.until(1.1 * ramp.largest) + 1))
     before = run_in("loading", settings, experiment.preload), run_in("settling", settings, 0.0)
@@ -143,9 +149,10 @@ def planned_detachment(scene: Scene, settings: Settings, experiment: PullOff) ->
 
 
 def run_pulls(context: RunContext, experiment: PullOff) -> list[Detachment]:
-    """Run the pulls with the scene's seed and the seeds after it, `context.workers` of them at a time.
+    """Run the pulls with the scene's seed and the seeds after it, and return their detachments in this order.
 
-    The files of the run folder belong to the pull with the scene's seed, and only its states are kept.
+    `context.workers` of them run at a time. The files of the run folder belong to the pull with the scene's seed, and
+    only its states are kept.
 
     Raises:
         EngineError, UntrustedError: the first pull failed; its log is then copied to the run folder.
@@ -168,7 +175,10 @@ def run_pulls(context: RunContext, experiment: PullOff) -> list[Detachment]:
 
 
 def _seeded_pull(context: RunContext, experiment: PullOff, number: int, stop: threading.Event) -> Detachment:
-    """Run the pull whose seed is `number` after the scene's, in a separate folder."""
+    """Run the pull whose seed is `number` after the scene's, in a separate folder, and return its detachment.
+
+    Without states and schedule, but for number 0. A log of a failure is copied to the run folder, unless `stop` is set.
+    """
     scene, folder = context.deck.scene, context.folder / FOLDER / str(number) if number else context.folder
     noise = scene.the(Noise)
     seeded = scene.model_copy(update={"noise": noise.model_copy(update={"seed": noise.seed + number})})
@@ -190,7 +200,12 @@ def _seeded_pull(context: RunContext, experiment: PullOff, number: int, stop: th
 
 
 def _pull(context: RunContext, experiment: PullOff, stop: threading.Event) -> Detachment:
-    """Run one pull in the context's folder until the bodies separate or `stop` is set."""
+    """Run one pull in the context's folder until the bodies separate, and return its detachment.
+
+    Raises:
+        UntrustedError: the bodies separate before the pull, or not at ten times the predicted pull-off force; a state
+            is no result; or `stop` is set.
+    """
     scene, settings = context.deck.scene, context.deck.settings
     ramp = load_ramp(scene, settings, experiment)
     *before, pulling = planned_detachment(scene, settings, experiment)
@@ -225,10 +240,12 @@ def _pull(context: RunContext, experiment: PullOff, stop: threading.Event) -> De
 
 
 def pull_off_thermal(context: RunContext, experiment: PullOff) -> Outcome:
-    """Return the detachment force of a pull-off with [noise], its mean and spread over the seeds.
+    """Return the outcome of a pull-off with [noise]: "detachment_force" [FU], the mean over the seeds.
+
+    Of several pulls also their standard deviation, "detachment_force_spread" [FU].
 
     Raises:
-        UntrustedError: the bodies do not separate, or a state is not trusted (`require_trust`).
+        UntrustedError: the bodies do not separate, or a state is no result (`require_trust`).
     """
     scene, settings = context.deck.scene, context.deck.settings
     detachments, ramp = run_pulls(context, experiment), load_ramp(scene, settings, experiment)
@@ -236,7 +253,10 @@ def pull_off_thermal(context: RunContext, experiment: PullOff) -> Outcome:
     series = Series({"seed": seeds} | recorded(detachments, ("force", "time")))
 
     def read(series: Series) -> dict[str, Reading]:
-        """Return mean and spread of the detachment forces [FU]; each force is uniformly distributed in a load step."""
+        """Return mean and, of several pulls, standard deviation of the detachment forces [FU], by name, with errors.
+
+        Each force is uniformly distributed in a load step.
+        """
         count, force = len(series), float(series.mean("force"))
         results = {"detachment_force": Reading(force, FORCE, {"sampling": ramp.rise / math.sqrt(12.0 * count)})}
         if count > 1:
@@ -255,7 +275,7 @@ def pull_off_thermal(context: RunContext, experiment: PullOff) -> Outcome:
 
 
 def _lagging(settings: Settings, ramp: Ramp, experiment: PullOff, most: float = 0.1) -> dict[str, str]:
-    """Return a warning where the load rises by more than `most` F_A while drag delays the separation.
+    """Return {"lagging": warning} where the load rises by over `most` F_A while drag delays the separation, else {}.
 
     With a drag Γ, F_A moves the plate by the range b in a time Γ b/F_A.
     """

@@ -66,7 +66,7 @@ class Experiment(ABC, Generic[K]):
         return None
 
     def advice(self, scene: Scene) -> str:
-        """Return what makes the uncertainty of a result smaller, as a sentence."""
+        """Return which keys of the scene reduce the uncertainty of a result, as a sentence without a full stop."""
         if scene.method == "dynamic":
             return 'Use method = "quasistatic"'
         if not scene.interaction:
@@ -74,7 +74,7 @@ class Experiment(ABC, Generic[K]):
         return f'Use "auto" for interaction.cutoff and bodies.particles; for a radius also {finer_spacing(scene)}'
 
     def branch(self, phase: str) -> str:
-        """Return the branch name of a phase in curve.csv."""
+        """Return the branch name of a phase in curve.csv: by `branches`, else that of the phase, without its number."""
         name = phase.partition("_")[0]
         return self.branches.get(name, name)
 
@@ -83,18 +83,25 @@ class Scripted(Experiment[K]):
     """A script over a branch, and a reader of the resulting trace."""
 
     def is_sampled(self, scene: Scene) -> bool:
-        """Whether the load steps are known beforehand, so that results have a sampling error."""
+        """Whether the load steps are known beforehand, so that results have a sampling error; here False."""
         return False
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """Return the phases of the script on the reduced model; on a rigid plane these are the load steps that run."""
+        """Return the phases of the script on the reduced model; on a rigid plane these are the load steps that run.
+
+        Of a motion in time, the phases that `expected` gives.
+        """
         if scene.method == "dynamic":
             return self.expected(scene, settings)
         case = self.reduction(scene, settings)
         return Plan.of(Deck(scene, settings), case.driven(case.model)).phases
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """Return the phases of a motion, as far as they are known before the run."""
+        """Return the phases of a motion, as far as they are known before the run.
+
+        Raises:
+            NotImplementedError: an experiment has no motion.
+        """
         raise NotImplementedError
 
     @abstractmethod
@@ -103,18 +110,23 @@ class Scripted(Experiment[K]):
 
     @abstractmethod
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """Return the results of the states of a trace, by name."""
+        """Return the results of a trace by name, in units of the scene, with the errors that the reader determines."""
 
     def tables(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Mapping[str, tuple[float, ...]]]:
-        """Return the columns of further files, by the names of the files."""
+        """Return the columns (m,) of further files, by the names of the files and of the columns; here {}."""
         return {}
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """Return the outcome with the warnings and columns of the experiment, or refuse it."""
+        """Return the outcome with the warnings and columns of the experiment, or refuse it; here unchanged."""
         return outcome
 
     def run(self, context: RunContext) -> Outcome:
-        """Run the script on LAMMPS and return the reader's results with their error budget."""
+        """Run the script on LAMMPS and return the results with their error budget, states, warnings and checks.
+
+        Raises:
+            UntrustedError: the result can't be trusted.
+            EngineError: LAMMPS failed.
+        """
         scene, settings = context.deck.scene, context.deck.settings
         case = self.reduction(scene, settings)
         branch, trace = self._driven(context, case)
@@ -137,15 +149,21 @@ class Scripted(Experiment[K]):
         return self.finish(outcome, scene, settings)
 
     def asked(self, trace: Trace, scene: Scene) -> Sequence[tuple[float, float]]:
-        """Return pairs of a force that the scene prescribes and the force of its state [FU]."""
+        """Return pairs (force that the scene prescribes, force of its state) [FU]; here none."""
         return ()
 
     def energy(self, case: Reduction, states: Sequence[State], results: Mapping[str, Result]) -> dict[str, Agreement]:
-        """Return the check of the energy of a motion; load steps on a plane are checked by their driver."""
+        """Return the check of the energy of a motion, by name.
+
+        Here {}, since drivers on a plane check their load steps.
+        """
         return {}
 
     def _driven(self, context: RunContext, case: Reduction) -> tuple[ContactBranch, Trace]:
-        """Run the script on a new contact; return its driver and its trace."""
+        """Run the script on a new contact.
+
+        Return its driver and its trace. `case`: the reduction, whose lattices are prepared.
+        """
         scene = context.deck.scene
         with driver_of(context, lambda: case.lattice) as branch:
             self.script(branch, scene)
@@ -153,7 +171,10 @@ class Scripted(Experiment[K]):
         return branch, branch.trace()
 
     def _slower(self, context: RunContext, case: Reduction, trace: Trace) -> dict[str, list[Trace]]:
-        """Return traces of a motion in longer timesteps, and slower where the program chose inertia or drag."""
+        """Return {"time": traces of repetitions of a motion}; {} where states are no motion in time.
+
+        They are in longer timesteps, and slower where the program chose inertia or drag.
+        """
         if context.deck.scene.method != "dynamic" or not trace.time.any():
             return {}
         traces = []
@@ -164,20 +185,26 @@ class Scripted(Experiment[K]):
 
     @lru_cache(maxsize=1)  # noqa: B019  # what chose the spacing has worked out the lattices of the run
     def reduction(self, scene: Scene, settings: Settings) -> Reduction:
-        """Return script and reader on the reduced model of a scene."""
+        """Return script and reader on the reduced model of a scene; the latest one is cached."""
         script, read = partial(self.script, scene=scene), partial(self.read, scene=scene, settings=settings)
         return Reduction(scene, settings, script, read, self.reduction)
 
 
 def finer_spacing(scene: Scene, size: str = "") -> str:
-    """Return the advice to use a smaller spacing of a `size`, with the keys of a scene that depend on it."""
+    """Return the advice to use a smaller spacing, with the keys of a scene that go with it, as part of a sentence.
+
+    `size`: text on how small, after "spacing".
+    """
     keys = ["bodies.bulk_stiffness"] * (scene.bodies.bulk_stiffness != "auto")
     keys += ["the amplitudes of [interaction]"] * (scene.interaction is not None)
     return f"a smaller bodies.spacing{size}" + (f", with {' and '.join(keys)} in proportion to it" if keys else "")
 
 
 def driver_of(context: RunContext, meanwhile: Callable[[], object]) -> Branch | LoadBranch | PlannedBranch:
-    """Return a new driver: load control in time, planned on a rigid plane with a known law, else a search."""
+    """Return a new driver: load control in time, planned on a rigid plane with a known law, else a search.
+
+    A search repeats the schedule where pairs snap. `meanwhile` is called while LAMMPS starts.
+    """
     scene = context.deck.scene
     if scene.method == "dynamic" and scene.experiment.compression is not None:
         return LoadBranch(context, meanwhile)
@@ -206,7 +233,10 @@ def in_smaller_steps(
     """
 
     def tried(context: RunContext) -> Outcome:
-        """Run the experiment, once more over the full range where the force has a second maximum."""
+        """Run the experiment, once more over the full range where the force has a second maximum.
+
+        Return its outcome.
+        """
         try:
             return run(context)
         except SecondMaximumError:
@@ -215,7 +245,12 @@ def in_smaller_steps(
             return run(context)
 
     def searched(context: RunContext) -> Outcome:
-        """Run the experiment in ever smaller steps until no body passes through the other."""
+        """Run the experiment, in ever smaller steps until no body passes through the other, and return its outcome.
+
+        Raises:
+            ThroughError: they do so in the smallest steps, too; at once with noise, in a slide, or where retries are
+                off.
+        """
         deck = context.deck
         try:
             return tried(context)

@@ -1,4 +1,7 @@
-"""History: a displacement or a force over time, on a rigid plane, of a body that may relax."""
+"""History: a displacement or a force over time, on a rigid plane, of a body that may relax.
+ d [LU] and F [FU] are positive in compression, a is the contact radius [LU], g the profile under the reduction. A leg
+is a straight part of the history.
+"""
 
 from __future__ import annotations
 
@@ -30,15 +33,22 @@ class HistoryExperiment(Scripted[History]):
     main_results = ("peak_force", "peak_displacement", "displacement", "force", "contact_radius")
 
     def is_sampled(self, scene: Scene) -> bool:
-        """Whether results have a sampling error: the load steps of a history are always known beforehand."""
+        """Return True: the load steps of a history are known beforehand, so that results have a sampling error."""
         return True
 
     def script(self, branch: Driver, scene: Scene) -> None:
-        """Follow the load steps of all legs; the end of each leg is reported."""
+        """Follow the load steps of all legs from the first point of the history on; the end of each leg is marked."""
         branch.follow(branch.model.refined(_load_steps(scene)))
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """Return the last state, the peaks, the dissipated energy, the time of contact and the unloading stiffness."""
+        """Return the results of the last state, the peaks, and those of a whole contact, by name.
+
+        "peak_force", "force" [FU], "peak_displacement", "displacement" [LU]; in contact at the end "contact_radius"
+        [LU] and "mean_pressure" [FU/LU²]; where the last load step separates the bodies "contact_radius" 0, uncertain
+        by that before; after a hold the "relaxation" of the free variable since its start, positive [LU] or [FU];
+        separated at the end "contact_time" [TU], from apart on "dissipated_energy" [FU·LU]; where an unloading begins
+        and the force does not jump "unloading_stiffness" and "creep_corrected_stiffness" [FU/LU].
+        """
         by_force, last = self.given(scene).force is not None, len(trace) - 1
         d, force = trace.displacement, trace.force
         results = {
@@ -67,7 +77,10 @@ class HistoryExperiment(Scripted[History]):
         return results if law_of(scene).jumps(scene) else results | _slopes(trace)
 
     def asked(self, trace: Trace, scene: Scene) -> Sequence[tuple[float, float]]:
-        """Return pairs of prescribed and measured force [FU], one for each load step; none of given displacements."""
+        """Return pairs (prescribed force, force of the state) [FU], one for each load step.
+
+        () of given displacements.
+        """
         given = self.given(scene)
         if not given.force:
             return ()
@@ -75,7 +88,7 @@ class HistoryExperiment(Scripted[History]):
         return list(zip(wanted.tolist(), trace.force.tolist(), strict=True))
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """Add the time of each state, and warnings of results that the history does not give."""
+        """Add the time of each state [TU], and warnings "no_energy", "no_slope" of results that it does not give."""
         missing, words = {"contact_time", "dissipated_energy"} - outcome.results.keys(), ""
         if len(missing) > 1:
             words = "the bodies touch at the end, or never, so there is neither a contact_time nor a dissipated_energy"
@@ -93,12 +106,16 @@ class HistoryExperiment(Scripted[History]):
         return replace(outcome, warnings={**outcome.warnings, **warnings}, columns={"time": times})
 
     def advice(self, scene: Scene) -> str:
-        """Return the advice to refine load steps and lattice, the sources of the uncertainty."""
+        """Return the advice to refine load steps and lattice, a sentence without a full stop."""
         return f"Use more experiment.steps, or {finer_spacing(scene)}"
 
 
 def _load_steps(scene: Scene) -> LoadHistory:
-    """Return the load steps of the legs, dense behind each corner where the body relaxes."""
+    """Return the load steps of the legs, over times [TU] displacements [LU] or forces [FU], the first state included.
+
+    They are dense behind each corner where the body relaxes. Phases are "loading", "unloading" and "holding", numbered
+    where repeated; the end of each is marked "after_" and its name, that of the last "final".
+    """
     given = scene.experiment
     assert isinstance(given, History)
     values = [point.force for point in given.force] if given.force else given.places()
@@ -122,7 +139,10 @@ def _load_steps(scene: Scene) -> LoadHistory:
 
 
 def _numbered(names: list[str]) -> tuple[str, ...]:
-    """Return the names of the phases, each with a number where it is repeated."""
+    """Return the names of phases of load steps, one for each: a name that comes again after another gets a number.
+
+    "loading", "unloading", "loading_2".
+    """
     counts: dict[str, int] = {}
     numbered: list[str] = []
     for name, steps in groupby(names):
@@ -132,7 +152,10 @@ def _numbered(names: list[str]) -> tuple[str, ...]:
 
 
 def _peak_error(trace: Trace) -> float:
-    """Return how far [LU] the peak of a parabola within a phase lies above the largest displacement of all states."""
+    """Return how far [LU] the peak of a parabola within a phase lies above the largest displacement of all states.
+
+    0 where this is the first or the last one, or at a corner between phases.
+    """
     d, top = trace.displacement, int(trace.displacement.argmax())
     if len(set(trace.phase[max(top - 1, 0) : top + 2])) > 1 or not 0 < top < len(trace) - 1:
         return 0.0
@@ -140,10 +163,12 @@ def _peak_error(trace: Trace) -> float:
 
 
 def _slopes(trace: Trace) -> dict[str, Reading]:
-    """Return dF/dd [FU/LU] where the first unloading begins, and its value corrected for creep just before.
+    """Return "unloading_stiffness", dF/dd where the first unloading begins, and "creep_corrected_stiffness" [FU/LU].
 
-    The elastic stiffness is the ratio of the jumps of the rates, [Ḟ]/[ḋ], under a held force 1/(1/S + ḋ/|Ḟ|): G. Feng,
-    A. H. W. Ngan, J. Mater. Res. 17 (2002) 660. By Oliver and Pharr it is 2 E* a.
+    The latter, the elastic stiffness, is the ratio of the jumps of the rates, [Ḟ]/[ḋ], under a held force 1/(1/S +
+    ḋ/|Ḟ|): G. Feng, A. H. W. Ngan, J. Mater. Res. 17 (2002) 660. By Oliver and Pharr it is 2 E* a. {} without an
+    unloading, or with fewer than three states on either side of its start; without the one whose change of displacement
+    is 0.
     """
     count = 3  # states on each side of the corner, for a parabola whose slope is the rate there
     falls = [name.startswith("unloading") for name in trace.phase]
@@ -165,16 +190,19 @@ def _slopes(trace: Trace) -> dict[str, Reading]:
 
 
 def _rate(value: float, error: float = 1e-4) -> Reading:
-    """Return a slope at a corner [FU/LU] with the least relative sampling error of a parabola through a few states."""
+    """Return a slope at a corner [FU/LU] as a reading, with a sampling error of `error` times its value.
+
+    That is the least error of a parabola through a few states.
+    """
     return Reading(value, LINE_PRESSURE, {"sampling": error * abs(value)})
 
 
 def _forces_with_edges(trace: Trace, corner: int, states: Sequence[int]) -> list[float]:
-    """Return the forces [FU] of states with the part of the contact that the whole number of particles misses.
+    """Return the forces [FU] of states, one for each, with the part of the contact that whole particles miss.
 
     A sum over particles misses E* g′(a) y² at the edge, y the distance from the last cell to the edge. Behind the
-    corner the edge moves with the displacement, y dy/dd = y/g′(a). At the end of a body, and for laws in which a
-    particle may touch in part, nothing is missed.
+    corner (the number of a state) the edge moves with the displacement, y dy/dd = y/g′(a). At the end of a body, and
+    for laws in which a particle may touch in part, nothing is missed.
     """
     law, force = trace.model.law, [float(trace.force[i]) for i in states]
     radius, modulus = trace.radius(corner) or 0.0, law.stiffness / law.spacing
@@ -196,17 +224,20 @@ def _forces_with_edges(trace: Trace, corner: int, states: Sequence[int]) -> list
 
 
 def _work(d: NDArray[np.float64], force: NDArray[np.float64]) -> float:
-    """Return the work ∫|F dd| [FU·LU] along a path, by the trapezoidal rule."""
+    """Return the work ∫|F dd| [FU·LU] ≥ 0 along a path d [LU], F [FU], (m,) each, by the trapezoidal rule."""
     return float(np.sum(0.5 * np.abs((force[1:] + force[:-1]) * np.diff(d))))
 
 
 def touches(trace: Trace, round_off: float = 1e-9) -> NDArray[np.bool_]:
-    """Return in which states |F| exceeds the round-off of a displacement, relative to the largest |F|, (n,)."""
+    """Return in which states the bodies touch, (m,): |F| exceeds the share `round_off` of the largest |F|."""
     return np.abs(trace.force) > round_off * float(np.abs(trace.force).max())
 
 
 def _first_contact(trace: Trace, by_force: bool) -> float:
-    """Return the time of the first contact [TU]: at d = 0, or with the first force that is given."""
+    """Return the time of the first contact [TU]: at d = 0, or where forces are given at the last state without one.
+
+    The time of the first state where the history begins in contact.
+    """
     first = int(np.argmax(touches(trace)))
     apart = np.flatnonzero(trace.force[:first] <= 0.0 if by_force else trace.displacement[: first + 1] <= 0.0)
     if not apart.size:
@@ -218,10 +249,11 @@ def _first_contact(trace: Trace, by_force: bool) -> float:
 
 
 def contact_time(trace: Trace, touched: float = 0.0) -> Reading:
-    """Return the time [TU] from first contact to the final separation.
+    """Return the time [TU] from first contact (at `touched` [TU]) to the final separation, with its sampling error.
 
     The bodies separate at the displacement of the model's separation, or as the pressure on the axis falls to 0, which
-    is extrapolated by two load steps at most; a tension ends somewhere in its load step.
+    is extrapolated by two load steps at most; a tension ends somewhere in its load step. The trace needs a state in
+    contact and one after the last of them.
     """
     last, parted, d = max(1, int(np.flatnonzero(touches(trace))[-1])), trace.model.parted, trace.displacement
     if parted is not None:  # the particles next to the axis may be lost before
@@ -245,8 +277,9 @@ def contact_time(trace: Trace, touched: float = 0.0) -> Reading:
 def end_of_pressure(trace: Trace, last: int, count: int) -> float:
     """Return the time [TU] at which the pressure on the axis falls to 0, on a line through two states.
 
-    They are the last two of the phase with `count` particles in contact on a side, where the pressure is extrapolated
-    linearly in the height of the two particles next to the axis; else the `last` state in contact and the one before.
+    Infinite where the pressure does not fall. The states are the last two of the phase with `count` particles in
+    contact on a side, where the pressure is extrapolated linearly in the height of the two particles next to the axis;
+    else the `last` state in contact and the one before.
     """
     shown = []
     for i in range(last, -1, -1):

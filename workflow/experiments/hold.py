@@ -1,4 +1,7 @@
-"""Hold: a displacement or a force, held for a time while the particles and the plate move."""
+"""Hold: a displacement or a force, held for a time while the particles and the plate move.
+
+d [LU] and F [FU] are positive in compression, a is the contact radius [LU].
+"""
 
 from __future__ import annotations
 
@@ -22,14 +25,18 @@ class HoldExperiment(Scripted[Hold]):
     main_results = ("displacement", "force", "contact_radius")
 
     def script(self, branch: Driver, scene: Scene) -> None:
-        """Hold displacement or force for the duration."""
+        """Hold displacement or force for the duration, in a phase "holding"; the last state is marked "final"."""
         held = self.given(scene)
         branch.begin("holding")
         branch.hold(held.duration, held.displacement, held.force)
         branch.mark("final")
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """Return the results of the last state, and the change of the free variable since the first one."""
+        """Return the results of the last state, and the change of the free variable since the first one, by name.
+
+        "displacement" [LU], "force" [FU], "relaxation", the magnitude of the change [LU] under a force or [FU] at a
+        displacement; in contact "contact_radius" [LU] and "mean_pressure" [FU/LU²].
+        """
         trace, by_force = trace.phases("holding"), self.given(scene).force is not None
         last = len(trace) - 1
         free, unit = (trace.displacement, LENGTH) if by_force else (trace.force, FORCE)
@@ -45,7 +52,7 @@ class HoldExperiment(Scripted[Hold]):
         return results
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """Return the phase of the load steps that run."""
+        """Return the phase "holding" of the load steps that run, without the approach."""
         held = self.given(scene)
         rows: list[Row] = []
         for steps in settings.steps_of(held.duration):
@@ -56,6 +63,6 @@ class HoldExperiment(Scripted[Hold]):
         return (Phase("holding", tuple(rows), state=True),)
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """Add the time of each state [TU] since the start of the LAMMPS run."""
+        """Add the time of each state [TU] since the start of the LAMMPS run, as a column."""
         times = tuple(state.step * settings.motion.time_step for state in outcome.states)
         return replace(outcome, columns={"time": times})

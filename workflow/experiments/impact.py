@@ -1,4 +1,7 @@
-"""Impact: a body hits the rigid plane with a velocity; its restitution, time of contact, peaks and lost energy."""
+"""Impact: a body hits the rigid plane with a velocity; its restitution, time of contact, peaks and lost energy.
+
+v and v′ are the velocities [LU/TU] before and after it, M is the mass of the body [MU].
+"""
 
 from __future__ import annotations
 
@@ -35,16 +38,20 @@ class ImpactExperiment(Scripted[Impact]):
     branches = {"touching": "impact"}  # noqa: RUF012
 
     def is_sampled(self, scene: Scene) -> bool:
-        """Whether results have a sampling error: they always do, since states are read at equal times."""
+        """Return True: states are read at equal times, so that results have a sampling error."""
         return True
 
     def script(self, branch: Driver, scene: Scene) -> None:
-        """Let the body hit the plane with its velocity and fly on."""
+        """Let the body hit the plane with its velocity and fly on; the last state is marked "final"."""
         branch.fly(self.given(scene).velocity)
         branch.mark("final")
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """Return restitution, energy and peaks; a body that does not separate sticks and loses all of its energy."""
+        """Return restitution, energy and peaks; a body that does not separate sticks and loses all of its energy.
+
+        "restitution" v′/v, 0 if it sticks, "dissipated_energy" [FU·LU], "peak_force" [FU], "peak_displacement" and
+        "peak_contact_radius" [LU]; of a body that separates also "contact_time" [TU].
+        """
         velocity, mass = self.given(scene).velocity, scene.the(Plate).mass
         assert mass != "auto"
         d, time = trace.displacement, trace.time
@@ -64,9 +71,10 @@ class ImpactExperiment(Scripted[Impact]):
         return results | ({"contact_time": contact_time(trace)} if parted else {})
 
     def energy(self, case: Reduction, states: Sequence[State], results: Mapping[str, Result]) -> dict[str, Agreement]:
-        """Return the check of the lost kinetic energy against what the contact stores and dissipates along the path.
+        """Return {"energy": …}: the check of the lost kinetic energy against what the contact stores and dissipates.
 
-        Between two states the path is the cubic of their displacements and velocities, with three points in between.
+        Between two states the path is the cubic of their displacements and velocities, with three points in between. {}
+        where the reduced model lacks an effect of the scene, or its law has no energies.
         """
         velocity, mass = self.given(case.scene).velocity, case.scene.the(Plate).mass
         assert mass != "auto"
@@ -89,7 +97,7 @@ class ImpactExperiment(Scripted[Impact]):
         return consistency.energy(case, consistency.Work(path, kinetic=(first, first - left)), doubt)
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """Add the time of each state [TU], and a warning where the body sticks."""
+        """Add the time of each state [TU] as a column, and a warning "sticks" where the body does."""
         if "contact_time" not in outcome.results:
             words = "the body sticks: it comes down again without having parted, so there is no contact_time"
             outcome = replace(outcome, warnings={**outcome.warnings, "sticks": words})
@@ -97,7 +105,7 @@ class ImpactExperiment(Scripted[Impact]):
         return replace(outcome, columns={"time": times})
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """Return the phases that are expected to run, as long as the impact of the reduced model."""
+        """Return the expected phases "touching" and "impact", as long as the impact of the reduced model."""
         velocity = self.given(scene).velocity
         steps = stretch(settings, velocity)
         count = impact(scene, settings, reduced(scene, settings), velocity).time.size
@@ -105,12 +113,15 @@ class ImpactExperiment(Scripted[Impact]):
         return first, Phase("impact", (Fly(steps),) * (count - 2), state=True)
 
     def advice(self, scene: Scene) -> str:
-        """Return the advice to refine the lattice, the largest source of the uncertainty."""
+        """Return the advice to refine the lattice, a sentence without a full stop."""
         return f"Use {finer_spacing(scene)}"
 
 
 def _peak(trace: Trace, column: Array, near: int = 2) -> float:
-    """Return the maximum of a column by a polynomial through `near` states on both sides; it may be at first touch."""
+    """Return the maximum of a column in its unit, by a polynomial through `near` states on both sides of the largest.
+
+    At least the largest value; the maximum may be at first touch. Only states from the first force on count.
+    """
     first = int(np.flatnonzero(trace.force)[0])
     time, column = trace.time[first:], column[first:]
     middle = min(max(int(column.argmax()), near), column.size - 1 - near)

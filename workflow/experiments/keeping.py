@@ -12,7 +12,10 @@ from contact1d.workflow.scene import Scene
 
 
 def with_planned_output(scene: Scene, phases: tuple[Phase, ...]) -> tuple[Phase, ...]:
-    """Return a planned schedule that writes the states of `[output]` among its load steps."""
+    """Return a planned schedule that writes the states of `[output]` among its load steps.
+
+    Unchanged without `[output]`.
+    """
     if scene.output is None:
         return phases
     rows = range(sum(len(phase.rows) for phase in phases))
@@ -20,7 +23,10 @@ def with_planned_output(scene: Scene, phases: tuple[Phase, ...]) -> tuple[Phase,
 
 
 def with_output(context: RunContext, outcome: Outcome) -> Outcome:
-    """Return the outcome with a schedule that writes the states of `[output]` among the measured ones."""
+    """Return the outcome with a schedule that writes the states of `[output]` among the measured ones.
+
+    Rewrites the file of states without the others. Unchanged without `[output]`.
+    """
     scene = context.deck.scene
     if scene.output is None:
         return outcome
@@ -31,7 +37,10 @@ def with_output(context: RunContext, outcome: Outcome) -> Outcome:
 
 
 def kept_states(scene: Scene, outcome: Outcome) -> Sequence[int] | None:
-    """Return the indices of the states of the outcome that are written; None without `[output]`."""
+    """Return the indices of the outcome's states that are written to the file of states.
+
+    None, for all, without `[output]`.
+    """
     if scene.output is None:
         return None
     kept = [keep for phase in outcome.phases for keep in phase.kept or (True,) * len(phase.rows)]

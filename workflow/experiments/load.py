@@ -1,4 +1,7 @@
-"""Load: equilibrium under a normal force."""
+"""Load: equilibrium under a normal force.
+
+d [LU] and F [FU] are positive in compression, a is the contact radius [LU].
+"""
 
 from __future__ import annotations
 
@@ -29,7 +32,14 @@ class LoadExperiment(Scripted[Load]):
     main_results: ClassVar[tuple[str, ...]] = ("displacement", "force", "contact_radius")
 
     def run(self, context: RunContext) -> Outcome:
-        """Run the script; in time add a warning where a tension is the pull-off force within the tolerance."""
+        """Run the script and return the outcome.
+
+        In time with a warning where a tension is within tolerance of the pull-off.
+
+        Raises:
+            UntrustedError: the result can't be trusted.
+            EngineError: LAMMPS failed.
+        """
         scene, settings = context.deck.scene, context.deck.settings
         load = self.given(scene).force
         surely = scene.method != "dynamic" or LoadBranch(context).holds_more(load)
@@ -45,7 +55,7 @@ class LoadExperiment(Scripted[Load]):
         return replace(outcome, warnings={"near_pull_off": doubt, **outcome.warnings})
 
     def script(self, branch: Driver, scene: Scene) -> None:
-        """Press to the force, or pull to it from F = 0."""
+        """Press to the force, or pull to it from F = 0; the last state is marked "final"."""
         force = self.given(scene).force
         scale = max(abs(force), branch.settings.forces.scale)
         branch.begin("loading")
@@ -56,7 +66,11 @@ class LoadExperiment(Scripted[Load]):
         branch.mark("final")
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """Return the results of the last state."""
+        """Return the results of the last state, by name.
+
+        "displacement" [LU], "force" [FU], compression positive; where the contact has a radius above 0 also
+        "contact_radius" and, with a cohesive zone, "cohesive_radius" [LU], and "mean_pressure" [FU/LU²].
+        """
         force, last = self.given(scene).force, len(trace) - 1
         carried = float(trace.force[last])
         missed, is_free = abs(carried - force), force == 0.0
@@ -76,18 +90,18 @@ class LoadExperiment(Scripted[Load]):
         return results
 
     def asked(self, trace: Trace, scene: Scene) -> Sequence[tuple[float, float]]:
-        """Return the load and the force nearest to it of all states [FU]."""
+        """Return one pair (load, force nearest to it of all states) [FU]."""
         force = self.given(scene).force
         return [(force, float(trace.force[np.argmin(np.abs(trace.force - force))]))]
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """Return the phase in which the load is held."""
+        """Return the phase "loading", in which the load is held."""
         force = self.given(scene).force
         scale = max(abs(force), settings.forces.scale)
         return (held_phase("loading", scene, settings, (force,), scale, state=True),)
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """Add a warning where the contact has no width."""
+        """Add a warning "no_radius" where the contact has no width."""
         if "contact_radius" in outcome.results:
             return outcome
         missing = {"no_radius": "the contact has no width, so there is no contact radius"}
@@ -101,10 +115,10 @@ class ThermalLoad(LoadExperiment):
     main_results = ("displacement", "contact_radius")
 
     def run(self, context: RunContext) -> Outcome:
-        """Sample until the standard error of the mean displacement meets the tolerance."""
+        """Sample until the standard error of the mean displacement meets the tolerance, and return the outcome."""
         scene = context.deck.scene
         return self.finish(thermal_load(context, self.given(scene).force), scene, context.deck.settings)
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """Return the phases of the run-in and of the first samples."""
+        """Return the phases "settling" of the run-in and "sampling" of the first samples."""
         return planned_samples(settings, self.given(scene).force)

@@ -6,6 +6,9 @@ Energy: the cantilever's far end does the work W = ∫ F_c v dt. The baths take 
 
 with X and X_p the positions of the plate and of its particles on average; the stored energy is
 E = E_pot + E_kin + F_c²/2k − F_N d, d the displacement: W = Q + ΔE.
+
+F_c is the force of the cantilever, v the velocity of the drive, γ and c the drag of a particle and of the plate, N the
+number of particles.
 """
 
 from __future__ import annotations
@@ -41,8 +44,8 @@ class Motion:
 
     Attributes:
         scene, settings: of the slide.
-        series: records at the start of the drive and at the ends of all load steps; see `motion_of`.
-        energies: work of the cantilever, dissipated and stored energy since the start, by name [FU·LU].
+        series: records at the start of the drive and at the ends of all load steps, as `motion_of` has them.
+        energies: "cantilever_work", "dissipated_energy" and "stored_energy" since the start, (n,) [FU·LU].
     """
 
     scene: Scene
@@ -52,7 +55,10 @@ class Motion:
 
     @cached_property
     def legs(self) -> list[tuple[float, Series]]:
-        """Velocity of the drive [LU/TU] and records of each leg that has begun, from its start on."""
+        """(Velocity of the drive [LU/TU], records) of each leg that has begun, from its start on.
+
+        The velocity has a sign.
+        """
         drive = self.settings.motion.drive
         starts = accumulate((leg.rows for leg in drive), initial=0)
         return [
@@ -63,23 +69,23 @@ class Motion:
 
     @property
     def moving(self) -> list[tuple[float, Series]]:
-        """The legs on which the drive moves."""
+        """The legs on which the drive moves, each with its velocity [LU/TU]."""
         return [leg for leg in self.legs if leg[0]]
 
     @cached_property
     def slips(self) -> list[friction.Slip]:
-        """The slips of the plate on all legs, in order."""
+        """The slips of the plate on all legs, in order: their ends [TU], positions and sizes [LU]; [] for none."""
         spacing = self.scene.bodies.spacing
         return list(chain(*(friction.slips(leg["time"], leg["plate_x"], spacing, v) for v, leg in self.moving)))
 
     @property
     def period(self) -> float:
-        """Time [TU] in which the drive passes a spacing on the last leg that moves."""
+        """Time [TU] in which the drive passes a spacing on the last leg that moves, which there must be."""
         return self.scene.bodies.spacing / abs(self.moving[-1][0])
 
     @cached_property
     def periods(self) -> Series:
-        """Means over whole periods of the last leg that moves."""
+        """Means over whole periods of the last leg that moves: forces [FU], velocity [LU/TU] and its square."""
         return self.moving[-1][1].periods(self.period)
 
     @cached_property
@@ -87,7 +93,7 @@ class Motion:
         """Friction [FU] after the run-in, by the balance of momentum; with noise by the records, if more certain.
 
         Raises:
-            ValueError: the leg has too few periods for a mean (`mean_of`).
+            ValueError: the leg has too few periods for a mean, under three.
         """
         _, leg = self.moving[-1]
         means = [friction.mean_of(self.periods["friction"])]
@@ -97,13 +103,16 @@ class Motion:
 
     @cached_property
     def largest(self) -> dict[str, float]:
-        """Largest friction and energy of the slide, by their unit: the scales of means and energies near 0."""
+        """Largest |friction| [FU] and |energy| [FU·LU] of the slide, by unit and above 0: scales of results near 0."""
         columns = {FORCE: [self.series["friction"]], ENERGY: list(self.energies.values())}
         return {unit: max(1e-300, float(np.abs(values).max())) for unit, values in columns.items()}
 
     @cached_property
     def results(self) -> dict[str, Result]:
-        """The results of the slide, by name."""
+        """The results of the slide, by name, as far as the drive has moved.
+
+        "slips" (a number), the energies [FU·LU], mean and static forces [FU], with noise "plate_temperature" [FU·LU].
+        """
         results = self._energies() | {"slips": Result(float(len(self.slips)), NUMBER, {"statistics": 0.0})}
         if self.moving:
             results |= self._means() | self._static()
@@ -112,13 +121,20 @@ class Motion:
         return {name: replace(result, scale=self.largest.get(result.unit)) for name, result in results.items()}
 
     def _energies(self) -> dict[str, Result]:
-        """Return the energies [FU·LU] at the end; the residual of the balance is the uncertainty of each."""
+        """Return work, dissipated and stored energy [FU·LU] at the end.
+
+        The residual of the balance is the error of each.
+        """
         ends = {name: float(values[-1]) for name, values in self.energies.items()}
         errors = {"solver": abs(ends["cantilever_work"] - ends["dissipated_energy"] - ends["stored_energy"])}
         return {name: Result(end, ENERGY, errors, prescribed=name == "stored_energy") for name, end in ends.items()}
 
     def _means(self) -> dict[str, Result]:
-        """Return the mean forces [FU] over whole periods of the last leg that moves, where it has enough of them."""
+        """Return "mean_friction" and "mean_cantilever_force" [FU], positive against and along the drive.
+
+        They are means over whole periods of the last leg that moves, after its run-in; {} where it has fewer than
+        three.
+        """
         velocity, leg = self.moving[-1]
         if len(self.periods) < friction.FEWEST_PERIODS:
             return {}
@@ -130,14 +146,21 @@ class Motion:
             sparse = steady | {"friction": self.steady.blocks + self.steady.missed}
 
         def read(blocks: Series) -> dict[str, Reading]:
-            """Return the means of the forces [FU] along the drive."""
+            """Return the mean forces of blocks [FU] by name, with the sign relative to the drive.
+
+            Their error is a share of the tolerance.
+            """
             values = {f"mean_{name}": math.copysign(1.0, velocity) * float(blocks.mean(name)) for name in FORCES}
             return {name: Reading(value, FORCE, {"solver": share * abs(value)}) for name, value in values.items()}
 
         return measured(Series(steady), read, friction.interval, {"sampling": Series(sparse)})
 
     def _static(self) -> dict[str, Result]:
-        """Return the largest forces [FU] before the plate has moved by one spacing, where there is one leg only."""
+        """Return "static_friction" and "static_cantilever_force" [FU], the largest until the plate moved by a spacing.
+
+        They are positive against and along the drive. {} where more than one leg moves, or the plate has not moved that
+        far.
+        """
         (velocity, leg), *later = self.moving
         sign, spacing = math.copysign(1.0, velocity), self.scene.bodies.spacing
         position = sign * leg["plate_x"]
@@ -150,12 +173,15 @@ class Motion:
         return results
 
     def _temperature(self) -> dict[str, Result]:
-        """Return M ⟨(V − ⟨V⟩)²⟩/2 of the plate's motion along x and z in the last leg [FU·LU]; slips are part of it."""
+        """Return "plate_temperature", M ⟨(V − ⟨V⟩)²⟩/2 [FU·LU], of the plate's motion along x and z in the last leg.
+
+        Slips are part of it.
+        """
         _, leg = self.legs[-1]
         mass, count = self.settings.motion.plate_mass, 20
 
         def read(blocks: Series) -> dict[str, Reading]:
-            """Return the mean energy [FU·LU] of a direction of motion."""
+            """Return the mean energy of a direction of motion [FU·LU], "plate_temperature", of blocks."""
             energy = mass * (blocks.mean("square") - blocks.mean("velocity") ** 2) / 2
             return {"plate_temperature": Reading(float(energy), ENERGY)}
 
@@ -163,7 +189,10 @@ class Motion:
 
     @property
     def unsteady(self) -> str:
-        """Message why the plate does not slide, or not yet steadily, on the one leg that moves; "" where it does."""
+        """Message why the plate does not slide, or not yet steadily, on the one leg that moves; "" where it does.
+
+        There must be exactly one such leg.
+        """
         ((velocity, leg),) = self.moving
         time, position, count = leg["time"], leg["plate_x"], len(self.periods)
         if count < friction.FEWEST_PERIODS:
@@ -188,7 +217,7 @@ class Motion:
 
     @property
     def _swing(self) -> str:
-        """Message that the period of the plate on its cantilever is longer than the slide; "" where it is not."""
+        """End of a message: the period of the plate on its cantilever is longer than the slide; "" where it is not."""
         swing, time = cantilever_swing(self.scene, self.settings), self.series["time"][-1]
         if swing < time:
             return ""
@@ -201,15 +230,15 @@ class Motion:
 def motion_of(scene: Scene, settings: Settings, load: float, states: Sequence[State]) -> Motion:
     """Return the motion of a slide from the state at which its drive starts and those of the load steps after it.
 
+    Its series has the columns of friction.csv, (n,): time [TU], positions [LU], forces [FU] and work [FU·LU]; and
+    integrals over time of friction and cantilever force [FU·TU], of the plate's velocity [LU] and its square [LU²/TU].
+    Friction is positive against +x, the normal force in compression.
+
     Args:
         scene: with a cantilever.
         settings: with its drive.
-        load: normal force [FU].
+        load: normal force [FU], compression positive.
         states: the state at which the drive starts, and those of all load steps or of the first ones.
-
-    Returns:
-        A series of the columns of friction.csv, and integrals over time of friction and cantilever force [FU·TU], of
-        the plate's velocity [LU] and its square [LU²/TU].
     """
     bodies, moving, drive = scene.bodies, settings.motion, settings.motion.drive
     rows = [leg for leg in drive for _ in range(leg.rows)][: len(states) - 1]
@@ -258,17 +287,17 @@ def motion_of(scene: Scene, settings: Settings, load: float, states: Sequence[St
 
 
 def _read(states: Sequence[State], name: str) -> Array:
-    """Return a quantity of the motion of all states, by its name in LAMMPS, (n,)."""
+    """Return a quantity of the motion of all states, by its name in LAMMPS, (n,), in units of the scene."""
     return np.asarray([state.motion[name] for state in states])
 
 
 def _summed(parts: Array) -> Array:
-    """Return the cumulative sums of the parts, with 0 first, (n + 1,)."""
+    """Return the cumulative sums of parts (n,) in their unit, with 0 first, (n + 1,)."""
     return np.concatenate([[0.0], np.cumsum(parts)])
 
 
 def _integrals(states: Sequence[State], rows: Sequence[DriveLeg], mean: int, ends: Array) -> Array:
-    """Return the integral over each load step of a mean of LAMMPS, by the trapezoidal rule, (n,).
+    """Return the integral over each load step of a mean of LAMMPS, by the trapezoidal rule, (n,) [its unit · TU].
 
     Args:
         states: at the start and at the ends of the load steps, (n + 1,).

@@ -1,4 +1,8 @@
-"""Path: prescribed displacement, there and back; the curve F(d), its force maximum and its load-free radius."""
+"""Path: prescribed displacement, there and back; the curve F(d), its force maximum and its load-free radius.
+
+F_A is the force maximum, a tension, a_cr the contact radius there, and a₀ that at F = 0. Displacements [LU] and forces
+[FU] are positive in compression. Pairs of opposite particles that join or separate by an instability snap.
+"""
 
 from __future__ import annotations
 
@@ -47,7 +51,12 @@ class PathExperiment(Scripted[Path]):
     curve_is_result = True
 
     def run(self, context: RunContext) -> Outcome:
-        """Run the schedule, and evaluate the states of the scene with their error budget."""
+        """Run the schedule, and return the states of the scene and the results with their error budget.
+
+        Raises:
+            UntrustedError: the result can't be trusted.
+            EngineError: LAMMPS failed.
+        """
         scene, settings = context.deck.scene, context.deck.settings
         case, positions = self.reduction(scene, settings), positions_of(scene, settings)
         plan = self._plan(context.deck, case.model) if scene.is_stepped else None
@@ -82,12 +91,15 @@ class PathExperiment(Scripted[Path]):
         return Plan(deck, model, path_of(np.concatenate([stretch for _, stretch in parts])), names, ends.tolist())
 
     def states(self, contact: Contact, positions: Positions) -> list[State]:
-        """Return the states at the positions; in time each when its particles are at rest."""
+        """Return a state for each of the positions; in time each when its particles are at rest."""
         phases = self.planned(contact.scene, contact.settings)
         return contact.replay(phases, relaxed=contact.scene.method == "dynamic")
 
     def rows(self, scene: Scene, settings: Settings, positions: Positions) -> tuple[Row, ...]:
-        """Return the load steps at positions; in time each lasts 14 times the slowest decay of a particle."""
+        """Return the load steps at positions, one for each.
+
+        In time each lasts 14 times the slowest decay of a particle.
+        """
         if scene.method == "quasistatic":
             return displacements([position for position, _ in positions])
         steps = math.ceil(14.0 * _relaxation_time(scene, settings) / settings.motion.time_step)
@@ -96,19 +108,23 @@ class PathExperiment(Scripted[Path]):
     def force_errors(
         self, scene: Scene, settings: Settings, states: Sequence[State], marked: Sequence[State]
     ) -> ForceErrors:
-        """Return the errors of the forces of states; residual forces of particles are independent of each other."""
+        """Return the errors of the forces of states, (m,) [FU].
+
+        Residual forces of particles are independent of each other. `marked`: states with profiles, from which the
+        errors of the others are interpolated.
+        """
         return force_errors(scene, settings, states, marked)
 
     def closes(self, trace: Trace, settings: Settings) -> bool:
-        """Whether a path ends in its first state."""
+        """Whether a path ends in its first state: in contact or not, displacement, and force within the tolerance."""
         ends = [trace.radius(state) is None for state in (0, len(trace) - 1)]
         return ends[0] == ends[1] and closes(*trace.lists, settings.tolerance)
 
     def _in_half_steps(self, context: RunContext, model: Particles) -> dict[str, list[Trace]]:
-        """Return the trace of a second run in half the steps, by the source of the error that it shows.
+        """Return {"instability": [trace of a second run in half the steps]}.
 
-        Chains that may buckle along x jump to another equilibrium between two load steps, and the equilibrium depends
-        on the steps. Where no particle can move along x there is none.
+        {} where no particle can move along x, and in time. Chains that may buckle along x jump to another equilibrium
+        between two load steps, and the equilibrium depends on the steps.
         """
         scene, deck = context.deck.scene, context.deck
         if not scene.horizontal or scene.method != "quasistatic":
@@ -126,7 +142,10 @@ class PathExperiment(Scripted[Path]):
         return {"instability": [of_states(states, model)]}
 
     def script(self, branch: Driver, scene: Scene) -> None:
-        """Visit the unevaluated approach and the positions of the scene; where pairs snap also those in between."""
+        """Visit the unevaluated approach, in a phase without a name, and the positions of the scene.
+
+        Where pairs snap, the positions in between as well.
+        """
         settings, passed = branch.settings, 0
         whole = positions_of(scene, settings)
         first = [asked for _, asked in whole].index(True)
@@ -143,7 +162,11 @@ class PathExperiment(Scripted[Path]):
                     branch.visit(positions)
 
     def _losses(self, trace: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
-        """Return the dissipated energy of a closed path, of an open one that of its instabilities, ∫F dd − ΔE."""
+        """Return the energy that a path dissipates [FU·LU]: {} where it has too few states or its energy is not known.
+
+        "dissipated_energy" of a closed path; of an open one "instability_energy", that of its instabilities, ∫F dd −
+        ΔE.
+        """
         closed = self.closes(trace, settings)
         gained = 0.0 if closed else _energy_change(trace, settings)
         if gained is None or (work := work_of(*trace.lists)) is None:
@@ -158,7 +181,7 @@ class PathExperiment(Scripted[Path]):
         return {"instability_energy": Reading(work.area - gained, ENERGY, errors)}
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """Return the schedule that runs: a phase for each stretch of rising ("loading") or falling displacement."""
+        """Return the schedule that runs: a phase for each stretch of rising, "loading", or falling displacement."""
         if scene.is_stepped:
             return self._plan(Deck(scene, settings), reduced(scene, settings)).phases
         positions = positions_of(scene, settings)
@@ -170,19 +193,25 @@ class PathExperiment(Scripted[Path]):
         return tuple(phases)
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """Return the marks of the last unloading, or without adhesion the deepest state; and the dissipated energy."""
+        """Return the results of the last unloading, or without adhesion of the deepest state.
+
+        And the dissipated energy. "adhesion_force" [FU], as a positive tension, "critical_radius", "zero_load_radius",
+        "cohesive_radius", "fixed_grips_displacement" [LU], "work_of_separation", "dissipated_energy" or
+        "instability_energy" [FU·LU]; "largest_force" [FU] and "largest_radius" [LU] without adhesion. Those that the
+        path does not reach are left out.
+        """
         marks = _adhesion(trace, settings) if settings.law.attracts(scene) else _deepest(trace)
         return marks | self._losses(trace, scene, settings)
 
     def advice(self, scene: Scene) -> str:
-        """Return the advice to refine the displacements of the scene, or the lattice."""
+        """Return the advice to refine displacements of the scene, or the lattice, a sentence without a full stop."""
         finer = finer_spacing(scene)
         return f"Use more steps in experiment.displacements; for a radius or a force in curve.csv also {finer}"
 
     def _missing_results(
         self, results: Mapping[str, Result], case: Reduction, phases: Sequence[Phase]
     ) -> dict[str, str]:
-        """Return warnings of results that the path does not reach."""
+        """Return warnings of results that the path does not reach, by name; {} without adhesion."""
         if not case.model.law.attracts(case.scene):
             return {}
         warnings: dict[str, str] = {}
@@ -214,12 +243,16 @@ class ThermalPath(PathExperiment):
     is_statistical = True
 
     def run(self, context: RunContext) -> Outcome:
-        """Run the path; add a table of the mean forces and their standard errors."""
+        """Run the path; add a table of the mean forces [FU] and their standard errors."""
         outcome = super().run(context)
         return replace(outcome, tables={"means": _means(context.deck.settings, outcome.states)})
 
     def states(self, contact: Contact, positions: Positions) -> list[State]:
-        """Return the mean state at each of the positions."""
+        """Return the mean state at each of the positions.
+
+        Raises:
+            UntrustedError: a mean state is no result.
+        """
         scene, settings = contact.scene, contact.settings
         states = averaged(contact.replay(self.planned(scene, settings)), positions)
         for state in states:
@@ -227,29 +260,35 @@ class ThermalPath(PathExperiment):
         return states
 
     def rows(self, scene: Scene, settings: Settings, positions: Positions) -> tuple[Row, ...]:
-        """Return the load steps of equilibration and samples at each position."""
+        """Return the load steps of equilibration and samples at each position, several for each."""
         return thermal_rows(settings, _relaxation_time(scene, settings), positions)
 
     def force_errors(
         self, scene: Scene, settings: Settings, states: Sequence[State], marked: Sequence[State]
     ) -> ForceErrors:
-        """Return the errors of the forces of mean states, with N times the residual as the uncertainty of each."""
+        """Return the errors of the forces of mean states, (m,) [FU], N times the residual for N particles."""
         errors = super().force_errors(scene, settings, states, marked)
         return replace(errors, turning=settings.chains.upper * np.asarray([state.residual for state in states]))
 
     def closes(self, trace: Trace, settings: Settings) -> bool:
-        """Whether a path ends at its first displacement, whatever the force: two differ by twice the larger at most."""
+        """Whether a path ends at its first displacement, within round-off, whatever the force.
+
+        Two forces differ by twice the larger at most, which is the tolerance here.
+        """
         return closes(*trace.lists, 2.0)
 
 
 def _passes_jump(case: Reduction) -> bool:
-    """Whether the path passes a snap-in or a separation at a finite force."""
+    """Whether the path passes a snap-in or a separation at a finite force; False where the law has no jump."""
     positions, jumps = case.scene.experiment.places(), case.model.jumps
     return bool(jumps) and max(positions) > 0.0 and (positions[0] < 0.0 or min(positions) < min(jumps))
 
 
 def _buckling(trace: Trace, repeats: Mapping[str, Sequence[Trace]], settings: Settings) -> dict[str, str]:
-    """Return a warning where the forces of a trace differ from those of its repetition in half steps."""
+    """Return {"buckling": warning} where forces of a trace differ from those of its repetition in half steps, else {}.
+
+    They differ by more than the tolerance of the largest force. `repeats`: traces by the source of error; may be empty.
+    """
     if not repeats:
         return {}
     (halved,) = repeats["instability"]
@@ -267,7 +306,7 @@ def _buckling(trace: Trace, repeats: Mapping[str, Sequence[Trace]], settings: Se
 
 
 def _means(settings: Settings, states: Sequence[State]) -> dict[str, tuple[float, ...]]:
-    """Return the columns of means.csv: the mean force at each position, and its standard error."""
+    """Return the columns of means.csv by name, (m,): displacement [LU], mean force and its standard error [FU]."""
     return {
         "displacement": tuple(state.displacement for state in states),
         "force": tuple(state.force for state in states),
@@ -276,7 +315,7 @@ def _means(settings: Settings, states: Sequence[State]) -> dict[str, tuple[float
 
 
 def _deepest(trace: Trace) -> dict[str, Reading]:
-    """Return force and radius at the largest displacement, the results without adhesion."""
+    """Return "largest_force" [FU] and, in contact, "largest_radius" [LU] at the largest displacement."""
     deepest = int(np.argmax(trace.displacement))
     results = {"largest_force": Reading(float(trace.force[deepest]), FORCE)}
     if (radius := trace.radius(deepest)) is not None:
@@ -285,9 +324,10 @@ def _deepest(trace: Trace) -> dict[str, Reading]:
 
 
 def _adhesion(trace: Trace, settings: Settings) -> dict[str, Reading]:
-    """Return the marks of the last phase of unloading; where a smooth curve has none, of the last phase.
+    """Return the results of the last phase of unloading, by name; where a smooth curve has none, of the last phase.
 
-    Where pairs snap, or an edge has no range, the tension during loading is that of the snap-in.
+    {} without unloading where pairs snap, or an edge has no range: the tension during loading is that of the snap-in.
+    At a limit point "fixed_grips_displacement" [LU] is added.
     """
     unloadings = [name for name in trace.phase if name.startswith("unloading")]
     if not unloadings and (settings.snaps or trace.model.jumps):
@@ -301,20 +341,26 @@ def _adhesion(trace: Trace, settings: Settings) -> dict[str, Reading]:
 
 
 def _is_unstable(trace: Trace) -> bool:
-    """Whether the contact forms or separates along the path."""
+    """Whether the contact forms or separates along the path: it has a radius in one of two successive states only."""
     held = [trace.radius(state) is not None for state in range(len(trace))]
     return any(before != after for before, after in pairwise(held))
 
 
 def _energy_change(trace: Trace, settings: Settings) -> float | None:
-    """Return the energy [FU·LU] of the last state less that of the first; None where no contact forms or separates."""
+    """Return the energy [FU·LU] of the last state less that of the first.
+
+    None where no contact forms or separates, or the law has no energy.
+    """
     ends = ((float(trace.displacement[i]), trace.radius(i) or 0.0) for i in (0, len(trace) - 1))
     first, last = (settings.law.energy(*end) for end in ends)
     return None if first is None or last is None or not _is_unstable(trace) else last - first
 
 
 def _fixed_grips(branch: Trace) -> dict[str, Reading]:
-    """Return the displacement [LU] of a separation without a range: midway between the states before and after it."""
+    """Return "fixed_grips_displacement" [LU], of a separation without a range: midway between the states around it.
+
+    {} where the branch begins apart or ends in contact.
+    """
     rows = range(len(branch))
     lost = bisect_left(rows, True, key=lambda i: branch.radius(i) is None)
     if not 0 < lost < len(branch):
@@ -325,7 +371,10 @@ def _fixed_grips(branch: Trace) -> dict[str, Reading]:
 
 
 def stretches(positions: Sequence[float]) -> list[tuple[str, list[float]]]:
-    """Return the displacements by stretches of one direction: loading, unloading, loading_2, …, from "loading" on."""
+    """Return (name, displacements [LU]) of stretches of one direction: loading, unloading, loading_2, …
+
+    The first is "loading", if only with the first position.
+    """
     parts: list[tuple[str, list[float]]] = [("loading", [positions[0]])]
     for before, position in pairwise(positions):
         name = "loading" if position > before else "unloading"
@@ -342,7 +391,7 @@ def stretches(positions: Sequence[float]) -> list[tuple[str, list[float]]]:
 
 @lru_cache(maxsize=1)
 def positions_of(scene: Scene, settings: Settings) -> list[tuple[float, bool]]:
-    """Return the displacements [LU] of all states, each with whether the scene asks for it or it is intermediate.
+    """Return (displacement [LU], whether the scene asks for it) of all states in order; the others are intermediate.
 
     Where pairs snap, a path begins before the first snap-in. With `start = "contact"` it then goes to the largest
     displacement before the first one.
@@ -380,6 +429,6 @@ def _longest_unloading(settings: Settings) -> float:
 
 
 def _relaxation_time(scene: Scene, settings: Settings) -> float:
-    """Return the relaxation time [TU] of a particle on its bulk spring: 2m/γ, overdamped γ/k."""
+    """Return the relaxation time [TU] of a particle on its bulk spring, the longer of 2m/γ and, overdamped, γ/k."""
     mass, stiffness = scene.bodies.mass, scene.bulk_stiffness
     return max(2.0 * mass / settings.motion.damping, settings.motion.damping / stiffness)

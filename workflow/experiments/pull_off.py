@@ -1,4 +1,8 @@
-"""Pull-off: compress by F_D, then find the maximum tensile force."""
+"""Pull-off: compress by F_D, then find the maximum tensile force.
+
+F_A is the force maximum, a tension, a_cr the contact radius there, and a₀ that at F = 0. A leg is a part of the path
+between two turns of the loading. Displacements [LU] and forces [FU] are positive in compression.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +43,10 @@ class PullOffExperiment(Scripted[PullOff]):
         return self.given(scene).velocity is not None
 
     def script(self, branch: Driver, scene: Scene) -> None:
-        """Compress, unload to F = 0, retract to the force maximum, separate; as many times as there are cycles."""
+        """Compress, unload to F = 0, retract to the force maximum, separate; as many times as there are cycles.
+
+        The states at F = 0 and at the force maximum are marked "zero_load" and "critical".
+        """
         given = self.given(scene)
         if given.velocity:
             branch.follow(_history_at_velocity(branch.model, given))
@@ -58,7 +65,12 @@ class PullOffExperiment(Scripted[PullOff]):
             branch.open()
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """Return the marks of the last unloading; of several cycles the force maximum of the first one, too."""
+        """Return the results of the last unloading; of several cycles the force maximum of the first one, too.
+
+        "adhesion_force" and "adhesion_force_first" [FU], as positive tensions, "preload" [FU], compression positive,
+        "critical_radius", "zero_load_radius", "cohesive_radius" [LU] and "work_of_separation" [FU·LU], as far as there
+        are any.
+        """
         preload = float(trace.phases("loading").force[-1])
         given = Reading(preload, FORCE, {"solver": abs(preload - self.given(scene).preload)}, prescribed=True)
         unloadings = _unloadings(trace)
@@ -68,11 +80,14 @@ class PullOffExperiment(Scripted[PullOff]):
         return results
 
     def asked(self, trace: Trace, scene: Scene) -> Sequence[tuple[float, float]]:
-        """Return pairs of the prescribed preload and the force [FU] reached, one for each cycle."""
+        """Return pairs (prescribed preload, force reached) [FU], compression positive, one for each cycle."""
         return [(self.given(scene).preload, float(leg.force[-1])) for leg in trace.phases("loading").legs]
 
     def tables(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Mapping[str, tuple[float, ...]]]:
-        """Return the columns of cycles.csv, the force maximum of each cycle; none of a single cycle."""
+        """Return {"cycles": columns of cycles.csv}: number and force maximum, a positive tension [FU], of each cycle.
+
+        {} of a single cycle.
+        """
         unloadings, preload = _unloadings(trace), self.given(scene).preload
         if len(unloadings) == 1:
             return {}
@@ -80,7 +95,10 @@ class PullOffExperiment(Scripted[PullOff]):
         return {"cycles": {"cycle": tuple(map(float, range(1, len(unloadings) + 1))), "adhesion_force": forces}}
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """Return phases at the preload, at F = 0, and at 12 tensions up to 1.2 times the expected pull-off force."""
+        """Return phases at the preload, at F = 0, and at 12 tensions up to 1.2 times the expected pull-off force.
+
+        "loading", "unloading" and "pulling".
+        """
         preload, tension = self.given(scene).preload, settings.law.pull_off_force()
         tensions = [float(-t) for t in np.linspace(0.0, 1.2 * tension, 12 + 1)[1:]]
         return (
@@ -90,7 +108,11 @@ class PullOffExperiment(Scripted[PullOff]):
         )
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """Refuse results that contradict the curve of the run; of several cycles add the cycle of each state."""
+        """Refuse results that contradict the curve of the run; of several cycles add the cycle of each state.
+
+        Raises:
+            UntrustedError: a state has more tension than the force maximum.
+        """
         force = outcome.results["adhesion_force"]
         require_no_contradiction(settings, force.value, force.uncertainty - force.given, outcome.states)
         if self.given(scene).cycles is None:
@@ -99,19 +121,23 @@ class PullOffExperiment(Scripted[PullOff]):
         return replace(outcome, columns={**outcome.columns, "cycle": numbers})
 
     def advice(self, scene: Scene) -> str:
-        """Return the advice, under load control in time with the limitation of that method."""
+        """Return the advice, a sentence without a full stop, in time with the limitation of load control."""
         since = ", since load control never reaches the pull-off itself" if scene.method == "dynamic" else ""
         return super().advice(scene) + since
 
 
 def _history_at_velocity(model: Particles, given: PullOff) -> History:
-    """Return the history to the preload and back at the velocity, its edge receding by equal distances."""
+    """Return the history to the preload and back at the velocity, displacements [LU] over times [TU].
+
+    In unloading its edge recedes by about equal distances, with load steps at F = 0 and halfway there from the preload.
+    The ends of "unloading" and "pulling" are marked "zero_load" and "critical".
+    """
     assert given.velocity is not None
     deepest = model.displacement_at(given.preload)
     velocity, down = given.velocity, np.linspace(0.0, 1.0, 25)
 
     def pull(back: NDArray[np.float64]) -> tuple[NDArray[np.float64], Path]:
-        """Return F [FU] at times after the preload [TU], and the whole path."""
+        """Return (F [FU] at times `back` after the preload (k,) [TU], the whole path with the loading before)."""
         time = np.append(deepest / velocity * (down - 1.0), back)
         displacements = np.append(deepest * down, deepest - velocity * back)
         path = Path(displacements, np.zeros_like(displacements), time)
@@ -139,28 +165,35 @@ class ThermalPullOff(PullOffExperiment):
     is_statistical = True
 
     def run(self, context: RunContext) -> Outcome:
-        """Run the pulls of all seeds and return their detachment forces."""
+        """Run the pulls of all seeds and return the outcome with their detachment forces."""
         return pull_off_thermal(context, self.given(context.deck.scene))
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """Return the planned phases, up to a tension above the predicted pull-off force."""
+        """Return the planned phases "loading", "settling", "pulling", up to 1.1 times the predicted pull-off force."""
         return planned_detachment(scene, settings, self.given(scene))
 
 
 def _unloadings(trace: Trace) -> list[Trace]:
-    """Return the legs of falling displacement, one for each cycle."""
+    """Return the legs of falling displacement as traces, one for each cycle."""
     return [leg for leg in trace.phases("unloading", "pulling", "separating", "critical").legs if len(leg)]
 
 
 def _marks(falling: Trace, scene: Scene, settings: Settings, preload: float) -> dict[str, Reading]:
-    """Return F_A, a_cr and a₀ of one unloading, under load control or under displacement control."""
+    """Return "adhesion_force" [FU], "critical_radius" and "zero_load_radius" [LU] of one unloading, if it has them.
+
+    Under displacement control there may be more. `preload`: compression positive [FU]. The leg is under load control
+    where it has a bracket, else under displacement control.
+    """
     if falling.search.bracket:
         return _marks_by_load(falling, scene, settings, preload)
     return _marks_by_displacement(falling.falling(), settings)
 
 
 def _marks_by_displacement(falling: Trace, settings: Settings) -> dict[str, Reading]:
-    """Return the marks of an unloading under displacement control, which begins at F = 0 without a preload."""
+    """Return the results of an unloading under displacement control, by name; forces [FU], radii [LU].
+
+    Where it begins at F = 0 without a preload, "zero_load_radius" is that of the state of least |F| before the maximum.
+    """
     held = falling.force[: int(falling.force.argmin()) + 1]  # separated bodies have no load either
     marks, least = unloading(falling, settings), int(np.argmin(np.abs(held)))
     if "zero_load_radius" not in marks:
@@ -169,7 +202,11 @@ def _marks_by_displacement(falling: Trace, settings: Settings) -> dict[str, Read
 
 
 def _marks_by_load(rested: Trace, scene: Scene, settings: Settings, preload: float) -> dict[str, Reading]:
-    """Return F_A in the middle of the bracket, a₀, and a_cr, which load control never reaches, by extrapolation."""
+    """Return F_A in the middle of the bracket [FU], a₀ [LU], and a_cr [LU], which load control never reaches, by name.
+
+    a_cr is extrapolated; where there are several maxima, it is that of the last state. `rested`: states at rest under
+    rising tensions, with a bracket; `preload` [FU].
+    """
     assert rested.search.bracket is not None
     best, broken = rested.search.bracket
     tension = 0.5 * (best + broken)
@@ -198,7 +235,9 @@ def _marks_by_load(rested: Trace, scene: Scene, settings: Settings, preload: flo
 def _critical_radius(rested: Trace) -> Reading:
     """Return the radius [LU] at the force maximum of a cubic through the last four states, with its sampling error.
 
-    The radius is a parabola through the last three states, the error the change with a parabola for the force.
+    The radius is a parabola through the last three states, the error twice the change with a parabola for the force.
+    With fewer states, where a polynomial has no maximum nearby, or without a contact, it is the radius of the last
+    state, uncertain by its whole value.
     """
     few, margin = 4, 2.0  # error over the change with one state less
     count = min(few, len(rested))

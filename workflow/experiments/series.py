@@ -43,7 +43,7 @@ class Series:
     smooth: bool = False
 
     def __getitem__(self, name: str) -> Array:
-        """Return the recorded column of a name."""
+        """Return the recorded column of a name, (n,), in its own unit."""
         return self.columns[name]
 
     def __len__(self) -> int:
@@ -51,30 +51,33 @@ class Series:
         return len(next(iter(self.columns.values())))
 
     def mean(self, name: str) -> Any:
-        """Return the mean of a column: a number, of a profile an array (particles,)."""
+        """Return the mean of a column in its unit: a number, of a profile an array (particles,)."""
         return self.columns[name].mean(axis=0)
 
     def table(self) -> dict[str, tuple[float, ...]]:
-        """Return the columns as a file has them, by name."""
+        """Return the columns as tuples of n numbers, as a file has them, by name."""
         return {name: tuple(values.tolist()) for name, values in self.columns.items()}
 
     def chosen(self, records: Any) -> Series:
-        """Return the series of the records with given indices, a slice or an array."""
+        """Return the series of the records with given indices, a slice or an array, with columns and integrals."""
         columns = {name: values[records] for name, values in self.columns.items()}
         integrals = {name: values[records] for name, values in self.integrals.items()}
         return Series(columns, integrals, self.smooth)
 
     def every_second(self) -> Series:
-        """Return the series of every second record, the first and the last one among them."""
+        """Return the series of every second record, counted from the last, and of the first one."""
         return self.chosen(np.union1d(0, np.arange(len(self))[::-2]))
 
     def parts(self, count: int) -> Series:
-        """Return the means over a number of parts of about equal length."""
+        """Return the means over `count` parts of about equal length, as a series without integrals."""
         split = {name: np.array_split(values, count) for name, values in self.columns.items()}
         return Series({name: np.asarray([part.mean(axis=0) for part in parts]) for name, parts in split.items()})
 
     def periods(self, length: float) -> Series:
-        """Return the means of quantities with integrals over whole periods of a length [TU] (`block_means`)."""
+        """Return the means of quantities with integrals over whole periods of a length [TU].
+
+        The last period ends with the series. A mean is in the unit of the integral over [TU].
+        """
         rates = self.columns if self.smooth else {}
         return Series(
             {
@@ -85,7 +88,7 @@ class Series:
 
 
 def recorded(records: Sequence[object], names: Iterable[str]) -> dict[str, Array]:
-    """Return columns of a series by name, attributes of the records, (n,)."""
+    """Return attributes of n records as columns by name, (n,) each, in their own units."""
     return {name: np.asarray([getattr(record, name) for record in records]) for name in names}
 
 
@@ -95,11 +98,13 @@ def measured(
     error: Callable[[Array], float] = standard_error,
     repeats: Mapping[str, Series] | None = None,
 ) -> dict[str, Result]:
-    """Return the results of a reader with their errors; a result that perturbed blocks do not have counts as 0.
+    """Return the results of a reader with their errors, by name.
+
+    One that perturbed blocks do not have counts as 0 there.
 
     Args:
         blocks: nearly independent of each other.
-        read: the reader.
+        read: the reader: returns readings of a series, by name.
         error: a function of n values that returns the error of their mean.
         repeats: blocks of other records, by the source of the error that they show.
     """
@@ -120,6 +125,6 @@ def measured(
 
 
 def begin_phase(contact: Contact, phase: Phase) -> Sequence[Row]:
-    """Begin a phase on a contact and return its load steps."""
+    """Begin a phase on a contact and return its load steps, which are still to be run."""
     contact.begin(phase.name, phase.begin, sum(getattr(row, "steps", 0) for row in phase.rows))
     return phase.rows

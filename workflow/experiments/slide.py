@@ -51,11 +51,11 @@ class SlideExperiment(Experiment[Slide]):
     start: ClassVar[tuple[str, ...]] = ("steps/drive",)
 
     def run(self, context: RunContext) -> Outcome:
-        """Load, then drive leg by leg.
+        """Load, then drive leg by leg, and return the outcome.
 
         Raises:
-            UntrustedError: the plate is not loaded (`loaded`), a state is not trusted (`require_trust`), the plate runs
-                off the lower body, separates, or never slides.
+            UntrustedError: the plate does not come to rest under the load, a state is no result (`require_trust`), the
+                plate runs off the lower body, separates, or never slides.
         """
         scene, settings = context.deck.scene, context.deck.settings
         load, legs = self.given(scene).normal_force, self.planned(scene, settings)[1:]
@@ -79,7 +79,7 @@ class SlideExperiment(Experiment[Slide]):
         return outcome
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """Return the schedule, without the relaxation under the normal force."""
+        """Return the schedule, "loading" and a phase "sliding" for each leg, without the relaxation in between."""
         load, phases = self.given(scene).normal_force, list[Phase]()
         for leg in settings.motion.drive:
             name = numbered("sliding", [phase.name for phase in phases])
@@ -89,7 +89,7 @@ class SlideExperiment(Experiment[Slide]):
         return self.loading(scene, settings, load), *phases
 
     def loading(self, scene: Scene, settings: Settings, force: float) -> Phase:
-        """Return the phase in which the normal force [FU] is applied, as it is planned."""
+        """Return the phase in which the normal force [FU], compression positive, is applied, as it is planned."""
         scale = abs(force) or settings.forces.scale
         rows = [hold_row(scene, _loading_settings(settings), force, scale, Start.KEPT)]
         if settings.motion.settling_damping != settings.motion.damping:
@@ -97,7 +97,7 @@ class SlideExperiment(Experiment[Slide]):
         return Phase("loading", tuple(rows))
 
     def loaded(self, contact: Contact, force: float) -> State:
-        """Apply the normal force [FU] and return the state at rest.
+        """Apply the normal force [FU], compression positive, and return the state at rest.
 
         Raises:
             PartedError: the bodies separate under it.
@@ -117,7 +117,7 @@ class SlideExperiment(Experiment[Slide]):
         return state
 
     def advice(self, scene: Scene) -> str:
-        """Return the advice to average over a longer distance."""
+        """Return the advice to average over a longer distance, as text without a full stop."""
         leg = "experiment.distance" if self.given(scene).path is None else "last leg of experiment.path that moves"
         return (
             f"Use a longer {leg}, with more whole periods of the spacing; this does not improve static_friction, whose "
@@ -132,17 +132,17 @@ class ThermalSlide(SlideExperiment):
     start = ("steps/drive", HEAT_FRAGMENT)
 
     def loading(self, scene: Scene, settings: Settings, force: float) -> Phase:
-        """Return the phase of the run-in under the normal force [FU]."""
+        """Return the phase of the run-in under the normal force [FU], compression positive."""
         return run_in("loading", settings, force)
 
     def loaded(self, contact: Contact, force: float) -> State:
-        """Run in under the normal force [FU] and return the last state."""
+        """Run in under the normal force [FU], compression positive, and return the last state, whatever it is."""
         phase = self.loading(contact.scene, contact.settings, force)
         return contact.rows(begin_phase(contact, phase), trusted=False)[-1]
 
 
 def outcome_of(motion: Motion, states: list[State], phases: tuple[Phase, ...]) -> Outcome:
-    """Return the outcome of a finished slide, or of the part before a failure."""
+    """Return the outcome of a finished slide, or of the part before a failure, with its tables slips and friction."""
     tables = {
         "slips": {name: tuple(getattr(slip, name) for slip in motion.slips) for name in ("time", "place", "size")},
         "friction": motion.series.chosen(slice(1, None)).table(),
@@ -152,7 +152,10 @@ def outcome_of(motion: Motion, states: list[State], phases: tuple[Phase, ...]) -
 
 
 def _warnings(motion: Motion) -> dict[str, str]:
-    """Return the warnings of a slide: too fast, too short, too much drag, or an energy balance that does not close."""
+    """Return the warnings of a slide by name, {} for none: "fast", "unsteady", "drag", "energy".
+
+    Too fast, too short, too much drag, or an energy balance that does not close.
+    """
     settings, top, work = motion.settings, motion.largest[FORCE], motion.results["cantilever_work"]
     fastest, warnings = max(abs(leg.velocity) for leg in settings.motion.drive), {}
     if fast := too_fast(motion.scene):
@@ -179,12 +182,19 @@ def _warnings(motion: Motion) -> dict[str, str]:
 
 
 def _loading_settings(settings: Settings) -> Settings:
-    """Return the settings with the drag of the loading, which is critical for the contact."""
+    """Return the settings with the drag of the loading, which is critical for the contact, on each particle."""
     return replace(settings, motion=replace(settings.motion, damping=settings.motion.settling_damping))
 
 
 def _settled_along_x(contact: Contact, force: float, scale: float, state: State) -> State:
-    """Continue from a state until the plate is at rest along x as well, and return the state there."""
+    """Continue from a state until the plate is at rest along x as well, and return the state there.
+
+    `force`: normal force [FU]; `scale`: force [FU] to which the tolerance is relative.
+
+    Raises:
+        RestlessError: it does not come to rest.
+        UntrustedError: a state is no result.
+    """
     scene, settings = contact.scene, _loading_settings(contact.settings)
     steps = max(1, round(settings.motion.settle_time / settings.motion.time_step))
     row = replace(hold_row(scene, settings, force, scale, Start.HERE), rest=0.0, steps=steps)
@@ -206,7 +216,8 @@ def _require_contact(scene: Scene, settings: Settings, state: State) -> None:
     """Refuse a plate that has left the lower body, along it or off it.
 
     Raises:
-        OffEndError, PartedError: the plate has left it; the message has its position and a suggested fix.
+        OffEndError: it is beyond the end of the lower body.
+        PartedError: the bodies have separated.
     """
     if state.smallest_distance > settings.forces.cutoff:
         raise PartedError(

@@ -2,6 +2,8 @@
 
 The discretisation error is estimated before a run on the reduced model (`continuation.budget`). It falls with the
 square of the spacing.
+ g is the profile under the reduction, E* the contact modulus [FU/LU²], W the work of adhesion [FU/LU]; d [LU] and F
+[FU] are positive in compression.
 """
 
 from __future__ import annotations
@@ -30,10 +32,10 @@ RADII = ("contact_radius", "stick_radius", "zero_load_radius", "critical_radius"
 
 
 def with_spacing(scene: Scene) -> Scene:
-    """Return the scene with a number for `bodies.spacing`, unchanged where it has one.
+    """Return the scene with a number for `bodies.spacing` [LU], unchanged where it has one.
 
     Raises:
-        SettingsError: the bodies do not touch, or the tolerance needs more than MOST particles in the contact radius.
+        SettingsError: the bodies do not touch, or the tolerance needs more than 5000 particles in the contact radius.
     """
     if scene.bodies.given_spacing != "auto":
         return scene
@@ -55,10 +57,12 @@ def with_spacing(scene: Scene) -> Scene:
 def spaced_within_tolerance(
     scene_of: Callable[[int], Scene], share: float = 0.9, fewest: int = 30
 ) -> tuple[Scene, float]:
-    """Return the scene whose discretisation error is below a share of its tolerance, and that error, relative.
+    """Return (scene whose discretisation error is below a share of its tolerance, that error, relative).
+
+    With 5000 particles, or after 8 trials, the error may be larger, or infinite.
 
     Args:
-        scene_of: returns the scene with a number of particles in the contact radius, which is MOST at most.
+        scene_of: returns the scene with a number of particles in the contact radius, which is 5000 at most.
         share: of the tolerance.
         fewest: particles in the contact radius; with 30, F_A and a₀ of JKR are within 3e-3.
     """
@@ -77,8 +81,9 @@ def spaced_within_tolerance(
 def lattice_error(scene: Scene) -> float:
     """Return the largest relative discretisation error of a result, or of a curve over its largest force.
 
-    It is 0 where no contact can be predicted: the run reports it. A result of 0 has no relative error; a radius that is
-    0 here and not on another lattice has an infinite one.
+    The error of a radius counts twice; prescribed results other than radii, and energy losses with an error above 10 %,
+    do not count. It is 0 where no contact can be predicted: the run reports it. A result of 0 has no relative error; a
+    radius that is 0 here and not on another lattice has an infinite one.
     """
     try:
         settings = settings_for(scene)
@@ -105,17 +110,18 @@ def lattice_error(scene: Scene) -> float:
 
 
 def _spaced(scene: Scene, radius: float, count: int) -> Scene:
-    """Return the scene with a whole number of particles in a contact radius [LU], as a punch needs."""
+    """Return the scene with a whole number `count` of particles in a contact radius [LU], as a punch needs."""
     return scene.model_copy(update={"bodies": scene.bodies.model_copy(update={"given_spacing": radius / count})})
 
 
 def contact_curve(scene: Scene) -> tuple[Array, Array, Array]:
-    """Return radii a [LU] of contacts of the body on the plane, rising, with displacements d [LU] and forces F [FU].
+    """Return (a [LU], d [LU], F [FU]), (m,) each, of contacts of the body on the plane, by rising radius a.
 
         d = g(a) − √(2πaW/E*),    F = 2E* [a d − ∫₀ᵃ g dx],    of a flat punch its one radius
 
-    (V. L. Popov, M. Heß, Method of Dimensionality Reduction, 2015, sections 3.1 and 4.4), E* that of the layer. The
-    radii are a geometric progression from 1e-12 LU to 1e12 LU, or to just inside the end of a body.
+    (V. L. Popov, M. Heß, Method of Dimensionality Reduction, 2015, sections 3.1 and 4.4), E* that of the layer,
+    compression positive. The radii are a geometric progression from 1e-12 LU to 1e12 LU, or to just inside the end of a
+    body.
     """
     bodies, modulus = scene.bodies, _spaced(scene, 1.0, 1).bulk_stiffness
     work, reach = scene.work_of_adhesion, bodies.profile.reach
@@ -134,8 +140,8 @@ def contact_curve(scene: Scene) -> tuple[Array, Array, Array]:
 def contact_radius(scene: Scene) -> float:
     """Return the contact radius [LU] in which particles are counted, by the closed theory of the body, without a run.
 
-    It is that under the load, at the largest prescribed displacement, where an impact turns, or at F = 0 for a
-    pull-off.
+    It is that under the largest load, at the largest prescribed displacement, where an impact turns, or at F = 0 where
+    an experiment with adhesion finds the pull-off force; beyond the curve of the theory, that of its end.
 
     Raises:
         SettingsError: the bodies do not touch.
@@ -164,6 +170,6 @@ def contact_radius(scene: Scene) -> float:
 
 
 def _rounded_up(tolerance: float) -> str:
-    """Return a tolerance about 10 % larger, rounded up to two significant digits."""
+    """Return a tolerance 10 to about 20 % larger as text, rounded up to two significant digits."""
     step = 10.0 ** (math.floor(math.log10(tolerance)) - 1)
     return f"{math.ceil(1.1 * tolerance / step) * step:.2g}"

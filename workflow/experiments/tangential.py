@@ -3,6 +3,8 @@
 A load step is one step of each particle's spring and slider, which is exact while the particle stays in contact.
 Between two load steps of the scene displacement and position change together, along a straight line, with a further
 load step wherever a particle comes into contact or leaves it.
+
+F_N is the normal force, compression positive, s_i the tangential force of a particle [FU]; to the right is along +x.
 """
 
 from __future__ import annotations
@@ -27,7 +29,7 @@ from contact1d.workflow.continuation.planned import Plan
 from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import UntrustedError, doubts
 from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.deck.lattice import places
+from contact1d.workflow.deck.lattice import particle_positions
 from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.experiments.experiment import Scripted, finer_spacing
 from contact1d.workflow.laws.friction import JenkinsElements, SlidingSprings, Stop, elements_of, stops, without_stops
@@ -53,7 +55,12 @@ class TangentialExperiment(Scripted[Tangential]):
     )  # fmt: skip
 
     def run(self, context: RunContext) -> Outcome:
-        """Run the schedule; refuse forces that are not those of the history of each particle."""
+        """Run the schedule and return the outcome; refuse forces that are not those of the history of each particle.
+
+        Raises:
+            UntrustedError: the result can't be trusted.
+            EngineError: LAMMPS failed.
+        """
         scene, settings = context.deck.scene, context.deck.settings
         case = self.reduction(scene, settings)
         plan = self._plan(context.deck, case.model)
@@ -87,16 +94,19 @@ class TangentialExperiment(Scripted[Tangential]):
         )
 
     def script(self, branch: Driver, scene: Scene) -> None:
-        """Visit the stops of the model's particles, without those that change nothing."""
+        """Visit the displacements and positions of the scene, without those that change nothing."""
         model = cast("SlidingSprings", branch.model)
         for name, stretch in stretches(load_steps(scene, model.chain, branch.settings, sparse=True)):
             branch.begin(name)
             branch.visit(*zip(*(stop for stop, _ in stretch), strict=True))
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """Return the results of the last state, on the scales of Σ |s_i| and its work.
+        """Return the results of the last state by name, on the scales of Σ |s_i| and its work.
 
-        The round-off of tangential forces adds up along the history, by 1e-13 of the largest one in each load step.
+        s_i is the tangential force of a particle. "normal_force", compression positive, and "tangential_force" [FU],
+        "contact_radius" and "stick_radius" [LU], "dissipated_energy" [FU·LU] and, with cycles,
+        "dissipated_energy_per_cycle" of the last one. The round-off of tangential forces adds up along the history, by
+        1e-13 of the largest one in each load step.
         """
         rows, round_off = slid_states(trace, scene), 1e-13
         last = rows[-1]
@@ -132,7 +142,7 @@ class TangentialExperiment(Scripted[Tangential]):
         return results
 
     def _plan(self, deck: Deck, model: Particles) -> Plan:
-        """Return the plan: the load in one step, then a phase for each stretch to the right ("forward") or left."""
+        """Return the plan: the load in one step, then a phase for each stretch along x, "forward" or "backward"."""
         parts = stretches(load_steps(deck.scene, _chain(deck.scene, deck.settings), deck.settings))
         names = [name for name, stretch in parts for _ in stretch]
         ends = np.cumsum([len(stretch) for _, stretch in parts]) - 1
@@ -142,11 +152,11 @@ class TangentialExperiment(Scripted[Tangential]):
         return Plan(deck, model, path, names, marks)
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """Return the phases of the load steps that run."""
+        """Return the phases of the load steps that run: "pressing", "forward", "backward", numbered where repeated."""
         return self._plan(Deck(scene, settings), reduced(scene, settings)).phases
 
     def advice(self, scene: Scene) -> str:
-        """Return the advice to refine the lattice: the load steps are exact."""
+        """Return the advice to refine the lattice, a sentence without a full stop: the load steps are exact."""
         return f"Use {finer_spacing(scene)}"
 
 
@@ -157,7 +167,7 @@ class SlidState:
     Attributes:
         position: position of the plate along x [LU].
         force: tangential force with which the body resists a move to the right [FU].
-        carried: Σ |s_i| over all particles [FU].
+        carried: Σ |s_i| over the tangential forces of all particles [FU].
         dissipated: energy since the start [FU·LU].
         wrong: largest difference of a particle's force from that of its spring and slider after the state before [FU].
         trace, state: the trace and the number of the state in it.
@@ -177,7 +187,10 @@ class SlidState:
 
     @cached_property
     def stick(self) -> ContactRadius:
-        """Half-width c of the stick zone [LU]; a flat punch sticks or slips as a whole."""
+        """Half-width c of the stick zone with its uncertainty [LU], 0 where all particles slip.
+
+        A flat punch sticks or slips as a whole: it is its edge or 0.
+        """
         profile, coefficient = self.trace.profile(self.state), self.scene.the(Friction).coefficient
         if self.scene.bodies.own_count is None:
             return stick_radius(profile, coefficient, self.direction)
@@ -187,7 +200,7 @@ class SlidState:
 
 
 def slid_states(trace: Trace, scene: Scene) -> list[SlidState]:
-    """Return the friction of each state of a trace; the first one is under the normal load alone."""
+    """Return the friction of each state of a trace, in order; the first one is under the normal load alone."""
     coefficient, spacing, stiffness, _ = _springs(trace)
     rows: list[SlidState] = []
     dissipated, direction, before, limit = 0.0, 0, np.empty(0), np.empty(0)
@@ -209,16 +222,17 @@ def slid_states(trace: Trace, scene: Scene) -> list[SlidState]:
 
 
 def _springs(trace: Trace) -> tuple[float, float, float, float]:
-    """Return μ, the spacing [LU], and the tangential and normal stiffness of a particle [FU/LU] of a trace."""
+    """Return (coefficient of friction, spacing [LU], tangential, normal stiffness of a particle [FU/LU]) of a trace."""
     law = cast("SlidingSprings", trace.model).law
     return law.coefficient, law.spacing, law.ratio * law.stiffness, law.stiffness
 
 
 def _energy(rows: Sequence[SlidState], error: float, scene: Scene) -> Reading:
-    """Return the energy [FU·LU] dissipated from the first state to the last, with the error of tangential forces.
+    """Return the energy [FU·LU] dissipated from the first state to the last, with its errors.
 
-    Where no particle slips, `_unseen_slip` dissipates at most force times distance; that counts as 0 below 1e-5 of the
-    work, and is 0 of a body with an edge, which sticks or slips as a whole.
+    `error`: by the error of tangential forces [FU·LU]. Where no particle slips, `_unseen_slip` dissipates at most force
+    times distance; that counts as 0 below 1e-5 of the work, and is 0 of a body with an edge, which sticks or slips as a
+    whole.
     """
     dissipated = rows[-1].dissipated - rows[0].dissipated
     if abs(dissipated) > error:
@@ -232,12 +246,12 @@ def _energy(rows: Sequence[SlidState], error: float, scene: Scene) -> Reading:
 
 
 def _unseen_slip(rows: Sequence[SlidState], scene: Scene) -> tuple[float, float]:
-    """Return force [FU] and distance [LU] at most of the slip between the outermost particles, where none slips.
+    """Return (force [FU], distance [LU]) at most of the slip between the outermost particles, where none slips.
 
     The annulus that slips is as wide as k_t u/(μ Δf) spacings, with Δf the difference of the normal forces of the two
     outermost particles, and one at most, or three at both edges together; its forces are below k_t u and μ f, and it
-    slips by as much as the sliders are moved beyond what a rising load lets them carry, k_t |Δu| − μ k_n Δd. A body
-    with an edge has no such slip.
+    slips by as much as the sliders are moved beyond what a rising load lets them carry, k_t |Δu| − μ k_n Δd. Of a body
+    with an edge the force is 0.
     """
     coefficient, spacing, stiffness, normal = _springs(rows[0].trace)
     outer = [np.sort(row.trace.profile(row.state).pressure) for row in rows]
@@ -255,7 +269,11 @@ def _unseen_slip(rows: Sequence[SlidState], scene: Scene) -> tuple[float, float]
 
 
 def _require_history(trace: Trace, rows: Sequence[SlidState], tolerance: float = 1e-8) -> None:
-    """Refuse tangential forces off those of springs and sliders by more than a share of the largest friction force."""
+    """Refuse tangential forces off those of springs and sliders by more than a share of the largest friction force.
+
+    Raises:
+        UntrustedError: names the first such state.
+    """
     coefficient, spacing = rows[0].scene.the(Friction).coefficient, rows[0].scene.bodies.spacing
     limit = max(coefficient * spacing * float(trace.profile(i).pressure.max()) for i in range(len(trace)))
     for row in rows:
@@ -269,7 +287,7 @@ def _require_history(trace: Trace, rows: Sequence[SlidState], tolerance: float =
 
 
 def _columns(rows: Sequence[SlidState]) -> dict[str, tuple[float, ...]]:
-    """Return the additional columns of curve.csv, by name."""
+    """Return the additional columns of curve.csv by name, (m,): lengths [LU], forces [FU], energy [FU·LU]."""
     return {
         "tangential_displacement": tuple(row.position for row in rows),
         "tangential_force": tuple(row.force for row in rows),
@@ -281,16 +299,17 @@ def _columns(rows: Sequence[SlidState]) -> dict[str, tuple[float, ...]]:
 
 
 def _chain(scene: Scene, settings: Settings) -> JenkinsElements:
-    """Return the sliders of the chain that runs."""
-    return elements_of(scene, places(settings.chains.upper, scene.bodies.spacing))
+    """Return the springs and sliders of the particles of the chain that runs."""
+    return elements_of(scene, particle_positions(settings.chains.upper, scene.bodies.spacing))
 
 
 def load_steps(
     scene: Scene, chain: JenkinsElements, settings: Settings, sparse: bool = False
 ) -> list[tuple[Stop, bool]]:
-    """Return displacement and position [LU] of every load step in order, each with whether the scene asks for it.
+    """Return ((displacement, position) [LU], whether the scene asks for it) of every load step in order.
 
-    With `sparse`, stops are left out at which the direction does not change.
+    The others press the bodies together first, or are where a particle comes into contact or leaves it. With `sparse`,
+    stops of the scene on a straight path at constant displacement are left out.
     """
     assert isinstance(scene.experiment, Tangential)
     asked = stops(scene.experiment, chain)
@@ -310,7 +329,10 @@ def load_steps(
 
 
 def stretches(steps: Sequence[tuple[Stop, bool]]) -> list[tuple[str, list[tuple[Stop, bool]]]]:
-    """Return the load steps by stretches of one direction with their names, the normal load first."""
+    """Return (name, load steps) of stretches of one direction: "pressing" with the first, then "forward", "backward", …
+
+    Load steps that do not move along x belong to the stretch before, and first to that after.
+    """
     moves = [after[1] - before[1] for (before, _), (after, _) in pairwise(steps)]
     direction = BACKWARD if next((move for move in moves if move), 1.0) < 0.0 else FORWARD
     parts = [(PRESSING, [steps[0]])]
@@ -326,7 +348,10 @@ def stretches(steps: Sequence[tuple[Stop, bool]]) -> list[tuple[str, list[tuple[
 
 
 def _contact_error(scene: Scene, settings: Settings) -> float:
-    """Return the error [FU] of tangential forces by particles that come into contact between two load steps."""
+    """Return the error [FU] of tangential forces by particles that come into contact between two load steps of a deck.
+
+    0 where each such particle has a load step.
+    """
     assert isinstance(scene.experiment, Tangential)
     chain, most, error = _chain(scene, settings), _most_between(settings), 0.0
     for before, stop in pairwise(stops(scene.experiment, chain)):
@@ -337,7 +362,7 @@ def _contact_error(scene: Scene, settings: Settings) -> float:
 
 
 def _most_between(settings: Settings) -> int:
-    """Return how many load steps lie between two of the scene at most.
+    """Return how many load steps lie between two of the scene at most: the inverse of the tolerance.
 
     A particle that comes into contact between two of these moves along from the first, an error of one in so many.
     """

@@ -43,29 +43,32 @@ def chunk_steps(settings: Settings) -> int:
 
 
 def run_in(name: str, settings: Settings, load: float) -> Phase:
-    """Return the phase in which a contact under a load [FU] forgets its start."""
+    """Return the phase of this name in which a contact under a load [FU], compression positive, forgets its start."""
     return Phase(name, (UnderLoad(load, chunk_steps(settings)),) * RUN_IN_SAMPLES)
 
 
 def planned_samples(settings: Settings, load: float) -> tuple[Phase, Phase]:
-    """Return the planned phases of a load [FU] under noise."""
+    """Return the planned phases "settling" and "sampling" of a load [FU], compression positive, under noise."""
     samples = (UnderLoad(load, chunk_steps(settings)),) * SAMPLES
     return run_in("settling", settings, load), Phase("sampling", samples, state=True)
 
 
 def blocks_of(samples: Sequence[State]) -> Series:
-    """Return the means over BLOCKS parts of the samples."""
+    """Return the means over 20 parts of the samples: displacement [LU], forces [FU] and profiles."""
     profiles = recorded([sample.profile for sample in samples], PROFILE_COLUMNS)
     return Series(recorded(samples, ("displacement", "force", "carried")) | profiles).parts(BLOCKS)
 
 
 def mean_profile(blocks: Series) -> Profile:
-    """Return the profile averaged over time, particle by particle."""
+    """Return the profile averaged over the blocks of time, particle by particle."""
     return Profile(*map(blocks.mean, PROFILE_COLUMNS))
 
 
 def mean_state(samples: Sequence[State]) -> State:
-    """Return the mean of samples as a state whose `residual` is CERTAIN standard errors of the force over N."""
+    """Return the mean of samples as a state whose `residual` [FU] is two standard errors of the force over N particles.
+
+    Its smallest distance and depth are the extremes of all samples, all else is that of the last one.
+    """
     blocks = blocks_of(samples)
     return replace(
         samples[-1],
@@ -79,10 +82,12 @@ def mean_state(samples: Sequence[State]) -> State:
 
 
 def sample_columns(states: Sequence[State], loads: Sequence[float], settings: Settings) -> dict[str, tuple[float, ...]]:
-    """Return the columns of samples.csv: time [TU], load, force [FU], displacement, contact radius [LU] of each state.
+    """Return the columns of samples.csv by name, (m,): time [TU], load, force [FU], displacement, contact radius [LU].
+
+    The contact radius is NaN where the bodies do not touch.
 
     Args:
-        states: in order.
+        states: in order, (m,).
         loads: load under which each was measured [FU].
         settings: with the length of a timestep.
     """
@@ -94,7 +99,9 @@ def sample_columns(states: Sequence[State], loads: Sequence[float], settings: Se
 
 
 def thermal_load(context: RunContext, load: float, most_samples: int = 2_000) -> Outcome:
-    """Return d, F, a and F/(πa²) under a load [FU] and noise, as means.
+    """Return the outcome of a load [FU], compression positive, under noise: means of d, F, a and F/(πa²).
+
+    With a warning "statistics" where `most_samples` do not meet the tolerance.
 
     Raises:
         UntrustedError: the bodies separate, the mean force misses the load, or a state fails `require_trust`.
@@ -129,10 +136,10 @@ def thermal_load(context: RunContext, load: float, most_samples: int = 2_000) ->
 
 
 def _sampled_states(contact: Contact, rows: Sequence[Row]) -> list[State]:
-    """Return the states of load steps; refuse one in which the bodies are separated.
+    """Run load steps and return their states, which need not be at rest.
 
     Raises:
-        UntrustedError: no particle is within the cutoff of the other body.
+        UntrustedError: the bodies are separated: no particle is within the cutoff of the other body.
     """
     states = []
     for row in rows:
@@ -147,7 +154,14 @@ def _sampled_states(contact: Contact, rows: Sequence[Row]) -> list[State]:
 
 
 def read(blocks: Series, rule: RadiusRule) -> dict[str, Reading]:
-    """Return means of displacement and force, and contact radius and pressure of the mean profile."""
+    """Return means of "displacement" [LU] and "force" [FU], "contact_radius" [LU] and "mean_pressure" [FU/LU²].
+
+    The last two are those of the mean profile, and are left out where it shows no contact. The force is the load that
+    the contact carries.
+
+    Raises:
+        ValueError: the contact radius is 0, so that there is no mean pressure.
+    """
     results = {
         "displacement": Reading(float(blocks.mean("displacement")), LENGTH),
         "force": Reading(float(blocks.mean("carried")), FORCE),
@@ -164,7 +178,7 @@ def read(blocks: Series, rule: RadiusRule) -> dict[str, Reading]:
 
 
 def require_balance(force: Result, load: float, most: float = 5.0) -> None:
-    """Refuse a mean force that misses its load [FU] by more than `most` standard errors.
+    """Refuse a mean force that misses its load [FU] by more than `most` of its uncertainties (standard errors).
 
     Raises:
         UntrustedError: the message has the difference in standard errors.
@@ -180,7 +194,7 @@ def require_balance(force: Result, load: float, most: float = 5.0) -> None:
 def thermal_rows(
     settings: Settings, decay: float, positions: Sequence[tuple[float, bool]]
 ) -> tuple[DisplaceInTime, ...]:
-    """Return the load steps of a path: equilibration at each position, and sampling where the scene asks for the state.
+    """Return the load steps of a path: equilibration at each position, and samples where the scene asks for the state.
 
     Args:
         settings: of the scene.
@@ -195,7 +209,10 @@ def thermal_rows(
 
 
 def averaged(states: Sequence[State], positions: Sequence[tuple[float, bool]]) -> list[State]:
-    """Return one state for each position of a path: the mean of its samples, of an intermediate one the last state."""
+    """Return one state for each position of a path: the mean of its samples, of an intermediate one the last state.
+
+    `states`: of all load steps, in order; `positions`: displacement [LU], and whether the scene asks for its state.
+    """
     ends = np.cumsum([_steps_at(asked) for _, asked in positions]).tolist()
     return [
         mean_state(states[end - SAMPLES : end]) if asked else states[end - 1]
@@ -204,5 +221,5 @@ def averaged(states: Sequence[State], positions: Sequence[tuple[float, bool]]) -
 
 
 def _steps_at(asked: bool) -> int:
-    """Return the number of load steps at a position."""
+    """Return the number of load steps at a position: 40 of equilibration, and 200 samples of a state of the scene."""
     return RUN_IN_SAMPLES + asked * SAMPLES

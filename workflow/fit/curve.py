@@ -22,7 +22,7 @@ class Segment:
     """The approach or the retraction of a curve, in the order of time.
 
     Attributes:
-        points: indices into the curve.
+        points: indices of its points in the curve, (n,).
         jump: positions in `points` of the last point before and the first one after a jump of the force; None: no jump.
         approaches: whether the bodies approach.
     """
@@ -32,31 +32,37 @@ class Segment:
     approaches: bool
 
     def _sides(self, margin: int = 0) -> tuple[Indices, Indices]:
-        """Return the points before and after the jump without the `margin` points next to it; none without a jump."""
+        """Return the indices in the curve of points (before, after) the jump, without the `margin` points next to it.
+
+        Both are empty without a jump.
+        """
         before, after = self.jump or (-1, self.points.size)
         return self.points[: max(0, before + 1 - margin)], self.points[after + margin :]
 
     @property
     def held(self) -> Indices:
-        """Points at which the bodies are certainly in contact; none without a jump."""
+        """Indices in the curve of points at which the bodies are certainly in contact; empty without a jump."""
         return self._sides()[self.approaches]
 
     @property
     def apart(self) -> Indices:
-        """Points at which the bodies are certainly apart; none without a jump."""
+        """Indices in the curve of points at which the bodies are certainly apart; empty without a jump."""
         return self._sides()[not self.approaches]
 
     @property
     def compared(self) -> Indices:
-        """Points that a model is compared with: all but those of the jump and next to it."""
+        """Indices in the curve of points that a model is compared with: all but the jump and three points beside it."""
         return self.points if self.jump is None else np.concatenate(self._sides(BESIDE_JUMP))
 
 
 @dataclass(frozen=True)
 class ForceCurve:
-    """Positions z [LU] and forces F [FU], compression positive, (n,) each, and the line of each point in its file.
+    """Positions z [LU], rising towards the sample, and forces F [FU], compression positive, (n,), in the order of time.
 
-    `turn` is the number of points of the approach, which come first.
+    Attributes:
+        positions, forces: z and F.
+        turn: number of points of the approach, which come first.
+        lines: line of each point in its file, (n,).
     """
 
     positions: Array
@@ -66,7 +72,7 @@ class ForceCurve:
 
     @cached_property
     def segments(self) -> tuple[Segment, Segment]:
-        """The approach and the retraction of the curve."""
+        """The (approach, retraction) of the curve, each with its jump of the force: a snap-in, a snap-out."""
         approach, retraction = np.split(np.arange(self.positions.size), [self.turn])
         return (
             Segment(approach, self._jump(approach, -1.0), True),
@@ -74,7 +80,11 @@ class ForceCurve:
         )
 
     def _jump(self, points: Indices, sign: float) -> tuple[int, int] | None:
-        """Return the last of `points` before a jump of the force of this sign and the first one after it, or None."""
+        """Return positions in `points`: of the last before a jump of the force and of the first after it.
+
+        None without a jump. `sign`: that of the change of the force, −1 for a snap-in and 1 for a snap-out. A jump is
+        more than six times as large as the usual change between neighbours.
+        """
         change = sign * np.diff(self.forces[points])
         change -= median_filter(change, 15, mode="nearest")  # less the usual change, due to the contact stiffness
         spread = 1.4826 * float(np.median(np.abs(change)))
@@ -92,12 +102,15 @@ class ForceCurve:
 
     @property
     def depth(self) -> float:
-        """The range of the positions [LU]."""
+        """The range of the positions, largest less least [LU]."""
         return float(np.ptp(self.positions))
 
     @cached_property
     def baseline(self) -> float:
-        """The median force [FU] where the bodies are certainly apart, else of the first fifth of the approach."""
+        """The median force [FU] where the bodies are certainly apart, else of the first fifth of the approach.
+
+        The latter where fewer than ten points are certainly apart.
+        """
         apart = np.concatenate([segment.apart for segment in self.segments])
         if apart.size < 10:
             apart = np.arange(max(3, self.turn // 5))

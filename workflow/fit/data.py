@@ -57,7 +57,11 @@ NamedCurve = tuple[str, tuple[float, float] | None, ForceCurve | DataError]
 
 
 def files_of(plan: FitPlan) -> list[Path]:
-    """Return the files of data: one, all of a folder, or those of a pattern. Raises DataError where there is none."""
+    """Return the paths of the files of data: one, all CSV files of a folder, or those of a pattern, sorted by name.
+
+    Raises:
+        DataError: there is none.
+    """
     path = plan.folder / plan.fit.data
     if path.is_dir():
         files = sorted(path.glob(PATTERN))
@@ -73,7 +77,13 @@ def files_of(plan: FitPlan) -> list[Path]:
 
 
 def curves_of(plan: FitPlan) -> Iterator[NamedCurve]:
-    """Yield all curves of a plan; a file that cannot be read gives its error. Raises DataError as `files_of`."""
+    """Yield (name, position (x, y) in a map or None, curve or the error of reading it) of all curves of a plan.
+
+    Of a file that cannot be read, its name and the error.
+
+    Raises:
+        DataError: there is no file.
+    """
     for file in files_of(plan):
         try:
             yield from curves(file, plan)
@@ -82,12 +92,16 @@ def curves_of(plan: FitPlan) -> Iterator[NamedCurve]:
 
 
 def is_series(plan: FitPlan) -> bool:
-    """Return whether the data of a plan are more than one curve."""
+    """Return whether the data of a plan are more than one curve, those with errors included.
+
+    Raises:
+        DataError: there is no file.
+    """
     return len([*islice(curves_of(plan), 2)]) > 1
 
 
 def curves(path: Path, plan: FitPlan) -> Iterator[NamedCurve]:
-    """Yield the curves of a file, each with its name and its position (x, y) in a map, or its error.
+    """Yield (name, position (x, y) in a map or None, curve or the error of reading it) of each curve of a file.
 
     Raises:
         DataError: the file as a whole cannot be read.
@@ -140,7 +154,9 @@ def _head(path: Path, count: int = 200) -> list[str]:
 
 
 def _table(path: Path, head: list[str]) -> tuple[DataFrame, dict[str, str]]:
-    """Return the columns of COLUMNS that a file has, indexed by the line in the file, and the unit of each.
+    """Return (columns of the file by their standard names, indexed by the line in the file.
+
+    Unit of each name, "" for none).
 
     Raises:
         ValueError: no line has names of columns, or a cell is no number; the message lacks the file's name.
@@ -201,7 +217,10 @@ def _rows(path: Path, head: list[str], names: int, skip: int, columns: list[int]
 
 
 def _indices(cells: list[str]) -> dict[str, int]:
-    """Return the index of each column of COLUMNS among the cells of a line, the first where several have one name."""
+    """Return the index of each known column among the cells of a line by its standard name; of several the first one.
+
+    {} where the line has no name of a column.
+    """
     indices: dict[str, int] = {}
     for i, cell in enumerate(cells):
         match = NAME.match(cell.strip('" '))
@@ -212,7 +231,14 @@ def _indices(cells: list[str]) -> dict[str, int]:
 
 
 def _curve(table: DataFrame, along: str, units: dict[str, str], plan: FitPlan) -> ForceCurve:
-    """Return the curve in a table of columns; `along` is that of the positions, z or d. Raises DataError."""
+    """Return the curve in a table of columns, in SI: positions z of the piezo [m] and forces [N].
+
+    `along`: column of the positions, "z" or "d"; an indentation d becomes z = d + F/k_c where the instrument is not
+    rigid. `units`: of the columns.
+
+    Raises:
+        DataError: a unit of another kind, too few or too many points, a missing segment, a wrong sign, or gaps.
+    """
     reverse = plan.fit.reverse or ()
     columns = []
     for name in (along, "F"):
@@ -241,7 +267,11 @@ def _curve(table: DataFrame, along: str, units: dict[str, str], plan: FitPlan) -
 
 
 def _turn(z: Array, segment: Series | None) -> int:
-    """Return the number of points of the approach, which come first. Raises DataError where a segment is missing."""
+    """Return the number of points of the approach, which come first: by the column `segment`, else to the largest z.
+
+    Raises:
+        DataError: a segment is missing or has too few points, the words are unknown, or z is reversed.
+    """
     least, most = FEWEST_POINTS // 4, z.size - FEWEST_POINTS // 4
     if segment is not None:
         approaches = np.isin(segment, APPROACH)
@@ -262,7 +292,11 @@ def _turn(z: Array, segment: Series | None) -> int:
 
 
 def _require_signs(curve: ForceCurve) -> None:
-    """Refuse a curve without a contact, or one whose positions or forces have the opposite sign."""
+    """Refuse a curve without a contact, or one whose positions or forces have the opposite sign.
+
+    Raises:
+        DataError: with the key that reverses a column.
+    """
     z, F = curve.positions, curve.forces
     tenth = curve.turn // 10 + 1
     approach = F[np.argsort(z[: curve.turn])]
@@ -280,9 +314,12 @@ def _require_whole(curve: ForceCurve, along: str, saturated: int = 6, gap: float
 
     Args:
         curve: as it was read.
-        along: the column of its positions.
+        along: the column of its positions, for the message.
         saturated: number of points of equal force at an end of its range that are no measurement.
         gap: distance of neighbouring positions over its median that is a gap.
+
+    Raises:
+        DataError: with the number of points or the line.
     """
     F, span = curve.forces, float(np.ptp(curve.forces))
     for end, name in ((float(F.max()), "largest"), (float(F.min()), "least")):

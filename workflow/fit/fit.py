@@ -54,13 +54,13 @@ class FitResult:
 
     @property
     def models(self) -> dict[str, Fitted]:
-        """The fits of all contact models, the most likely one first."""
+        """The fits of all contact models by name, the most likely one (of least criterion) first."""
         fits = {self.fit.model: self.fit, **self.alternatives}
         return dict(sorted(fits.items(), key=lambda pair: pair[1].criterion))
 
     @property
     def bracket(self) -> tuple[float, float]:
-        """The positions z [m] between which the contact is lost; NaN where the force does not jump."""
+        """The positions z [m], rising, between which the contact is lost; (NaN, NaN) where the force does not jump."""
         segment = self.fit.curve.segments[1]
         if segment.jump is None:
             return math.nan, math.nan
@@ -69,7 +69,7 @@ class FitResult:
 
     @property
     def scene(self) -> Scene:
-        """The base scene with the fitted values."""
+        """The base scene with the fitted values in place of the first guesses."""
         return self.fit.scene
 
 
@@ -80,10 +80,10 @@ def fit(
     progress: Progress | None = None,
     **keys: Any,
 ) -> FitResult:
-    """Fit a measured force curve.
+    """Fit a measured force curve, and return the results of all contact models and of a run of the fitted scene.
 
-        contact1d.fit("fit.toml", folder="fits/pdms")
-        contact1d.fit("curve.csv", base, parameters=["adhesion.work_of_adhesion"], instrument={"stiffness": "0.2 N/m"})
+        contact1d.fit("fit.toml", folder="fits/pdms") contact1d.fit("curve.csv", base,
+            parameters=["adhesion.work_of_adhesion"], instrument={"stiffness": "0.2 N/m"})
 
     Args:
         data: a fit file or its tables; with a `base` the curve's CSV file.
@@ -95,6 +95,7 @@ def fit(
     Raises:
         SceneError: the fit file or its base scene is wrong.
         DataError: the data are no force curve, or more than one.
+        FolderError: the folder has files of something else.
         UndeterminedError: the curve does not determine the parameters; with a suggested fix.
     """
     if base is None:
@@ -123,7 +124,13 @@ def fit(
 
 
 def _steps(plan: FitPlan, file: Path, curve: ForceCurve, progress: Progress) -> Iterator[FitResult]:
-    """Yield the result of a fit after each of its steps, so that an interrupted one is not lost."""
+    """Yield the one result of a fit, which grows, after each of its steps, so that an interrupted one is not lost.
+
+    The steps are the fit, other contact models, and a run on LAMMPS, whose failure is a warning.
+
+    Raises:
+        UndeterminedError: the curve does not determine the parameters.
+    """
     base_model = model_of(plan)
     progress.phase("fit", 1 + len(LAWS), "model")
     result = FitResult(file, fitted(plan, curve, base_model))
@@ -147,10 +154,10 @@ def _steps(plan: FitPlan, file: Path, curve: ForceCurve, progress: Progress) -> 
 
 
 def _warn_of_fit(result: FitResult, largest_misfit: float = 3.0) -> None:
-    """Warn of a wrong snap-out, misfit, contact point outside the curve, and parameters with a ±.
+    """Add warnings of a wrong snap-out, misfit, contact point outside the curve, and parameters with a ± to the result.
 
-    The reduced χ² of the right model is below 2 where the noise has a memory of 20 in 1000 points: a warning needs
-    more than `largest_misfit`.
+    The reduced χ² of the right model is below 2 where the noise has a memory of 20 in 1000 points: a warning needs more
+    than `largest_misfit`.
     """
     base_fit = result.fit
     segment, snap = base_fit.curve.segments[1], float(base_fit.jumps_at(base_fit.solution.values)[1])
@@ -176,7 +183,7 @@ def _warn_of_fit(result: FitResult, largest_misfit: float = 3.0) -> None:
 
 
 def _warn_of_models(result: FitResult, decisive: float = 10.0) -> None:
-    """Warn where another contact model is more likely, or one without adhesion as likely.
+    """Add a warning to the result where another contact model is more likely, or one without adhesion as likely.
 
     A difference of criteria of 10 is very strong (R. E. Kass, A. E. Raftery, J. Am. Stat. Assoc. 90 (1995) 773).
     """
@@ -196,7 +203,13 @@ def _warn_of_models(result: FitResult, decisive: float = 10.0) -> None:
 
 
 def _run(result: FitResult, load_steps: int = 15) -> None:
-    """Run the fitted scene on LAMMPS along the displacements of the fit, and compare its forces with the model's."""
+    """Run the fitted scene on LAMMPS along the displacements of the fit, and compare its forces with the model's.
+
+    Sets `difference` and `allowed` [N] of the result, and adds the warning "run" where the former is larger.
+
+    Raises:
+        Contact1dError: the scene does not run.
+    """
     base_fit, branch = result.fit, result.fit.branch
     F, d = branch.forces, branch.displacements
     least = max(int(np.argmin(branch.positions(base_fit.values.get(STIFFNESS, math.inf)))), int(np.argmin(d)))
@@ -216,7 +229,11 @@ def _run(result: FitResult, load_steps: int = 15) -> None:
 
 
 def fit_folder(folder: Path) -> Path:
-    """Make the folder of a fit, or accept that of an earlier one. Raises FolderError for any other."""
+    """Make the folder of a fit, or accept that of an earlier one, and return it.
+
+    Raises:
+        FolderError: it is a file, or has files of something else.
+    """
     if folder.is_file():
         raise FolderError(f"{folder} is a file; a fit needs a folder")
     records = ("fit.json", "fits.csv")

@@ -37,10 +37,10 @@ cached = lru_cache(maxsize=50)
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """A profile and its transform at edges a, (n,) each.
+    """A profile and its transform at edges a, (n,) each, the first of them 0.
 
     Attributes:
-        edges: a [LU].
+        edges: a, rising [LU].
         heights: the transform g [LU].
         areas: its integral G [LU²].
         surface: the profile f [LU].
@@ -56,12 +56,13 @@ class Body:
     @classmethod
     @cached
     def of(cls, shape: Shape, depth: float, edges: int = 300, deepest: float = 8.0) -> Body:
-        """Return the body of a profile.
+        """Return the body of a profile, with edges from 0 to where it ends or is several times as high as `depth`.
 
         Args:
             shape: the profile.
             depth: range of the measured positions [LU].
-            edges: number of edges, in geometric progression over a factor of 500, between which a branch is cubic.
+            edges: number of edges above 0, in geometric progression over a factor of 500, between which a branch is
+                cubic.
             deepest: transformed height over `depth` at the last edge, unless the profile ends before.
         """
         last = depth
@@ -88,7 +89,7 @@ class Branch:
     Attributes:
         radii: a length that grows along the path [LU]: a, where the bodies attract each other only in contact.
         displacements: d [LU].
-        forces: F [FU].
+        forces: F [FU], compression positive.
     """
 
     radii: Array
@@ -96,14 +97,17 @@ class Branch:
     forces: Array
 
     def positions(self, stiffness: float) -> Array:
-        """Return z = d + F/k_c [LU] of the states, (n,), with an instrument of a stiffness k_c [FU/LU]."""
+        """Return z = d + F/k_c [LU] of the states, (n,); `stiffness`: k_c of the instrument [FU/LU], maybe infinite."""
         return np.asarray(self.displacements + self.forces / stiffness)
 
     def forces_at(self, positions: Array, stiffness: float, held: bool, pitch: float = 1e-300) -> Array:
-        """Return F [FU] at positions z [LU] of the piezo, (m,); the contact point is at 0.
+        """Return F [FU], compression positive, at positions z [LU] of the piezo, (m,); the contact point is at 0.
+
+        Beyond the last state it is that of the last state. Below the least z of the branch it is 0, or goes on with a
+        steep slope where the bodies are `held`.
 
         Args:
-            positions: z of the piezo.
+            positions: z of the piezo, (m,) [LU].
             stiffness: k_c [FU/LU] of the instrument; infinite: d is prescribed.
             held: whether the bodies are in contact at all positions, so that the branch is continued below its least z;
                 else the contact is lost there.
@@ -123,16 +127,20 @@ class Branch:
         return np.where(below, F[0] + slope * (positions - z[0]), forces)
 
     def snap_out(self, stiffness: float) -> tuple[float, float]:
-        """Return position z [LU] and force [FU] at which the contact is lost, with an instrument of a stiffness."""
+        """Return (position z [LU], force [FU]) at which the contact is lost: the least z of the branch.
+
+        `stiffness`: k_c of the instrument [FU/LU].
+        """
         z = self.positions(stiffness)
         least = int(np.argmin(z))
         return float(z[least]), float(self.forces[least])
 
 
 def _between(a: Array, z: Array, F: Array, positions: Array) -> Array:
-    """Return F at positions z, both cubic in a between the states of a branch.
+    """Return F at positions z, (m,), both cubic in a between the states of a branch, (n,); at its ends that of the end.
 
-    Straight lines are not smooth enough: under correlated noise the differences of neighbouring points count.
+    Lengths [LU] and forces [FU]. Straight lines are not smooth enough: under correlated noise the differences of
+    neighbouring points count.
     """
     i = np.clip(np.searchsorted(z, positions) - 1, 0, a.size - 2)
     width = np.diff(a)[i]
@@ -149,26 +157,36 @@ def _between(a: Array, z: Array, F: Array, positions: Array) -> Array:
 
 
 def _cubic(start: Array, end: Array, leaving: Array, arriving: Array) -> tuple[Array, Array, Array, Array]:
-    """Return the coefficients of Hermite's cubic from 0 to 1, of ends and slopes there."""
+    """Return the coefficients of t⁰, t¹, t², t³ of Hermite's cubic from t = 0 to 1, by its ends and slopes there.
+
+    In the unit of the ends, with the shape of the arguments.
+    """
     rise = end - start
     return start, leaving, 3.0 * rise - 2.0 * leaving - arriving, leaving + arriving - 2.0 * rise
 
 
 def jkr(body: Body, modulus: float, work: float, reach: float) -> Branch:
-    """Return the branch of JKR's contact, whose adhesion has no range."""
+    """Return the branch of JKR's contact, compression positive, whose adhesion has no range.
+
+    `modulus`: E* [FU/LU²]; `work`: W [FU/LU]; `reach` is ignored.
+    """
     a, d = body.edges, body.heights - elongation(body.edges, modulus, work)
     return Branch(a, d, 2.0 * modulus * (a * d - body.areas))
 
 
 def hertz(body: Body, modulus: float, work: float, reach: float) -> Branch:
-    """Return the branch of Hertz's contact, which has no adhesion."""
+    """Return the branch of Hertz's contact, compression positive, which has no adhesion.
+
+    `modulus`: E* [FU/LU²]; `work` and `reach` are ignored.
+    """
     return jkr(body, modulus, 0.0, reach)
 
 
 def dmt(body: Body, modulus: float, work: float, reach: float) -> Branch:
     """Return the branch of the DMT contact: a and d [LU] of Hertz, and F = F_Hertz − 2πWR [FU], compression positive.
 
-    The attraction is outside of the contact; its `reach` does not matter.
+    The body must have a radius of curvature R. `modulus`: E* [FU/LU²]; `work`: W [FU/LU]; `reach` is ignored, since the
+    attraction is outside of the contact.
     """
     assert body.radius is not None
     branch = hertz(body, modulus, work, reach)
@@ -195,14 +213,15 @@ class CohesiveZone(Dugdale):
     areas: tuple[Array, Array]
 
     def area(self, x: Array) -> Array:
-        """Return G [LU²] at positions x [LU], linear between the edges."""
+        """Return G [LU²] at positions x (n,) [LU], (n,), linear between the edges."""
         return np.interp(x, *self.areas)
 
 
 def maugis(body: Body, modulus: float, work: float, reach: float) -> Branch:
     """Return the branch of Maugis and Dugdale's contact: a stress σ₀ = W/h₀ over the range h₀ (`laws.dugdale`).
 
-    The states before contact, a = 0, are explicit in c; in contact s = √(c² − a²) is a root for each a, to 1e-9.
+    `modulus`: E* [FU/LU²]; `work`: W [FU/LU]; `reach`: h₀ [LU]. The states before contact, a = 0, are explicit in c; in
+    contact s = √(c² − a²) is a root for each a, to 1e-9. The radii of the branch are s + a, before contact c.
     """
     a = np.concatenate([[0.0], body.edges[1::3]])  # a third of the edges is enough
     profile, surface = (SplineProfile(CubicSpline(body.edges, heights)) for heights in (body.heights, body.surface))
@@ -232,7 +251,7 @@ class ContactModel:
     limits: tuple[str, ...] = ()
 
     def applies(self, scene: Scene) -> bool:
-        """Return whether a scene has what the model needs."""
+        """Return whether a scene has what the model needs, each of it not 0."""
         given = {
             "W": scene.work_of_adhesion,
             "h₀": law_of(scene).range_of(scene, 0.0),
@@ -241,7 +260,7 @@ class ContactModel:
         return all(given[name] for name in self.needs)
 
     def depends_on(self, key: str) -> bool:
-        """Return whether the forces depend on the number at a key of a scene."""
+        """Return whether the forces depend on the number at a dotted key: on all but W and h₀ that the model lacks."""
         return not key.startswith("adhesion.") or ("h₀" if key == RANGE else "W") in self.needs
 
 

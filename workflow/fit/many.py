@@ -35,7 +35,7 @@ class Fits:
 
     Attributes:
         folder: with fits.csv and the figures.
-        counts: number of curves by status, done or refused.
+        counts: number of curves by status, "done" or "refused".
     """
 
     folder: Path
@@ -43,13 +43,18 @@ class Fits:
 
 
 def fit_many(source: AnyFit, folder: AnyPath, workers: int | None = None, progress: Progress | None = None) -> Fits:
-    """Fit every curve of a plan's data; fits.csv has a line for each, in their order.
+    """Fit every curve of a plan's data; fits.csv has a line for each, in their order; return the folder and the counts.
 
     Args:
         source: a fit file, or its tables.
         folder: for fits.csv and the figures.
         workers: processes; None: as many as there are processors.
         progress: informed of each curve.
+
+    Raises:
+        SceneError: the fit file or its base scene is wrong.
+        DataError: there is no file of data.
+        FolderError: the folder has files of something else.
     """
     plan, progress, rows = read_fit(source), progress or Silent(), list[dict[str, Any]]()
     out = fit_folder(Path(folder))
@@ -66,7 +71,11 @@ def fit_many(source: AnyFit, folder: AnyPath, workers: int | None = None, progre
 
 
 def attempt(plan: FitPlan, job: NamedCurve) -> dict[str, Any]:
-    """Return the line of a curve in the table: the values and intervals of its parameters, or why it was refused."""
+    """Return the line of a curve in the table: the values and intervals of its parameters in SI, or why it was refused.
+
+    "curve", "status", "reason", in a map "x" and "y"; of a fit, with its unit in the name, each parameter, "_low" and
+    "_high" ends of its 95 % interval, "outliers" and "reduced_chi_squared". No error of a fit is raised.
+    """
     name, position, curve = job
     row: dict[str, Any] = {"curve": name, "status": "done", "reason": ""}
     if position is not None:
@@ -86,7 +95,7 @@ def attempt(plan: FitPlan, job: NamedCurve) -> dict[str, Any]:
 
 
 def _write(plan: FitPlan, rows: Sequence[dict[str, Any]], folder: Path) -> None:
-    """Write fits.csv, and the figure of each parameter of which there are at least two values."""
+    """Write fits.csv, and the figure of each parameter of which there are at least two values, to a folder."""
     from pandas import DataFrame
 
     table = DataFrame(rows, dtype=object)
@@ -100,7 +109,10 @@ def _write(plan: FitPlan, rows: Sequence[dict[str, Any]], folder: Path) -> None:
 
 
 def _draw(plan: FitPlan, key: str, name: str, done: DataFrame, folder: Path) -> None:
-    """Draw the histogram of a parameter, and its map where the curves have positions."""
+    """Draw the histogram of a parameter, and its map where the curves have positions, in a file named after the key.
+
+    `name`: its column in the table `done` of the curves that have it.
+    """
     values = done[name].to_numpy(dtype=float)
     factor, unit = scale_of(float(np.median(values)), name.rpartition("[")[2].rstrip("]"))
     label, has_map = f"{key.rpartition('.')[2].replace('_', ' ')} ({unit})", "x" in done

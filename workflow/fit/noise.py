@@ -47,7 +47,7 @@ class Noise:
     deviation: Array
 
     def whitened(self, columns: Array) -> Array:
-        """Return a column (n,) or columns (n, m) of the compared points as independent numbers of the same unit."""
+        """Return columns of the compared points as independent numbers in the same unit, (n,) or (n, m)."""
         # x_i = (1 − K_i) φ_i x_{i−1} + K_i y_i is the filter's m after point i, φ_{i+1} x_i its prediction.
         band = np.stack([np.ones_like(self.gain), -np.roll((1.0 - self.gain) * self.decay, -1)])
         filtered = solve_banded((1, 0), band, (self.gain * columns.T).T, check_finite=False).T
@@ -56,12 +56,12 @@ class Noise:
 
     @property
     def log_determinant(self) -> float:
-        """The logarithm of |V|, the determinant of the covariance of unit variance."""
+        """The logarithm of |V|, the determinant of the covariance of unit variance (dimensionless)."""
         return 2.0 * float(np.log(self.deviation).sum())
 
 
 def noises(pairs: Sequence[tuple[float, float]], runs: Sequence[Indices]) -> list[Noise]:
-    """Return the noises of pairs (s, τ) for runs of compared points, each given by the indices of its points."""
+    """Return the noises of pairs (s, τ) for runs of compared points, each given by the rising indices of its points."""
     share, memory = np.array(pairs).T
     gaps = np.concatenate([np.diff(run.astype(np.float64), prepend=-math.inf) for run in runs])
     decay = np.exp(-gaps[:, None] / memory)
@@ -81,10 +81,10 @@ class Estimate:
 
     Attributes:
         noise: the noise, of unit variance.
-        deviation: its standard deviation σ [unit of the residuals].
-        step: change of the parameters (p,) to the estimate.
+        deviation: its standard deviation σ, in the unit of the residuals.
+        step: change of the parameters (p,) from those of the residuals to the estimate.
         covariance: of the parameters (p, p).
-        weight: the noise's share of the restricted likelihood.
+        weight: the noise's share of the restricted likelihood, 0 … 1.
     """
 
     noise: Noise
@@ -95,10 +95,10 @@ class Estimate:
 
 
 def _estimates(grid: Sequence[Noise], residuals: Array, slopes: Array, prior: Array) -> tuple[list[Estimate], Array]:
-    """Return the estimate under each noise of a grid, without its weight, and the logarithms of the likelihoods, (m,).
+    """Return (the estimate under each of m noises, with weight 0; the logarithms of their likelihoods, (m,)).
 
-    The residuals change by −slopes·step; `prior` (q, p + 1) has a row for each calibration of the parameters, its last
-    column the misfit, in standard deviations.
+    The residuals (n,) change by −slopes·step, slopes (n, p); `prior` (q, p + 1) has a row for each calibration of the
+    parameters, its last column the misfit, in standard deviations.
     """
     columns = np.column_stack([slopes, residuals])
     # R of J = QR has the precision that JᵀJ loses; its last column is Qᵀr, and the norm of the residual of the fit.
@@ -138,15 +138,16 @@ class AveragedEstimate:
         return max(self.estimates, key=lambda estimate: estimate.weight)
 
     def quantile(self, index: int, level: float) -> float:
-        """Return the quantile of a parameter at a probability `level`, relative to its best estimate.
+        """Return the quantile of a parameter at a probability `level`, in units of u, relative to its best estimate.
 
-        The distribution is the average of Student's t under each noise.
+        `index`: of the parameter. The distribution is the average of Student's t under each noise.
         """
         weights = np.array([estimate.weight for estimate in self.estimates])
         centres = np.array([estimate.step[index] for estimate in self.estimates]) - self.best.step[index]
         scales = np.sqrt([estimate.covariance[index, index] for estimate in self.estimates])
 
         def excess(value: float) -> float:
+            """Return the probability of a smaller value less `level`."""
             return float(weights @ stdtr(self.freedom, (value - centres) / scales)) - level
 
         reach = 60.0 * float(scales.max()) + float(np.abs(centres).max())
@@ -160,7 +161,8 @@ def averaged(runs: Sequence[Indices], residuals: Array, slopes: Array, prior: Ar
         runs: indices of the compared points of each run; whitening begins anew with each.
         residuals: (n,) of all runs.
         slopes: (n, p), −∂residuals/∂parameters.
-        prior: (q, p + 1), a row for each calibration of a parameter; the last column is its misfit.
+        prior: (q, p + 1), a row for each calibration of a parameter; the last column is its misfit in standard
+            deviations.
         looks: number of grids; 1 where the most likely noise is enough.
     """
     shares: Array = np.array([0.0, 0.05, 0.15, 0.35, 0.6, 0.8, 0.93, 1.0])
@@ -181,7 +183,10 @@ def averaged(runs: Sequence[Indices], residuals: Array, slopes: Array, prior: Ar
 
 
 def _finer(likely: Array, grid: Array, spaced: Callable[..., Array]) -> Array:
-    """Return a grid of the same size, made by `spaced`, between the neighbours of the likely points of a grid."""
+    """Return a grid of the same size (n,), made by `spaced`, between the neighbours of the likely points of a grid.
+
+    The grid itself where it would be no finer.
+    """
     low = max(0, int(np.searchsorted(grid, likely.min())) - 1)
     high = min(grid.size - 1, int(np.searchsorted(grid, likely.max())) + 1)
     return grid if high - low >= grid.size - 2 else spaced(grid[low], grid[high], grid.size)

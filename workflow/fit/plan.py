@@ -75,12 +75,12 @@ class FitPlan:
 
     @cached_property
     def numbers(self) -> dict[str, Place]:
-        """The places of the scene's numbers, by dotted key."""
+        """The numbers of the scene by dotted key, each with its value and unit."""
         tables = Place(self.base.model_dump(by_alias=True, exclude_none=True), WHOLE)
         return {place.path: place for place in tables if place.allowed.quantity and place.is_number}
 
     def unit(self, key: str) -> str:
-        """Return the SI unit of a number of the scene."""
+        """Return the SI unit of the number at a dotted key of the scene. Raises KeyError where the scene has none."""
         unit = self.numbers[key].unit
         return unit.text[0] if unit.text else in_si(unit.name)
 
@@ -91,7 +91,7 @@ class FitPlan:
 
 
 def read_fit(source: AnyFit, **changes: Any) -> FitPlan:
-    """Read the plan of a fit file.
+    """Read the plan of a fit file and return it.
 
     Args:
         source: the path of the file, or its tables.
@@ -128,7 +128,7 @@ def read_fit(source: AnyFit, **changes: Any) -> FitPlan:
 
 
 def _base(base: Mapping[str, Any], folder: Path) -> tuple[Scene | None, list[Problem]]:
-    """Return the base scene, with the defaults of a fit, and its problems; None where it cannot be read."""
+    """Return (base scene with the defaults of a fit, its problems); the scene is None where it cannot be read."""
     bodies = base.get("bodies", {})
     given = {"title": "fit", "experiment": LOAD, **base}
     given["bodies"] = {**BODIES, **bodies} if isinstance(bodies, Mapping) else bodies
@@ -151,7 +151,7 @@ def _base(base: Mapping[str, Any], folder: Path) -> tuple[Scene | None, list[Pro
 
 
 def _of_parameters(plan: FitPlan) -> list[Problem]:
-    """Return the problems of the names of parameters."""
+    """Return the problems of the names of parameters: unknown or named twice; [] for none."""
     problems, names = [], plan.fit.parameters
     tables = ("bodies.", "material.", "adhesion.")
     unfitted = ("bodies.spacing", "material.length_unit", "material.force_unit")

@@ -31,7 +31,7 @@ UNITS = {POINT: "m", OFFSET: "N", STIFFNESS: "N/m"}
 
 
 def write(result: FitResult, folder: Path) -> None:
-    """Write fit.json, curve.csv, scene.toml and fit.png, each whole or not at all."""
+    """Write fit.json, curve.csv, scene.toml and fit.png to a folder, each whole or not at all."""
     from pandas import DataFrame
 
     fit = result.fit
@@ -53,7 +53,7 @@ def write(result: FitResult, folder: Path) -> None:
 
 
 def document(result: FitResult) -> dict[str, Any]:
-    """Return the content of fit.json."""
+    """Return the content of fit.json, in SI; the entry "run" is None before the run."""
     fit, plan, curve = result.fit, result.fit.plan, result.fit.curve
     best, kept, outliers = fit.solution.best, fit.solution.problem.kept, fit.solution.outliers
     z, F = curve.positions[kept], curve.forces[kept]
@@ -107,18 +107,21 @@ def document(result: FitResult) -> dict[str, Any]:
 
 
 def entry(fit: Fitted, key: str) -> dict[str, Any]:
-    """Return value, unit and, where there is one, interval of an unknown, as in fit.json."""
+    """Return {"value", "unit", "interval"} of an unknown in SI, as in fit.json.
+
+    Without an interval where it has none.
+    """
     table: dict[str, Any] = {"value": fit.values[key], "unit": UNITS.get(key) or fit.plan.unit(key)}
     return table | ({"interval": list(fit.intervals[key])} if key in fit.intervals else {})
 
 
 def entries(fit: Fitted, keys: Iterable[str]) -> dict[str, Any]:
-    """Return the `entry` of each key that is an unknown of a fit."""
+    """Return the `entry` of each key that is an unknown of a fit, by key; other keys are left out."""
     return {key: entry(fit, key) for key in keys if key in fit.values}
 
 
 def modulus_words(fit: Fitted) -> str:
-    """Return a sentence on the modulus that is fitted."""
+    """Return a sentence on the modulus that is fitted, or that none is, without a full stop."""
     key = next((key for key in fit.plan.fit.parameters if key.endswith("_modulus")), None)
     if key is None:
         return "no modulus is fitted: it is that of the base scene"
@@ -129,7 +132,7 @@ def modulus_words(fit: Fitted) -> str:
 
 
 def _modulus(fit: Fitted) -> dict[str, Any]:
-    """Return E* and, where one modulus is fitted, its interval, as in fit.json."""
+    """Return {"value", "unit"} of E* [Pa], with its "interval" where one number of the material is fitted."""
     keys, scene = [key for key in fit.intervals if key.startswith("material.")], fit.scene
     ends = fit.intervals[keys[0]] if len(keys) == 1 else ()
     interval = sorted(modulus_of(scene.moved(keys[0], end / fit.values[keys[0]])) for end in ends)
@@ -137,7 +140,10 @@ def _modulus(fit: Fitted) -> dict[str, Any]:
 
 
 def _tabor(fit: Fitted) -> dict[str, Any] | None:
-    """Return the Tabor parameter µ = (R W²/(E*² h₀³))^(1/3), as in fit.json; None without adhesion or a radius."""
+    """Return the Tabor parameter µ = (R W²/(E*² h₀³))^(1/3) with its range h₀ [m]; None without adhesion or a radius R.
+
+    {"value", "range", "assumed"}: a scene without a range has an assumed one.
+    """
     scene, radius = fit.scene, fit.scene.bodies.profile.curvature_radius
     if not scene.work_of_adhesion or radius is None:
         return None
@@ -147,7 +153,7 @@ def _tabor(fit: Fitted) -> dict[str, Any] | None:
 
 
 def chart(result: FitResult) -> Chart:
-    """Return the figure of data and fitted curve over the position, with the residuals below."""
+    """Return the figure of data and fitted curve [N] over position [m], with the residuals of compared points below."""
     fit, far = result.fit, result.fit.solution.outliers
     z = fit.curve.positions - fit.values[POINT]
     measured, predicted = fit.curve.forces - fit.values[OFFSET], fit.forces - fit.values[OFFSET]
@@ -174,7 +180,7 @@ def chart(result: FitResult) -> Chart:
 
 
 def lines(result: FitResult) -> list[str]:
-    """Return the lines of a fit's results for a terminal."""
+    """Return the lines of a fit's results for a terminal, in SI with prefixes."""
     fit, best = result.fit, result.fit.solution.best
     shown = [fit.plan.fit.title]
     for key, ends in fit.intervals.items():

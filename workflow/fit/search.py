@@ -34,9 +34,9 @@ class Unknown:
 
     Attributes:
         name: a dotted key of the scene, or a name of the measurement.
-        scale: value of a positive unknown at u = 0; of any other at u = 1.
+        scale: value of a positive unknown at u = 0; of any other at u = 1; in the unit of the parameter.
         positive: whether p = scale·exp(u), else p = scale·u.
-        known: mean and standard deviation of its calibration; None without one.
+        known: mean and standard deviation of its calibration, in the unit of the parameter; None without one.
         fitted: whether it is a parameter of the fit; else a nuisance parameter.
     """
 
@@ -47,11 +47,11 @@ class Unknown:
     fitted: bool = False
 
     def value(self, u: float) -> float:
-        """Return the parameter p at u."""
+        """Return the parameter p at u, in its unit; a positive one with |u| limited to 50."""
         return self.scale * (math.exp(min(max(u, -50.0), 50.0)) if self.positive else u)
 
     def slope(self, u: float) -> float:
-        """Return the derivative ∂p/∂u of the parameter at u."""
+        """Return the derivative ∂p/∂u of the parameter at u, in its unit."""
         return self.value(u) if self.positive else self.scale
 
 
@@ -77,27 +77,30 @@ class Problem:
 
     @property
     def kept(self) -> Indices:
-        """The indices of all compared points."""
+        """The indices of all compared points, run after run."""
         return np.concatenate(self.runs)
 
     def without(self, points: Indices) -> Problem:
-        """Return the problem of the remaining points."""
+        """Return the problem without the points of these indices."""
         return replace(self, runs=tuple(run[~np.isin(run, points)] for run in self.runs))
 
     def values(self, u: Array) -> list[float]:
-        """Return the values of the unknowns at u."""
+        """Return the values of the unknowns at u (p,), each in its unit."""
         return [unknown.value(float(x)) for unknown, x in zip(self.unknowns, u, strict=True)]
 
     def residuals(self, u: Array) -> Array:
-        """Return the measured less the predicted force of the compared points."""
+        """Return the measured less the predicted force [FU] of the compared points at u, (n,)."""
         return (self.forces - self.model(self.values(u)))[self.kept]
 
     def slopes(self, u: Array, free: Sequence[int] | None = None) -> Array:
-        """Return ∂(predicted force)/∂u of the compared points, (n, p), for the `free` unknowns or all."""
+        """Return ∂(predicted force)/∂u [FU] of the compared points at u, (n, p), for the `free` unknowns or all."""
         return self.derivative(self.model, u, free)[self.kept]
 
     def derivative(self, of: Model, u: Array, free: Sequence[int] | None = None, step: float = 1e-4) -> Array:
-        """Return ∂/∂u of a function of the unknowns' values, (n, p), by central differences over a step of u."""
+        """Return ∂/∂u of a function of the unknowns' values, (n, p), by central differences over a step of u.
+
+        For the `free` unknowns (their indices) or all.
+        """
         steps = step * np.eye(u.size)
         columns = [
             (of(self.values(u + steps[i])) - of(self.values(u - steps[i]))) / (2.0 * step)
@@ -106,7 +109,7 @@ class Problem:
         return np.column_stack(columns)
 
     def prior(self, u: Array) -> Array:
-        """Return a row for each calibration, (q, p + 1), the last column its misfit in standard deviations."""
+        """Return a row for each calibration at u, (q, p + 1): ∂p/∂u and, last, its misfit, in standard deviations."""
         rows = []
         for i, unknown in enumerate(self.unknowns):
             if unknown.known is not None:
@@ -119,19 +122,30 @@ class Problem:
     def least(
         self, u: Array, noise: Noise, deviation: float, fixed: int | None = None, robust: bool = False
     ) -> tuple[Array, float]:
-        """Return the unknowns of the least sum of squares, from u on, and that sum; the unknown `fixed` stays."""
+        """Return (unknowns u of the least sum of squares, that sum), from u on; the unknown of index `fixed` stays.
+
+        Args:
+            u: start, (p,).
+            noise: that whitens the residuals.
+            deviation: its standard deviation [FU].
+            fixed: index of an unknown that is not changed; None: all are.
+            robust: whether large residuals count linearly.
+        """
         free = [i for i in range(u.size) if i != fixed]
 
         def completed(free_u: Array) -> Array:
+            """Return all unknowns u, (p,), from those that are free."""
             full = u.copy()
             full[free] = free_u
             return full
 
         def rows(free_u: Array) -> Array:
+            """Return whitened residuals and misfits of calibrations, in standard deviations, at the free unknowns."""
             full = completed(free_u)
             return np.concatenate([noise.whitened(self.residuals(full)) / deviation, self.prior(full)[:, -1]])
 
         def jacobian(free_u: Array) -> Array:
+            """Return the derivatives of `rows` by the free unknowns."""
             full = completed(free_u)
             return -np.concatenate(
                 [noise.whitened(self.slopes(full, free)) / deviation, self.prior(full)[:, :-1][:, free]]
@@ -151,11 +165,11 @@ class Solution:
 
     Attributes:
         problem: the problem without the outliers.
-        u: the unknowns of the least sum of squares.
+        u: the unknowns of the least sum of squares, (p,).
         best: the estimate under the most likely noise, which weighs that sum.
         average: the estimates under all noises.
-        squares: the least sum of squares over the variance of the most likely noise.
-        outliers: indices of the excluded points.
+        squares: the least sum of squares over the variance of the most likely noise (dimensionless).
+        outliers: indices of the excluded points, rising.
     """
 
     problem: Problem
@@ -167,17 +181,18 @@ class Solution:
 
     @property
     def values(self) -> list[float]:
-        """The values of all unknowns."""
+        """The values of all unknowns, each in its unit."""
         return self.problem.values(self.u)
 
 
 def global_search(
     problem: Problem, sought: Sequence[int], complete: Callable[[Array], Array], generations: int = 40, size: int = 16
 ) -> list[Array]:
-    """Return starts of a fit from a search over decades of the sought unknowns.
+    """Return starts u (p,) of a fit, the best first, from a search over decades of the sought unknowns.
 
-    The valley of a good fit is some percent wide, in a plane of decades: a population is evolved, which takes some
-    thousand curves, and its best members are the starts.
+    It goes three decades to either side of the values in the scene. The valley of a good fit is some percent wide, in a
+    plane of decades: a population is evolved, which takes some thousand curves, and its best four members are the
+    starts. Where nothing is sought, the one start is `complete` of 0.
 
     Args:
         problem: what is fitted.
@@ -188,6 +203,7 @@ def global_search(
     """
 
     def completed(member: Array) -> Array:
+        """Return all unknowns u, (p,), from those that are sought."""
         u = np.zeros(len(problem.unknowns))
         u[list(sought)] = member
         return complete(u)
@@ -196,6 +212,7 @@ def global_search(
         return [completed(np.zeros(0))]
 
     def misfit(member: Array) -> float:
+        """Return Σ |residual| [FU] for the sought unknowns, 1e100 where it is NaN or larger."""
         total = float(np.abs(problem.residuals(completed(member))).sum())
         return total if total < 1e100 else 1e100  # of NaN, too; and the square of it is a number
 
@@ -209,6 +226,8 @@ def global_search(
 
 def solved(problem: Problem, starts: Sequence[Array], rejects: bool = True, most_rounds: int = 12) -> Solution:
     """Return the best of least-squares fits from several starts, under the noise that its residuals have.
+
+    After `most_rounds` without convergence it is the latest.
 
     Args:
         problem: what is fitted.
@@ -238,11 +257,15 @@ def solved(problem: Problem, starts: Sequence[Array], rejects: bool = True, most
 
 
 def _estimate(problem: Problem, u: Array, looks: int = 2) -> AveragedEstimate:
+    """Return the estimates under all noises at u, after so many `looks` at the grid."""
     return averaged(problem.runs, problem.residuals(u), problem.slopes(u), problem.prior(u), looks)
 
 
 def _outliers(problem: Problem, u: Array, estimate: Estimate) -> Indices:
-    """Return the indices of the outliers; of neighbouring ones only the largest."""
+    """Return the indices of compared points with a residual above five standard deviations.
+
+    Of near ones only the largest.
+    """
     white = np.abs(estimate.noise.whitened(problem.residuals(u))) / estimate.deviation
     kept = problem.kept
     far = np.flatnonzero(white > OUTLIER)
@@ -250,10 +273,10 @@ def _outliers(problem: Problem, u: Array, estimate: Estimate) -> Indices:
 
 
 def interval(solution: Solution, index: int, farthest: float = 4.0) -> tuple[float, float]:
-    """Return the ends of the 95 % interval of an unknown, in u: its profile likelihood at the quantiles of the noise.
+    """Return the (lower, upper) end of the 95 % interval of an unknown, in units of u, by its profile likelihood.
 
-    All other unknowns are fitted again at each value. An end is infinite where the likelihood does not fall far enough
-    within `farthest`.
+    All other unknowns are fitted again at each value, up to the quantiles of the noise. An end is −∞ or ∞ where the
+    likelihood does not fall far enough within `farthest`. `index`: of the unknown.
     """
     problem, best = solution.problem, solution.best
     spread = math.sqrt(best.covariance[index, index])

@@ -1,4 +1,8 @@
-"""The fit of a contact model to a curve: the parameters of a plan with their intervals, or why none can be given."""
+"""The fit of a contact model to a curve: the parameters of a plan with their intervals, or why none can be given.
+
+Unknowns are u = log(p/p₀) of a positive parameter p, and lengths or forces over that of the data for the contact point
+and the offset of the force. Units are those of the scene, SI: z [m] and F [N], compression positive.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +43,8 @@ class Fitted:
         curve: the measured curve.
         subject: scene, contact model, instrument and unknowns.
         solution: the converged fit.
-        intervals: of 95 %, by the names of the fitted parameters and of the contact point.
+        intervals: of 95 %, (lower, upper) in units of the scene, by the names of the fitted parameters and of the
+            contact point; empty where a model is compared only.
     """
 
     plan: FitPlan
@@ -50,7 +55,7 @@ class Fitted:
 
     @property
     def model(self) -> str:
-        """The name of the contact model."""
+        """The name of the contact model: "Maugis", "JKR", "DMT" or "Hertz"."""
         return self.subject.model.name
 
     @cached_property
@@ -60,29 +65,29 @@ class Fitted:
 
     @cached_property
     def scene(self) -> Scene:
-        """The base scene with the fitted values."""
+        """The base scene with the fitted values, which are not checked."""
         return self.subject.scene_with(self.solution.values)
 
     @cached_property
     def branch(self) -> Branch:
-        """The states of the contact."""
+        """The states of the contact along its rising path, without contact point and offset of the measurement."""
         return self.subject.parts(self.solution.values)[0]
 
     @cached_property
     def forces(self) -> Array:
-        """The predicted force [FU] at all points, (n,)."""
+        """The predicted force [FU], compression positive and with the offset, at all points, (n,)."""
         return self.subject.forces(self.solution.values)
 
     @property
     def correlation(self) -> Array:
-        """The correlation matrix of all unknowns, (p, p)."""
+        """The correlation matrix of all unknowns, (p, p), −1 … 1."""
         covariance = self.solution.best.covariance
         spread = np.sqrt(np.diag(covariance))
         return np.asarray(covariance / np.outer(spread, spread))
 
     @cached_property
     def criterion(self) -> float:
-        """The Bayesian information criterion, −2 log L + p log n: the lower the better.
+        """The Bayesian information criterion, −2 log L + p log n, but for a constant: the lower the better.
 
         Unlike in the least squares the positions of both jumps count.
         """
@@ -97,12 +102,18 @@ class Fitted:
         return -2.0 * log + (len(self.subject.names) + given) * math.log(n)
 
     def jumps_at(self, values: Sequence[float]) -> Array:
-        """Return the positions z [m] at which contact begins and is lost, (2,), for values of the unknowns."""
+        """Return the positions z [m] at which the force begins and the contact is lost, (2,).
+
+        `values`: of the unknowns.
+        """
         branch, stiffness, point, _ = self.subject.parts(values)
         return np.asarray(point + np.array([branch.displacements[0], branch.snap_out(stiffness)[0]]))
 
     def _jumps(self) -> float:
-        """Return log L of the brackets of both jumps, whose predicted positions have the variance of the parameters."""
+        """Return log L of the brackets of both jumps, whose predicted positions have the variance of the parameters.
+
+        0 where the curve has no jump.
+        """
         slopes = self.solution.problem.derivative(self.jumps_at, self.solution.u)
         variances = np.einsum("ki,ij,kj->k", slopes, self.solution.best.covariance, slopes)
         predicted, total = self.jumps_at(self.solution.values), 0.0
@@ -116,7 +127,10 @@ class Fitted:
 
     @cached_property
     def misfit(self) -> float:
-        """The reduced χ²: mean square of the residuals in contact over that of bodies apart; 1 where one is missing."""
+        """The reduced χ² (dimensionless): mean square of the residuals in contact over that of bodies apart.
+
+        1 where points of one of these are missing.
+        """
         problem = self.solution.problem
         r = problem.residuals(self.solution.u)
         before = self.subject.undecided & (self.curve.positions < self.values[POINT])
@@ -130,19 +144,19 @@ class Fitted:
 
     @property
     def contact_stiffness(self) -> float:
-        """The stiffness 2E*a [N/m] of the contact at zero load; without adhesion at the largest load."""
+        """The stiffness 2E*a [N/m] of the contact at zero load; without adhesion at the largest load of the curve."""
         F, least = self.branch.forces, int(np.argmin(self.branch.forces))
         load = 0.0 if F[least] < 0.0 else float(self.curve.forces.max() - self.curve.baseline)
         return 2.0 * modulus_of(self.scene) * float(np.interp(load, F[least:], self.branch.radii[least:]))
 
 
 def model_of(plan: FitPlan) -> ContactModel:
-    """Return the contact model that a base scene means."""
+    """Return the contact model that a base scene means: the first that has all it needs, Maugis, JKR, DMT or Hertz."""
     return next(model for model in LAWS.values() if model.applies(plan.base))
 
 
 def compared(fit: Fitted, model: ContactModel) -> Fitted:
-    """Return the fit of another contact model to the same points, without intervals."""
+    """Return the fit of another contact model to the same points, without outliers of its own and without intervals."""
     subject = _subject(fit.plan, fit.curve, model)
     problem = subject.problem.without(fit.solution.outliers)
     solution = solved(problem, _starts(subject, fit.solution.outliers), rejects=False)
@@ -150,7 +164,10 @@ def compared(fit: Fitted, model: ContactModel) -> Fitted:
 
 
 def _starts(subject: Subject, outliers: Indices) -> list[Array]:
-    """Return starts of a fit; those of a model between two limits are the best fits of these at several ranges."""
+    """Return starts u (p,) of a fit, at most four; of a model between two limits, best fits of these at several ranges.
+
+    `outliers`: indices of points that are left out.
+    """
     problem = subject.problem.without(outliers)
     if not subject.model.limits:
         return global_search(problem, subject.sought, subject.completed)
@@ -166,7 +183,7 @@ def _starts(subject: Subject, outliers: Indices) -> list[Array]:
 
 
 def fitted(plan: FitPlan, curve: ForceCurve, model: ContactModel, widest: float = 1.0) -> Fitted:
-    """Fit a contact model to a curve.
+    """Fit a contact model to a curve, and return the fit with its intervals.
 
     Args:
         plan: with the parameters.
@@ -175,7 +192,8 @@ def fitted(plan: FitPlan, curve: ForceCurve, model: ContactModel, widest: float 
         widest: half-width of an interval, in log p, beyond which a parameter is undetermined.
 
     Raises:
-        UndeterminedError: the curve does not determine the parameters.
+        UndeterminedError: the curve does not determine the parameters, has too many outliers or too few points in
+            contact, or the cantilever is too soft.
     """
     subject = _subject(plan, curve, model)
     starts = _starts(subject, np.zeros(0, dtype=np.intp))
@@ -201,7 +219,11 @@ def fitted(plan: FitPlan, curve: ForceCurve, model: ContactModel, widest: float 
 
 
 def _subject(plan: FitPlan, curve: ForceCurve, model: ContactModel) -> Subject:
-    """Return scene, instrument and unknowns of a contact model; the scene lacks adhesion that the model has not."""
+    """Return scene, instrument and unknowns of a contact model; the scene lacks adhesion where the model has none.
+
+    The unknowns are the parameters and calibrated numbers that the forces depend on, the instrument's stiffness where
+    it is finite, the contact point and the offset of the force.
+    """
     scene = plan.base if model.needs else plan.base.model_copy(update={"adhesion": None})
     exact = 1e-6  # ± over the value of a number that is given without one
     unknowns = []
@@ -223,7 +245,7 @@ def _subject(plan: FitPlan, curve: ForceCurve, model: ContactModel) -> Subject:
 
 
 def require_distinct(subject: Subject, u: Array) -> None:
-    """Refuse parameters that the curve does not depend on, or that trade off against each other.
+    """Refuse parameters that the curve does not depend on, or that trade off against each other, at u (p,).
 
     Raises:
         UndeterminedError: with their names.
@@ -254,6 +276,7 @@ def require_distinct(subject: Subject, u: Array) -> None:
 
 
 def _require_stiff(fit: Fitted) -> None:
+    """Refuse a cantilever softer than 0.4 of the contact. Raises UndeterminedError."""
     k, contact = fit.values.get(STIFFNESS, math.inf), fit.contact_stiffness
     if k < SOFTEST * contact:
         raise UndeterminedError(
@@ -264,6 +287,7 @@ def _require_stiff(fit: Fitted) -> None:
 
 
 def _require_points(fit: Fitted, fewest: int = 15) -> None:
+    """Refuse a curve with fewer than `fewest` points in contact. Raises UndeterminedError."""
     held = int(fit.subject.held.sum()) or int((fit.curve.positions > fit.values[POINT]).sum())
     if held < fewest:
         raise UndeterminedError(

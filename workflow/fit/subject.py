@@ -1,4 +1,8 @@
-"""What is fitted: a scene whose numbers change, under a contact model and an instrument."""
+"""What is fitted: a scene whose numbers change, under a contact model and an instrument.
+
+Unknowns are u = log(p/p₀) of a positive parameter p, and lengths or forces over that of the data for the contact point
+and the offset of the force. Units are those of the scene, SI.
+"""
 
 from __future__ import annotations
 
@@ -33,6 +37,10 @@ class Subject:
         model: the contact model.
         curve: the measured curve.
         unknowns: of the scene, the instrument and the measurement.
+        names: of the unknowns.
+        held, apart, undecided, approaching: masks of the points, (n,): in contact, apart, neither known, and of these
+            the ones of the approach.
+        pitch: median distance of neighbouring positions [LU].
     """
 
     scene: Scene
@@ -60,37 +68,49 @@ class Subject:
 
     @property
     def problem(self) -> Problem:
-        """The least-squares problem of the compared points of both segments."""
+        """The least-squares problem of the compared points of approach and retraction."""
         runs = tuple(segment.compared for segment in self.curve.segments)
         return Problem(self.unknowns, self.forces, self.curve.forces, runs)
 
     def scene_with(self, values: Sequence[float]) -> Scene:
-        """Return the scene with values of its unknowns, without checking it."""
+        """Return the scene with values of its unknowns, (p,) in their units, without checking it."""
         return self._moved(self._factors(values))
 
     def _factors(self, values: Sequence[float]) -> Factors:
+        """Return (key of the scene, value over its scale) of each unknown of the scene.
+
+        Those of the measurement are left out.
+        """
         numbers = zip(self.unknowns, values, strict=True)
         return tuple((number.name, value / number.scale) for number, value in numbers if number.name not in MEASURED)
 
     def _moved(self, factors: Factors) -> Scene:
+        """Return the scene with the numbers at some keys multiplied by factors, without checking it."""
         scene = self.scene
         for key, factor in factors:
             scene = scene.moved(key, factor)
         return scene
 
     def _branch(self, factors: Factors) -> Branch:
+        """Return the states of the contact of the scene whose numbers are multiplied by factors."""
         scene = self._moved(factors)
         reach = law_of(scene).range_of(scene, 0.0)
         body = Body.of(scene.bodies.profile, self.curve.depth)
         return self.model.branch(body, modulus_of(scene), scene.work_of_adhesion, reach)
 
     def parts(self, values: Sequence[float]) -> tuple[Branch, float, float, float]:
-        """Return the branch of the contact, k_c [FU/LU], contact point [LU] and offset of the force [FU]."""
+        """Return (branch of the contact, k_c [FU/LU], contact point [LU], offset of the force [FU]).
+
+        `values`: of the unknowns. k_c is infinite where the instrument is no unknown, as a rigid one.
+        """
         named = dict(zip(self.names, values, strict=True))
         return self._branches(self._factors(values)), named.get(STIFFNESS, math.inf), named[POINT], named[OFFSET]
 
     def forces(self, values: Sequence[float]) -> Array:
-        """Return F [FU] at every measured position, (n,)."""
+        """Return F [FU], compression positive and with the offset, at every measured position, (n,).
+
+        `values`: of the unknowns. Before the bodies touch on the approach, F is the offset.
+        """
         branch, stiffness, point, offset = self.parts(values)
         z = self.curve.positions - point
         forces = np.zeros_like(z)
@@ -101,7 +121,10 @@ class Subject:
         return np.asarray(forces + offset)
 
     def completed(self, u: Array) -> Array:
-        """Return the unknowns with offset and contact point by the baseline and the position of the largest force."""
+        """Return a copy of u (p,) with offset and contact point by the baseline and the position of the largest force.
+
+        A contact point that is given keeps its value.
+        """
         u, index, measured = u.copy(), self.names.index(POINT), self.curve
         point, offset = self.unknowns[index], self.names.index(OFFSET)
         u[offset] = measured.baseline / self.unknowns[offset].scale
@@ -116,7 +139,7 @@ class Subject:
 
 
 def modulus_of(scene: Scene) -> float:
-    """Return E* [FU/LU²] of a scene's contact on a rigid plane."""
+    """Return E* [FU/LU²] of a scene's contact on a rigid plane: given stiffness over spacing, else of the material."""
     bodies, material = scene.bodies, scene.material
     if bodies.bulk_stiffness != "auto":
         return bodies.bulk_stiffness / bodies.spacing

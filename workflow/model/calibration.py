@@ -12,12 +12,16 @@ FILE = Path(__file__).with_name("calibration.json")
 
 
 def _value(meaning: str) -> Any:
+    """Return a dataclass field without default, with the meaning of its number as metadata."""
     return field(metadata={"is": meaning})
 
 
 @dataclass(frozen=True)
 class Calibration:
-    """Shares of the tolerance, and increments, each with its meaning (`meanings`); the study of them sets others."""
+    """Shares of the tolerance, and increments, each with its meaning (`meanings`); the study of them sets others.
+
+    All are dimensionless: relative to the tolerance and to the length or force that the meaning names.
+    """
 
     cutoff: float = _value("force at an automatic cutoff over the law's own, per unit of tolerance")
     table: float = _value("error of the table over the force scale, per unit of tolerance")
@@ -31,7 +35,7 @@ class Calibration:
 
 
 def meanings() -> dict[str, str]:
-    """Return the meaning of each value of a `Calibration`, by its name."""
+    """Return the meaning of each value of a `Calibration` in words, by its name."""
     return {entry.name: entry.metadata["is"] for entry in fields(Calibration)}
 
 

@@ -48,7 +48,8 @@ def require_room(bodies: Bodies) -> None:
 def require_body(bodies: Bodies, largest: float, particles: int) -> None:
     """Refuse a chain or a contact that is wider than its profile, and a profile whose contact is no single one.
 
-    A contact that is wider than its chain, but not than its profile, is refused by the run, which knows its width.
+    A contact that is wider than its chain, but not than its profile, is refused by the run, which knows its width. A
+    flat punch is not refused. `largest`: largest displacement [LU]; `particles`: of the chain.
 
     Raises:
         SettingsError: with the nearest value that is possible.
@@ -83,12 +84,12 @@ def require_body(bodies: Bodies, largest: float, particles: int) -> None:
 
 
 def _most_particles(bodies: Bodies) -> int:
-    """Return the particles of the longest chain, 3 or an even number, that the profile is wide enough for."""
+    """Return the number of particles of the longest chain, 3 or an even number, that the profile is wide enough for."""
     return max(3, 2 * math.floor(bodies.reach / bodies.spacing * (1.0 - ROUND_OFF) + 0.5))
 
 
 def decay_length(scene: Scene) -> float:
-    """Return the decay length ℓ [LU] of the displacement of a chain near a point load; 0 without neighbours.
+    """Return the decay length ℓ [LU] of the displacement of a chain near a point load; 0 without neighbour springs.
 
     Outside of the load, k u_i = k_n (u_{i+1} − 2 u_i + u_{i−1}) has the solutions exp(±x/ℓ), cosh(s/ℓ) = 1 + k/(2 k_n):
     for stiff neighbours ℓ = s √(k_n/k).
@@ -100,10 +101,10 @@ def decay_length(scene: Scene) -> float:
 
 
 def reflected(scene: Scene, estimate: Law, largest: float, particles: int) -> float:
-    """Return the share of a displacement that the end of the chain reflects, exp(−2 L/ℓ); 0 without neighbours.
+    """Return the share of a displacement that the end of the chain reflects, exp(−2 L/ℓ), 0 … 1; 0 without neighbours.
 
     L is the distance [LU] of the end from the edge of the contact at the displacement `largest` [LU], with an
-    attraction from the largest tension, and ℓ the decay length [LU].
+    attraction from the largest tension, and ℓ the decay length [LU]. `estimate`: the contact law.
     """
     decay = decay_length(scene)
     beyond = 0.5 * particles * scene.bodies.spacing - _edge(estimate, largest)
@@ -111,9 +112,15 @@ def reflected(scene: Scene, estimate: Law, largest: float, particles: int) -> fl
 
 
 def chains_of(scene: Scene, estimate: Law, largest: float, share: float) -> tuple[int, int]:
-    """Return the particles of the upper and of the lower body, by `chain_length` where the scene leaves them open.
+    """Return (particles of the upper body, those of the lower body), as given or by `chain_length`.
 
     In a slide the lower body is longer by the sliding distance on both sides.
+
+    Args:
+        scene: whose chains they are.
+        estimate: contact law.
+        largest: largest displacement [LU].
+        share: relative force at the end of an automatic chain.
     """
     bodies = scene.bodies
     if bodies.particles != "auto":
@@ -126,14 +133,17 @@ def chains_of(scene: Scene, estimate: Law, largest: float, share: float) -> tupl
 
 
 def _edge(estimate: Law, largest: float) -> float:
-    """Return the half-width [LU] of the largest tension, without attraction that of the contact."""
+    """Return the half-width [LU] of the largest tension, without attraction of the contact.
+
+    `largest`: displacement [LU], below 0 as at 0.
+    """
     return estimate.half_width(max(largest, 0.0), float(estimate.gap[int(estimate.force.argmin())]))
 
 
 def significant_gap(estimate: Law, largest: float, share: float) -> float:
     """Return the undeformed gap [LU] beyond which no force exceeds a share of the largest one; r₀ without any force.
 
-    `largest`: displacement [LU] of the contact.
+    `largest`: displacement [LU] of the contact; `share`: relative.
     """
     force = np.abs(estimate.force)
     borne = force[estimate.gap > estimate.rest - largest]
@@ -141,9 +151,15 @@ def significant_gap(estimate: Law, largest: float, share: float) -> float:
 
 
 def chain_length(scene: Scene, estimate: Law, largest: float, share: float) -> int:
-    """Return the particles of an automatic chain, at whose end a force, and the reflection, is at most this share.
+    """Return the number of particles of an automatic chain, at whose end force and reflection are at most a share.
 
-    A flat punch has its own length; no chain is longer than its profile is wide.
+    A flat punch has its own number; no chain is longer than its profile is wide.
+
+    Args:
+        scene: whose chain it is.
+        estimate: contact law.
+        largest: largest displacement [LU].
+        share: of the largest force.
     """
     if (count := scene.bodies.own_count) is not None:
         return count
@@ -157,7 +173,7 @@ def chain_length(scene: Scene, estimate: Law, largest: float, share: float) -> i
 
 
 def require_reach(scene: Scene, cutoff: float) -> None:
-    """Refuse an interaction with a cutoff [LU] over more particles than can be summed over.
+    """Refuse an interaction with a cutoff [LU] over more than 5000 opposite particles.
 
     Raises:
         SettingsError: with the longest cutoff that is possible.
@@ -174,12 +190,14 @@ def require_reach(scene: Scene, cutoff: float) -> None:
 
 
 def reaches_too_far(scene: Scene, cutoff: float) -> bool:
-    """Return whether a particle would interact with more opposite ones within a cutoff [LU] than can be summed over."""
+    """Return whether a particle would interact with more than 5000 opposite ones within a cutoff [LU]."""
     return cutoff > 0.5 * MOST_PARTNERS * scene.bodies.spacing
 
 
 def require_apex(scene: Scene, particles: int, cutoff: float) -> None:
-    """Refuse a chain whose particles next to the apex are far out of range of the interaction (a cutoff [LU]).
+    """Refuse a chain whose particles next to the apex are far out of range of the interaction, of a cutoff [LU].
+
+    Their height is more than 1000 times the cutoff, or the spacing where this is larger. `particles`: of the chain.
 
     Raises:
         SettingsError: with the particles' height.
@@ -196,7 +214,7 @@ def require_apex(scene: Scene, particles: int, cutoff: float) -> None:
 
 
 def require_travel(scene: Scene, largest: float, cutoff: float) -> None:
-    """Refuse a displacement `largest` [LU] out of all proportion to the range of the forces.
+    """Refuse a displacement `largest` [LU] out of all proportion to the range of the forces: 10⁹ cutoffs and spacings.
 
     Raises:
         SettingsError: with the largest displacement that is possible.
@@ -211,7 +229,9 @@ def require_travel(scene: Scene, largest: float, cutoff: float) -> None:
 
 
 def require_memory(scene: Scene, particles: int, cutoff: float) -> None:
-    """Refuse a system that exceeds the memory of this machine.
+    """Refuse a system of more than 10⁷ particles of a body, or that exceeds the memory of this machine.
+
+    `particles`: of each body; `cutoff`: of the interaction [LU].
 
     Raises:
         SettingsError: with the number of particles or bytes.
@@ -238,10 +258,12 @@ def require_memory(scene: Scene, particles: int, cutoff: float) -> None:
 def require_digits(scene: Scene, particles: int, deepest: float, force: float) -> None:
     """Refuse springs so stiff that the round-off error of a position is more force than the tolerance allows.
 
+    Nothing is refused without an interaction, or in time.
+
     Args:
         scene: whose particles relax without time.
         particles: per body.
-        deepest: length that a position has besides the height of the last particle [LU].
+        deepest: length that a position has in addition to the height of the last particle [LU].
         force: of one particle, times the tolerance [FU].
 
     Raises:
@@ -262,14 +284,14 @@ def require_digits(scene: Scene, particles: int, deepest: float, force: float) -
 
 
 def _steps(rows: float) -> str:
-    """Return the words for a number of load steps beyond the largest one."""
+    """Return a text: a number of load steps, and that it is more than 10⁶."""
     return f"{apart(rows, MOST_LOAD_STEPS)[0]} load steps, more than {MOST_LOAD_STEPS:.0e}"
 
 
 def require_rows(scene: Scene, longest_move: float, drive: Sequence[DriveLeg]) -> None:
-    """Refuse a prescribed path of too many load steps, each an approach by `longest_move` [LU] at most.
+    """Refuse a prescribed path of more than 10⁶ load steps, each an approach by `longest_move` [LU] at most.
 
-    Those of a slide are the states of its drive.
+    Those of a slide are the states of the legs of its `drive`.
 
     Raises:
         SettingsError: with the number of load steps.
@@ -297,7 +319,7 @@ def require_rows(scene: Scene, longest_move: float, drive: Sequence[DriveLeg]) -
 
 
 def require_steps(steps: Iterable[int]) -> None:
-    """Refuse a scene with a load step of more `steps` than LAMMPS can count.
+    """Refuse a scene with a load step of more timesteps than LAMMPS can count, 2³¹ − 1; `steps`: of each load step.
 
     Raises:
         SettingsError: with the number of timesteps.
@@ -313,7 +335,10 @@ def require_steps(steps: Iterable[int]) -> None:
 
 
 def in_words(scene: Scene, particles: int, cutoff: float) -> str:
-    """Return a note for the user on a system so large that a run takes minutes; "" for a usual one."""
+    """Return a note for the user on a system so large that a run takes minutes; "" for a usual one.
+
+    `particles`: of each body; `cutoff`: of the interaction [LU].
+    """
     large, usual_partners = 20_000, 10.0
     partners = _partners(scene, particles, cutoff)
     if particles * max(1.0, partners / usual_partners) < large:
@@ -325,5 +350,8 @@ def in_words(scene: Scene, particles: int, cutoff: float) -> str:
 
 
 def _partners(scene: Scene, particles: int, cutoff: float) -> float:
-    """Return the opposite particles within the cutoff [LU] of one; 0 on a rigid plane."""
+    """Return the number of opposite particles within the cutoff [LU] of one, at most `particles`.
+
+    0 on a rigid plane.
+    """
     return min(particles, 2.0 * cutoff / scene.bodies.spacing + 2.0) if cutoff else 0.0

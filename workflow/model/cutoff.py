@@ -27,7 +27,8 @@ REACH = 40.0
 def slide_cutoff(law: DoubleExponential, spacing: float, load: float, tolerance: float) -> float:
     """Return the cutoff [LU] at which a pair's force is a tenth of the tolerance of the largest tangential force.
 
-    Each pair that comes within the cutoff or leaves it changes the tangential force by that much at once.
+    Between the longest range of the interaction and 40 times that. Each pair that comes within the cutoff or leaves it
+    changes the tangential force by that much at once.
 
     Args:
         law: interaction of a pair.
@@ -42,9 +43,10 @@ def slide_cutoff(law: DoubleExponential, spacing: float, load: float, tolerance:
 
 
 def largest_holding_force(law: DoubleExponential, spacing: float, load: float) -> float:
-    """Return max_x F_x [FU] of a particle under a load [FU] on a rigid chain, at its height in a potential minimum.
+    """Return max_x |F_x| [FU] of a particle under a load [FU] on a rigid chain, at its height in a potential minimum.
 
-    The maximum is taken over 33 positions within half a spacing, the height is one of 400.
+    The maximum is taken over 33 positions within half a `spacing` [LU], the height is one of 400: the largest that
+    carries the load, compression positive, or where none does the smallest.
     """
     reach = math.ceil(REACH * law.longest_range / spacing) + 1
     row: Array = np.asarray(spacing * np.arange(-reach, reach + 1), dtype=np.float64)
@@ -58,7 +60,10 @@ def largest_holding_force(law: DoubleExponential, spacing: float, load: float) -
 
 
 def _row_forces(law: DoubleExponential, offsets: Array, heights: Array) -> tuple[Array, Array]:
-    """Return the sums of forces along x and z, (m,) [FU], of pairs at lateral offsets [LU], at heights (m,) [LU]."""
+    """Return (sums along x, sums along z), (m,) [FU], of pair forces at lateral offsets [LU], at heights (m,) [LU].
+
+    Repulsion is positive along z.
+    """
     distance = np.hypot(offsets[None, :], heights[:, None])
     ratio = law.force(distance) / distance
     return (ratio * offsets).sum(axis=1), ratio.sum(axis=1) * heights
@@ -67,7 +72,7 @@ def _row_forces(law: DoubleExponential, offsets: Array, heights: Array) -> tuple
 def cutoff_for(scene: Scene, law: DoubleExponential, share: float, tolerance: float) -> float:
     """Return the scene's cutoff [LU], or the distance beyond which a pair's force is below a share of the force scale.
 
-    In a slide it is `slide_cutoff` at least.
+    In a slide it is `slide_cutoff` at least, unless it is too long for any run. `tolerance`: relative.
     """
     given = scene.the(Interaction).cutoff
     if given != "auto":
@@ -79,11 +84,17 @@ def cutoff_for(scene: Scene, law: DoubleExponential, share: float, tolerance: fl
 
 
 def innermost_distance(estimate: Law, cutoff: float, displacement: float) -> float:
-    """Return the distance [LU] of the predictor's innermost pair at a displacement [LU]; its grid ends at `cutoff`."""
+    """Return the distance [LU] of the predictor's innermost pair at a displacement [LU].
+
+    Its grid ends at `cutoff` [LU]. 0 < distance ≤ cutoff.
+    """
     grid = cutoff / estimate.gap.size * np.arange(1, estimate.gap.size + 1)
     return float(np.interp(estimate.rest - displacement, estimate.gap, grid))
 
 
 def thermal_motion(scene: Scene) -> float:
-    """Return the thermal approach [LU] of two particles on their springs: five standard deviations, 5 √(2 k_BT/k)."""
+    """Return the thermal approach [LU] of two particles on their springs: five standard deviations, 5 √(2 k_BT/k).
+
+    0 without noise.
+    """
     return 5.0 * math.sqrt(2.0 * scene.temperature / scene.bulk_stiffness)

@@ -25,7 +25,10 @@ MOST_ROWS = 50
 
 
 def measured(unit: str, default: Any = MISSING) -> Any:
-    """Return a dataclass field with a unit, whose number a deck with units of its own converts (`deck.units`)."""
+    """Return a dataclass field with a unit, whose number a deck with units of its own converts (`deck.units`).
+
+    `default`: its number; without one the field is required.
+    """
     return field(default=default, metadata={"unit": unit})
 
 
@@ -89,9 +92,9 @@ def motion_of(
         tolerance: relative tolerance of the main results.
         estimate: contact law.
         largest: largest displacement expected [LU].
-        particles: particles of the upper body.
+        particles: number of particles of the upper body.
         stiffest: largest stiffness of a particle's bonds and contacts [FU/LU].
-        still_step: ω_max·Δt of a quasi-static motion.
+        still_step: ω_max·Δt of a quasi-static motion (dimensionless).
     """
     bodies, plate, moves = scene.bodies, scene.plate, scene.experiment.motion_is_result
     touching = 2.0 * estimate.half_width(max(largest, 0.0), estimate.rest) / bodies.spacing
@@ -146,21 +149,25 @@ def _plate_stiffness(scene: Scene, particles: int) -> float:
 def _loading_drag(damping: float, critical: float) -> float:
     """Return the drag of a particle [FU·TU/LU] with which a slide is loaded: its own, or the critical one of the plate.
 
-    A plate that oscillates as it is loaded goes through the other body, which would carry it at rest.
+    The latter where its own is below it, or more than ten times as large. A plate that oscillates as it is loaded goes
+    through the other body, which would carry it at rest.
     """
     too_slow = 10.0 * critical  # the plate would creep to rest
     return damping if critical <= damping <= too_slow else critical
 
 
 def whole_steps(longest: float, duration: float | None) -> float:
-    """Return the longest timestep [TU] of which a motion's duration [TU] is a whole number, two at least."""
+    """Return the longest timestep [TU] of which a motion's duration [TU] is a whole number, two at least.
+
+    It is `longest` [TU] at most, and that without a duration (None).
+    """
     return longest if duration is None else duration / max(2, math.ceil(duration / longest - ROUND_OFF))
 
 
 def longest_step(product: float, stiffness: float, mass: float, drag: float) -> float:
     """Return the longest timestep [TU] of a mass [MU] on springs [FU/LU] with a drag [FU·TU/LU]; inf without a mass.
 
-    ω Δt is the `product` at most, and Δt a share DRAG_STEP of m/γ.
+    ω Δt is the `product` at most, and Δt 0.2 m/γ.
     """
     if mass == 0.0:
         return math.inf
@@ -168,7 +175,10 @@ def longest_step(product: float, stiffness: float, mass: float, drag: float) -> 
 
 
 def _product(scene: Scene, tolerance: float, still_step: float) -> float:
-    """Return the largest ω Δt: of a relaxation, of a motion that is the result, with noise, or quasi-static."""
+    """Return the largest ω Δt (dimensionless) of a relaxation, a motion that is the result, or with noise.
+
+    Without time it is 0.5 at most.
+    """
     if scene.experiment.motion_is_result:
         # Measured on 24 random slides: mean friction off by 1e-6 to 9e-5 of itself, by 5e-4 where that is 1e-4 of a
         # particle's.
@@ -180,7 +190,11 @@ def _product(scene: Scene, tolerance: float, still_step: float) -> float:
 
 
 def _drags(scene: Scene, particles: int, critical: float, plate_mass: float) -> tuple[float, float]:
-    """Return the drag [FU·TU/LU] of a particle and of the plate, given or together critical for the contact."""
+    """Return the drags [FU·TU/LU] (of a particle, of the plate): given, or together critical for the contact.
+
+    0 where there is none; an automatic one of the plate is 0 with noise and in an impact, too. `critical`: of both
+    together [FU·TU/LU]; `plate_mass` [MU].
+    """
     mass, damping = scene.bodies.mass, 0.0
     if scene.damping:
         automatic = critical / particles if scene.plate else math.sqrt(scene.bulk_stiffness * mass)
@@ -202,13 +216,14 @@ def _relative_drag(plate: float, particles: float, rate: float) -> float:
 
     In that oscillation a plate of mass M [MU] leaves the particles, N m [MU] together with the drag `rate` · N m, the
     share M/(M + N m): next to nothing, if it is light, so that drag on particles does not end it. With the drag c on
-    the plate the decay rate is [rate · M + c N m/M] / 2(M + N m); c makes it that of M = N m, c = 0.
+    the plate the decay rate is [rate · M + c N m/M] / 2(M + N m); c makes it that of M = N m, c = 0. For a heavier
+    plate 0.
     """
     return 0.5 * rate * plate * max(0.0, 1.0 - plate / particles)
 
 
 def drive_steps(scene: Scene, longest: float) -> tuple[DriveLeg, ...]:
-    """Return the legs of a slide, with timesteps of at most `longest` [TU]; empty for any other experiment."""
+    """Return the legs of a slide, with timesteps of at most `longest` [TU]; () for any other experiment."""
     experiment = scene.experiment
     if not isinstance(experiment, Slide):
         return ()

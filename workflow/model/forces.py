@@ -25,14 +25,15 @@ table that is smoothed any earlier lets bodies pass that the interaction still c
 
 
 def loading_step_of(most: float, step: float) -> float:
-    """Return the `step` [LU] if it is > 0, never more than `most` [LU]."""
+    """Return the `step` [LU] if it is > 0, never more than `most` [LU]; else `most`."""
     return min(step, most) if step > 0 else most
 
 
 def plane_stiffness_of(scene: Scene, tolerance: float) -> float:
     """Return the one-sided stiffness of the rigid plane [FU/LU]: that of a particle, where it is fixed in its body.
 
-    Where effects need bonds of the particles the plane is 1/tolerance times stiffer than those; 0 without a plane.
+    Where effects need bonds of the particles the plane is 1/tolerance (relative) times stiffer than those; 0 without a
+    plane.
     """
     if scene.bodies.lower != "rigid_plane":
         return 0.0
@@ -40,7 +41,7 @@ def plane_stiffness_of(scene: Scene, tolerance: float) -> float:
 
 
 def stiffest_of(scene: Scene) -> float:
-    """Return the stiffness of the bulk spring and of what effects add to it [FU/LU]."""
+    """Return the stiffness of the bulk spring of a particle plus that of what effects add to it [FU/LU]."""
     return scene.bulk_stiffness + sum(effect.added_stiffness for effect in scene.present)
 
 
@@ -72,7 +73,7 @@ class Forces:
 
     @property
     def law(self) -> DoubleExponential | None:
-        """Interaction of a pair; None on a rigid plane."""
+        """Interaction of a pair of particles; None on a rigid plane."""
         return None
 
     @property
@@ -81,31 +82,40 @@ class Forces:
         return 0.0
 
     def with_table(self, scene: Scene, estimate: Law, largest: float, error: float) -> Forces:
-        """Return these forces with a table to an error [FU], from the smallest distance at a displacement `largest` on.
+        """Return these forces with a table of the interaction; here unchanged, since there is none.
 
-        `estimate`: contact law; `largest` [LU].
+        `estimate`: contact law; `largest`: displacement [LU]; `error`: allowed, of a force [FU].
         """
         return self
 
     def scale_of(self, scene: Scene, deepest: float) -> float:
-        """Return half the force [FU] of the particle with the largest length change of its spring, `deepest` [LU]."""
+        """Return half the force [FU] of the particle with the largest length change of its spring, `deepest` [LU].
+
+        Without one, a length change of a thousandth of the spacing.
+        """
         return (deepest if deepest > 0.0 else 1e-3 * scene.bodies.spacing) * scene.bulk_stiffness / 2
 
     def stiffest(self, spacing: float) -> float:
-        """Return the largest contact stiffness of a particle [FU/LU]."""
+        """Return the largest contact stiffness of a particle [FU/LU]: that of the plane. `spacing` [LU] is ignored."""
         return self.plane_stiffness
 
     def increments(self, spacing: float, largest: float, calibration: Calibration) -> Increments:
-        """Return the increments of searches, by the spacing and the largest displacement [LU]."""
+        """Return the increments of searches [LU], by the spacing and the largest displacement [LU].
+
+        Their longest move is infinite.
+        """
         loading = loading_step_of(0.1 * spacing, calibration.loading_increment * largest)
         return Increments(loading, loading, 0.0, math.inf)
 
     def share(self, scene: Scene) -> float:
-        """Return the relative error of a force, before a run: the plane is not quite rigid for springs of particles."""
+        """Return the relative error of a force, before a run: the plane is not quite rigid for springs of particles.
+
+        0 where no effect adds stiffness to a particle.
+        """
         return sum(effect.added_stiffness for effect in scene.present) / self.plane_stiffness
 
     def error(self, scene: Scene, profile: Profile) -> float:
-        """Return the error of the force of a measured state [FU]."""
+        """Return the error of the force of a measured state [FU], ≥ 0."""
         return self.share(scene) * abs(scene.bodies.spacing * float(profile.pressure.sum()))
 
 
@@ -122,13 +132,13 @@ class PairForces(Forces):
 
     @property
     def range(self) -> float:
-        """Longest range of the interaction [LU]."""
+        """Longest range of the interaction [LU], of its exponentials."""
         return self.law.longest_range
 
     def with_table(self, scene: Scene, estimate: Law, largest: float, error: float) -> Forces:
-        """Return these forces with a table to an error [FU], from the smallest distance at a displacement `largest` on.
+        """Return these forces with a table to an error [FU], from the smallest expected distance on.
 
-        `estimate`: contact law; `largest` [LU].
+        `estimate`: contact law; `largest`: displacement at which particles come nearest [LU].
         """
         nearest = self.closest * (1.0 if scene.noise else NEAR_SHARE)
         innermost = innermost_distance(estimate, self.cutoff, largest) - thermal_motion(scene)
@@ -137,25 +147,31 @@ class PairForces(Forces):
         return replace(self, table_from=start, table=table_for(self.law, self.cutoff, start, error))
 
     def scale_of(self, scene: Scene, deepest: float) -> float:
-        """Return the force maximum of one pair [FU]; without attraction as on a plane."""
+        """Return the force maximum of one pair [FU], positive; without attraction as on a plane, by `deepest` [LU]."""
         if self.law.attraction is None:
             return super().scale_of(scene, deepest)
         r = self.law.force_free_distance() + self.law.longest_range * np.linspace(0.0, 5.0, 2001)
         return float(-self.law.force(r).min())
 
     def stiffest(self, spacing: float) -> float:
-        """Return the stiffness [FU/LU] of the pairs with nearby opposite particles."""
+        """Return the stiffness [FU/LU] of a particle's pairs with nearby opposite particles, at distance `closest`.
+
+        `spacing`: of the particles [LU].
+        """
         partners = 1.0 + 2.0 * self.law.repulsion.range / spacing
         return 2.0 * partners * float(self.law.stiffness(self.closest))
 
     def increments(self, spacing: float, largest: float, calibration: Calibration) -> Increments:
-        """Return the increments of searches, by the range of the interaction and the largest displacement [LU]."""
+        """Return the increments of searches, by the range of the interaction and the largest displacement [LU].
+
+        `spacing` is ignored.
+        """
         move = MOVE_SHARE * self.closest
         loading = loading_step_of(0.25 * self.range, calibration.loading_increment * largest)
         return Increments(min(loading, move), loading, calibration.smooth_increment * self.range, move)
 
     def share(self, scene: Scene) -> float:
-        """Return the relative error of a force, before a run, by table and cutoff.
+        """Return the relative error of a force, before a run, by table and cutoff, over the force scale.
 
         The tail beyond the cutoff, summed over particles, is ten times the force at the cutoff at most.
         """
@@ -163,10 +179,11 @@ class PairForces(Forces):
         return (tail + self.table.error_beyond(self.table_from)) / self.scale
 
     def error(self, scene: Scene, profile: Profile) -> float:
-        """Return 2 Σ |F_table(r) - f(r)| |z|/r [FU] over opposite particles of a state, F_table = 0 beyond the cutoff.
+        """Return the error of the force of a measured state [FU], ≥ 0, by table and cutoff.
 
-        The factor is the error of an equilibrium over that of forces on particles held in place, which follow it. A
-        table's error, here at the distances of the state, is half of that between two entries on average.
+        2 Σ |F_table(r) - f(r)| |z|/r over opposite particles of the state, F_table = 0 beyond the cutoff. The factor is
+        the error of an equilibrium over that of forces on particles held in place, which follow it. A table's error,
+        here at the distances of the state, is half of that between two entries on average.
         """
         return 2.0 * left_out(self.law, self.table, profile)
 
@@ -191,12 +208,13 @@ class Increments:
 
     Attributes:
         displacement_step: where pairs snap, and on a rigid plane.
-        loading_step: the same while particles are so far apart that they cannot pass each other.
+        loading_step: while particles are so far apart that they cannot pass each other.
         smooth_step: where the force of particles is a smooth function of the displacement.
         longest_move: longest move of a body between two states at rest, inf on a rigid plane: a move longer than the
             distance of opposite particles would put them behind each other. A search may approach to less than
-            `closest`, in moves down to NEAR_SHARE of this.
-        part: increments, moves and loads over the usual ones, below 1 in a search that restarts in smaller steps.
+            `Forces.closest`, in moves down to a fifth of this.
+        part: increments, moves and loads over the usual ones (relative), below 1 in a search that restarts in smaller
+            steps.
     """
 
     displacement_step: float = measured("LU")
@@ -206,6 +224,6 @@ class Increments:
     part: float = 1.0
 
     def scaled(self, part: float) -> Increments:
-        """Return these increments with all lengths scaled by a factor `part`."""
+        """Return these increments with all lengths multiplied by a factor `part`, and with that as their part."""
         lengths = {name: part * value for name, value in vars(self).items()}
         return replace(self, **lengths | {"part": part})

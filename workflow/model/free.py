@@ -1,4 +1,7 @@
-"""A plate that moves freely on the reduced model of a contact: oscillation under a load, and impact."""
+"""A plate that moves freely on the reduced model of a contact: oscillation under a load, and impact.
+
+d [LU] and F [FU] are positive in compression, M is the mass of the plate and m that of each of N particles [MU].
+"""
 
 from __future__ import annotations
 
@@ -27,8 +30,8 @@ def swing(scene: Scene, settings: Settings, model: Particles, start: float, load
 
         (M + N m) d″ = load − F(d) − c d′
 
-    from rest at `start` [LU], with F(d) and limit points of the reduced model, in the steps of LAMMPS (velocity Verlet,
-    drag half a step late).
+    from rest at `start` [LU], compression positive, with F(d) and limit points of the reduced model, in the steps of
+    LAMMPS (velocity Verlet, drag half a step late). Of more than 20 000 timesteps both are the equilibrium.
     """
     total = sum(settings.steps_of(duration))
     if total > MOST_STEPS:
@@ -47,12 +50,21 @@ def swing(scene: Scene, settings: Settings, model: Particles, start: float, load
 
 
 def stretch(settings: Settings, velocity: float) -> int:
-    """Return the number of timesteps from state to state of an impact at a velocity [LU/TU]."""
+    """Return the number of timesteps from state to state of an impact at a velocity [LU/TU], 1 at least.
+
+    There are 60 states in the time of a free motion to the deepest displacement.
+    """
     return max(1, round(settings.largest_displacement / velocity / STRETCHES / settings.motion.time_step))
 
 
 def is_over(displacement: Sequence[float], force: Sequence[float], flight: int = FLIGHT) -> bool:
-    """Return whether a body has rebounded, with `flight` states of free flight, or comes down again in contact."""
+    """Return whether a body has rebounded, with `flight` states of free flight, or comes down again in contact.
+
+    Args:
+        displacement: of the states so far, two at least [LU].
+        force: of the contact in these states [FU].
+        flight: number of last states without a force.
+    """
     directions = np.sign(np.diff(displacement))
     separated = not any(force[-flight:]) and directions[-1] < 0.0
     return bool(separated or np.count_nonzero(np.diff(directions[directions != 0.0])) > 1)
@@ -61,8 +73,8 @@ def is_over(displacement: Sequence[float], force: Sequence[float], flight: int =
 def impact(scene: Scene, settings: Settings, model: Particles, velocity: float, dense: int = 1) -> Path:
     """Return the path of an impact at a velocity [LU/TU] on the reduced model, from touch to free flight.
 
-    Its states are at the times of a run, `dense` so many times. Velocity Verlet of M d″ = −F, with F of
-    `Particles.force_in_time`, takes 16 steps for each state of a run, which are longer than timesteps of the run.
+    Its states are at the times of a run, `dense` so many times, some 20 000 at most. Velocity Verlet of M d″ = −F, with
+    F of `Particles.force_in_time`, takes 16 steps for each state of a run, which are longer than timesteps of the run.
     """
     assert scene.plate
     assert scene.plate.mass != "auto"

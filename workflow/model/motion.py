@@ -18,9 +18,10 @@ from contact1d.workflow.scene import Cantilever, Scene, Slide
 
 
 def inertia(scene: Scene, settings: Settings) -> tuple[float, float]:
-    """Return the masses of a particle and of the plate in LAMMPS [MU]: the scene's own but in a slide without noise.
+    """Return (mass of a particle, mass of the plate) in LAMMPS [MU]: the scene's own but in a slide without noise.
 
-    With noise the error of the thermostat, of the same order, is bounded by the timestep.
+    Without a plate its mass is 0. With noise the error of the thermostat, of the same order, is bounded by the
+    timestep.
     """
     late, motion = 0.0, settings.motion
     if motion.drive and not scene.noise:
@@ -29,7 +30,10 @@ def inertia(scene: Scene, settings: Settings) -> tuple[float, float]:
 
 
 def contact_half_width(scene: Scene, settings: Settings) -> float:
-    """Return the half-width [LU] in which forces on upper particles exceed the tolerance times the largest one."""
+    """Return the half-width [LU] in which forces on upper particles exceed the tolerance times the largest one.
+
+    At the largest expected displacement, and no more than that of the upper chain.
+    """
     estimate, largest = settings.law, settings.largest_displacement
     half = estimate.half_width(max(largest, 0.0), significant_gap(estimate, largest, scene.accuracy.tolerance))
     return min(half, 0.5 * (settings.chains.upper - 1) * scene.bodies.own_spacing)
@@ -37,6 +41,8 @@ def contact_half_width(scene: Scene, settings: Settings) -> float:
 
 def require_way(scene: Scene, settings: Settings) -> None:
     """Refuse a slide whose contact would leave the lower chain; a periodic one has no end.
+
+    Nothing is refused of other experiments.
 
     Raises:
         SettingsError: with the particles that are needed.
@@ -61,13 +67,16 @@ def require_way(scene: Scene, settings: Settings) -> None:
 
 
 def cantilever_swing(scene: Scene, settings: Settings) -> float:
-    """Return the period [TU] of plate and particles on the cantilever, 2π √((M + N m)/k)."""
+    """Return the period [TU] of plate and particles on the cantilever, 2π √((M + N m)/k); the scene has one."""
     moving = settings.motion.plate_mass + settings.chains.upper * scene.bodies.mass
     return 2.0 * math.pi * math.sqrt(moving / scene.the(Cantilever).stiffness)
 
 
 def too_fast(scene: Scene) -> str:
-    """Return a warning where the drive passes a particle in less than its period, 2π v/s > √(k/m); else ""."""
+    """Return a warning where the drive passes a particle in less than its period, 2π v/s > √(k/m).
+
+    "" where it does not, and for any experiment but a slide.
+    """
     experiment, bodies = scene.experiment, scene.bodies
     if not isinstance(experiment, Slide):
         return ""

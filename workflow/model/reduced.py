@@ -11,7 +11,7 @@ from contact1d.workflow.scene import Scene
 
 
 def reduced(scene: Scene, settings: Settings) -> Particles:
-    """Return the model of the particles that run, as far as the contact reaches."""
+    """Return the model of the particles that run, without their neighbours, as far as the contact reaches."""
     law, bodies, deepest = settings.law, scene.bodies, settings.largest_displacement
     half = 0.5 * (settings.chains.upper - 1) * law.spacing
     # On another lattice fewer springs may carry the load, up to 1.5 times as deep as expected.

@@ -80,18 +80,24 @@ class Settings:
     largest_displacement: float = measured("LU")
 
     def drag(self, damping: float | None = None) -> float:
-        """Return the drag on plate and particles together [FU·TU/LU]; `damping`: of a particle, by default its own."""
+        """Return the drag on plate and particles together [FU·TU/LU].
+
+        `damping`: coefficient of a particle [FU·TU/LU], by default its own.
+        """
         coefficient = self.motion.damping if damping is None else damping
         return self.chains.upper * coefficient + self.motion.plate_damping
 
     @property
     def gentle(self) -> bool:
-        """Whether a relaxation moves no particle by more than `longest_move` at a time, and none oscillates in time."""
+        """Whether a relaxation moves no particle by more than `longest_move` at a time, and none oscillates in time.
+
+        So it is in a search that restarts in smaller steps.
+        """
         return self.increments.part < 1.0
 
     @property
     def snaps(self) -> bool:
-        """Whether pairs of particles snap in and out."""
+        """Whether pairs of particles snap in and out, so that loading and unloading differ."""
         return self.law.snaps
 
     @cached_property
@@ -106,9 +112,9 @@ class Settings:
 
     @property
     def strongest(self) -> tuple[float, float]:
-        """Distance [LU] and tension [FU] at the force maximum of a chain of opposite particles on one.
+        """(Distance [LU], tension [FU] ≥ 0) at the force maximum of a chain of opposite particles on one.
 
-        By the predictor, whose grid of distances ends at the cutoff; (0, 0) on a rigid plane.
+        By the predictor, whose grid of distances ends at the cutoff; the distance is 0 on a rigid plane.
         """
         force = self.law.force
         peak = int(force.argmin())
@@ -117,7 +123,7 @@ class Settings:
     def increment(self, smallest_distance: float = math.inf) -> float:
         """Return the longest increment [LU] of a search from a state with a smallest distance of particles [LU].
 
-        In unloading that distance sets no limit: infinite.
+        In unloading that distance sets no limit: infinite, the default.
         """
         increments = self.increments
         if not self.is_smooth:
@@ -127,23 +133,27 @@ class Settings:
         return min(increments.smooth_step, max(shortest, MOVE_SHARE * smallest_distance))
 
     def steps_of(self, duration: float, states: int = 100) -> list[int]:
-        """Return the timesteps of each load step of a motion of a duration [TU]; the first load step has one.
+        """Return the numbers of timesteps of the load steps of a motion of a duration [TU].
 
-        `states`: how many follow the first one, where there are as many timesteps.
+        The first load step has one. `states`: how many follow the first one, where there are as many timesteps; else
+        fewer.
         """
         total = round(duration / self.motion.time_step)
         ends = np.unique(np.linspace(1, total, min(states, total - 1) + 1).round())
         return [int(steps) for steps in np.diff(ends, prepend=0.0)]
 
     def premature_detachment(self, move: float) -> float:
-        """Return the premature detachment [LU] of a pair under displacement increments `move` [LU]."""
+        """Return the premature detachment [LU] of a pair under displacement increments `move` [LU].
+
+        0 where none snaps.
+        """
         return self.law.premature_detachment(move, self.forces.residual)
 
     def in_smaller_steps(self, part: float) -> Settings:
         """Return these settings with increments and moves, also those of a relaxation, scaled by a factor `part`.
 
-        In time, where the scene leaves the drag open, drag stops a particle that approaches the opposite one before its
-        repulsion does, with a timestep of its own.
+        Also with a timestep of its own in time, and without a plate, where the scene leaves the drag open, with drag
+        that stops a particle that approaches the opposite one before its repulsion does.
         """
         motion = self.motion
         damping = motion.damping if motion.plate_mass > 0.0 else motion.settling_damping
@@ -153,11 +163,11 @@ class Settings:
 
 @lru_cache(maxsize=1)  # a scene whose spacing is chosen has its settings then
 def settings_for(scene: Scene, tolerance: float | None = None, calibration: Calibration | None = None) -> Settings:
-    """Choose every open number of a scene.
+    """Return the settings of a scene, with a choice of every number that it leaves open.
 
     Args:
         scene: whose numbers are left open.
-        tolerance: in place of the scene's own, for a refined pass.
+        tolerance: relative, in place of the scene's own, for a refined pass.
         calibration: in place of the one that was measured, for the study that measures it.
 
     Raises:
@@ -183,10 +193,11 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
 
 
 def slower(scene: Scene, settings: Settings, factor: float = 2.0) -> list[tuple[Scene, Settings]]:
-    """Return settings with longer timesteps and a less rigid plane, and others with more mass and drag if not given.
+    """Return (scene, settings) with longer timesteps and a less rigid plane, and others with more mass and drag.
 
-    `factor`: timesteps, drags and 1/stiffness over the usual ones; masses by its square. An error of first order in
-    these changes by its own amount at least.
+    Masses and drags that the scene gives stay; the second pair is missing where that changes nothing. `factor`:
+    timesteps, drags and 1/stiffness over the usual ones; masses by its square. An error of first order in these changes
+    by its own amount at least.
     """
     usual, forces, duration = settings.motion, settings.forces, scene.experiment.lasts
     longer = whole_steps(factor * usual.time_step, duration)
@@ -211,7 +222,7 @@ def slower(scene: Scene, settings: Settings, factor: float = 2.0) -> list[tuple[
 def _stopped(scene: Scene, law: Law, rounds: int = 4) -> float:
     """Return the displacement [LU] at which a body that hits the plane is at rest, deeper where it relaxes meanwhile.
 
-    `rounds`: most iterations of the displacement and the time of the impact.
+    0 of an experiment without an impact. `rounds`: most iterations of the displacement and the time of the impact.
 
     Raises:
         SettingsError: the body sticks.
@@ -235,12 +246,14 @@ def _stopped(scene: Scene, law: Law, rounds: int = 4) -> float:
 
 
 def _bond_on_plane(stiffness: float, plane: float) -> float:
-    """Return the stiffness of a bond [FU/LU] that in series with the plane has the particle's `stiffness` [FU/LU]."""
+    """Return the stiffness of a bond [FU/LU] that in series with the `plane` has the particle's `stiffness` [FU/LU]."""
     return 1.0 / (1.0 / stiffness - 1.0 / plane)
 
 
 def _require_carried(scene: Scene) -> None:
     """Refuse a load beyond N A/a, the repulsion of N pairs at zero distance.
+
+    Nothing with an automatic chain or no load.
 
     Raises:
         NotCarriedError: with N A/a [FU].
@@ -256,7 +269,14 @@ def _require_carried(scene: Scene) -> None:
 
 
 def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Settings:
-    """Return the settings of a scene: forces, load, chains, table, motion and increments, in this order."""
+    """Return the settings of a scene: forces, load, chains, table, motion and increments, in this order.
+
+    `tolerance`: relative.
+
+    Raises:
+        SettingsError: a limit of size.
+        NotCarriedError: a load beyond the repulsion.
+    """
     bodies = scene.bodies
     require_room(bodies)
     forces, estimate = _forces(scene, tolerance, calibration)
@@ -282,7 +302,14 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
 
 
 def _forces(scene: Scene, tolerance: float, calibration: Calibration) -> tuple[Forces, Law]:
-    """Return the springs, plane and interaction, without table and scales, and the contact law that they make."""
+    """Return (springs, plane and interaction, without table and scales; the contact law that they make).
+
+    The table is a preliminary one. `tolerance`: relative.
+
+    Raises:
+        SettingsError: the cutoff reaches too far.
+        NotCarriedError: a load beyond the repulsion.
+    """
     law, bodies, spring = interaction_law(scene), scene.bodies, scene.bulk_stiffness
     shape: Undeformed = bodies
     if bodies.profile.slow:
@@ -304,7 +331,18 @@ def _forces(scene: Scene, tolerance: float, calibration: Calibration) -> tuple[F
 
 
 def _chains(scene: Scene, estimate: Law, forces: Forces, largest: float, share: float) -> Chains:
-    """Return as many particles as the contact needs, or the scene gives. Raises SettingsError where they do not fit."""
+    """Return as many particles as the contact needs, or the scene gives.
+
+    Args:
+        scene: whose chains they are.
+        estimate: contact law.
+        forces: with the cutoff.
+        largest: largest displacement [LU].
+        share: relative force at the end of an automatic chain.
+
+    Raises:
+        SettingsError: they do not fit.
+    """
     upper, lower = chains_of(scene, estimate, largest, share)
     require_body(scene.bodies, largest, upper)
     require_apex(scene, upper, forces.cutoff)

@@ -67,13 +67,13 @@ def number(value: float) -> str:
 
 
 def sphere_radius(scene: Scene, settings: Settings) -> float:
-    """Return the radius [LU] of particles that are spheres; 0 where they are points."""
+    """Return the radius [LU] of particles that are spheres, which friction needs; 0 where they are points."""
     deepest = max(settings.largest_displacement, scene.bodies.spacing)
     return 4.0 * deepest if scene.friction else 0.0  # a wall loses a sphere that overlaps it further
 
 
 def skin(scene: Scene) -> float:
-    """Return the skin of the neighbour lists [LU].
+    """Return the skin of the neighbour lists [LU], half a spacing.
 
     A load step of a path moves a body by less, so that a list lasts for a relaxation.
     """
@@ -93,5 +93,5 @@ EFFECTS: dict[str, Callable[[Scene, Settings], Contribution]] = {
 
 
 def contributions(scene: Scene, settings: Settings) -> tuple[Contribution, ...]:
-    """Return the parts of all effects of a scene, in the order of the effects."""
+    """Return the parts of all effects of a scene, in the order of the effects; () without effects."""
     return tuple(EFFECTS[name](scene, settings) for name in scene.effects)

@@ -10,7 +10,10 @@ from contact1d.workflow.scene import Adhesion, Scene
 
 
 def adhesion(scene: Scene, settings: Settings) -> Contribution:
-    """Return the part of adhesion, after the plane's; none without W. The cells are in a separate file."""
+    """Return the part of adhesion, after the plane's.
+
+    One without fragments where W is 0. The cells are in a separate file.
+    """
     effect, stiffness = scene.the(Adhesion), {"adhesion_stiffness": number(scene.bulk_stiffness)}
     if not effect.work:
         return Contribution("adhesion", Stage.CONTACT, ())

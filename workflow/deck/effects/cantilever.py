@@ -13,7 +13,7 @@ from contact1d.workflow.scene import Cantilever, Scene
 
 
 def cantilever(scene: Scene, settings: Settings) -> Contribution:
-    """Return the spring and its drive: `steps/drive` starts it to slide, `steps/turn` begins each further leg."""
+    """Return the part of the spring and its drive: `steps/drive` starts it, `steps/turn` begins each further leg."""
     legs = settings.motion.drive
     velocities, clocks = [leg.velocity for leg in legs], [leg.time_step for leg in legs]
     variables = {

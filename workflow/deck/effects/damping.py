@@ -6,7 +6,7 @@ from contact1d.workflow.scene import Scene
 
 
 def damping(scene: Scene, settings: Settings) -> Contribution:
-    """Return the drag on the particles; nothing with noise, whose Langevin thermostat includes the damping."""
+    """Return the part of the drag on the particles; with noise without fragments, since its thermostat includes it."""
     if scene.noise:
         return Contribution("damping", Stage.DRAG, ())
     return Contribution("damping", Stage.DRAG, ("damping",), {"damping_coefficient": number(settings.motion.damping)})

@@ -6,7 +6,7 @@ from contact1d.workflow.scene import Friction, Scene
 
 
 def friction(scene: Scene, settings: Settings) -> Contribution:
-    """Return the friction of a wall with spheres, which system.data has for the shared slot `atom_style`."""
+    """Return the part of the friction of a wall with spheres, which system.data has, with the slot `atom_style`."""
     variables = {
         "friction_normal_stiffness": number(settings.forces.plane_stiffness),
         "friction_tangential_stiffness": number(scene.tangential_stiffness),

@@ -8,7 +8,10 @@ from contact1d.workflow.scene import Scene
 
 
 def horizontal(scene: Scene, settings: Settings) -> Contribution:
-    """Return the motion along x, which frees the guide; with k_t ≠ k_n also the bonds to the far anchors."""
+    """Return the part of the motion along x, which frees the guide.
+
+    With k_t ≠ k_n also the bonds to the far anchors.
+    """
     if settings.chains.far == 0.0:
         return Contribution("horizontal", Stage.SPRINGS, ("horizontal",))
     # A body without end is a box as narrow as its period, whatever the length of its far bonds.

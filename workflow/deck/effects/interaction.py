@@ -6,7 +6,10 @@ from contact1d.workflow.scene import Scene
 
 
 def interaction(scene: Scene, settings: Settings) -> Contribution:
-    """Return the pair forces for the shared slot `pair_style`; each measurement sums those of opposite particles."""
+    """Return the part of the pair forces, with the shared slot `pair_style`.
+
+    Each measurement sums those of opposite particles.
+    """
     assert settings.forces.table
     return Contribution(
         "interaction",

@@ -6,6 +6,6 @@ from contact1d.workflow.scene import Neighbours, Scene
 
 
 def neighbours(scene: Scene, settings: Settings) -> Contribution:
-    """Return the springs between neighbours, for which system.data has bonds and shifted anchors (`deck.lattice`)."""
+    """Return the part of the springs between neighbours, for which system.data has bonds and shifted anchors."""
     coefficient = number(scene.the(Neighbours).stiffness / 2)
     return Contribution("neighbours", Stage.SPRINGS, ("neighbours",), {"neighbours_bond_coefficient": coefficient})

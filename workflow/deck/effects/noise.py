@@ -6,7 +6,7 @@ from contact1d.workflow.scene import Noise, Scene
 
 
 def noise(scene: Scene, settings: Settings) -> Contribution:
-    """Return the Langevin thermostats of the particles and, where the plate has a drag, of one of its anchors.
+    """Return the part of the Langevin thermostats: of particles and, where the plate has a drag, of one anchor.
 
     `fix langevin` takes the relaxation time m/γ.
     """

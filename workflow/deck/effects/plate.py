@@ -6,7 +6,7 @@ from contact1d.workflow.scene import Plate, Scene
 
 
 def plate(scene: Scene, settings: Settings) -> Contribution:
-    """Return the rigid plate: its mass, in system.data, and its drag are distributed over its anchors."""
+    """Return the part of the rigid plate: its mass, in system.data, and its drag are distributed over its anchors."""
     anchors = settings.chains.upper * (1 if settings.chains.far == 0.0 else 2)
     alone = anchors == 1
     free = {True: "NULL", False: "0.0"} if alone else {True: "on", False: "off"}

@@ -9,7 +9,10 @@ from contact1d.workflow.scene import Scene, Viscoelasticity
 
 
 def viscoelasticity(scene: Scene, settings: Settings) -> Contribution:
-    """Return the viscoelastic springs: a fragment for each term of the Prony series, in the order of the terms."""
+    """Return the part of the viscoelastic springs: fragments for each term of the Prony series, in their order.
+
+    With a retardation time, the part of springs with a parallel dashpot.
+    """
     effect, rows = scene.the(Viscoelasticity), scene.is_stepped
     fragments = ["elapsed_rows" if rows else "elapsed_steps"]
     variables = {"viscoelasticity_stiffness": number(settings.forces.plane_stiffness)}
