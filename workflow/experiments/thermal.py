@@ -156,18 +156,15 @@ def _sampled_states(contact: Contact, rows: Sequence[Row]) -> list[State]:
 def read(blocks: Series, rule: RadiusRule) -> dict[str, Reading]:
     """Return means of "displacement" [LU] and "force" [FU], "contact_radius" [LU] and "mean_pressure" [FU/LU²].
 
-    The last two are those of the mean profile, and are left out where it shows no contact. The force is the load that
-    the contact carries.
-
-    Raises:
-        ValueError: the contact radius is 0, so that there is no mean pressure.
+    The last two are those of the mean profile, and are left out where it shows no contact, or one of no width. The
+    force is the load that the contact carries.
     """
     results = {
         "displacement": Reading(float(blocks.mean("displacement")), LENGTH),
         "force": Reading(float(blocks.mean("carried")), FORCE),
     }
     profile = mean_profile(blocks)
-    if (radius := rule.of(profile)) is None:
+    if (radius := rule.of(profile)) is None or radius.value == 0.0:
         return results
     pressure = mean_pressure(profile, rule.bodies.spacing, radius.value)
     between = 2.0 * radius.uncertainty / radius.value * abs(pressure)
