@@ -8,7 +8,7 @@ import pint
 import pytest
 
 from contact1d import Quantity
-from contact1d.workflow.units import UNKNOWN, Scales, rounded
+from contact1d.workflow.units import UNKNOWN, Scales
 
 FORCE, RADIUS = Quantity(1e-3, 1e-5, "N"), Quantity(1e-4, 1e-7, "m")
 SCALES = Scales(2e-9, 3e-6, mass=1e-18)
@@ -25,9 +25,8 @@ def test_a_mean_pressure_has_the_unit_of_its_formula_and_the_sum_of_both_uncerta
 @pytest.mark.parametrize(
     ("found", "unit", "value"),
     [
-        (FORCE * RADIUS, "J", 1e-7), (FORCE / RADIUS, "N/m", 10.0), (2 * FORCE + FORCE, "N", 3e-3),
-        (FORCE - FORCE, "N", 0.0), (FORCE / FORCE, "1", 1.0), (1 / RADIUS, "1/m", 1e4), (RADIUS**3, "m³", 1e-12),
-        (Quantity(1.0, 0.0, "FU") / Quantity(2.0, 0.0, "FU/LU"), "LU", 0.5),
+        (FORCE * RADIUS, "J", 1e-7), (2 * FORCE + FORCE, "N", 3e-3), (FORCE - FORCE, "N", 0.0),
+        (FORCE / FORCE, "1", 1.0), (1 / RADIUS, "1/m", 1e4), (RADIUS**3, "m³", 1e-12),
         (Quantity(3.0, 0.0, "FU·LU") / Quantity(1.5, 0.0, "LU"), "FU", 2.0),
     ],
 )  # fmt: skip
@@ -45,11 +44,11 @@ def test_a_force_and_a_length_have_no_sum() -> None:
 @pytest.mark.parametrize(
     ("quantity", "text"),
     [
-        (Quantity(402.7e6, 1.3e6, "Pa"), "402.7 ± 1.3 MPa"), (Quantity(2.74e-7, 1.6e-9, "J"), "274.0 ± 1.6 nJ"),
-        (Quantity(1.4834, 2.9e-5, "FU"), "1.483400 ± 0.000029 FU"), (Quantity(10.0, 0.0, "N"), "10 N"),
-        (Quantity(0.0, 8.9e-21, "J"), "0.0 ± 8.9 zJ"), (Quantity(-1e-26, 5.3e-22, "J"), "0 ± 530 yJ"),
+        (Quantity(2.74e-7, 1.6e-9, "J"), "274.0 ± 1.6 nJ"), (Quantity(1.4834, 2.9e-5, "FU"), "1.483400 ± 0.000029 FU"),
+        (Quantity(10.0, 0.0, "N"), "10 N"),
+        (Quantity(-1e-26, 5.3e-22, "J"), "0 ± 530 yJ"), (Quantity(0.0, 1e-14, "FU"), "(0.0 ± 1.0)e-14 FU"),
+        (Quantity(1e13, 2e9, "FU"), "(1.00000 ± 0.00020)e+13 FU"), (Quantity(12345.0, 120.0, "LU"), "12340 ± 120 LU"),
         (Quantity(0.3, 0.01, "1"), "0.300 ± 0.010"),
-        (Quantity(2.0, 0.1, "1/m"), "2.00 ± 0.10 1/m"),
     ],
 )  # fmt: skip
 def test_a_quantity_is_written_with_a_prefix_and_two_digits_of_its_uncertainty(quantity: Quantity, text: str) -> None:
@@ -57,18 +56,10 @@ def test_a_quantity_is_written_with_a_prefix_and_two_digits_of_its_uncertainty(q
 
 
 @pytest.mark.parametrize(
-    ("value", "uncertainty", "text"),
-    [(0.0, 1e-14, "(0.0 ± 1.0)e-14"), (1e13, 2e9, "(1.00000 ± 0.00020)e+13"), (12345.0, 120.0, "12340 ± 120")],
-)
-def test_value_and_uncertainty_have_one_notation(value: float, uncertainty: float, text: str) -> None:
-    assert rounded(value, uncertainty) == text
-
-
-@pytest.mark.parametrize(
     ("text", "shown"),
     [
         ("-3e-4 FU is never reached: about 2 FU", "-900 pN is never reached: about 6 µN"),
-        ("must be greater than 0.5 (LU) here", "must be greater than 1 nm here"),
+        ("must be greater than 5.00021 (LU) here, not 5 LU", "must be greater than 10.0004 nm here, not 10 nm"),
         ("must be greater than 0 (LU)", "must be greater than 0 (m)"),
         ("give a force (FU) or 2.5 FU/LU", "give a force (N) or 3.75 kN/m"),
         ("in 30 LUmps of 5 FULL", "in 30 LUmps of 5 FULL"),

@@ -1,14 +1,22 @@
-"""Scene files, changes from outside, and scenes that are written as TOML and read again."""
+"""Scene files: what is read, what follows from it, changes from outside, and files that are none, as one sentence."""
 
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
+from pydantic import ValidationError
+from typer.testing import CliRunner
 
 from contact1d import SceneError, read_scene
-from contact1d.workflow.scene import PullOff
+from contact1d.__main__ import app
+from tests.scenes import STEEL_ON_GLASS, chains
 
 EVERYTHING = """
 title = "Pull-off of a curved body, R = 1000"
@@ -68,86 +76,44 @@ def written(folder: Path, text: str | bytes) -> Path:
     return path
 
 
-def failure(folder: Path, text: str | bytes) -> str:
-    """What is printed for a scene file with this content, without the name of the file."""
-    path = written(folder, text)
+def test_the_example_is_read_and_written_and_contradicts_itself_in_four_places(tmp_path: Path) -> None:
+    """Also with a byte-order mark and foreign line ends."""
     with pytest.raises(SceneError) as caught:
-        read_scene(path)
-    return str(caught.value).replace(str(path), "FILE")
-
-
-def test_the_example_without_what_has_time_in_it(tmp_path: Path) -> None:
-    scene = read_scene(written(tmp_path, EVERYTHING), without=TIMED)
-    assert scene.title == "Pull-off of a curved body, R = 1000"
-    assert scene.effects == ("interaction", "neighbours", "horizontal")
-    assert scene.method == "quasistatic"
-    assert scene.experiment == PullOff(kind="pull_off", preload=1.0, method="quasistatic")
-
-
-def test_the_whole_example_contradicts_itself_in_four_places(tmp_path: Path) -> None:
-    with pytest.raises(SceneError) as caught:
-        read_scene(str(written(tmp_path, EVERYTHING)))
+        read_scene(written(tmp_path, EVERYTHING))
     assert tuple(problem.path for problem in caught.value.problems) == TIMED
-
-
-def test_the_effective_scene_reads_back(tmp_path: Path) -> None:
-    scene = read_scene(written(tmp_path, EVERYTHING), without=TIMED)
+    scene = read_scene(written(tmp_path, EVERYTHING.replace("\n", "\r\n").encode("utf-8-sig")), without=TIMED)
+    assert (scene.effects, scene.method) == (("interaction", "neighbours", "horizontal"), "quasistatic")
+    assert scene.tables["experiment"] == {"kind": "pull_off", "preload": 1.0, "method": "quasistatic"}
     text = str(scene)
     assert read_scene(written(tmp_path, text)) == scene
+    assert str(read_scene(text)) == text
     assert text.startswith('title = "Pull-off of a curved body, R = 1000"\n\n[bodies]\nparticles = 200\n')
-    assert "\n[horizontal]\n" in text
-    assert str(read_scene(written(tmp_path, text))) == text
-
-
-def test_files_that_are_no_scene(tmp_path: Path) -> None:
-    missing = tmp_path / "no.toml"
-    for path, reason in [(missing, "no such file"), (tmp_path, "is a directory; name a file in it")]:
-        with pytest.raises(SceneError) as caught:
-            read_scene(path)
-        assert str(caught.value) == f"{path}: {reason}"
-    with pytest.raises(SceneError, match="cannot be read"):
-        read_scene("a\0b")
 
 
 @pytest.mark.parametrize(
     ("text", "line"),
     [
-        (b"a = 1\nb = '\xe9'\n", "FILE: line 2 is not UTF-8 text; save the file as UTF-8"),
         ("a = 1\na = 2\n", "FILE, line 2, column 6: this key is given twice: a = 2"),
-        ("[a]\n[b]\n[a]\n", "FILE, line 3, column 3: this table is given twice: [a]"),
         ("a = 0,83\n", "FILE, line 1, column 6: unexpected text after the value: a = 0,83; write one key"),
         ("kind = load\n", "FILE, line 1, column 8: this is not a value: kind = load; write text in quotes"),
         ("a = { b = 1,\n c = 2 }\n", "FILE, line 1, column 13: an inline table { … } must be closed on the same line"),
-        ("[bodies\n", "FILE, line 1, column 8: the name of a table is not closed with ]: [bodies"),
-        ("a 1\n", "FILE, line 1, column 3: a key needs = and a value: a 1"),
         ('a = "b\n', "FILE, line 1, column 7: the text is not closed with a quote"),
-        ("a = [1", "FILE, at its end: a list is not closed"),
         ("a = " + "9" * 5000, "FILE: a whole number has thousands of digits"),
-        ("a = " + "[" * 50000, "FILE: tables or lists are nested more than 100 deep"),
     ],
 )
-def test_mistakes_in_the_toml_name_their_line(tmp_path: Path, text: str | bytes, line: str) -> None:
-    printed = failure(tmp_path, text)
+def test_mistakes_in_the_toml_name_their_line(tmp_path: Path, text: str, line: str) -> None:
+    path = written(tmp_path, text)
+    with pytest.raises(SceneError) as caught:
+        read_scene(path)
+    printed = str(caught.value).replace(str(path), "FILE")
     assert printed.startswith(line)
     assert "\n" not in printed
 
 
-def test_a_byte_order_mark_and_foreign_line_ends_do_no_harm(tmp_path: Path) -> None:
-    text = EVERYTHING.replace("\n", "\r\n").encode("utf-8-sig")
-    assert read_scene(written(tmp_path, text), without=TIMED).bodies.particles == 200
-
-
 def base(**tables: Any) -> dict[str, Any]:
     """A small good scene as a dict, with other tables."""
-    bodies = {
-        "particles": "auto",
-        "spacing": 1.0,
-        "profile": {"kind": "parabola", "radius": 10.0},
-        "bulk_stiffness": 1.0,
-    }
-    repulsion = {"amplitude": 1.0, "range": 0.5}
-    scene = {"title": "base", "bodies": bodies, "interaction": {"repulsion": repulsion}}
-    return {**scene, "experiment": {"kind": "load", "force": 1.0}, **tables}
+    repulsion = {"repulsion": {"amplitude": 1.0, "range": 0.5}}
+    return chains(10.0, 1.0, interaction=repulsion, experiment={"kind": "load", "force": 1.0}) | tables
 
 
 def refused(*overrides: str, without: tuple[str, ...] = ()) -> list[str]:
@@ -164,32 +130,21 @@ def test_overrides_are_applied_in_order_and_leave_the_data_alone() -> None:
     assert (scene.bodies.profile.radius, scene.bodies.spacing, scene.title) == (2000.0, 0.5, "free text = good")
     assert (scene.effects, scene.experiment.given_method) == (("interaction", "neighbours"), "quasistatic")
     assert data == base()
+    assert read_scene(base(neighbours={"stiffness": 1.0}), "title=one", "neighbours") == read_scene(base(title="one"))
     assert refused("bodies.spacing=1\nmass=2")[0].startswith('bodies.spacing = "1\\nmass=2": must be a length')
-
-
-def test_one_override_needs_no_list() -> None:
-    assert read_scene(base(), "title=one").title == "one"
-    assert read_scene(base(neighbours={"stiffness": 1.0}), without="neighbours").neighbours is None
 
 
 @pytest.mark.parametrize(
     ("override", "words"),
     [
-        ("bodies.spacing", "no value; write table.key=value"),
         ("bodies.spacing= ", "no value; write table.key=value"),
-        ("=3", "not a path of keys; write table.key=value"),
         ("bodies..spacing=3", "not a path of keys; write table.key=value"),
-        ("title.x=3", "title is not a table; set it as a whole"),
         ("bodies.spacing.x.y=3", "bodies.spacing is not a table; set it as a whole"),
     ],
 )
 def test_an_override_that_sets_nothing_is_refused_as_it_stands(override: str, words: str) -> None:
     (line,) = refused(override)
     assert line.startswith(f'set "{override}": {words}')
-
-
-def test_a_misspelt_override_is_found_like_a_misspelt_key() -> None:
-    assert refused("bodis.spacing=2")[0].startswith('bodis: unknown table; did you mean "bodies"?')
 
 
 def test_only_effects_that_are_there_can_be_removed() -> None:
@@ -200,44 +155,53 @@ def test_only_effects_that_are_there_can_be_removed() -> None:
 
 
 def test_problems_of_changes_and_of_the_scene_come_together() -> None:
-    assert [line.partition(":")[0] for line in refused("bodies.mass=0", "experiment.force=0", "title.x=1")] == [
-        'set "title.x=1"',
-        "bodies.mass = 0",
-        "experiment.force = 0",
-    ]
+    found = refused("bodies.mass=0", "experiment.force=0", "title.x=1", "bodis.spacing=2")
+    assert [line.partition(":")[0] for line in found] == [
+        'set "title.x=1"', "bodies.mass = 0", "experiment.force = 0", "bodis",
+    ]  # fmt: skip
 
 
-def test_what_is_not_a_table_of_tables() -> None:
-    with pytest.raises(SceneError, match="scene: must be a path, TOML text, tables or a Scene, not list"):
-        read_scene([1])
+# What a scene means.
 
 
-def test_a_scene_can_be_changed_as_data() -> None:
-    scene = read_scene(base())
-    assert read_scene(scene) == scene
-    assert read_scene(scene.model_dump(by_alias=True)) == scene
-    assert read_scene(scene, ["bodies.mass=2"]).bodies.mass == 2.0
+def test_a_scene_cannot_be_changed_in_place() -> None:
+    scene = read_scene(base(), ["bodies.spacing=2"])
+    assert (scene.bodies.spacing, type(scene.bodies.spacing)) == (2.0, float)
+    with pytest.raises(ValidationError):
+        scene.bodies.mass = 2.0
 
 
+@pytest.mark.parametrize("steps", [1, 1000])
+def test_a_span_meets_its_ends_exactly_and_comes_back_the_same_way(steps: int) -> None:
+    span = {"kind": "path", "displacements": {"from": -0.1, "to": 0.7, "steps": steps}}
+    experiment: Any = read_scene(base(experiment=span)).experiment
+    once: Any = read_scene(base(experiment=span), ["experiment.displacements.return=false"]).experiment
+    values = experiment.places()
+    assert once.places() == values[: steps + 1]
+    assert (values[0], values[steps], values[-1]) == (-0.1, 0.7, -0.1)
+    assert (values, len(values)) == (values[::-1], 2 * steps + 1)
+    assert all(map(math.isfinite, values))
+
+
+UNITS = ["m", "µ", "K", "°C", "dB", "rad", "e", "nan", "in", "%", "·", "/", "**", "⁻¹", "(", " ", "1", "-", "\0", "中"]
+units = st.lists(st.sampled_from(UNITS), max_size=5).map("".join)
+numbers = st.sampled_from(["auto", "load", "1", "-2.5", "1e-400", "9" * 30, "1e", ""])
+texts = st.builds(str.__add__, numbers, units)
 garbage = st.recursive(
-    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8) | st.sampled_from(["auto", "load"]),
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8) | texts,
     lambda inner: (
         st.lists(inner, max_size=3)
         | st.dictionaries(
-            st.sampled_from(
-                ["kind", "knid", "particles", "free", "from", "to", "repulsion", "table", "list", "load", "path"]
-            )
-            | st.text(max_size=5),
-            inner,
-            max_size=4,
+            st.sampled_from(["kind", "knid", "free", "from", "list"]) | st.text(max_size=5), inner, max_size=4
         )
     ),
     max_leaves=8,
 )
 places = ["title", "bodies", "bodies.profile", "interaction", "interaction.repulsion", "plate", "experiment", "zzz"]
-places += ["bodies.particles", "experiment.kind", "experiment.displacements", "experiment.displacements.from"]
+places += ["bodies.particles", "bodies.spacing", "experiment.kind", "experiment.displacements"]
 
 
+@settings(max_examples=60)
 @given(changes=st.dictionaries(st.sampled_from(places), garbage, max_size=4))
 def test_whatever_is_written_gives_a_scene_or_a_scene_error(changes: dict[str, Any]) -> None:
     data = base(experiment={"kind": "path", "displacements": [0.0, 1.0]})
@@ -253,3 +217,90 @@ def test_whatever_is_written_gives_a_scene_or_a_scene_error(changes: dict[str, A
     except SceneError as error:
         assert error.problems
         assert "\n" not in "".join(map(str, error.problems))
+
+
+# Files that are no scene.
+
+
+def _large(path: Path) -> None:
+    path.touch()
+    os.truncate(path, 3 * 10**9)
+
+
+UNREADABLE: dict[str, tuple[Callable[[Path], object], str]] = {
+    "directory": (Path.mkdir, "is a directory; name a file in it"),
+    "pipe": (os.mkfifo, "is not a regular file (a pipe or a device); save its content in a file"),
+    "binary": (
+        lambda path: path.write_bytes(b"title = 1\n\x80\xff"),
+        "line 2 is not UTF-8 text; save the file as UTF-8",
+    ),
+    "large": (_large, "has 3000000000 bytes, and at most 8000000 are read; make it smaller"),
+    "link to itself": (lambda path: path.symlink_to(path), "cannot be read: Too many levels of symbolic links"),
+}
+"""What makes a file that can't be read, and the sentence."""
+
+
+def ended(*arguments: object) -> list[str]:
+    """The lines of a command that ends because its input is wrong; nothing is written."""
+    result = CliRunner().invoke(app, [*map(str, arguments), "--out", "out"])
+    assert isinstance(result.exception, SystemExit)
+    assert result.exit_code == 2
+    assert not Path("out").exists()
+    return result.output.splitlines()
+
+
+@pytest.mark.parametrize("name", UNREADABLE)
+def test_a_file_that_cannot_be_read_is_one_sentence(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As a scene, as a profile and as a sweep; none is waited for."""
+    make, sentence = UNREADABLE[name]
+    monkeypatch.chdir(tmp_path)
+    make(Path("odd"))
+    Path("scene.toml").write_text(
+        STEEL_ON_GLASS.replace('kind = "parabola", radius = "10 mm"', 'kind = "table", file = "odd"')
+    )
+    for command in (("run", "odd"), ("run", "scene.toml"), ("sweep", "odd")):
+        _, line = ended(*command)
+        assert f"odd: {sentence}" in line
+
+
+NESTED = {
+    "dotted key": lambda depth: f"{'a.' * depth}a = 1",
+    "quoted keys": lambda depth: " . ".join(["'a b'"] * (depth + 1)) + " = 1",
+    "table": lambda depth: f"[{'a.' * depth}a]",
+    "list": lambda depth: f"extra = {'[' * depth}{']' * depth}",
+    "inline table": lambda depth: f"extra = {'{ a = ' * depth}1{' }' * depth}",
+}
+
+
+@pytest.mark.parametrize("depth", [100, 50_000])
+@pytest.mark.parametrize("kind", NESTED)
+def test_what_is_nested_deeply_is_one_sentence(
+    kind: str, depth: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In a scene and in a sweep's [base]."""
+    monkeypatch.chdir(tmp_path)
+    text = NESTED[kind](depth)
+    Path("scene.toml").write_text(f"{STEEL_ON_GLASS}\n{text}\n")
+    Path("sweep.toml").write_text(f'[[axes]]\nkey = "experiment.force"\nvalues = ["1 N"]\n[base]\n{text}\n')
+    for command in ("run", "sweep"):
+        _, line = ended(command, f"{'scene' if command == 'run' else command}.toml")
+        assert line.endswith("tables or lists are nested more than 100 deep; check for an extra dot or bracket")
+
+
+@pytest.mark.parametrize(("keys", "count"), [(10_000, 10_000), (2, 2)])
+def test_of_many_problems_the_first_are_listed(
+    keys: int, count: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("many.toml").write_text("\n".join([STEEL_ON_GLASS, *(f"k{i} = 1" for i in range(keys))]))
+    head, *lines = ended("run", "many.toml")
+    assert head == f"many.toml: {count} problems"
+    assert len(lines) == min(count, 21)
+    assert (lines[-1] == f"  and {count - 20} more") is (count > 20)
+
+
+def test_a_key_without_end_is_cut() -> None:
+    with pytest.raises(SceneError) as caught:
+        read_scene(f"{STEEL_ON_GLASS}\n{'k' * 10**6} = 1\n")
+    assert str(caught.value).endswith("k…: unknown key; allowed here: kind, force, method")
+    assert len(str(caught.value)) < 1100

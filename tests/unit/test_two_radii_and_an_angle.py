@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 import tomllib
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -50,23 +49,17 @@ def cone(angle: object) -> dict[str, Any]:
     return {"kind": "cone", "half_angle": angle}
 
 
-@pytest.mark.parametrize(("text", "degrees"), [("88°", 88.0), ("88 deg", 88.0), ("1.5 rad", math.degrees(1.5))])
+@pytest.mark.parametrize(("text", "degrees"), [("88°", 88.0), ("1.5 rad", math.degrees(1.5))])
 def test_a_cone_by_its_half_angle_is_sneddons(text: str, degrees: float) -> None:
-    force, uncertainty = si(run(cone(text)), "largest_force")
+    done = run(cone(text))
+    force, uncertainty = si(done, "largest_force")
     sneddon = 2.0 / math.pi * E_STAR * 1e-12 * math.tan(math.radians(degrees))
     assert abs(force - sneddon) <= uncertainty + 1e-12 * sneddon  # round-off
     assert uncertainty <= 1e-3 * sneddon
-
-
-def test_the_closed_form_beside_a_cone_is_the_half_angles() -> None:
-    (form,) = run(cone("88°")).document["theory"]
+    (form,) = done.document["theory"]
     assert abs(form["values"]["largest_force"]["deviation"]) <= 1e-3
-
-
-def test_a_scene_keeps_its_half_angle() -> None:
-    scene = read_scene(tables(cone("80°")))
-    assert read_scene(tomllib.loads(str(scene))) == scene
-    assert scene.with_({"bodies.profile.half_angle": "70 deg"}) != scene
+    scene = read_scene(tables(cone(text)))
+    assert read_scene(tomllib.loads(str(scene))) == scene != scene.with_({"bodies.profile.half_angle": "70 deg"})
 
 
 @pytest.mark.parametrize(
@@ -74,12 +67,8 @@ def test_a_scene_keeps_its_half_angle() -> None:
     [
         (cone(80), 'half_angle = 80: must be text with a unit, greater than 0° and less than 90°, from the axis to the '
                    'flank: write "80°"'),
-        (cone("90°"), 'half_angle = "90°": must be text with a unit, greater than 0° and less than 90°'),
         (cone("0 rad"), 'half_angle = "0 rad": must be text with a unit, greater than 0°'),
-        (cone("-10°"), 'half_angle = "-10°": must be text'),
         (cone("80"), 'half_angle = "80": must be an angle, such as 80°; 80 has no unit'),
-        (cone("80 mm"), "must be an angle, such as 80°; 80 mm is a length"),
-        (cone("5 %"), "must be an angle, such as 80°; 5 % is a number without a unit"),
         ({"kind": "cone", "slope": "10°"},
          '10° is an angle: its tangent is 0.176327; a cone may have half_angle = "80°" in place of this slope'),
         ({"kind": "cone"}, 'bodies.profile.slope: missing; give one of the two: slope = 0.1, or half_angle = "80°"'),
@@ -92,9 +81,9 @@ def test_an_angle_that_is_none_is_one_sentence(profile: dict[str, Any], words: s
     assert "\n" not in printed
 
 
-@pytest.mark.parametrize(("counter", "effective"), [("30 mm", 7.5e-3), ("-12 mm", 60e-3), (None, 10e-3)])
-def test_two_radii_are_hertzs_and_jkrs_effective_one(counter: str | None, effective: float) -> None:
-    profile = {key: value for key, value in (CUP | {"counter_radius": counter}).items() if value}
+@pytest.mark.parametrize(("counter", "effective"), [("30 mm", 7.5e-3), ("-12 mm", 60e-3)])
+def test_two_radii_are_hertzs_and_jkrs_effective_one(counter: str, effective: float) -> None:
+    profile = CUP | {"counter_radius": counter}
     hertz = 4.0 / 3.0 * E_STAR * math.sqrt(effective) * 1e-9
     pressed, torn = run(profile), run(profile, PULL_OFF, adhesion={"work_of_adhesion": "50 mJ/m²"})
     for done, name, exact in (
@@ -109,7 +98,7 @@ def test_two_radii_are_hertzs_and_jkrs_effective_one(counter: str | None, effect
 
 def test_the_slope_is_that_of_the_body_with_the_smaller_radius() -> None:
     """The gap of a ball in a cup is nearly plane where the ball itself is not."""
-    for counter, smaller in (("-10.5 mm", 10e-3), ("2 mm", 2e-3), ("30 mm", 10e-3)):
+    for counter, smaller in (("-10.5 mm", 10e-3), ("2 mm", 2e-3)):
         done = run(CUP | {"counter_radius": counter}, PATH)
         (check,) = (one for one in done.document["validity"] if one["name"] == "slope")
         assert check["value"] == pytest.approx(si(done, "largest_radius")[0] / smaller, rel=1e-5)  # a step of 1e-6
@@ -120,7 +109,6 @@ def test_the_slope_is_that_of_the_body_with_the_smaller_radius() -> None:
     ("counter", "words"),
     [
         ("-10 mm", "less than -10 mm (concave), else the bodies conform"),
-        ("-5 mm", "a cup is wider than the ball in it; leave it out for a plane"),
         ("0 mm", "must be greater than 0 (convex)"),
     ],
 )
@@ -134,26 +122,3 @@ def test_a_cup_is_wider_than_its_ball(counter: str, words: str) -> None:
 def test_only_a_parabola_outside_the_papers_two_equal_spheres_has_it() -> None:
     assert "counter_radius: unknown key" in message({**CUP, "kind": "circle"})
     assert 'not with reduction = "geike_popov"' in message(CUP, reduction="geike_popov")
-
-
-def test_a_sweep_goes_over_radii_and_angles(tmp_path: Path) -> None:
-    axis = {"key": "bodies.profile.radius", "values": ["8 mm", "10 mm"]}
-    done = contact1d.sweep({"base": tables(CUP), "axes": [axis]}, tmp_path / "radii", figures=False)
-    forces = done.table()["largest_force"].to_list()
-    ratio = math.sqrt((1 / (1 / 8 - 1 / 12)) / (1 / (1 / 10 - 1 / 12)))
-    assert forces[0] / forces[1] == pytest.approx(ratio, rel=2e-3)
-    axis = {"key": "bodies.profile.half_angle", "from": "80°", "to": "88°", "steps": 1}
-    done = contact1d.sweep({"base": tables(cone("85°")), "axes": [axis]}, tmp_path / "angles", figures=False)
-    forces = done.table()["largest_force"].to_list()
-    ratio = math.tan(math.radians(80.0)) / math.tan(math.radians(88.0))
-    assert forces[0] / forces[1] == pytest.approx(ratio, rel=2e-3)
-
-
-def test_a_contact_of_a_material_takes_both(tmp_path: Path) -> None:
-    steel = {"upper": "steel", "lower": "steel", "load": "1 N"}
-    cup = contact1d.from_material(steel | {"profile": CUP}, tmp_path / "run")
-    modulus = 210e9 / 2.0 / (1.0 - 0.3**2)
-    found = cup.run.results["contact_radius"].si
-    assert found is not None
-    assert abs(found.value - math.cbrt(0.75 * 60e-3 / modulus)) <= found.uncertainty
-    assert read_scene(cup.run.folder / "scene.toml").bodies.profile == cup.run.scene.bodies.profile
