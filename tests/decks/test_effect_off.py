@@ -33,6 +33,7 @@ ALL: dict[str, dict[str, Any]] = {
 IN_TIME, AT_REST = ("load_thermal", "pull_off_dynamic", "slide"), ("load", "path", "pull_off", "plane_load")
 OTHERWISE = {"adhesion": "cohesive", "damping": "load_thermal", "friction": "relaxing", "viscoelasticity": "tangential"}
 """Scenes that have an effect by another fragment, or a line of it."""
+DRAG, GUIDE = "variable        damping_coefficient index …", "variable        guide_x index …"
 NUMBER = re.compile(r"(?<= )-?\d\S*")
 
 
@@ -78,14 +79,14 @@ def head(deck: Written) -> Counter[str]:
     ("tables", "effect", "fragments", "instead"),
     [
         (STICKY | {"experiment": PATH}, "neighbours", ["neighbours"], []),
-        (SCENES["path"], "horizontal", ["horizontal"], ["variable        guide_x index …"]),
-        (SCENES["load_thermal"], "noise", ["noise"], ["variable        damping_coefficient index …", *lines("damping")]),
+        (SCENES["path"], "horizontal", ["horizontal"], [GUIDE]),
+        (SCENES["load_thermal"], "noise", ["noise"], [DRAG, *lines("damping")]),
         (STUCK | {"experiment": PATH}, "adhesion", ["adhesion"], []),
         (
             SCENES["path"] | {"bodies": SCENES["path"]["bodies"] | {"bulk_stiffness_tangential": 1.4}},
             "horizontal",
             ["horizontal", "far"],
-            ["variable        guide_x index …"],
+            [GUIDE],
         ),
     ],
 )  # fmt: skip

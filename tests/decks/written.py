@@ -2,19 +2,33 @@
 
 from __future__ import annotations
 
+import os
 import re
+import subprocess
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 
-from contact1d import Scene, write_deck
+from contact1d import write_deck
 
+LMP = Path(sys.executable).with_name("lmp")
 LOWER, UPPER, LOWER_ANCHORS, ANCHORS, LOWER_FAR, FAR, DRIVER = range(1, 8)
 """Atom types: particles and their anchors."""
+
+
+def lmp(folder: Path) -> str:
+    """What `cd folder && lmp -in in.lammps` prints; UCX_TLS leaves no network listener open."""
+    environment = os.environ | {"UCX_TLS": "self,sm", "OMP_NUM_THREADS": "1"}
+    command = [str(LMP), "-in", "in.lammps"]
+    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout[-2000:]
+    return done.stdout
 
 
 @dataclass(frozen=True)
@@ -57,6 +71,12 @@ class Written:
         rows = self.files["system.data"].partition("Masses\n\n")[2].partition("\n\n")[0]
         return {int(row.split()[0]): float(row.split()[1]) for row in rows.splitlines()}
 
+    @cached_property
+    def box(self) -> Any:
+        """Lower and upper corner, (2, 3) [LU]."""
+        found = re.findall(r"^(\S+) (\S+) [xyz]lo", self.files["system.data"], re.MULTILINE)
+        return np.array(found, dtype=float).T
+
     @property
     def plate_mass(self) -> float:
         """Of all anchors of the upper body [MU]."""
@@ -68,13 +88,27 @@ class Written:
         assert found is not None
         return float(found[1])
 
+    def after(self, *commands: str) -> list[Any]:
+        """Of every atom by its id: type, place and force, (n, 7), after each of these commands that follow the head.
+
+        `lmp` runs them, in this order.
+        """
+        dumped = "write_dump all custom {} type x y z fx fy fz modify sort id format float %.17g\n"
+        steps = [f"{command}\n{dumped.format(number)}" for number, command in enumerate(commands)]
+        with TemporaryDirectory() as folder:
+            for name, text in self.files.items():
+                Path(folder, name).write_text(text, encoding="utf-8")
+            Path(folder, "in.lammps").write_text(self.text.partition("\n# phase ")[0] + "\n" + "\n".join(steps))
+            lmp(Path(folder))
+            return [np.loadtxt(Path(folder, str(number)), skiprows=9) for number in range(len(commands))]
+
     @property
     def cutoff(self) -> float:
         """Of the interaction, in the plane of motion [LU]."""
         return self.claimed("cut at r = {} and")
 
 
-def written(scene: Scene | Mapping[str, Any]) -> Written:
+def written(scene: Path | Mapping[str, Any]) -> Written:
     """The deck of a scene with its planned schedule."""
     with TemporaryDirectory() as folder:
         path = write_deck(scene, folder)
