@@ -54,6 +54,22 @@ def header(name: str, *keys: str) -> set[str]:
     return {word for line in found for word in re.sub(r"\(.*?\)", "", line).split()} - {"-"}
 
 
+@pytest.mark.parametrize(
+    "name", sorted(path.relative_to(ROOT).with_suffix("").as_posix() for path in ROOT.rglob("*.lmp"))
+)
+def test_a_fragments_header_agrees_with_its_text(name: str) -> None:
+    """Four lines at the top; what it needs is used and not defined in it, and what it defines its commands define."""
+    text = (ROOT / f"{name}.lmp").read_text(encoding="utf-8")
+    assert re.match("# Purpose: .+\n# Formula: .+\n# Needs: .+\n# Defines: .+\n", text)
+    assert text.isascii()  # LAMMPS warns of anything else
+    commands = "\n".join(lines(name)).replace("&\n", " ")
+    found = re.findall(r'(?:^|then +")(variable|group|fix|compute)\s+(\w+)\s+(\w+)', commands, re.MULTILINE)
+    defined = {identity for _, identity, style in found if style != "delete"}
+    read = {name for pair in re.findall(r"\$\{(\w+)\}|\bv_(\w+)", commands) for name in pair} - {""}
+    assert header(name, "Needs") == read - defined
+    assert header(name, "Defines") | (header(name, "Redefines") if "# Redefines" in text else set()) == defined
+
+
 @pytest.mark.parametrize("effect", EFFECTS)
 def test_a_scene_has_all_lines_of_its_effects_and_none_of_others(decks: dict[str, Written], effect: str) -> None:
     """Nor a fix, compute or variable of theirs."""
