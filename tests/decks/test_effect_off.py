@@ -30,7 +30,6 @@ ALL: dict[str, dict[str, Any]] = {
     )
 }
 """A scene with each effect, and many without it."""
-IN_TIME, AT_REST = ("load_thermal", "pull_off_dynamic", "slide"), ("load", "path", "pull_off", "plane_load")
 OTHERWISE = {"adhesion": "cohesive", "damping": "load_thermal", "friction": "relaxing", "viscoelasticity": "tangential"}
 """Scenes that have an effect by another fragment, or a line of it."""
 DRAG, GUIDE = "variable        damping_coefficient index …", "variable        guide_x index …"
@@ -125,33 +124,4 @@ def test_no_attraction_in_the_table_without_attraction(decks: dict[str, Written]
     claims, _, rows = alone.files["interaction.table"].partition("DOUBLE_EXPONENTIAL")
     assert claims.count("exp(") == 1
     assert min(float(row.split()[3]) for row in rows.splitlines()[3:]) > 0.0
-    assert decks["path"].files["interaction.table"].partition("DOUBLE")[0].count("exp(") == 2
     assert head(alone) == head(decks["path"])
-
-
-def test_time_and_minimisation_exclude_each_other(decks: dict[str, Written]) -> None:
-    for name in IN_TIME:
-        assert "minimi" not in decks[name].commands
-        assert "min_style" not in decks[name].commands
-        assert len(re.findall(r"^timestep ", decks[name].commands, re.MULTILINE)) == 1
-    for name in AT_REST:
-        for word in (" nve", "viscous", "langevin", "velocity", " rigid "):
-            assert word not in decks[name].commands
-        assert "minimize " in decks[name].commands
-
-
-def test_on_a_rigid_plane_there_is_no_other_body_and_nothing_is_minimised_where_nothing_moves_by_itself(
-    decks: dict[str, Written],
-) -> None:
-    """One run for a phase, one step for a row."""
-    deck = decks["plane_adhesion"]
-    for word in ("pair_style", "pair_coeff", "neighbor ", "lower", "tally", "bond_style", "minimi", "anchors", "jump "):
-        assert word not in deck.commands
-    assert list(deck.atoms) == [2]
-    counts = [int(count) for count in deck.numbers("row_count")]
-    planned = re.findall(r"^# phase \w+: (\d+) rows$", deck.text, re.MULTILINE)
-    assert counts == [int(count) for count in planned]
-    assert re.findall(r"^run +(.*)$", deck.commands, re.MULTILINE) == [
-        "0 post no", *["${row_count} pre no post no"] * len(counts)
-    ]  # fmt: skip
-    assert sorted(deck.files) == ["adhesion.cells", "in.lammps", "scene.toml", "system.data"]

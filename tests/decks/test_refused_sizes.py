@@ -6,14 +6,10 @@ import math
 import os
 import re
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import pytest
-from typer.testing import CliRunner
 
-from contact1d import read_scene
-from contact1d.__main__ import app
 from contact1d.workflow.errors import SettingsError
 from tests.decks.test_lengths_and_forces import FREE, TENSION, path, slide
 from tests.decks.written import written
@@ -60,7 +56,6 @@ def far(displacement: float) -> dict[str, Any]:
         (lambda s: narrow(s, 3), 3.5, r"a bodies.spacing below (\S+) LU", None),
         (lambda n: slide(particles=round(n), upper_particles=12), 20, r"at least (\d+) bodies.particles", -2.0),
         (lambda d: slide(d, particles=60, upper_particles=12), 60.0, r"a distance of at most (\S+) LU", None),
-        (reaching, 5.0, r"an interaction.cutoff below (\S+) LU", None),
         (far, 1e12, r"at most (\S+) LU are possible", None),
     ],
 )  # fmt: skip
@@ -74,7 +69,7 @@ def test_what_is_said_to_be_possible_is_and_no_more(
 
 def test_the_limits_are_those_of_the_documentation() -> None:
     """5000 opposite particles within reach; 10⁹ spacings on a plane; an even chain on a circle."""
-    assert refused(reaching(5.0), r"cutoff below (\S+) LU") == 2.5
+    assert refused(reaching(2.501), r"5\d+ opposite ones, at most 5000 .* cutoff below (\S+) LU") == 2.5
     assert refused(far(1e12), r"at most (\S+) LU are") == pytest.approx(1e9, rel=FIGURES)
     assert refused(wide(80), r"at most (\d+) particles") == 60
     assert refused(narrow(2.5, "auto"), r"below (\S+) LU") == 2.0
@@ -82,15 +77,13 @@ def test_the_limits_are_those_of_the_documentation() -> None:
 
 def test_a_way_too_short_for_a_mean_is_not_advised() -> None:
     """Four spacings: a run-in and three periods."""
-    rooms, silent = [], 0
+    rooms = []
     for particles in range(18, 42, 2):
         with pytest.raises(SettingsError, match="too short for the sliding distance") as caught:
             written(slide(60.0, particles=particles, upper_particles=12))
-        told = re.findall(r"a distance of at most (\S+) LU", str(caught.value))
-        silent += not told
-        rooms += [float(room) for room in told]
-    assert silent > 0
-    assert 4.0 * 0.8 <= min(rooms) < 4.0 / 0.8
+        rooms += re.findall(r"a distance of at most (\S+) LU|$", str(caught.value))[:1]
+    assert "" in rooms
+    assert 4.0 * 0.8 <= min(float(room) for room in rooms if room) < 4.0 / 0.8
 
 
 @pytest.mark.parametrize("particles", [3, 301])
@@ -158,16 +151,3 @@ def test_as_many_timesteps_as_lammps_counts_are_possible() -> None:
     most = 1e10 * (2**31 / written(held(1e10)).number("row_steps")) ** 2
     written(held((1.0 - FIGURES) * most))
     assert refused(held((1.0 + FIGURES) * most), r"would need (\S+) timesteps, at most 2147483647") > 2**31 - 1
-
-
-@pytest.mark.parametrize(("particles", "felt"), [(19_999, None), (20_000, 0)])
-def test_a_large_system_is_told(particles: int, felt: int | None, tmp_path: Path) -> None:
-    flat = {"particles": particles, "spacing": 1.0, "bulk_stiffness": 1.0, "lower": "rigid_plane", "reduction": "mdr",
-            "profile": {"kind": "parabola", "radius": 1e9}}  # fmt: skip
-    scene = read_scene({"title": "large", "bodies": flat, "experiment": path(0.01)})
-    (tmp_path / "large.toml").write_text(str(scene))
-    said = CliRunner().invoke(
-        app, ["run", str(tmp_path / "large.toml"), "--out", str(tmp_path / "run"), "--no-figures"]
-    )
-    assert said.exit_code == 0, said.output
-    assert ("particles per body" in said.output) == (felt is not None)

@@ -46,8 +46,6 @@ HARMLESS = (
 
 SUM = 1e-12
 """A sum over the particles, by LAMMPS and by numpy in their own orders; relative."""
-PLACE = 1e-6
-"""Relative: a place in the dump has as many digits."""
 SINGLE = 1e-6
 """Relative: states.npz is in single precision."""
 NEAREST = 1.0
@@ -153,42 +151,31 @@ def test_lmp_repeats_the_run_bitwise(make: Make, case: tuple[str, Any], tmp_path
     assert json.loads((folder / "results.json").read_text()) == make(case).document
 
 
-BEND = 0.25
-"""A maximum between rows exceeds the largest row by at most an eighth of the second difference there; twice that."""
 PASSING = ("path", "slide", "pull_off", "tangential")
 """Experiments whose deck may have rows that are no results: between two places, while loading, after the loss."""
 
 
 @pytest.mark.parametrize("case", [*USUAL, *KEEPING], ids=str)
 def test_numbers_can_be_read_off_the_curve(make: Make, case: tuple[str, Any]) -> None:
-    """Every state of the results is a line, bitwise and in order: the largest tension, the last state, the mean."""
+    """Every state of the results is a line, bitwise and in order; the largest tension, the last state, the mean."""
     finished = make(case)
     phases, rows = curve(finished.folder)
-    kind, document, states = finished.document["experiment"], finished.document, finished.outcome.states
+    kind, results, states = finished.document["experiment"], finished.model.results, finished.outcome.states
     assert len(rows) == len(states) or kind in PASSING
     lines = iter(zip(phases, rows.tolist(), strict=True))
     for state in states:
         force = next(f for phase, (d, f) in lines if (phase, d) == (state.phase, state.displacement))
         assert force == pytest.approx(state.force, rel=SUM, abs=SUM)
-    if "final" in finished.profiles:
-        of_all = finished.atoms()
-        place = of_all.positions[of_all.arrays["type"] == 2, 0].max()
-        assert place == pytest.approx(finished.outcome.profiles["final"].x.max(), rel=PLACE)
-    samples = rows[[phase == "sampling" for phase in phases]]
     if kind == "load":
-        wanted = samples.mean(axis=0) if len(samples) else rows[-1]
-        assert [document[name]["value"] for name in ("displacement", "force")] == pytest.approx(wanted, rel=SUM)
-    if "adhesion_force" in document:
-        adhesion, uncertainty = (document["adhesion_force"][part] for part in ("value", "uncertainty"))
-        held = rows[[phase in ("unloading", "pulling") for phase in phases], 1]
-        largest = -float(held.min())
-        bend = BEND * float(np.abs(np.diff(held, 2)).max(initial=0.0))  # the quantity is the vertex between rows
-        assert largest - uncertainty - SUM <= adhesion <= largest + bend + uncertainty + SUM
-    if "preload" in document:
+        wanted = rows[[phase == "sampling" for phase in phases]].mean(axis=0)
+        assert [results[name].value for name in ("displacement", "force")] == pytest.approx(wanted, rel=SUM)
+    if kind == "pull_off":
+        adhesion, held = results["adhesion_force"], rows[[phase in ("unloading", "pulling") for phase in phases], 1]
+        bend = float(np.abs(np.diff(held, 2)).max())  # the quantity is the vertex between rows: an eighth of it at most
+        assert -held.min() - adhesion.uncertainty - SUM <= adhesion.value
+        assert adhesion.value <= -held.min() + 0.25 * bend + adhesion.uncertainty + SUM
         loaded = rows[[phase == "loading" for phase in phases], 1]
-        assert loaded[-1] == pytest.approx(document["preload"]["value"], rel=SUM)
-    if "largest_force" in document:
-        assert rows[:, 1].max() == pytest.approx(document["largest_force"]["value"], rel=SUM)
+        assert loaded[-1] == pytest.approx(results["preload"].value, rel=SUM)
 
 
 def test_the_frames_of_a_pull_off_are_those_of_its_radii_and_profiles_with_action_and_reaction(make: Make) -> None:
@@ -205,21 +192,19 @@ def test_the_frames_of_a_pull_off_are_those_of_its_radii_and_profiles_with_actio
         np.testing.assert_allclose(force[upper, 2], profile.pressure, atol=SUM)
 
 
-@pytest.mark.parametrize("case", [("pull_off", None), ("load_thermal", None), ("units", "all")], ids=str)
+@pytest.mark.parametrize("case", [("load_thermal", None), ("units", "all")], ids=str)
 def test_a_run_read_from_its_folder_is_the_one_that_was_made(make: Make, case: tuple[str, Any]) -> None:
     """From memory, from the files and through a pickle it has one face, to the last bit."""
     finished = make(case)
     for loaded in (load_run(str(finished.folder)), pickle.loads(pickle.dumps(finished))):
         assert loaded == finished
-        for name in ("scene", "status", "results", "warnings", "timing"):
+        for name in ("scene", "results", "warnings", "timing"):
             assert getattr(loaded, name) == getattr(finished, name), name
-        assert (repr(loaded), loaded._repr_html_()) == (repr(finished), finished._repr_html_())
-        assert list(loaded.profiles) == list(finished.profiles)
-        assert loaded.tables.keys() == finished.tables.keys()
+        assert repr(loaded) == repr(finished)
         for table, columns in finished.tables.items():
-            assert list(loaded.tables[table]) == list(columns)
             for name, column in columns.items():
                 np.testing.assert_array_equal(loaded.tables[table][name], column)
+        assert loaded.tables.keys() == finished.tables.keys()
 
 
 @pytest.mark.parametrize("case", KEEPING, ids=str)
@@ -258,10 +243,7 @@ def test_some_states_are_frames_of_all_and_the_results_are_those_without_any(mak
 
 
 QUICK = {
-    "mindlin": [],
-    "path_hysteresis": ["experiment.displacements.steps=2", "bodies.particles=60"],
     "pull_off": ["bodies.particles=60", "experiment.preload=0.3"],
-    "pull_off_dynamic": ["bodies.particles=20"],
     "slide": ["experiment.distance=0.5"],
     "thermal_load": ["bodies.particles=20"],
 }
@@ -283,48 +265,46 @@ def test_deck_of_a_shipped_scene_runs_under_lmp(name: str, tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize(
-    ("tables", "far"),
+    ("bodies", "tables", "far"),
     [
-        (STICKY, -3000.0),
-        (STICKY | {"bodies": BODY | {"lower": "rigid_chain"}}, -60.0),
-        (PLANE | {"neighbours": {"stiffness": 0.2}}, -3000.0),
+        ({}, {"interaction": PAIR}, -3000.0),
+        ({"lower": "rigid_chain"}, {"interaction": PAIR}, -60.0),
+        ({"lower": "rigid_plane"}, {"neighbours": {"stiffness": 0.2}}, -3000.0),
     ],
-    ids=["two chains", "rigid chain", "plane with neighbours"],
 )
-def test_a_path_far_apart_stays_in_the_box(tables: dict[str, Any], far: float, tmp_path: Path) -> None:
+def test_a_path_far_apart_stays_in_the_box(
+    bodies: dict[str, Any], tables: dict[str, Any], far: float, tmp_path: Path
+) -> None:
     """No particle is lost, in the run or by `lmp`, and nothing pulls at that distance."""
-    path = {"experiment": {"kind": "path", "displacements": [0.0, far]}}
-    finished = run({"title": "far"} | tables | path, tmp_path, figures=False)
+    path = {"kind": "path", "displacements": [0.0, far]}
+    finished = run({"title": "far", "bodies": BODY | bodies, "experiment": path} | tables, tmp_path, figures=False)
     assert finished.curve.displacement[-1] == pytest.approx(far, rel=1e-12)
     assert finished.curve.force[-1] == 0.0
     repeat(finished.folder)
 
 
-def lines_of(finished: Run) -> list[str]:
-    return (finished.folder / "states.lammpstrj").read_text().splitlines(keepends=True)
-
-
-def test_what_is_not_there_is_said(make: Make, tmp_path: Path) -> None:
+def test_a_dump_that_is_cut_short_or_lacks_a_column_is_refused_and_atoms_come_by_their_ids(
+    make: Make, tmp_path: Path
+) -> None:
+    """They have no energy and no element."""
+    folder, dump = make(("pull_off", None)).folder, tmp_path / "states.lammpstrj"
+    lines = (folder / "states.lammpstrj").read_text().splitlines(keepends=True)
+    second = lines.index("ITEM: TIMESTEP\n", 1)
+    first = "".join(lines[:second])
     with pytest.raises(FileNotFoundError, match="no folder of a finished run"):
         atoms(tmp_path)
-    folder, lines = make(("pull_off", None)).folder, lines_of(make(("pull_off", None)))
     with pytest.raises(IndexError, match="holds 2 states"):
         atoms(folder, 2)
-    first = "".join(lines[: lines.index("ITEM: TIMESTEP\n", 1)])
-    for kept in (0.1, 0.5, 0.999):
-        (tmp_path / "states.lammpstrj").write_text(first[: int(kept * len(first))])
-        with pytest.raises(ValueError, match="cut short"):
+    for text, told in (
+        (first[: len(first) // 10], "cut short"),
+        (first[:-1], "cut short"),
+        (first.replace("opposite_fx opposite_fz", "fx fz"), "no column opposite_fx, opposite_fz"),
+    ):
+        dump.write_text(text)
+        with pytest.raises(ValueError, match=told):
             atoms(tmp_path)
-    (tmp_path / "states.lammpstrj").write_text(first.replace("opposite_fx opposite_fz", "fx fz"))
-    with pytest.raises(ValueError, match="no column opposite_fx, opposite_fz"):
-        atoms(tmp_path)
-
-
-def test_atoms_come_in_the_order_of_their_ids_and_have_no_energy(make: Make, tmp_path: Path) -> None:
-    lines, reference = lines_of(make(("pull_off", None))), atoms(make(("pull_off", None)).folder, 0)
-    second = lines.index("ITEM: TIMESTEP\n", 1)
-    (tmp_path / "states.lammpstrj").write_text("".join(lines[:9] + lines[9:second][::-1]))
-    state = atoms(tmp_path)
+    dump.write_text("".join(lines[:9] + lines[9:second][::-1]))
+    state, reference = atoms(tmp_path), atoms(folder, 0)
     assert state.calc is None
     assert set(state.get_chemical_symbols()) == {"X"}
     for name, values in reference.arrays.items():

@@ -115,12 +115,13 @@ def test_a_plate_that_falls_behind_the_drive_does_not_slide_steadily() -> None:
 
 
 def test_a_drive_is_too_fast_above_the_velocity_that_is_told() -> None:
-    """s √(k/m)/2π."""
-    limit = np.sqrt(2.0) / (2.0 * np.pi)
+    """s √(k/m)/2π, k the smaller stiffness."""
+    bodies = sliding()["bodies"] | {"mass": 1.5, "bulk_stiffness_tangential": 1.2}
+    limit = np.sqrt(1.2 / 1.5) / (2.0 * np.pi)
     for share, told in ((0.999, False), (1.001, True)):
         path = {"kind": "slide", "normal_force": 1.0, "path": [[share * limit, 1.0]]}
         with TemporaryDirectory() as folder:
-            warnings = run(read_scene(sliding(experiment=path)), folder, figures=False).warnings
+            warnings = run(read_scene(sliding(experiment=path, bodies=bodies)), folder, figures=False).warnings
         assert ("fast" in warnings) == told
     assert f"Use a velocity below {limit:.3g} LU/TU" in warnings["fast"]
 

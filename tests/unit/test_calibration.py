@@ -7,7 +7,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -49,13 +48,8 @@ def ladder(errors: Sequence[float], scene: str = "a", share: str = "cutoff", uni
     return [Row(scene, 1e-3, share, unit * (i + 1), error, error, 0.9**i, 10, "") for i, error in enumerate(errors)]
 
 
-def chosen(share: str, rows: Sequence[Row]) -> Any:
-    others = [row for name in LADDERS if name != share for row in ladder([0.0, 0.0], share=name, unit=1e-5)]
-    return chosen_values([*rows, *others])["values"][share]
-
-
 GONE = {"added": math.nan, "error": math.nan, "cpu_s": math.nan, "trouble": "not converged: at 0.1 LU"}
-GOOD = ladder([0.0] * 4)
+GOOD, PROMISE = ladder([0.0] * 4), PROMISED["residual"]
 
 
 @pytest.mark.parametrize(
@@ -64,21 +58,16 @@ GOOD = ladder([0.0] * 4)
         (ladder([0.0, 0.5 * PART, 0.9 * PART, 2.0 * PART, 0.0]), 3.0, "4: adds 0.2 of the tolerance in a at 1e-3"),
         ([*GOOD, *ladder([0.0, 0.0, 2.0 * PART], "b")], 2.0, "3: adds 0.2 of the tolerance in b at 1e-3"),
         (ladder([0.0, 0.0, 0.0, 1.1]), 2.0, "3: 4 misses the tolerance"),
-        (ladder([0.0, 0.0, 0.0]), 2.0, "3: nothing coarser was tried"),
-        ([*GOOD[:2], replace(GOOD[2], trouble="chain_end"), GOOD[3]], 2.0, "3: chain_end in a at 1e-3"),
-        ([*GOOD[:2], replace(GOOD[2], **GONE), GOOD[3]], 1.0, None),  # the next coarser one has no numbers
+        (GOOD, 3.0, "4: nothing coarser was tried"),
+        ([*GOOD[:2], replace(GOOD[2], **GONE), GOOD[3]], 1.0, "2: 3 misses the tolerance"),
         ([replace(row, cpu_s=1.0 + 0.001 * row.value) for row in GOOD], 1.0, "2: is no cheaper (1 of the finest)"),
+        (ladder([0.0] * 4, share="residual", unit=0.5 * PROMISE[0]), PROMISE[0], f"0.0015: {PROMISE[1]}"),
     ],
 )
 def test_the_cheapest_value_is_chosen_that_is_good_in_every_scene_and_away_from_trouble(
-    rows: list[Row], value: float, following: str | None
+    rows: list[Row], value: float, following: str
 ) -> None:
-    found = chosen("cutoff", rows)
-    assert found["value"] == value
-    assert following in (None, found["next"])
-
-
-def test_what_is_promised_beside_the_tolerance_is_kept() -> None:
-    promised, reason = PROMISED["residual"]
-    found = chosen("residual", ladder([0.0] * 4, share="residual", unit=0.5 * promised))
-    assert (found["value"], found["next"]) == (promised, f"{1.5 * promised:g}: {reason}")
+    (share,) = {row.share for row in rows}
+    others = [row for name in LADDERS if name != share for row in ladder([0.0, 0.0], share=name, unit=1e-5)]
+    found = chosen_values([*rows, *others])["values"][share]
+    assert (found["value"], found["next"]) == (value, following)

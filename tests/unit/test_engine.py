@@ -5,10 +5,10 @@ from __future__ import annotations
 import io
 import math
 import os
-import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -103,14 +103,6 @@ def test_many_atoms_are_sorted_without_ghosts(tmp_path: Path) -> None:
         read = session.atoms()
     np.testing.assert_array_equal(read["id"], np.arange(1, 257))
     assert {*read["type"]} == {1}
-
-
-def test_what_is_done_meanwhile_is_done_while_lammps_is_at_work(tmp_path: Path) -> None:
-    log, seen = tmp_path / "log.lammps", []
-    with Engine.session(tmp_path) as session:
-        open_oscillator(session)
-        session.measure("run 20000", meanwhile=lambda: seen.append(log.read_text().count("Loop time")))
-        assert [*seen, 1 + seen[0]] == [1, log.read_text().count("Loop time")]
 
 
 def test_steps_count_runs_and_minimiser_iterations_and_times_are_those_inside_lammps(tmp_path: Path) -> None:
@@ -250,39 +242,19 @@ def test_a_pipe_gets_lines_and_what_is_left_of_a_phase_takes_as_long_as_what_is_
     assert "step 100 of 400, 3.33 a second, about 90 s left" in capsys.readouterr().out
 
 
-def test_the_parent_stays_light() -> None:
-    """Rich is for terminals, LAMMPS for the worker."""
-    modules = "contact1d.workflow.engine.session, contact1d.workflow.cli.doctor"
-    code = f"import sys, {modules}; sys.exit(bool({{'rich', 'lammps'}} & {{*sys.modules}}))"
-    root = Path(__file__).parents[2]
-    assert subprocess.run([sys.executable, "-c", code], cwd=root, check=False).returncode == 0
-
-
-FRAMES = ([[2, 5.0, 6.0], [1, 3.0, 4.0]], [[2, 9.0, 10.0], [1, 7.0, 8.0]])
-
-
-def dump(path: Path, *frames: list[list[float]]) -> Path:
-    """Rows (id, columns…) of each frame, after a header of 52 bytes."""
-    path.write_bytes(b"".join(bytes(52) + np.asarray(rows).tobytes() for rows in frames))
-    return path
-
-
-def test_frames_come_by_their_atoms_and_reading_goes_on_at_the_end(tmp_path: Path) -> None:
-    path = dump(tmp_path / "a.bin", *FRAMES)
-    both, end = last_frames(path, 2, 2, 3, 0)
-    assert both.tolist() == [[[3.0, 4.0], [5.0, 6.0]], [[7.0, 8.0], [9.0, 10.0]]]
-    assert end == path.stat().st_size
-    second, same = last_frames(path, 1, 2, 3, end // 2)
-    part, _ = last_frames(path, 2, 2, 3, 0, slice(1, 2))
-    assert second.tolist() == part.tolist() == both[1:].tolist()
-    assert same == end
-
-
 def test_frames_that_are_not_whole_or_have_atoms_in_another_order_are_refused(tmp_path: Path) -> None:
-    whole = dump(tmp_path / "a.bin", *FRAMES).read_bytes()
+    """A frame is a header, here of 52 bytes, and rows (id, columns…), which come back by their ids."""
+    first, second = [[2, 5.0, 6.0], [1, 3.0, 4.0]], [[2, 9.0, 10.0], [1, 7.0, 8.0]]
+
+    def read(*frames: list[list[float]], cut: int = 0) -> list[Any]:
+        whole = b"".join(bytes(52) + np.asarray(rows).tobytes() for rows in frames)
+        (tmp_path / "a.bin").write_bytes(whole[: len(whole) - cut])
+        found: list[Any] = last_frames(tmp_path / "a.bin", 2, 2, 3, 0)[0].tolist()
+        return found
+
+    assert read(first, second) == [[[3.0, 4.0], [5.0, 6.0]], [[7.0, 8.0], [9.0, 10.0]]]
     for cut in (1, 40, 60, 110):
-        (tmp_path / "b.bin").write_bytes(whole[:-cut])
         with pytest.raises(ValueError, match=r"are not 2 frames|change their order"):
-            last_frames(tmp_path / "b.bin", 2, 2, 3, 0)
+            read(first, second, cut=cut)
     with pytest.raises(ValueError, match="change their order"):
-        last_frames(dump(tmp_path / "a.bin", FRAMES[0], FRAMES[1][::-1]), 2, 2, 3, 0)
+        read(first, second[::-1])

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 from scipy.integrate import quad
-from scipy.optimize import minimize_scalar
 from scipy.stats import t as students
 
 from contact1d.analysis.friction import block_means, interval, largest_before, mean_of, sampled_mean, slips, student
@@ -71,23 +70,18 @@ def test_a_slip_is_a_jump_and_smooth_sliding_none() -> None:
     assert [slip.size for slip in slips(time, -steps, 1.0, -1.0)] == pytest.approx([-1.0] * 4)
 
 
-def test_the_largest_friction_is_looked_for_before_the_plate_has_slid() -> None:
-    place = np.linspace(0.0, 3.0, 301)
-    friction = np.sin(2.0 * np.pi * place) * (1.0 + place)
-    top, missed = largest_before(friction, place, 1.0)
-    exact = -minimize_scalar(lambda x: -np.sin(2.0 * np.pi * x) * (1.0 + x), bounds=(0.2, 0.3)).fun
-    assert abs(top - exact) <= missed < 1e-5
-
-
 def test_a_smooth_largest_friction_lies_between_the_rows_and_within_its_claim() -> None:
-    """Rows in equal steps of the drive over corrugations of any form that the plate passes without a slip."""
+    """Rows in equal steps of the drive over corrugations of any form that the plate passes without a slip.
+
+    What comes after a spacing is larger.
+    """
     random, outside, worst = np.random.default_rng(8), 0, 0.0
     for _ in range(200):
         start, lag, second = random.uniform(-0.1, 0.1), random.uniform(0.0, 0.12), random.uniform(-0.2, 0.2)
-        drive = start + np.arange(0.0, 1.5, 1.0 / random.integers(25, 60))
+        drive = start + np.arange(0.0, 2.5, 1.0 / random.integers(25, 60))
 
         def force(x: Any, second: float = second) -> Any:
-            return np.sin(2.0 * np.pi * x) + second * np.sin(4.0 * np.pi * x)
+            return (np.sin(2.0 * np.pi * x) + second * np.sin(4.0 * np.pi * x)) * (1.0 + 0.5 * (x > 1.0))
 
         place = drive - lag * np.sin(2.0 * np.pi * drive)  # it hurries over the top
         top, missed = largest_before(force(place), place, 1.0)

@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from contact1d.analysis.friction import interval, standard_error
-from contact1d.workflow.continuation.outcome import LATTICE, Reading, Result, in_words, unmet
+from contact1d.workflow.continuation.outcome import LATTICE, Reading, Result, unmet
 from contact1d.workflow.continuation.trust import UntrustedError
 from contact1d.workflow.experiments.series import Series, measured
 from contact1d.workflow.experiments.thermal import require_balance
@@ -83,15 +83,6 @@ def test_periods_that_end_between_records_are_known_by_every_second_one() -> Non
     assert unseen > 0.5 * SEEDS
 
 
-def test_every_second_record_ends_where_all_of_them_do() -> None:
-    for count in (2, 3, 8, 9):
-        time = np.arange(float(count))
-        kept = Series({"time": time}, {"force": 2.0 * time}).every_second()
-        assert kept["time"][[0, -1]].tolist() == time[[0, -1]].tolist()
-        assert len(kept) == count // 2 + 1
-        assert kept.integrals["force"].tolist() == (2.0 * kept["time"]).tolist()
-
-
 def test_a_standard_error_is_that_of_the_mean_of_a_correlated_series() -> None:
     """Of variance 1, forgotten in some steps."""
     count, memory, seeds = 4000, 8.0, 60
@@ -122,7 +113,6 @@ ONE = Result(2.0, "FU", {"solver": 0.02, LATTICE: 0.1})
         ("force", replace(ONE, given=0.01), (), 0.055),  # what the scene leaves open is no error of the program
         ("force", ONE, (LATTICE,), 0.01),
         ("force", replace(ONE, read=0.03), (LATTICE,), 0.025),  # what is left by reading between particles counts
-        ("force", replace(ONE, prescribed=True), (), 0.0),
         ("energy", replace(ONE, value=0.0), (), 0.0),
         ("energy", replace(ONE, value=0.0, scale=1.0), (), 0.12),
         ("contact_radius", replace(ONE, value=0.0), (), math.inf),  # a length without bound
@@ -135,4 +125,3 @@ def test_a_tolerance_is_asked_of_what_the_program_leaves_open(
     assert unmet({name: result}, 1.01 * limit + 1e-9, without) == ({} if share < math.inf else {name: share})
     if share > 0.0:
         assert unmet({name: result}, 0.99 * limit, without) == {name: pytest.approx(share)}
-    assert in_words({"a": 0.0123, "b": 0.010004}, 0.01) == "a 1.2e-02, b 1.0004e-02"
