@@ -69,7 +69,7 @@ def test_what_is_said_to_be_possible_is_and_no_more(
 
 def test_the_limits_are_those_of_the_documentation() -> None:
     """5000 opposite particles within reach; 10⁹ spacings on a plane; an even chain on a circle."""
-    assert refused(reaching(2.501), r"5\d+ opposite ones, at most 5000 .* cutoff below (\S+) LU") == 2.5
+    assert refused(reaching(2.501), r"5\d+ opposite ones, at most 5000 .*cutoff below (\S+) LU") == 2.5
     assert refused(far(1e12), r"at most (\S+) LU are") == pytest.approx(1e9, rel=FIGURES)
     assert refused(wide(80), r"at most (\d+) particles") == 60
     assert refused(narrow(2.5, "auto"), r"below (\S+) LU") == 2.0
