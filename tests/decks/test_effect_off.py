@@ -1,4 +1,4 @@
-"""Claim: each effect has its own lines in a deck; a scene without it has none of them, and otherwise the same lines.
+"""Claim: without an effect a deck has none of its lines, and otherwise the same; headers agree with their texts.
 
 What a fragment adds is in `lammps_inputs/fragments`; its header names what it needs and what it defines.
 """
@@ -13,32 +13,13 @@ from typing import Any
 
 import pytest
 
-from contact1d import Scene
-from tests.decks.test_run_folder import SCENES, STICKY, STUCK
+from tests.decks.test_run_folder import PAIR, SCENES, STICKY, STUCK
 from tests.decks.written import Written, written
 
 ROOT = Path(__file__).parents[2] / "lammps_inputs" / "fragments"
-EFFECTS = [name for name in Scene.model_fields if (ROOT / f"{name}.lmp").exists() and name not in ("bodies", "output")]
 PATH = {"kind": "path", "displacements": [0.0, 0.05]}
-MDR = {"bodies": STUCK["bodies"] | {"particles": "auto"}}
-HISTORY = {"kind": "history", "displacement": [[0.0, 0.0], [1.0, 0.3]]}
-ALL: dict[str, dict[str, Any]] = {
-    name: {"title": name} | tables
-    for name, tables in (
-        *SCENES.items(),
-        ("relaxing", MDR | {"viscoelasticity": {"terms": [{"share": 0.4, "time": 1.0}]}, "experiment": HISTORY}),
-    )
-}
-"""A scene with each effect, and many without it."""
-OTHERWISE = {"adhesion": "cohesive", "damping": "load_thermal", "friction": "relaxing", "viscoelasticity": "tangential"}
-"""Scenes that have an effect by another fragment, or a line of it."""
 DRAG, GUIDE = "variable        damping_coefficient index …", "variable        guide_x index …"
 NUMBER = re.compile(r"(?<= )-?\d\S*")
-
-
-@pytest.fixture(scope="module")
-def decks() -> dict[str, Written]:
-    return {name: written(tables) for name, tables in ALL.items()}
 
 
 def lines(name: str) -> list[str]:
@@ -67,21 +48,6 @@ def test_a_fragments_header_agrees_with_its_text(name: str) -> None:
     read = {name for pair in re.findall(r"\$\{(\w+)\}|\bv_(\w+)", commands) for name in pair} - {""}
     assert header(name, "Needs") == read - defined
     assert header(name, "Defines") | (header(name, "Redefines") if "# Redefines" in text else set()) == defined
-
-
-@pytest.mark.parametrize("effect", EFFECTS)
-def test_a_scene_has_all_lines_of_its_effects_and_none_of_others(decks: dict[str, Written], effect: str) -> None:
-    """Nor a fix, compute or variable of theirs."""
-    shared = {"opposite_x", "opposite_z", "guide_x", "plate_displacement", "plate_velocity"}  # of other bodies as well
-    for name, deck in decks.items():
-        present = effect in deck.text.splitlines()[1]
-        assert present == (effect in ALL[name])
-        if name != OTHERWISE.get(effect):
-            found = set(lines(effect)) & set(deck.commands.splitlines())
-            assert found == (set(lines(effect)) if present else set())
-        for word in header(effect, "Needs", "Defines") - shared if not present else ():
-            assert not re.search(rf"\b(?:[vcf]_)?{word}\b", deck.commands)
-    assert any(effect in tables for tables in ALL.values())
 
 
 def head(deck: Written) -> Counter[str]:
@@ -118,10 +84,11 @@ def test_without_an_effect_its_lines_and_variables_are_gone_and_no_others(
     assert added == {NUMBER.sub("…", line) for line in instead}
 
 
-def test_no_attraction_in_the_table_without_attraction(decks: dict[str, Written]) -> None:
+def test_no_attraction_in_the_table_without_attraction() -> None:
     """Nor in its header; the deck's head differs in numbers only."""
-    alone = written(ALL["path"] | {"interaction": {"repulsion": STICKY["interaction"]["repulsion"]}})
+    attracting = SCENES["path"] | {"title": "one"}
+    both, alone = (written(attracting | {"interaction": one}) for one in (PAIR, {"repulsion": PAIR["repulsion"]}))
     claims, _, rows = alone.files["interaction.table"].partition("DOUBLE_EXPONENTIAL")
     assert claims.count("exp(") == 1
     assert min(float(row.split()[3]) for row in rows.splitlines()[3:]) > 0.0
-    assert head(alone) == head(decks["path"])
+    assert head(alone) == head(both)

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.decks.written import ANCHORS, Written, written
+from tests.decks.written import ANCHORS, LOWER, Written, written
 from tests.scenes import chains
 
-PARTICLES, STIFFNESS, NEIGHBOURS, MASS, DRAG = 20, 0.83, 0.3, 1.0, 0.3
+PARTICLES, STIFFNESS, MASS, DRAG = 20, 0.83, 1.0, 0.3
 APART = "displace_atoms upper_body move 0 0 25 units box"
 """Far beyond the cutoff [LU]."""
 KICK, TIMES = 0.1, 12
@@ -25,8 +25,6 @@ INTEGRATION = 0.06
 """Over v₀/ω; 0.033 measured: in velocity Verlet the drag lags by half a time step of 0.2 TU. Half the drag: 0.2 off."""
 COLD = 1e-7
 """k_BT [FU·LU]: a particle swings by 3e-4 LU, the mean of all by 4e-5 of the 0.1 LU of the motion."""
-LINEAR = 0.1
-"""Part of the tolerance that a spring's force may be off, for moves up to a spacing; a long bond is for 0.05."""
 ROUND_OFF, LONG_BOND = 2e-13, 5e-12
 """Of a force [FU]: places up to 1e2 LU are read to 1e-14 LU; a long bond, here 1e4 LU, to 2e-12 LU."""
 
@@ -37,70 +35,34 @@ def chain(radius: float = 60.0, tolerance: float = 1e-3, **tables: Any) -> Writt
     return written(chains(radius, STIFFNESS, bodies=bodies, accuracy={"tolerance": tolerance}, **experiment | tables))
 
 
-BODIES: dict[str, dict[str, Any]] = {
-    "guided": {"neighbours": {"stiffness": NEIGHBOURS}},
-    "free": {"neighbours": {"stiffness": NEIGHBOURS}, "horizontal": {}},
-    "softer along x": {
-        "neighbours": {"stiffness": NEIGHBOURS}, "horizontal": {}, "bodies": {"bulk_stiffness_tangential": 0.5},
-    },
-    "stiffer along x": {"horizontal": {}, "bodies": {"bulk_stiffness_tangential": 1.4}},
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("name", BODIES)
-def test_undeformed_bodies_are_at_rest_and_as_stiff_as_the_scene_says(name: str) -> None:
-    """A particle that moves by 1 LU pulls with its own spring and those of its neighbours, direction by direction.
+@pytest.mark.parametrize(("along", "spring"), [(0.0, 0.3), (STIFFNESS, 0.3), (0.5, 0.3), (1.4, 0.0)])
+def test_undeformed_bodies_are_at_rest_and_as_stiff_as_the_scene_says(along: float, spring: float) -> None:
+    """A particle that moves by (1, 1) LU pulls with its own springs and those of its neighbours, along x and along z.
 
     LAMMPS reads places bitwise as they are written; ends are not pulled inward, a curved chain is not pulled straight.
+    Without [horizontal], `along` 0, nothing pulls along x.
     """
-    tables = BODIES[name]
-    deck = chain(**tables)
-    moves = [(particle, axis) for particle in (0, 7) for axis in ((0, 2) if "horizontal" in tables else (2,))]
-    commands = [f"{APART}\nrun 0 post no"]
-    for particle, axis in moves:
-        move = [float(axis == i) for i in range(3)]
-        there, back = (f"displace_atoms one move {s * move[0]} 0 {s * move[2]} units box" for s in (1, -1))
-        commands.append(f"group one id {PARTICLES + 1 + particle}\n{there}\nrun 0 post no")
-        commands.append(f"{back}\ngroup one delete")
-    rest, *moved = deck.after(*commands)
-    particles = slice(0, 2 * PARTICLES)
-    assert {*rest[particles, 0]} == {1.0, 2.0}
-    raised = np.concatenate([deck.atoms[kind] for kind in sorted(deck.atoms)])
-    assert np.array_equal(rest[:PARTICLES, 1:4], raised[:PARTICLES])
-    far = "bulk_stiffness_tangential" in tables.get("bodies", {})
-    assert np.abs(rest[particles, 4:]).max() <= (LONG_BOND if far else ROUND_OFF)
-    along = tables.get("bodies", {}).get("bulk_stiffness_tangential", STIFFNESS)
-    spring = NEIGHBOURS if "neighbours" in tables else 0.0
-    for (particle, axis), found in zip(moves, moved[::2], strict=True):
+    deck = chain(
+        neighbours={"stiffness": spring} if spring else None,
+        horizontal={} if along else None,
+        bodies={"bulk_stiffness_tangential": along or STIFFNESS},
+    )
+    move = "group one id {}\ndisplace_atoms one move {s} 0 {s} units box\nrun 0 post no\ngroup one delete"
+    chosen = (0, 7)
+    steps = [move.format(PARTICLES + 1 + particle, s=s) for particle in chosen for s in (1, -1)]
+    rest, *moved = (state[: 2 * PARTICLES] for state in deck.after(f"{APART}\nrun 0 post no", *steps))
+    assert np.array_equal(rest[:PARTICLES, 1:4], deck.atoms[LOWER])
+    far = along not in (0.0, STIFFNESS)
+    assert np.abs(rest[:, 4:]).max() <= (LONG_BOND if far else ROUND_OFF)
+    for particle, found in zip(chosen, moved[::2], strict=True):
         wanted = np.zeros((2 * PARTICLES, 3))
         beside = [i for i in (particle - 1, particle + 1) if 0 <= i < PARTICLES]
-        wanted[PARTICLES + particle, axis] = -((along if axis == 0 else STIFFNESS) + len(beside) * spring)
-        wanted[[PARTICLES + i for i in beside], axis] = spring
+        pulled = spring if along else 0.0
+        wanted[PARTICLES + particle] = -along - len(beside) * pulled, 0.0, -STIFFNESS - len(beside) * spring
+        wanted[[PARTICLES + i for i in beside]] = pulled, 0.0, spring
         # Moved across itself by 1 LU and at most 1 LU more for the anchor's shift, a long bond bends by u²/2L.
         allowed = abs(along - STIFFNESS) * 2.0**2 / (2.0 * deck.number("far_length")) if far else ROUND_OFF
-        assert np.abs((found - rest)[particles, 4:] - wanted).max() <= allowed
-
-
-def test_without_horizontal_a_particle_keeps_its_place() -> None:
-    """The guide takes every force along x, and none along z."""
-    (moved,) = chain(**BODIES["guided"]).after(
-        f"{APART}\ngroup one id 25\ndisplace_atoms one move 0.5 0 0.5 units box\nrun 0 post no"
-    )
-    assert not moved[: 2 * PARTICLES, 4:6].any()
-    assert moved[24, 6] == pytest.approx(-0.5 * (STIFFNESS + 2.0 * NEIGHBOURS), abs=ROUND_OFF)
-
-
-@pytest.mark.parametrize("tangential", [0.5, 2.0])
-def test_bulk_springs_are_linear_and_do_not_mix_the_directions(tangential: float) -> None:
-    """Moves up to a spacing, along both at once."""
-    deck = chain(1000.0, 1e-2, bodies={"bulk_stiffness_tangential": tangential}, horizontal={})
-    places = [(0.5, 0.0), (1.0, 1.0), (-1.0, 0.5), (0.0, -1.0)]
-    steps = np.diff([(0.0, 0.0), *places], axis=0)
-    moves = [f"displace_atoms particles move {x} 0 {z} units box\nrun 0 post no" for x, z in steps]
-    for (x, z), found in zip(places, deck.after(APART, *moves)[1:], strict=True):
-        expected = [-tangential * x, -STIFFNESS * z]
-        size = max(tangential, STIFFNESS) * math.hypot(x, z)
-        assert np.abs(found[:PARTICLES, [4, 6]] - expected).max() < LINEAR * 1e-2 * size
+        assert np.abs((found - rest)[:, 4:] - wanted).max() <= allowed
 
 
 @pytest.mark.parametrize("tables", [{}, {"noise": {"temperature": COLD, "seed": 5}}], ids=["damping", "noise"])

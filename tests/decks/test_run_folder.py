@@ -54,22 +54,17 @@ NEAREST = 1.0
 BODY = {"particles": 40, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 100.0}, "bulk_stiffness": 0.83}
 PAIR = {"repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26}}
 STICKY: dict[str, Any] = {"bodies": BODY, "interaction": PAIR, "neighbours": {"stiffness": 0.3}}
-PLANE: dict[str, Any] = {"bodies": BODY | {"lower": "rigid_plane"}}
 MICRO = {"particles": 40, "spacing": 1e-6, "profile": {"kind": "parabola", "radius": 1e-4}, "bulk_stiffness": 8e5}
 STUCK: dict[str, Any] = {
     "bodies": BODY | {"lower": "rigid_plane", "reduction": "mdr"}, "adhesion": {"work_of_adhesion": 2e-3},
 }  # fmt: skip
 TIMED: dict[str, Any] = {"damping": {"coefficient": "auto"}, "plate": {}}
 COARSE: dict[str, Any] = {"accuracy": {"tolerance": 2e-2}}
+HEAT = {"accuracy": {"tolerance": 5e-2}, "noise": {"temperature": 1e-4, "seed": 7}}
 PULL_OFF = {"kind": "pull_off", "preload": 0.5}
-LOAD = {"kind": "load", "force": 0.5}
 SCENES: dict[str, dict[str, Any]] = {
-    "load": STICKY | {"experiment": LOAD},
-    "load_thermal": STICKY
-    | TIMED
-    | {"accuracy": {"tolerance": 5e-2}, "noise": {"temperature": 1e-4, "seed": 7}, "experiment": LOAD},
+    "load_thermal": STICKY | TIMED | HEAT | {"experiment": {"kind": "load", "force": 0.5}},
     "path": STICKY | {"horizontal": {}, "experiment": {"kind": "path", "displacements": [-0.3, 0.1, -0.2]}},
-    "cohesive": STUCK | {"adhesion": {"work_of_adhesion": 2e-3, "range": 0.02}, "experiment": PULL_OFF},
     "pull_off": STICKY | {"experiment": PULL_OFF},
     "pull_off_dynamic": STICKY | TIMED | COARSE | {"experiment": PULL_OFF},
     "units": {
@@ -77,7 +72,6 @@ SCENES: dict[str, dict[str, Any]] = {
         "experiment": {"kind": "path", "displacements": {"from": 0.0, "to": 5e-7, "steps": 5}},
     },
     "plane_adhesion": STUCK | {"experiment": PULL_OFF},
-    "plane_load": PLANE | {"neighbours": {"stiffness": 0.2}, "experiment": LOAD},
     "slide": {
         "bodies": BODY | {"particles": 60, "profile": {"kind": "parabola", "radius": 30.0}, "bulk_stiffness": 2.0},
         "interaction": {

@@ -113,16 +113,6 @@ def test_means_over_periods_are_integrals_of_hermites_cubic_or_of_chords_between
                     assert mean == pytest.approx(exact, abs=1e-3 * np.abs(law(time - start)).max())
 
 
-def test_samples_know_a_friction_under_heat_better_than_the_balance() -> None:
-    """Kicks of the bath are in the balance of forces over a time, and not in the friction."""
-    generator = np.random.default_rng(3)
-    time = np.linspace(0.0, 40.0, 40 * 50 + 1)
-    friction = 1.0 + 0.3 * generator.standard_normal(time.size)
-    kicks = np.concatenate([[0.0], np.cumsum(generator.standard_normal(time.size - 1) * 0.3)])
-    found, balance = sampled_mean(time, friction, 1.0), mean_of(block_means(time, time + kicks, 1.0))
-    assert abs(found.value - 1.0) < found.error < 0.3 * balance.error
-
-
 @pytest.mark.parametrize("rows", [20, 200])
 @pytest.mark.parametrize("slip", [0.0003, 0.3137])
 def test_a_slip_at_the_same_time_of_every_period_may_be_missed_by_half_the_time_between_samples(

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
@@ -77,13 +74,3 @@ def test_terms_that_do_not_fit_are_refused() -> None:
     for attraction, words in (((0.09, 0.13), "must reach further"), ((0.36, 0.26), "must prevail at r = 0")):
         with pytest.raises(ValueError, match=words):
             DoubleExponential(Exponential(0.18, 0.13), Exponential(*attraction))
-
-
-@given(share=st.floats(1e-12, 0.5), ratio=st.floats(1.05, 20.0), strength=st.floats(0.01, 0.9))
-def test_beyond_the_cutoff_the_force_is_small(share: float, ratio: float, strength: float) -> None:
-    """|f(r)| ≤ share · (B/b) exp(−r₀/b) for every r ≥ the cutoff."""
-    a, b = 0.2, 0.2 * ratio
-    law = DoubleExponential(Exponential(1.0, a), Exponential(strength * ratio, b))
-    scale = strength * ratio / b * math.exp(-law.force_free_distance() / b)
-    r = law.cutoff_for(share) + np.linspace(0.0, 10 * b, 200)
-    assert np.abs(law.force(r)).max() <= share * scale * (1 + ROUND_OFF)

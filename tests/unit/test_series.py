@@ -46,17 +46,6 @@ def test_the_error_of_a_mean_is_that_of_its_blocks_and_of_two_means_what_they_sc
     assert (single["force"].uncertainty, single["pressure"].uncertainty) == (3.0, 1.5)
 
 
-def test_what_a_reader_determines_itself_stays_and_what_others_lack_may_be_zero() -> None:
-    def rarely(series: Series) -> Mapping[str, Reading]:
-        known = {"known": Reading(2.0, "LU", {"statistics": 0.25, "discretisation": 0.5})}
-        return known | ({"seen": Reading(4.0, "LU")} if 1.0 in series["spot"] else {})
-
-    found = measured(Series({"spot": np.array([1.0, 0.0, 0.0])}), rarely)
-    assert found["known"].errors == {"statistics": 0.25, "discretisation": 0.5}
-    assert found["known"].read == 0.5
-    assert found["seen"].uncertainty > 0.5 * found["seen"].value
-
-
 def trace(periods: float, seed: int) -> Series:
     """A smooth periodic force and its integral, with a phase by the seed."""
     phase = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi)
