@@ -31,8 +31,6 @@ MEASURED = 0.02
 """Header and LAMMPS sample the same error at different places; near its largest value it changes by less than this."""
 DIGITS = 5e-3
 """The header states the error with three digits."""
-BEND = 1e-6
-"""Of the force at r = 0: next to its largest tension a force is not between its neighbours on the grid."""
 RATE = 0.25
 """Distance of the measured exponent from 4, the order of a cubic spline: the second term of its expansion."""
 
@@ -114,18 +112,6 @@ def test_lammps_computes_the_tables_own_force_down_to_a_particle_on_its_opposite
     cells = inside**2 / table.cell
     allowed = END_CONDITION * np.sqrt(1 + cells) * DECAY**cells + ROUND_OFF
     assert (np.abs(rest - table.force(inside)) <= first * allowed).all()
-
-
-@pytest.mark.parametrize("name", LAWS)
-def test_energy_and_force_of_the_table_agree(name: str) -> None:
-    """F = −dE/dr_L between entries, across the core as well: a minimiser may look at energies."""
-    law, cutoff, _ = LAWS[name]
-    distance, energy, force = Table(law, cutoff, 16_000).entries()
-    middle = -np.diff(energy) / np.diff(distance)
-    low, high = np.minimum(force[:-1], force[1:]), np.maximum(force[:-1], force[1:])
-    slack = BEND * float(law.force(0.0))
-    assert (middle >= low - slack).all()
-    assert (middle <= high + slack).all()
 
 
 def test_error_falls_with_the_fourth_power_of_the_cell_and_the_force_in_the_plane_is_central(tmp_path: Path) -> None:
