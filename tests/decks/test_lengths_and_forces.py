@@ -228,6 +228,16 @@ def test_an_automatic_chain_of_bodies_that_only_repel_ends_a_tenth_and_two_parti
     assert 1.1 * felt + 2.0 * SPACING <= half * (1.0 + 1e-6) < 1.1 * felt + 3.0 * SPACING
 
 
+def test_an_automatic_chain_with_neighbours_is_longer_by_what_its_end_would_reflect() -> None:
+    """exp(−2L/ℓ) is the share of forces at its end, cosh(s/ℓ) = 1 + k/2k_n."""
+    halves, decays = [], []
+    for neighbours in (100.0, 300.0):
+        halves.append(0.5 * len(deck(neighbours={"stiffness": neighbours}).atoms[UPPER]) * SPACING)
+        decays.append(SPACING / math.acosh(1.0 + 0.5 * SPRING / neighbours))
+    wanted = -0.5 * math.log(SHARES["chain"] * TOLERANCE) * (decays[1] - decays[0])
+    assert halves[1] - halves[0] == pytest.approx(wanted, abs=SPACING)
+
+
 @pytest.mark.parametrize(
     ("profile", "spacing", "particles"), [("circle", 0.5, 8), ("circle", 0.1, 42), ("flat_punch", 0.35, 12)]
 )

@@ -133,13 +133,13 @@ def test_a_system_is_refused_that_the_machine_has_no_memory_for(monkeypatch: pyt
     [
         (slide(40_000.01), r"the slide would need (\d+) load steps"),
         (
-            chains(100.0, bodies={"particles": 20}, experiment=path(999_999.5 * 0.05 * FREE)),
+            chains(100.0, bodies={"particles": 20}, experiment=path(999_998.5 * 0.05 * FREE, 0.0)),
             r"the path would need (\d+)",
         ),
     ],
 )
 def test_rows_beyond_a_million_are_counted(tables: dict[str, Any], told: str) -> None:
-    """20 of a spacing of 0.8 LU; the first place and a move for each twentieth of the distance without force."""
+    """20 of a spacing of 0.8 LU; three places, and a move for each twentieth of the free distance in an approach."""
     assert refused(tables, told) == 1_000_001
 
 
