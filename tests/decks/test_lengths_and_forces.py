@@ -155,6 +155,18 @@ def test_a_pair_at_the_cutoff_of_a_slide_bears_a_tenth_of_the_tolerance_of_what_
     assert law[2] / law[3] * math.exp(-cutoff / law[3]) == pytest.approx(wanted, rel=HOLDING)
 
 
+@pytest.mark.parametrize(
+    ("tables", "force", "longest"),
+    [(ON_PLANE, 3.0, math.inf), (ON_PLANE, 30.0, 0.1), ({"law": (0.18, 0.03, 0.09, 0.06)}, 0.4, 0.25 * 0.06)],
+)
+def test_a_search_moves_by_a_twelfth_of_its_way_at_most(tables: dict[str, Any], force: float, longest: float) -> None:
+    """And by a tenth of the spacing on a plane, by a quarter of the range where pairs snap."""
+    load = {"neighbours": {"stiffness": 0.2}, "experiment": {"kind": "load", "force": force}}
+    done = run(chains(RADIUS, SPRING, **tables, **load), figures=False)
+    way = SHARES["loading_increment"] * done.results["displacement"].value
+    assert np.diff(done.curve.displacement).max() == pytest.approx(min(longest, way), rel=0.02)
+
+
 @pytest.mark.parametrize("timed", [{}, TIMED])
 def test_on_a_plane_the_plane_alone_has_the_scenes_spring(timed: dict[str, Any]) -> None:
     """In time, too: nothing acts on a particle apart from its body."""
@@ -187,6 +199,7 @@ def test_a_long_bond_is_as_long_as_its_bend_allows_and_only_where_two_stiffnesse
             [length, 0, 0] if along > SPRING else [0, 0, length], abs=EXACT
         )
         assert 2.0 * found.number("bulk_bond_coefficient") == min(along, SPRING)
+        assert found.masses[FAR] < EXACT * found.masses[ANCHORS]  # it weighs nothing in the plate
         assert 2.0 * found.number("far_bond_coefficient") == pytest.approx(abs(along - SPRING))
     for tables in ({"bodies": both["bodies"]}, {"horizontal": {}, "bodies": {"bulk_stiffness_tangential": SPRING}}):
         assert FAR not in deck(**tables).atoms
