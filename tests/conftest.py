@@ -5,7 +5,6 @@ from __future__ import annotations
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -87,13 +86,6 @@ def plane() -> MakeScene:
         return read_scene(PLANE | {"experiment": {"kind": "load", "force": 0.5} | experiment})
 
     return make
-
-
-@pytest.fixture
-def session(tmp_path: Path) -> Iterator[Session]:
-    """An empty LAMMPS in `tmp_path`."""
-    with Engine.session(tmp_path) as opened:
-        yield opened
 
 
 @pytest.fixture

@@ -13,10 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from contact1d import read_scene
-from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.experiments import planned
-from contact1d.workflow.model.settings import settings_for
+from tests.decks.written import written
 
 ROOT = Path(__file__).parents[2]
 GOLDEN = Path(__file__).parent / "golden"
@@ -30,17 +27,10 @@ ZERO = 1e-15
 """Of a displacement that is 0 but for round-off; scenes in SI have numbers of 1e-9."""
 
 
-def deck_of(name: str) -> str:
-    """in.lammps of a shipped scene with the planned schedule."""
-    scene = read_scene(ROOT / "lammps_inputs" / "scenes" / f"{name}.toml")
-    settings = settings_for(scene)
-    return Deck(scene, settings).text(planned(scene, settings))
-
-
 @pytest.mark.parametrize("name", SCENES)
 def test_deck_of_a_shipped_scene(name: str) -> None:
     """All text and whole numbers are the same, other numbers to round-off."""
-    text, path = deck_of(name), GOLDEN / f"{name}.lammps"
+    text, path = written(ROOT / "lammps_inputs" / "scenes" / f"{name}.toml").text, GOLDEN / f"{name}.lammps"
     if os.environ.get("WRITE_GOLDENS"):
         path.write_text(text, encoding="utf-8")
     golden = path.read_text(encoding="utf-8")
@@ -51,5 +41,3 @@ def test_deck_of_a_shipped_scene(name: str) -> None:
 
 def test_every_scene_has_a_golden_and_every_golden_a_scene() -> None:
     assert sorted(path.stem for path in GOLDEN.iterdir()) == SCENES
-    required = {"hertz_plane", "load", "pull_off", "pull_off_dynamic", "thermal_load", "path_hysteresis"}
-    assert required <= set(SCENES)

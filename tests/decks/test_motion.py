@@ -1,108 +1,108 @@
-"""Claim: a deck's particles move as the scene's springs, drag and thermostat say, by Newton's law and no golden text.
+"""Claim: the particles of a deck rest, resist and move in LAMMPS as the scene's springs, drag and heat say.
 
-Reference: closed forms. A particle of mass m on a spring k with the drag γ that starts at rest length with the velocity
-v₀ has u(t) = (v₀/ω) exp(−γt/2m) sin ωt, ω² = k/m − (γ/2m)²; so has the mean of many under thermal forces of mean 0.
-Verlet's method is stable up to ω Δt = 2.
+References: closed forms, no golden text. A particle of mass m on a spring k with the drag γ that starts at rest length
+with the velocity v₀ has u(t) = (v₀/ω) exp(−γt/2m) sin ωt, ω² = k/m − (γ/2m)²; so has the mean of many under thermal
+forces of mean 0.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
 
-from contact1d import Scene, read_scene
-from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.engine.session import Session
-from contact1d.workflow.model.settings import settings_for
-from tests.scenes import LAW, chains
-from validation.references.interaction import Exponential, PairInteraction
+from tests.decks.written import ANCHORS, LOWER, Written, written
+from tests.scenes import chains
 
-OpenDeck = Callable[[Scene], tuple[Deck, Session]]
-PARTICLES, STIFFNESS, TANGENTIAL, MASS, DRAG = 60, 0.83, 0.5, 1.0, 0.3
-APART = 30.0
-"""Distance that the bodies are moved apart by [LU], far beyond the cutoff."""
+PARTICLES, STIFFNESS, MASS, DRAG = 20, 0.83, 1.0, 0.3
+APART = "displace_atoms upper_body move 0 0 25 units box"
+"""Far beyond the cutoff [LU]."""
 KICK, TIMES = 0.1, 12
 """Velocity of every particle at the start [LU/TU], and places looked at, 1 TU apart: two periods, four decay times."""
 INTEGRATION = 0.06
 """Over v₀/ω; 0.033 measured: in velocity Verlet the drag lags by half a time step of 0.2 TU. Half the drag: 0.2 off."""
 COLD = 1e-7
 """k_BT [FU·LU]: a particle swings by 3e-4 LU, the mean of all by 4e-5 of the 0.1 LU of the motion."""
-LINEAR = 0.1
-"""Part of the tolerance that a spring's force may be off, for moves up to a spacing; a long bond is for 0.05."""
-TOLERANCE = 1e-2
-WEAK = 1e-3
-"""Drag of a particle that allows any time step, as a plate without drag does, so that the stiffness decides."""
-STABLE = 1.0
-"""ω Δt of the stiffest motion: half of Verlet's limit."""
+ROUND_OFF, LONG_BOND = 2e-13, 5e-12
+"""Of a force [FU]: places up to 1e2 LU are read to 1e-14 LU; a long bond, here 1e4 LU, to 2e-12 LU."""
 
 
-def timed(drag: float = DRAG, **tables: Any) -> Scene:
-    """Two chains in time, whose plate bears no load."""
+def chain(radius: float = 60.0, tolerance: float = 1e-3, **tables: Any) -> Written:
     bodies = {"particles": PARTICLES, "mass": MASS} | tables.pop("bodies", {})
-    return read_scene(
-        chains(
-            1000.0,
-            STIFFNESS,
-            bodies=bodies,
-            damping={"coefficient": drag},
-            plate={"damping": 0.0},
-            accuracy={"tolerance": TOLERANCE},
-            experiment={"kind": "load", "method": "dynamic", "force": 0.0},
-            **tables,
-        )
+    experiment = {"experiment": {"kind": "path", "displacements": [0.1]}}
+    return written(chains(radius, STIFFNESS, bodies=bodies, accuracy={"tolerance": tolerance}, **experiment | tables))
+
+
+@pytest.mark.parametrize(("along", "spring"), [(0.0, 0.3), (STIFFNESS, 0.3), (0.5, 0.3), (1.4, 0.0)])
+def test_undeformed_bodies_are_at_rest_and_as_stiff_as_the_scene_says(along: float, spring: float) -> None:
+    """A particle that moves by (1, 1) LU pulls with its own springs and those of its neighbours, along x and along z.
+
+    LAMMPS reads places bitwise as they are written; ends are not pulled inward, a curved chain is not pulled straight.
+    Without [horizontal], `along` 0, nothing pulls along x.
+    """
+    deck = chain(
+        neighbours={"stiffness": spring} if spring else None,
+        horizontal={} if along else None,
+        bodies={"bulk_stiffness_tangential": along or STIFFNESS},
     )
+    move = "group one id {}\ndisplace_atoms one move {s} 0 {s} units box\nrun 0 post no\ngroup one delete"
+    chosen = (0, 7)
+    steps = [move.format(PARTICLES + 1 + particle, s=s) for particle in chosen for s in (1, -1)]
+    rest, *moved = (state[: 2 * PARTICLES] for state in deck.after(f"{APART}\nrun 0 post no", *steps))
+    assert np.array_equal(rest[:PARTICLES, 1:4], deck.atoms[LOWER])
+    far = along not in (0.0, STIFFNESS)
+    assert np.abs(rest[:, 4:]).max() <= (LONG_BOND if far else ROUND_OFF)
+    for particle, found in zip(chosen, moved[::2], strict=True):
+        wanted = np.zeros((2 * PARTICLES, 3))
+        beside = [i for i in (particle - 1, particle + 1) if 0 <= i < PARTICLES]
+        pulled = spring if along else 0.0
+        wanted[PARTICLES + particle] = -along - len(beside) * pulled, 0.0, -STIFFNESS - len(beside) * spring
+        wanted[[PARTICLES + i for i in beside]] = pulled, 0.0, spring
+        # Moved across itself by 1 LU and at most 1 LU more for the anchor's shift, a long bond bends by u²/2L.
+        allowed = abs(along - STIFFNESS) * 2.0**2 / (2.0 * deck.number("far_length")) if far else ROUND_OFF
+        assert np.abs((found - rest)[:, 4:] - wanted).max() <= allowed
 
 
 @pytest.mark.parametrize("tables", [{}, {"noise": {"temperature": COLD, "seed": 5}}], ids=["damping", "noise"])
-def test_a_kicked_particle_swings_and_comes_to_rest_as_its_drag_says(
-    open_deck: OpenDeck, tables: dict[str, Any]
-) -> None:
-    """With the thermostat as without: its friction is the scene's [damping]."""
-    deck, session = open_deck(timed(**tables))
-    session.execute(f"displace_atoms upper_body move 0.0 0.0 {APART} units box", phase="swinging")
-    lower = slice(0, PARTICLES)  # whose anchors stand still
-    start = session.atoms("x")["x"][lower, 2]
-    session.execute(f"velocity particles set 0.0 0.0 {KICK}")
-    stride = round(1.0 / deck.settings.motion.time_step)
-    found = []
-    for _ in range(TIMES):
-        session.execute(f"run {stride} post no")
-        found.append(float(np.mean(session.atoms("x")["x"][lower, 2] - start)))
-    time = deck.settings.motion.time_step * stride * np.arange(1, TIMES + 1)
+def test_a_kicked_particle_swings_and_comes_to_rest_as_its_drag_says(tables: dict[str, Any]) -> None:
+    """With the thermostat as without: its friction is the scene's [damping]. Anchors of the lower body stand still."""
+    load = {"kind": "load", "method": "dynamic", "force": 0.0}
+    deck = chain(
+        1000.0, 1e-2, bodies={"particles": 60}, damping={"coefficient": DRAG}, plate={"damping": 0.0}, experiment=load,
+        **tables,
+    )  # fmt: skip
+    stride = round(1.0 / deck.number("time_step"))
+    start, _, *moving = deck.after(APART, f"velocity particles set 0.0 0.0 {KICK}", *[f"run {stride} post no"] * TIMES)
+    found = np.array([(state - start)[:60, 3].mean() for state in moving])
+    time = deck.number("time_step") * stride * np.arange(1, TIMES + 1)
     decay = 0.5 * DRAG / MASS
     omega = math.sqrt(STIFFNESS / MASS - decay**2)
     exact = KICK / omega * np.exp(-decay * time) * np.sin(omega * time)
-    assert np.abs(np.array(found) - exact).max() < INTEGRATION * KICK / omega
+    assert np.abs(found - exact).max() < INTEGRATION * KICK / omega
 
 
-@pytest.mark.parametrize("tangential", [TANGENTIAL, STIFFNESS, 2.0])
-def test_bulk_springs_are_linear_and_do_not_mix_the_directions(open_deck: OpenDeck, tangential: float) -> None:
-    """Moves up to a spacing, along both at once."""
-    scene = timed(bodies={"bulk_stiffness_tangential": tangential}, horizontal={})
-    _, session = open_deck(scene)
-    session.execute(f"displace_atoms upper_body move 0.0 0.0 {APART} units box", phase="pushing")
-    x = z = 0.0
-    for to_x, to_z in ((0.5, 0.0), (1.0, 1.0), (-1.0, 0.5), (0.0, -1.0)):
-        move = f"displace_atoms particles move {to_x - x} 0.0 {to_z - z} units box\nrun 0 post no"
-        session.execute(move)
-        x, z = to_x, to_z
-        force = session.atoms("f")["f"][:PARTICLES]
-        expected = np.array([-tangential * x, -STIFFNESS * z])
-        size = max(tangential, STIFFNESS) * math.hypot(x, z)
-        assert np.abs(force[:, [0, 2]] - expected).max() < LINEAR * TOLERANCE * size
+@pytest.mark.parametrize("title", ["a # in it, R = 1000 µm, ends with &", '${undefined} $x three """ quotes 日本'])
+def test_a_title_is_only_a_title(title: str) -> None:
+    """Whatever it says, data file and deck are read alike."""
+    deck = chain(title=title)
+    (state,) = deck.after("run 0")
+    assert len(state) == 4 * PARTICLES
+    assert deck.files["system.data"].splitlines()[0] == f"# {title}"
 
 
-@pytest.mark.parametrize("stiffness", [STIFFNESS, 0.1, 0.01])
-@pytest.mark.parametrize("neighbours", [0.0, 3.0])
-def test_the_stiffest_motion_is_stable(stiffness: float, neighbours: float) -> None:
-    """An opposite pair that swings against each other at its force-free distance; neighbours in opposite phase."""
-    tables: dict[str, Any] = {"neighbours": {"stiffness": neighbours}} if neighbours else {}
-    settings = settings_for(timed(WEAK, bodies={"bulk_stiffness": stiffness}, **tables))
-    law = PairInteraction(Exponential(*LAW[:2]), Exponential(*LAW[2:]))
-    pair = -float(law.force_slope(np.asarray(law.force_free_distance())))
-    stiffest = stiffness + 4.0 * neighbours + 2.0 * pair
-    assert settings.motion.time_step * math.sqrt(stiffest / MASS) < STABLE
+@pytest.mark.parametrize("particles", [4, 401])
+def test_anchors_of_a_plate_are_hardly_no_line_and_all_atoms_have_room(particles: int) -> None:
+    """LAMMPS refuses a rigid body whose least moment of inertia is below 1e-7 of the largest; a line's is 0."""
+    slide = {"kind": "slide", "normal_force": 0.1, "distance": 500.0}
+    deck = chain(
+        1e9, bodies={"particles": 2000, "upper_particles": particles}, horizontal={}, damping={"coefficient": "auto"},
+        plate={"free": ["x", "z"]}, cantilever={"stiffness": 0.5, "velocity": 0.01}, experiment=slide,
+    )  # fmt: skip
+    apart = deck.atoms[ANCHORS] - deck.atoms[ANCHORS].mean(axis=0)
+    moments = np.linalg.eigvalsh(np.eye(3) * (apart**2).sum() - apart.T @ apart)
+    assert 1e-6 < moments[0] / moments[-1] < 1e-5
+    places = np.concatenate([*deck.atoms.values()])
+    assert (places - deck.box[0] >= [500.0, 0.999, 30.0]).all()
+    assert (deck.box[1] - places >= [500.0, 0.999, 30.0]).all()

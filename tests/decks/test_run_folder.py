@@ -1,30 +1,34 @@
-"""A run folder is complete: `lmp -in in.lammps` in it gives bitwise the curve and the states that the program gave."""
+"""A run folder is complete: `lmp -in in.lammps` in it gives bitwise the curve and the states that the program gave.
+
+With `[output] states` it has a frame for each row of the curve, or some of them, by the deck's own dump.
+"""
 
 from __future__ import annotations
 
 import json
-import os
 import pickle
 import re
 import shutil
-import subprocess
-import sys
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import ase.io
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from typer.testing import CliRunner
 
-from contact1d import Run, load_run, read_scene, run
+from contact1d import Run, load_run, run
 from contact1d.__main__ import app
+from contact1d.analysis.atoms import atoms
+from contact1d.analysis.curve import read_states
+from tests.decks.written import lmp
 
 Array = NDArray[np.float64]
 
 ROOT = Path(__file__).parents[2]
-LMP = Path(sys.executable).with_name("lmp")
 READ = ("in.lammps", "system.data", "interaction.table", "adhesion.cells")
 """What a deck may read; everything else in a folder is a result."""
 HARMLESS = (
@@ -42,39 +46,32 @@ HARMLESS = (
 
 SUM = 1e-12
 """A sum over the particles, by LAMMPS and by numpy in their own orders; relative."""
-PLACE = 1e-6
-"""Relative: a place in the dump has as many digits."""
+SINGLE = 1e-6
+"""Relative: states.npz is in single precision."""
 NEAREST = 1.0
 """The interpolated radius lies within a spacing of the particle under the largest tension."""
 
 BODY = {"particles": 40, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 100.0}, "bulk_stiffness": 0.83}
 PAIR = {"repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26}}
 STICKY: dict[str, Any] = {"bodies": BODY, "interaction": PAIR, "neighbours": {"stiffness": 0.3}}
-PLANE: dict[str, Any] = {"bodies": BODY | {"lower": "rigid_plane"}}
 MICRO = {"particles": 40, "spacing": 1e-6, "profile": {"kind": "parabola", "radius": 1e-4}, "bulk_stiffness": 8e5}
 STUCK: dict[str, Any] = {
     "bodies": BODY | {"lower": "rigid_plane", "reduction": "mdr"}, "adhesion": {"work_of_adhesion": 2e-3},
 }  # fmt: skip
 TIMED: dict[str, Any] = {"damping": {"coefficient": "auto"}, "plate": {}}
 COARSE: dict[str, Any] = {"accuracy": {"tolerance": 2e-2}}
+HEAT = {"accuracy": {"tolerance": 5e-2}, "noise": {"temperature": 1e-4, "seed": 7}}
+PULL_OFF = {"kind": "pull_off", "preload": 0.5}
 SCENES: dict[str, dict[str, Any]] = {
-    "load": STICKY | {"experiment": {"kind": "load", "force": 0.5}},
-    "load_thermal": STICKY
-    | TIMED
-    | COARSE
-    | {"noise": {"temperature": 1e-4, "seed": 7}, "experiment": {"kind": "load", "force": 0.5}},
-    "path": STICKY
-    | {"horizontal": {}, "experiment": {"kind": "path", "displacements": {"from": -0.6, "to": 0.3, "steps": 30}}},
-    "cohesive": STUCK
-    | {"adhesion": {"work_of_adhesion": 2e-3, "range": 0.02}, "experiment": {"kind": "pull_off", "preload": 0.5}},
-    "pull_off": STICKY | {"experiment": {"kind": "pull_off", "preload": 0.5}},
-    "pull_off_dynamic": STICKY | TIMED | COARSE | {"experiment": {"kind": "pull_off", "preload": 0.5}},
+    "load_thermal": STICKY | TIMED | HEAT | {"experiment": {"kind": "load", "force": 0.5}},
+    "path": STICKY | {"horizontal": {}, "experiment": {"kind": "path", "displacements": [-0.3, 0.1, -0.2]}},
+    "pull_off": STICKY | {"experiment": PULL_OFF},
+    "pull_off_dynamic": STICKY | TIMED | COARSE | {"experiment": PULL_OFF},
     "units": {
         "bodies": MICRO | {"lower": "rigid_plane"},
         "experiment": {"kind": "path", "displacements": {"from": 0.0, "to": 5e-7, "steps": 5}},
     },
-    "plane_adhesion": STUCK | {"experiment": {"kind": "pull_off", "preload": 0.5}},
-    "plane_load": PLANE | {"neighbours": {"stiffness": 0.2}, "experiment": {"kind": "load", "force": 0.5}},
+    "plane_adhesion": STUCK | {"experiment": PULL_OFF},
     "slide": {
         "bodies": BODY | {"particles": 60, "profile": {"kind": "parabola", "radius": 30.0}, "bulk_stiffness": 2.0},
         "interaction": {
@@ -88,27 +85,39 @@ SCENES: dict[str, dict[str, Any]] = {
         "experiment": {"kind": "slide", "normal_force": 1.0, "distance": 3.0},
     }
     | COARSE,
+    "tangential": {
+        "bodies": STUCK["bodies"] | {"particles": "auto"},
+        "friction": {"coefficient": 0.3},
+        "experiment": {"kind": "tangential", "normal_force": [4.0, 2.0, 3.0], "displacements": [0.1, 0.2, 0.0]},
+    },
 }
+"""Every way to move, both methods, chains and plane, rows that are steps of one run and rows that are not."""
+FEW = 6
+USUAL = [(name, None) for name in ("load_thermal", "path", "pull_off", "slide")]
+KEEPING = [(name, "all") for name in ("pull_off", "pull_off_dynamic", "plane_adhesion", "tangential", "units")]
+SOME = [("pull_off", FEW), ("plane_adhesion", FEW)]
+Make = Callable[[tuple[str, Any]], Run]
 
 
-@pytest.fixture(scope="module", params=SCENES)
-def finished(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Run:
-    """One run of each kind, shared by the tests of this file."""
-    scene = read_scene({"title": request.param} | SCENES[request.param])
-    return run(scene, tmp_path_factory.mktemp(request.param), figures=False)
+@pytest.fixture(scope="module")
+def make(tmp_path_factory: pytest.TempPathFactory) -> Make:
+    """The run of a scene and its `[output] states`, each once."""
+    kept: dict[tuple[str, Any], Run] = {}
+
+    def made(case: tuple[str, Any]) -> Run:
+        if case not in kept:
+            name, states = case
+            tables = {"title": name} | SCENES[name] | ({"output": {"states": states}} if states else {})
+            kept[case] = run(tables, tmp_path_factory.mktemp(name), figures=False)
+        return kept[case]
+
+    return made
 
 
-def lmp(folder: Path) -> subprocess.CompletedProcess[str]:
-    """`cd folder && lmp -in in.lammps`; UCX_TLS leaves no network listener open."""
-    environment = os.environ | {"UCX_TLS": "self,sm", "OMP_NUM_THREADS": "1"}
-    command = [str(LMP), "-in", "in.lammps"]
-    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=300)
-
-
-def warnings(screen: str) -> list[str]:
-    """LAMMPS's warnings but for the harmless ones."""
-    lines = [line for line in screen.splitlines() if line.startswith("WARNING")]
-    return [line for line in lines if not any(words in line for words in HARMLESS)]
+def repeat(folder: Path) -> None:
+    """`cd folder && lmp -in in.lammps`, without a warning that means something."""
+    said = [line for line in lmp(folder).splitlines() if line.startswith("WARNING")]
+    assert [line for line in said if not any(words in line for words in HARMLESS)] == []
 
 
 def curve(folder: Path) -> tuple[list[str], Array]:
@@ -118,138 +127,130 @@ def curve(folder: Path) -> tuple[list[str], Array]:
     return [row[0] for row in rows[1:]], np.asarray([row[1:] for row in rows[1:]], dtype=float)
 
 
-def test_lmp_repeats_the_run_bitwise(finished: Run, tmp_path: Path) -> None:
-    """In a copy that has only what a deck reads."""
+@pytest.mark.parametrize("case", [*USUAL, *KEEPING, *SOME], ids=str)
+def test_lmp_repeats_the_run_bitwise(make: Make, case: tuple[str, Any], tmp_path: Path) -> None:
+    """In a copy that has only what a deck reads, and states of another run; the folder has nothing left over."""
+    folder = make(case).folder
     for name in READ:
-        if (finished.folder / name).exists():
-            shutil.copy(finished.folder / name, tmp_path / name)
-    done = lmp(tmp_path)
-    assert done.returncode == 0, done.stdout[-2000:]
-    assert warnings(done.stdout) == []
+        if (folder / name).exists():
+            shutil.copy(folder / name, tmp_path / name)
+    (tmp_path / "states.lammpstrj").write_text("what another run has left\n")
+    repeat(tmp_path)
     for name in ("curve.txt", "states.lammpstrj"):
-        assert (tmp_path / name).read_bytes() == (finished.folder / name).read_bytes(), name
+        assert (tmp_path / name).read_bytes() == (folder / name).read_bytes(), name
+    names = {path.name for path in folder.iterdir()}
+    assert not [name for name in names if name.endswith(".part") or name.startswith("saved")]
+    assert {"in.lammps", "system.data", "curve.txt", "states.lammpstrj", "curve.csv", "results.json"} <= names
+    assert ("interaction.table" in names) == ("interaction" in SCENES[case[0]])
+    assert json.loads((folder / "results.json").read_text()) == make(case).document
 
 
-BEND = 0.25
-"""A maximum between rows exceeds the largest row by at most an eighth of the second difference there; twice that."""
-PASSING = ("path", "slide", "pull_off")
+PASSING = ("path", "slide", "pull_off", "tangential")
 """Experiments whose deck may have rows that are no results: between two places, while loading, after the loss."""
 
 
-def test_curve_txt_holds_the_states_of_the_results(finished: Run) -> None:
-    """Every state of the results is a line, bitwise and in order; where no row only passes, every line is a state."""
+@pytest.mark.parametrize("case", [*USUAL, *KEEPING], ids=str)
+def test_numbers_can_be_read_off_the_curve(make: Make, case: tuple[str, Any]) -> None:
+    """Every state of the results is a line, bitwise and in order; the largest tension, the last state, the mean."""
+    finished = make(case)
     phases, rows = curve(finished.folder)
-    states = finished.outcome.states
-    assert len(rows) == len(states) or finished.document["experiment"] in PASSING
+    kind, results, states = finished.document["experiment"], finished.model.results, finished.outcome.states
+    assert len(rows) == len(states) or kind in PASSING
     lines = iter(zip(phases, rows.tolist(), strict=True))
     for state in states:
         force = next(f for phase, (d, f) in lines if (phase, d) == (state.phase, state.displacement))
         assert force == pytest.approx(state.force, rel=SUM, abs=SUM)
-    if "final" in finished.outcome.profiles:
-        place = finished.outcome.profiles["final"].x.max()
-        atoms = finished.atoms()
-        assert atoms.positions[atoms.arrays["type"] == 2, 0].max() == pytest.approx(place, rel=PLACE)
-
-
-def value(finished: Run, name: str) -> tuple[float, float]:
-    quantity = finished.document[name]
-    return quantity["value"], quantity["uncertainty"]
-
-
-def test_numbers_can_be_read_off_the_curve(finished: Run) -> None:
-    """By eye, so to say: the largest tension, the last state, the mean of the samples."""
-    phases, rows = curve(finished.folder)
-    kind = finished.document["experiment"]
-    samples = rows[[phase == "sampling" for phase in phases]]
     if kind == "load":
-        wanted = samples.mean(axis=0) if len(samples) else rows[-1]
-        assert [value(finished, name)[0] for name in ("displacement", "force")] == pytest.approx(wanted, rel=SUM)
-    if "adhesion_force" in finished.document:
-        adhesion, uncertainty = value(finished, "adhesion_force")
-        held = rows[[phase in ("unloading", "pulling") for phase in phases], 1]
-        largest = -float(held.min())
-        # The quantity is the vertex between rows: at most one bend of the curve above the largest row.
-        bend = BEND * float(np.abs(np.diff(held, 2)).max(initial=0.0))
-        assert largest - uncertainty - SUM <= adhesion <= largest + bend + uncertainty + SUM
-    if "preload" in finished.document:
+        wanted = rows[[phase == "sampling" for phase in phases]].mean(axis=0)
+        assert [results[name].value for name in ("displacement", "force")] == pytest.approx(wanted, rel=SUM)
+    if kind == "pull_off":
+        adhesion, held = results["adhesion_force"], rows[[phase in ("unloading", "pulling") for phase in phases], 1]
+        bend = float(np.abs(np.diff(held, 2)).max())  # the quantity is the vertex between rows: an eighth of it at most
+        assert -held.min() - adhesion.uncertainty - SUM <= adhesion.value
+        assert adhesion.value <= -held.min() + 0.25 * bend + adhesion.uncertainty + SUM
         loaded = rows[[phase == "loading" for phase in phases], 1]
-        assert loaded[-1] == pytest.approx(value(finished, "preload")[0], rel=SUM)
-    if "largest_force" in finished.document:
-        assert rows[:, 1].max() == pytest.approx(value(finished, "largest_force")[0], rel=SUM)
+        assert loaded[-1] == pytest.approx(results["preload"].value, rel=SUM)
 
 
-def frames(folder: Path) -> list[Array]:
-    """Atoms of every dump frame, columns id type x y z fx fz."""
-    found = []
-    for text in (folder / "states.lammpstrj").read_text().split("ITEM: TIMESTEP")[1:]:
-        title, rows = text.split("ITEM: ATOMS ")[1].split("\n", 1)
-        assert title.split() == ["id", "type", "x", "y", "z", "opposite_fx", "opposite_fz"]
-        found.append(np.asarray([row.split() for row in rows.splitlines()], dtype=float))
-    return found
+def test_the_frames_of_a_pull_off_are_those_of_its_radii_and_profiles_with_action_and_reaction(make: Make) -> None:
+    """The first is the zero-load state, the second the critical one."""
+    finished = make(("pull_off", None))
+    for index, (radius, state) in enumerate((("zero_load_radius", "zero_load"), ("critical_radius", "critical"))):
+        frame, profile = atoms(finished.folder, index), finished.profiles[state]
+        upper = (frame.arrays["body"] == "upper") & (frame.arrays["role"] == "particle")
+        force = frame.arrays["opposite_force"]
+        assert np.abs(force.sum(axis=0)).max() < SUM * np.abs(force).sum()
+        place = abs(frame.positions[upper, 0][force[upper, 2].argmin()])
+        assert finished.results[radius].value == pytest.approx(place, abs=NEAREST)
+        np.testing.assert_allclose(frame.positions[upper, 2], profile.z_upper, rtol=SUM)
+        np.testing.assert_allclose(force[upper, 2], profile.pressure, atol=SUM)
 
 
-def test_radii_can_be_read_off_the_dump(finished: Run) -> None:
-    """The first frame of a pull-off is the zero-load state, the second the critical one; a load has its last."""
-    found = frames(finished.folder)
-    names = {"pull_off": ("zero_load_radius", "critical_radius"), "load": ("contact_radius",)}
-    if finished.document["scene"]["bodies"]["lower"] == "rigid_plane" or "noise" in finished.document["effects"]:
-        return
-    for frame, name in zip(found, names.get(finished.document["experiment"], ()), strict=False):
-        upper = frame[frame[:, 1] == 2]
-        place = abs(upper[upper[:, 6].argmin(), 2])
-        assert value(finished, name)[0] == pytest.approx(place, abs=NEAREST)
-
-
-def test_the_folder_has_nothing_left_over(finished: Run) -> None:
-    """No search's saved state, no half-written file; results.json is what was returned."""
-    names = {path.name for path in finished.folder.iterdir()}
-    assert not [name for name in names if name.endswith(".part") or name.startswith("saved")]
-    assert {"in.lammps", "system.data", "curve.txt", "states.lammpstrj", "curve.csv", "results.json"} <= names
-    assert ("interaction.table" in names) == ("interaction" in finished.document["effects"])
-    assert json.loads((finished.folder / "results.json").read_text()) == finished.document
-
-
-def test_a_run_read_from_its_folder_is_the_one_that_was_made(finished: Run) -> None:
+@pytest.mark.parametrize("case", [("load_thermal", None), ("units", "all")], ids=str)
+def test_a_run_read_from_its_folder_is_the_one_that_was_made(make: Make, case: tuple[str, Any]) -> None:
     """From memory, from the files and through a pickle it has one face, to the last bit."""
-    titles = [axis.get_title() for axis in finished.plot().axes]
+    finished = make(case)
     for loaded in (load_run(str(finished.folder)), pickle.loads(pickle.dumps(finished))):
         assert loaded == finished
-        for name in ("scene", "status", "results", "warnings", "timing"):
+        for name in ("scene", "results", "warnings", "timing"):
             assert getattr(loaded, name) == getattr(finished, name), name
-        assert (repr(loaded), loaded._repr_html_()) == (repr(finished), finished._repr_html_())
-        assert loaded.tables.keys() == finished.tables.keys()
-        assert list(loaded.profiles) == list(finished.profiles)
+        assert repr(loaded) == repr(finished)
         for table, columns in finished.tables.items():
-            assert list(loaded.tables[table]) == list(columns)
             for name, column in columns.items():
                 np.testing.assert_array_equal(loaded.tables[table][name], column)
-        assert [axis.get_title() for axis in loaded.plot().axes] == titles
+        assert loaded.tables.keys() == finished.tables.keys()
+
+
+@pytest.mark.parametrize("case", KEEPING, ids=str)
+def test_each_row_of_the_curve_is_a_frame_with_types_places_and_forces_that_ase_finds(
+    make: Make, case: tuple[str, Any]
+) -> None:
+    """Plain `ase.io.read`, no format and no column named; states.npz, that the page moves through, is all of it."""
+    whole = make(case)
+    frames = ase.io.read(whole.folder / "states.lammpstrj", index=":")
+    assert len(frames) == len(whole.curve.force)
+    for frame, force in zip(frames, whole.curve.force, strict=True):
+        upper = frame.arrays["type"] == 2
+        assert frame.get_forces()[upper, 2].sum() == pytest.approx(force, rel=SUM, abs=SUM)
+        assert not frame.get_forces()[:, 1].any()
+    np.testing.assert_allclose(atoms(whole.folder).positions, frames[-1].positions, rtol=SUM)
+    np.testing.assert_array_equal(atoms(whole.folder).arrays["opposite_force"], frames[-1].get_forces())
+    kept, largest = read_states(whole.folder / "states.npz"), float(np.abs(whole.curve.force).max())
+    assert kept.rows.tolist() == list(range(len(whole.curve.force)))
+    carried = whole.scene.bodies.own_spacing * kept.pressure.sum(axis=1)
+    np.testing.assert_allclose(carried, whole.curve.force, rtol=SINGLE, atol=SINGLE * largest)
+
+
+@pytest.mark.parametrize("case", SOME, ids=str)
+def test_some_states_are_frames_of_all_and_the_results_are_those_without_any(make: Make, case: tuple[str, Any]) -> None:
+    """So many frames as asked for, first and last among them, and bitwise the numbers of a run that keeps none."""
+    some, whole = make(case), make((case[0], "all"))
+    assert some.results == whole.results
+    if case[0] == "pull_off":
+        assert some.results == make(("pull_off", None)).results
+    frames, every = (
+        (kept.folder / "states.lammpstrj").read_text().split("ITEM: TIMESTEP\n")[1:] for kept in (some, whole)
+    )
+    assert len(frames) == FEW
+    assert (frames[0], frames[-1]) == (every[0], every[-1])
+    assert frames == [frame for frame in every if frame in frames]
 
 
 QUICK = {
-    "hertz_plane": ["experiment.displacements.steps=4", "bodies.particles=160"],
-    "load": ["bodies.particles=60"],
-    "paper": ["bodies.particles=60"],
-    "path_hysteresis": ["experiment.displacements.steps=4", "bodies.particles=60"],
-    "prandtl_tomlinson": ["experiment.distance=1.0"],
-    "pull_off": ["bodies.particles=60"],
-    "pull_off_dynamic": ["bodies.particles=20"],
-    "slide": ["experiment.distance=1.0"],
+    "pull_off": ["bodies.particles=60", "experiment.preload=0.3"],
+    "slide": ["experiment.distance=0.5"],
     "thermal_load": ["bodies.particles=20"],
 }
-SHIPPED = sorted(path.stem for path in (ROOT / "lammps_inputs" / "scenes").glob("*.toml"))
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", QUICK)
 def test_deck_of_a_shipped_scene_runs_under_lmp(name: str, tmp_path: Path) -> None:
     """`contact1d deck SCENE --out DIR`, then `lmp -in in.lammps` there: no error, every row measured and finite."""
     scene = ROOT / "lammps_inputs" / "scenes" / f"{name}.toml"
-    small = [word for change in QUICK.get(name, []) for word in ("--set", change)]
+    small = [word for change in QUICK[name] for word in ("--set", change)]
     written = CliRunner().invoke(app, ["deck", str(scene), "--out", str(tmp_path / "deck"), *small])
     assert written.exit_code == 0, written.output
-    done = lmp(tmp_path / "deck")
-    assert done.returncode == 0, done.stdout[-2000:]
-    assert warnings(done.stdout) == []
+    lmp(tmp_path / "deck")
     phases, rows = curve(tmp_path / "deck")
     planned = re.findall(r"^# phase (\w+): (\d+) rows$", (tmp_path / "deck" / "in.lammps").read_text(), re.MULTILINE)
     assert Counter(phases) == {name: int(count) for name, count in planned}
@@ -257,16 +258,48 @@ def test_deck_of_a_shipped_scene_runs_under_lmp(name: str, tmp_path: Path) -> No
     assert (tmp_path / "deck" / "states.lammpstrj").stat().st_size > 0
 
 
-@pytest.mark.parametrize("far", [-60.0, -3000.0])
 @pytest.mark.parametrize(
-    "tables",
-    [STICKY, STICKY | {"bodies": BODY | {"lower": "rigid_chain"}}, PLANE, PLANE | {"neighbours": {"stiffness": 0.2}}],
-    ids=["two chains", "rigid chain", "plane", "plane with neighbours"],
+    ("bodies", "tables", "far"),
+    [
+        ({}, {"interaction": PAIR}, -3000.0),
+        ({"lower": "rigid_chain"}, {"interaction": PAIR}, -60.0),
+        ({"lower": "rigid_plane"}, {"neighbours": {"stiffness": 0.2}}, -3000.0),
+    ],
 )
-def test_a_path_far_apart_stays_in_the_box(tables: dict[str, Any], far: float, tmp_path: Path) -> None:
+def test_a_path_far_apart_stays_in_the_box(
+    bodies: dict[str, Any], tables: dict[str, Any], far: float, tmp_path: Path
+) -> None:
     """No particle is lost, in the run or by `lmp`, and nothing pulls at that distance."""
-    path = {"experiment": {"kind": "path", "displacements": [0.0, far]}}
-    finished = run(read_scene({"title": "far"} | tables | path), tmp_path, figures=False)
+    path = {"kind": "path", "displacements": [0.0, far]}
+    finished = run({"title": "far", "bodies": BODY | bodies, "experiment": path} | tables, tmp_path, figures=False)
     assert finished.curve.displacement[-1] == pytest.approx(far, rel=1e-12)
     assert finished.curve.force[-1] == 0.0
-    assert lmp(finished.folder).returncode == 0
+    repeat(finished.folder)
+
+
+def test_a_dump_that_is_cut_short_or_lacks_a_column_is_refused_and_atoms_come_by_their_ids(
+    make: Make, tmp_path: Path
+) -> None:
+    """They have no energy and no element."""
+    folder, dump = make(("pull_off", None)).folder, tmp_path / "states.lammpstrj"
+    lines = (folder / "states.lammpstrj").read_text().splitlines(keepends=True)
+    second = lines.index("ITEM: TIMESTEP\n", 1)
+    first = "".join(lines[:second])
+    with pytest.raises(FileNotFoundError, match="no folder of a finished run"):
+        atoms(tmp_path)
+    with pytest.raises(IndexError, match="holds 2 states"):
+        atoms(folder, 2)
+    for text, told in (
+        (first[: len(first) // 10], "cut short"),
+        (first[:-1], "cut short"),
+        (first.replace("opposite_fx opposite_fz", "fx fz"), "no column opposite_fx, opposite_fz"),
+    ):
+        dump.write_text(text)
+        with pytest.raises(ValueError, match=told):
+            atoms(tmp_path)
+    dump.write_text("".join(lines[:9] + lines[9:second][::-1]))
+    state, reference = atoms(tmp_path), atoms(folder, 0)
+    assert state.calc is None
+    assert set(state.get_chemical_symbols()) == {"X"}
+    for name, values in reference.arrays.items():
+        np.testing.assert_array_equal(state.arrays[name], values)

@@ -10,13 +10,15 @@ it is the sum of the lower body's forces on the upper particles.
 
 from __future__ import annotations
 
+import re
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from contact1d import Run, read_scene, run
+from contact1d import Run, RunError, read_scene, run
 
 PARTICLES, DRAG, PLATE_DRAG, MASS, PLATE_MASS = 30, 0.3, 20.0, 1.0, 30.0
 STIFFNESS, VELOCITY, DISTANCE = 20.0, 0.05, 6.0
@@ -24,6 +26,10 @@ SPLINE = 2e-4
 """Relative: a cubic spline through five rows beside the polynomial that the program takes."""
 BALANCE = 0.015
 """Of the static friction: rows, of whose ends the means are made here, and the drag of particles that swing."""
+
+
+ENERGY = 5e-3
+"""Over the work: means of every fifth step."""
 
 
 def sliding(**changes: Any) -> dict[str, Any]:
@@ -47,18 +53,77 @@ def slid(tmp_path_factory: pytest.TempPathFactory) -> Run:
     return run(read_scene(sliding()), tmp_path_factory.mktemp("slide") / "run", figures=False)
 
 
+@pytest.fixture(scope="module")
+def back(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """A way there and, twice as fast, further back."""
+    path = {"kind": "slide", "normal_force": 1.0, "path": [[0.1, 2.5], [-0.2, 4.0]]}
+    return run(read_scene(sliding(experiment=path)), tmp_path_factory.mktemp("back") / "run", figures=False)
+
+
 def test_the_cantilever_pulls_as_much_as_friction_and_drag_hold_back(slid: Run) -> None:
-    time, place, drive = (slid.friction[name] for name in ("time", "plate_x", "drive"))
-    assert drive == pytest.approx(VELOCITY * time)
-    half = len(time) // 2
-    while_ = time[-1] - time[half]
-    speed = np.gradient(place, time)
-    pull = STIFFNESS * float(np.mean((VELOCITY * time - place)[half:]))
-    drag = (PARTICLES * DRAG + PLATE_DRAG) * (float(place[-1] - place[half]) / while_ - VELOCITY)
-    inertia = (PARTICLES * MASS + PLATE_MASS) * float(speed[-1] - speed[half]) / while_
-    friction = float(np.mean(slid.friction["friction"][half:]))
-    assert friction == pytest.approx(pull - drag - inertia, abs=BALANCE * slid.results["static_friction"].value)
+    assert slid.friction["drive"] == pytest.approx(VELOCITY * slid.friction["time"])
+    half = slice(len(slid.friction["time"]) // 2, None)
+    friction = balance(slid, half, VELOCITY)
+    static = slid.results["static_friction"].value
+    assert np.mean(slid.friction["friction"][half]) == pytest.approx(friction, abs=BALANCE * static)
     assert slid.results["mean_friction"].value > 0.0
+
+
+def balance(done: Run, rows: slice, velocity: float) -> float:
+    """The mean friction that pull, drag and inertia leave over some rows."""
+    time, place, drive = (done.friction[name] for name in ("time", "plate_x", "drive"))
+    speed, while_ = np.gradient(place, time)[rows], float(np.ptp(time[rows]))
+    pull = STIFFNESS * float(np.mean((drive - place)[rows]))
+    drag = (PARTICLES * DRAG + PLATE_DRAG) * (float(place[rows][-1] - place[rows][0]) / while_ - velocity)
+    return pull - drag - (PARTICLES * MASS + PLATE_MASS) * float(speed[-1] - speed[0]) / while_
+
+
+def test_a_way_there_and_back_is_driven_leg_by_leg_and_its_energy_is_all_there(back: Run) -> None:
+    """W = ∫ F v dt is what was dissipated and what is stored."""
+    time, drive, pull = (back.friction[name] for name in ("time", "drive", "cantilever_force"))
+    turn = int(np.argmax(drive))
+    assert (time[turn], drive[turn]) == pytest.approx((25.0, 2.5))
+    assert (time[-1], drive[-1]) == pytest.approx((45.0, -1.5))
+    work = np.trapezoid(np.where(time <= 25.0, 0.1, -0.2) * pull, time)
+    done = {name: back.results[name].value for name in ("cantilever_work", "dissipated_energy", "stored_energy")}
+    assert back.friction["cantilever_work"][-1] == done["cantilever_work"] == pytest.approx(work, rel=0.05)
+    assert sum(done.values()) == pytest.approx(2.0 * done["cantilever_work"], rel=ENERGY)
+    last = slice(turn + 40, None)
+    largest = float(np.abs(back.friction["friction"]).max())
+    assert np.mean(back.friction["friction"][last]) == pytest.approx(balance(back, last, -0.2), abs=BALANCE * largest)
+    assert back.results["mean_friction"].value > 0.0  # against the way
+
+
+def failure(**changes: Any) -> str:
+    with TemporaryDirectory() as folder, pytest.raises(RunError) as caught:
+        run(read_scene(sliding(**changes)), folder, figures=False)
+    return str(caught.value)
+
+
+def test_a_plate_that_falls_behind_the_drive_does_not_slide_steadily() -> None:
+    """One that swings for longer than the way is named as why: 2π √((M + N m)/k)."""
+    said = failure(
+        plate={"free": ["x", "z"], "mass": 60.0, "damping": 0.1}, damping={"coefficient": 0.02},
+        cantilever={"stiffness": 0.25, "velocity": 0.2},
+        experiment={"kind": "slide", "normal_force": 0.0, "distance": DISTANCE},
+    )  # fmt: skip
+    plate, drive = re.findall(r"the plate moves at (\S+) LU/TU and the drive at (\S+?)\. ", said)[0]
+    assert float(plate) < 0.9 * float(drive) == 0.9 * 0.2
+    assert f"has a period of {2.0 * np.pi * np.sqrt((60.0 + PARTICLES) / 0.25):.3g} TU" in said
+    short = failure(experiment={"kind": "slide", "normal_force": 1.0, "distance": 2.5})
+    assert "has 2 whole periods of the spacing, and a mean needs 3" in short
+
+
+def test_a_drive_is_too_fast_above_the_velocity_that_is_told() -> None:
+    """s √(k/m)/2π, k the smaller stiffness."""
+    bodies = sliding()["bodies"] | {"mass": 1.5, "bulk_stiffness_tangential": 1.2}
+    limit = np.sqrt(1.2 / 1.5) / (2.0 * np.pi)
+    for share, told in ((0.999, False), (1.001, True)):
+        path = {"kind": "slide", "normal_force": 1.0, "path": [[share * limit, 1.0]]}
+        with TemporaryDirectory() as folder:
+            warnings = run(read_scene(sliding(experiment=path, bodies=bodies)), folder, figures=False).warnings
+        assert ("fast" in warnings) == told
+    assert f"Use a velocity below {limit:.3g} LU/TU" in warnings["fast"]
 
 
 def test_the_static_friction_is_what_has_to_be_overcome(slid: Run) -> None:

@@ -1,4 +1,4 @@
-"""The doctor: a whole installation passes, and each defect is found by its own check."""
+"""`contact1d doctor`: a whole installation passes, and each defect is found by its own check."""
 
 from __future__ import annotations
 
@@ -32,19 +32,14 @@ def test_this_installation_is_whole(monkeypatch: pytest.MonkeyPatch, tmp_path: P
     ]
 
 
-def test_dependencies_that_are_old_or_missing(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Versions are compared with what the distribution asks for."""
+def test_what_is_old_or_missing_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Versions are compared with what the distribution asks for, packages and styles with what LAMMPS has."""
     monkeypatch.setattr(importlib.metadata, "requires", lambda name: ["numpy>=9999", "no-such-distribution"])
-    assert {"numpy", "no-such-distribution"} <= set(failed(doctor.checks()))
-
-
-def test_a_missing_package_or_style(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Both are named."""
     monkeypatch.setattr(doctor, "PACKAGES", ("RIGID", "NO-SUCH-PACKAGE"))
     monkeypatch.setattr(doctor, "STYLES", (("fix", "rigid"), ("fix", "no/such/style")))
-    check = next(check for check in doctor.checks() if check.name == "LAMMPS packages")
-    assert not check.ok
-    assert check.detail == "missing: NO-SUCH-PACKAGE, fix no/such/style"
+    found = doctor.checks()
+    assert failed(found) == ["numpy", "no-such-distribution", "LAMMPS packages"]
+    assert "missing: NO-SUCH-PACKAGE, fix no/such/style" in [check.detail for check in found]
 
 
 def test_a_lammps_that_does_not_start(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -58,19 +53,11 @@ def test_a_lammps_that_does_not_start(monkeypatch: pytest.MonkeyPatch) -> None:
     assert (check.name, check.ok, check.detail) == ("LAMMPS runs", False, "no LAMMPS here")
 
 
-def test_lammps_does_not_listen_and_would_without_the_setting(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """The worker of a session that ran accepts no connections; with MPI's own defaults it does (mpich with UCX)."""
-    monkeypatch.delenv("UCX_TLS", raising=False)
+def test_lammps_does_not_listen_and_would_without_the_setting(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The worker of a session accepts no connections; with MPI's own defaults it does (mpich with UCX)."""
+    for transports, listens in (("", False), ("all", True)):
+        stop_idle()
+        monkeypatch.setenv("UCX_TLS", transports) if transports else monkeypatch.delenv("UCX_TLS", raising=False)
+        check = next(check for check in doctor.checks() if check.name == "no network listener")
+        assert check.ok != listens, check.detail
     stop_idle()
-    with Engine.session(tmp_path) as session:
-        session.execute(doctor.TWO_ATOMS)
-        assert doctor.listening_sockets(session.pid) == []
-    stop_idle()
-    monkeypatch.setenv("UCX_TLS", "all")
-    with Engine.session(tmp_path) as session:
-        session.execute(doctor.TWO_ATOMS)
-        listeners = doctor.listening_sockets(session.pid)
-    check = next(check for check in doctor.checks() if check.name == "no network listener")
-    stop_idle()
-    assert listeners, "this MPI does not listen by itself: the setting is not needed here"
-    assert not check.ok

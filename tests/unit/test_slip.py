@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.shear import slip, stick_margin, stick_radius
+from contact1d.workflow.laws.path import legs
 
 ROUND_OFF = 1e-12
 """Relative; sums of a few products."""
@@ -19,11 +20,11 @@ def pressed(force: float, half: float = 10.0) -> Profile:
     """p = 1 − (x/a)² with a shear that resists a move to the right: min(force, μp)."""
     x = np.arange(-14.5, 15.0)
     pressure = np.maximum(1.0 - (x / half) ** 2, 0.0)
-    shear = -np.minimum(force, MU * pressure)
+    shear = -np.clip(force, -MU * pressure, MU * pressure)
     return Profile(x, 0.0 * x, 0.0 * x, pressure, shear)
 
 
-@pytest.mark.parametrize("share", [0.05, 0.3, 0.7, 0.9])
+@pytest.mark.parametrize("share", [0.05, 0.9])
 def test_the_stick_radius_of_a_parabola_is_exact(share: float) -> None:
     found = stick_radius(pressed(share * MU), MU, 1)
     assert found.value == pytest.approx(10.0 * np.sqrt(1.0 - share), rel=1e-9)
@@ -44,10 +45,8 @@ def test_where_all_slips_or_nothing_is_touched_the_stick_radius_is_0_for_sure() 
 
 
 def test_before_any_move_what_is_left_counts_on_both_sides() -> None:
-    for side in (1.0, -1.0):
-        profile = pressed(0.5 * MU)
-        turned = Profile(profile.x, profile.z_lower, profile.z_upper, profile.pressure, side * profile.shear)
-        assert stick_radius(turned, MU, 0).value == pytest.approx(10.0 * np.sqrt(0.5))
+    for share in (0.5, -0.5):
+        assert stick_radius(pressed(share * MU), MU, 0).value == pytest.approx(10.0 * np.sqrt(0.5))
 
 
 limits = st.floats(0.0, 2.0)
@@ -73,3 +72,7 @@ def test_work_is_what_is_put_in_less_what_the_spring_holds(
     assert row.work[0] == pytest.approx(dissipated, abs=size / steps)
     assert row.work[0] >= 0.0
     assert abs(row.force[0]) <= after
+
+
+def test_a_path_that_rests_where_it_turns_has_two_legs() -> None:
+    assert legs(np.asarray([0.0, 1.0, 1.0, 2.0, 2.0, 0.5])) == [slice(0, 5), slice(5, 6)]

@@ -20,8 +20,8 @@ def passed(rows: int, particles: int) -> list[Profile]:
 
 @pytest.mark.parametrize("most", [10, 40, 41])
 def test_as_many_states_are_kept_as_numbers_fit_evenly_with_both_ends(most: int) -> None:
-    for rows in (1, 2, 3, 7, 20):
-        for particles in (1, 2, 3, 5, 19, 20, 21, 50):
+    for rows in (1, 2, 7, 20):
+        for particles in (1, 2, 5, 19, 20, 21, 50):
             profiles = passed(rows, particles)
             found = states_of(profiles, most_numbers=most)
             kept = found.x[0].astype(int).tolist()

@@ -10,9 +10,8 @@ import pytest
 from numpy.typing import NDArray
 
 from contact1d.potentials import DoubleExponential, Exponential
-from contact1d.potentials import table as table_module
-from contact1d.potentials.table import MOST_POINTS, Table, table_for, write_table
-from contact1d.workflow.engine.session import Session
+from contact1d.potentials.table import FEWEST_POINTS, Table, table_for, write_table
+from tests.decks.written import lmp
 
 Array = NDArray[np.float64]
 
@@ -32,13 +31,10 @@ MEASURED = 0.02
 """Header and LAMMPS sample the same error at different places; near its largest value it changes by less than this."""
 DIGITS = 5e-3
 """The header states the error with three digits."""
-BEND = 1e-6
-"""Of the force at r = 0: next to its largest tension a force is not between its neighbours on the grid."""
 RATE = 0.25
 """Distance of the measured exponent from 4, the order of a cubic spline: the second term of its expansion."""
 
 PAIRS = """units lj
-dimension 3
 boundary f f f
 atom_style atomic
 pair_style table spline {points}
@@ -48,170 +44,101 @@ neighbor 0.1 bin
 neigh_modify exclude type 1 1 exclude type 2 2
 thermo_modify norm no
 run 0
+write_dump all custom forces fx fz modify sort id format float %.17g
+print $(pe:%.17g) file energy
 """
 
 
-def lammps_forces(session: Session, table: Table, closest: float, r: Array) -> tuple[Array, Array]:
-    """Forces [FU] (n, 3) on the upper one of n pairs, each alone, r apart along z and ε along y; and their energy."""
-    write_table(table, closest, session.folder / "interaction.table")
-    text = (session.folder / "interaction.table").read_text()
-    offset = float(re.search(r"e = (\S+) LU", text)[1])
-    apart = 2.0 * table.cutoff + 1.0
-    x = apart * np.arange(len(r))
-    lines = [f"# pairs\n\n{2 * len(r)} atoms\n2 atom types\n", f"{-1.0} {x[-1] + 1.0} xlo xhi", "-1 2 ylo yhi"]
-    lines += [f"-1 {r.max() + 1.0} zlo zhi\n\nMasses\n\n1 1\n2 1\n\nAtoms # atomic\n"]
-    for i in range(len(r)):
-        lines += [f"{2 * i + 1} 1 {x[i]:.17g} 0 0", f"{2 * i + 2} 2 {x[i]:.17g} {offset:.17g} {r[i]:.17g}"]
-    (session.folder / "pairs.data").write_text("\n".join(lines) + "\n")
-    reading = session.measure("clear\n" + PAIRS.format(points=table.points), ("pe",), ("f",))
-    force: Array = reading.atoms["f"]
+def in_lammps(table: Table, closest: float, r: Array, folder: Path, along: float = 0.0) -> tuple[Array, Array, float]:
+    """Forces along x and z [FU] (n,) on the upper one of n pairs, each alone and r apart, and their energy.
+
+    They lie ε apart along y, and in the plane of motion at the angle `along` from z.
+    """
+    write_table(table, closest, folder / "interaction.table")
+    offset = float(re.search(r"e = (\S+) LU", (folder / "interaction.table").read_text())[1])
+    x, far = (2.0 * table.cutoff + 1.0) * np.arange(len(r)), r.max() + 1.0
+    lines = [f"# pairs\n\n{2 * len(r)} atoms\n2 atom types\n", f"-1 {x[-1] + far} xlo xhi", "-1 2 ylo yhi"]
+    lines += [f"-1 {far} zlo zhi\n\nMasses\n\n1 1\n2 1\n\nAtoms # atomic\n"]
+    for i, (place, distance) in enumerate(zip(x, r, strict=True)):
+        upper = f"{place + distance * np.sin(along):.17g} {offset:.17g} {distance * np.cos(along):.17g}"
+        lines += [f"{2 * i + 1} 1 {place:.17g} 0 0", f"{2 * i + 2} 2 {upper}"]
+    (folder / "pairs.data").write_text("\n".join(lines) + "\n")
+    (folder / "in.lammps").write_text(PAIRS.format(points=table.points))
+    lmp(folder)
+    force = np.loadtxt(folder / "forces", skiprows=9)
     assert np.array_equal(force[0::2], -force[1::2])
-    return force[1::2], np.asarray(reading.values[0])
+    return force[1::2, 0], force[1::2, 1], float((folder / "energy").read_text())
 
 
 @pytest.mark.parametrize("name", LAWS)
-def test_lammps_reproduces_the_law(session: Session, name: str) -> None:
+def test_lammps_reproduces_the_law(tmp_path: Path, name: str) -> None:
     """From the closest distance to the cutoff within the error of the header; no force along x; energy as well."""
     law, cutoff, closest = LAWS[name]
     table = table_for(law, cutoff, closest, 1e-6 * float(law.force(0.0)))
     r = closest * (0.999 * cutoff / closest) ** np.linspace(0.0, 1.0, 3000)
-    force, energy = lammps_forces(session, table, closest, r)
-    header = (session.folder / "interaction.table").read_text().splitlines()
-    stated = re.search(r"force within (\S+) FU of the law for r >= (\S+) LU", "\n".join(header))
+    along, force, energy = in_lammps(table, closest, r, tmp_path)
+    stated = re.search(
+        r"force within (\S+) FU of the law for r >= (\S+) LU", (tmp_path / "interaction.table").read_text()
+    )
     assert stated is not None
     assert float(stated[2]) == pytest.approx(closest, rel=DIGITS)
-    error = np.abs(force[:, 2] - law.force(r)).max()
-    assert error <= float(stated[1]) * (1 + DIGITS + MEASURED)
-    assert error >= float(stated[1]) * (1 - DIGITS - MEASURED)
+    error = np.abs(force - law.force(r)).max()
+    assert error == pytest.approx(float(stated[1]), rel=DIGITS + MEASURED)
     assert float(stated[1]) <= 1e-6 * float(law.force(0.0)) * (1 + DIGITS)
-    assert not force[:, 0].any()
+    assert not along.any()
     exact = float(np.sum(law.energy(r) - law.energy(cutoff)))
-    assert float(energy) == pytest.approx(exact, abs=len(r) * error * cutoff)
+    assert energy == pytest.approx(exact, abs=len(r) * error * cutoff)
 
 
 @pytest.mark.parametrize("name", LAWS)
-def test_table_force_is_what_lammps_computes(session: Session, name: str) -> None:
-    """`Table.force`, on which the error measurement stands, from half the closest distance to the cutoff."""
+def test_lammps_computes_the_tables_own_force_down_to_a_particle_on_its_opposite_and_none_beyond_the_cutoff(
+    tmp_path: Path, name: str
+) -> None:
+    """`Table.force`, on which the error measurement stands; across the core it keeps its sign and is bounded."""
     law, cutoff, closest = LAWS[name]
-    for points in (8000, 64_000):
-        table = Table(law, cutoff, points)
-        r = 0.5 * closest * (2 * 0.999 * cutoff / closest) ** np.linspace(0.0, 1.0, 2000)
-        force, _ = lammps_forces(session, table, closest, r)
-        cells = r**2 / table.cell
-        allowed = END_CONDITION * np.sqrt(1 + cells) * DECAY**cells + ROUND_OFF
-        assert (np.abs(force[:, 2] - table.force(r)) <= float(law.force(0.0)) * allowed).all()
+    table, first = Table(law, cutoff, 8000), float(law.force(0.0))
+    inside = 0.5 * closest * (2 * 0.999 * cutoff / closest) ** np.linspace(0.0, 1.0, 600)
+    core = table.core * np.linspace(0.01, 3.0, 100)
+    ends = [0.0, cutoff * (1 - 1e-9), cutoff * (1 + 1e-6), 1.5 * cutoff]
+    along, force, _ = in_lammps(table, closest, np.concatenate([ends, core, inside]), tmp_path)
+    assert along[0] == force[0] == 0.0
+    assert force[1] == pytest.approx(float(law.force(cutoff)), rel=1e-5)
+    assert not force[2:4].any()
+    near, rest = force[4:104], force[104:]
+    assert (near > 0).all()
+    assert near.max() <= 1.05 * first
+    out = core >= 2.0 * table.core
+    assert np.abs(near[out] / law.force(core[out]) - 1.0).max() < 0.05
+    cells = inside**2 / table.cell
+    allowed = END_CONDITION * np.sqrt(1 + cells) * DECAY**cells + ROUND_OFF
+    assert (np.abs(rest - table.force(inside)) <= first * allowed).all()
 
 
-@pytest.mark.parametrize("name", LAWS)
-def test_no_force_beyond_the_cutoff(session: Session, name: str) -> None:
-    """Exactly none, and the law's own right before it."""
-    law, cutoff, closest = LAWS[name]
-    table = Table(law, cutoff, 4000)
-    r = np.asarray([cutoff * (1 - 1e-9), cutoff * (1 + 1e-6), 1.5 * cutoff])
-    force, _ = lammps_forces(session, table, closest, r)
-    assert force[0, 2] == pytest.approx(float(law.force(cutoff)), rel=1e-5)
-    assert not force[1:].any()
-
-
-@pytest.mark.parametrize("name", LAWS)
-def test_energy_and_force_of_the_table_agree(name: str) -> None:
-    """F = −dE/dr_L between entries, across the core as well: a minimiser may look at energies."""
-    law, cutoff, _ = LAWS[name]
-    distance, energy, force = Table(law, cutoff, 16_000).entries()
-    middle = -np.diff(energy) / np.diff(distance)
-    low, high = np.minimum(force[:-1], force[1:]), np.maximum(force[:-1], force[1:])
-    slack = BEND * float(law.force(0.0))
-    assert (middle >= low - slack).all()
-    assert (middle <= high + slack).all()
-
-
-@pytest.mark.parametrize("name", LAWS)
-def test_a_particle_may_stand_on_its_opposite(session: Session, name: str) -> None:
-    """At r = 0 the run goes on with no force in the plane; across the core the force keeps its sign and is bounded."""
-    law, cutoff, closest = LAWS[name]
-    table = Table(law, cutoff, 4000)
-    r = np.concatenate([[0.0], table.core * np.linspace(0.01, 3.0, 300)])
-    force, _ = lammps_forces(session, table, closest, r)
-    assert np.isfinite(force).all()
-    assert force[0, 0] == force[0, 2] == 0.0
-    assert (force[1:, 2] > 0).all()
-    assert force[:, 2].max() <= 1.05 * float(law.force(0.0))
-    out = r >= 2.0 * table.core
-    assert np.abs(force[out, 2] / law.force(r[out]) - 1.0).max() < 0.05
-
-
-def test_the_force_in_the_plane_is_central(session: Session) -> None:
-    """A pair at 37° in the plane: the force points along the pair and has the law's size."""
-    table = Table(ADHESIVE, 2.5, 16_000)
-    write_table(table, 0.07, session.folder / "interaction.table")
-    for r in (0.1, 0.3604, 0.8):
-        x, z = 0.8 * r, 0.6 * r
-        atoms = f"create_atoms 1 single 0 0 0\ncreate_atoms 2 single {x:.17g} {table.plane_offset:.17g} {z:.17g}\n"
-        box = "region all block -9 9 -9 9 -9 9\ncreate_box 2 all\nmass * 1\n"
-        text = PAIRS.format(points=table.points).replace("read_data pairs.data\n", box + atoms)
-        force = session.measure("clear\n" + text, (), ("f",)).atoms["f"][1]
-        wanted = float(ADHESIVE.force(r)) * np.asarray([0.8, 0.6])
-        assert force[[0, 2]] == pytest.approx(wanted, abs=table.error_beyond(0.07) + ROUND_OFF)
-
-
-def test_error_falls_with_the_fourth_power_of_the_cell(session: Session) -> None:
-    """As measured in LAMMPS beyond a fixed distance, and as `error_beyond` says."""
-    r = 0.2 * (2.4 / 0.2) ** np.linspace(0.0, 1.0, 4000)
-    points = np.asarray([4000, 8000, 16_000, 32_000])
+def test_error_falls_with_the_fourth_power_of_the_cell_and_the_force_in_the_plane_is_central(tmp_path: Path) -> None:
+    """As measured in LAMMPS beyond a fixed distance, and as `error_beyond` says; pairs lie at 37° from the normal."""
+    r, angle = 0.2 * (2.4 / 0.2) ** np.linspace(0.0, 1.0, 4000), np.arcsin(0.6)
     measured, stated = [], []
-    for count in points:
-        table = Table(ADHESIVE, 2.5, int(count))
-        force, _ = lammps_forces(session, table, 0.2, r)
-        measured.append(np.abs(force[:, 2] - ADHESIVE.force(r)).max())
+    for points in (4000, 8000):
+        table = Table(ADHESIVE, 2.5, points)
+        along, force, _ = in_lammps(table, 0.2, r, tmp_path, angle)
+        assert 0.8 * along == pytest.approx(0.6 * force, abs=ROUND_OFF)
+        measured.append(np.abs(np.hypot(along, force) - np.abs(ADHESIVE.force(r))).max())
         stated.append(table.error_beyond(0.2))
-    orders = -np.diff(np.log2(measured))
-    assert orders == pytest.approx(4.0, abs=RATE)
+    assert -np.diff(np.log2(measured)) == pytest.approx(4.0, abs=RATE)
     assert stated == pytest.approx(measured, rel=MEASURED)
 
 
-@pytest.mark.parametrize("error", [1e-2, 1e-4, 1e-7])
-def test_the_smallest_table_that_is_good_enough(error: float) -> None:
-    """Half as many points would not do, or 2000 are enough."""
-    table = table_for(ADHESIVE, 2.5, 0.07, error)
-    assert table.error_beyond(0.07) <= error
-    half = Table(ADHESIVE, 2.5, table.points // 2)
-    assert table.points == table_module.FEWEST_POINTS or half.error_beyond(0.07) > error
-
-
-def test_an_error_out_of_reach_ends_at_the_largest_table(tmp_path: Path) -> None:
-    """The header then states what was reached, not what was asked for."""
-    table = table_for(ADHESIVE, 2.5, 0.003, 1e-15)
-    assert MOST_POINTS // 2 < table.points <= MOST_POINTS
-    write_table(table, 0.003, tmp_path / "t.table")
-    stated = re.search(r"force within (\S+) FU", (tmp_path / "t.table").read_text())
-    assert stated is not None
-    assert float(stated[1]) == pytest.approx(table.error_beyond(0.003), rel=DIGITS)
-    assert float(stated[1]) > 1e-15
-
-
-def test_the_file_is_whole(tmp_path: Path) -> None:
-    """Header, section, one row per point, 17 digits: what is read back is bitwise what was meant; no .part is left."""
-    table = Table(ADHESIVE, 2.5, 2500)
-    path = tmp_path / "interaction.table"
+def test_the_smallest_table_is_taken_that_is_good_enough_and_its_file_is_whole(tmp_path: Path) -> None:
+    """Half as many points would not do; what is read back is bitwise what was meant, and no .part is left."""
+    table, path = table_for(ADHESIVE, 2.5, 0.07, 1e-4), tmp_path / "interaction.table"
+    assert table.error_beyond(0.07) <= 1e-4 < Table(ADHESIVE, 2.5, table.points // 2).error_beyond(0.07)
+    assert table_for(ADHESIVE, 2.5, 0.07, 1.0).points == FEWEST_POINTS
     write_table(table, 0.07, path)
     assert [file.name for file in tmp_path.iterdir()] == ["interaction.table"]
-    text = path.read_text()
-    assert "V(r) = 0.17999999999999999 exp(-r/0.13) - 0.089999999999999997 exp(-r/0.26000000000000001)" in text
-    head, rows = text.split("DOUBLE_EXPONENTIAL\n")
-    assert all(line.startswith("#") or not line for line in head.splitlines())
+    head, rows = path.read_text().split("DOUBLE_EXPONENTIAL\n")
+    assert "V(r) = 0.17999999999999999 exp(-r/0.13) - 0.089999999999999997 exp(-r/0.26000000000000001)" in head
     first, _, *body = rows.splitlines()
     distance, energy, force = table.entries()
-    assert first == f"N 2500 RSQ {distance[0]:.17g} {distance[-1]:.17g}"
+    assert first == f"N {table.points} RSQ {distance[0]:.17g} {distance[-1]:.17g}"
     read = np.asarray([line.split() for line in body], dtype=float)
-    assert np.array_equal(read.T, [np.arange(1, 2501), distance, energy, force])
-
-
-def test_without_attraction_no_attractive_term(tmp_path: Path) -> None:
-    """Neither in the header nor in the force."""
-    write_table(Table(REPULSIVE, 1.8, 2000), 0.03, tmp_path / "t.table")
-    text = (tmp_path / "t.table").read_text()
-    law = re.search(r"^# V\(r\) = (.*), r in the plane", text, re.MULTILINE)
-    assert law is not None
-    assert law[1] == "0.17999999999999999 exp(-r/0.13)"
-    rows = text.split("RSQ", 1)[1].splitlines()[2:]
-    assert min(float(row.split()[3]) for row in rows) > 0.0
+    assert np.array_equal(read.T, [np.arange(1, table.points + 1), distance, energy, force])
