@@ -188,7 +188,7 @@ def test_a_slide_is_loaded_under_its_own_drag_where_that_is_enough_and_no_more_t
     elif critical < within / 1.3:  # rows take whole numbers of steps
         assert used == [pytest.approx(critical, rel=SLOPE), drag]
         noisy = written(sliding(damping={"coefficient": drag}, plate=plate, bodies=bodies, noise=HEAT["noise"]))
-        assert noisy.number("noise_calm_damp") == pytest.approx(MASS / critical, rel=SLOPE)
+        assert noisy.number("noise_settling_damp") == pytest.approx(MASS / critical, rel=SLOPE)
     else:
         assert used[0] <= within * (1.0 + EXACT)
     swing = 2.0 * math.pi * math.sqrt(moving / (max(1.0, touching) * 0.5 * spring))
