@@ -53,16 +53,6 @@ def test_a_scene_varies_in_numbers_that_are_no_physics_and_in_its_effects(
         assert finer(again) == finer(variant)
 
 
-def test_with_a_spacing_stiffness_per_length_is_kept() -> None:
-    scene = read_scene(SCENES / "mindlin.toml")
-    given = [variant for edit, variant in variants_of(scene) if SPACING in edit.values]
-    for variant in [each for each in given if each.bodies.given_spacing != "auto"] + [finer(scene)]:
-        assert variant.bodies.spacing != scene.bodies.spacing
-        for name in ("bulk_stiffness", "tangential_stiffness"):
-            per_length = getattr(scene, name) / scene.bodies.spacing
-            assert getattr(variant, name) / variant.bodies.spacing == pytest.approx(per_length, rel=ROUND_OFF)
-
-
 def test_a_reference_is_finer_in_all_and_without_time_where_this_is_no_physics() -> None:
     path = read_scene(SCENES / "hertz_plane.toml")
     found = finer(finer(path))

@@ -83,11 +83,6 @@ def test_an_interrupted_write_leaves_the_old_table(curve: Columns, tmp_path: Pat
     assert path.read_bytes() == before
 
 
-def test_columns_of_a_curve_are_equally_long() -> None:
-    with pytest.raises(ValueError, match="equally long"):
-        Columns({"displacement": np.zeros(2), "force": np.zeros(1)})
-
-
 @pytest.mark.parametrize(
     ("text", "message"),
     [

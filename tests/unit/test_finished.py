@@ -8,7 +8,6 @@ import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -116,16 +115,10 @@ def test_results_are_a_table_of_latex(finished: Run) -> None:
     ]
 
 
-def test_a_table_is_a_dataset_of_xarray_where_that_is_installed(finished: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_dataset_says_what_to_install(finished: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "xarray", None)
     with pytest.raises(Contact1dError, match=r"needs xarray: install it with pip install 'contact1d\[tables\]'"):
         finished.to_xarray()
-    monkeypatch.setitem(sys.modules, "xarray", SimpleNamespace(Dataset=lambda variables, attrs: (variables, attrs)))
-    variables, attributes = finished.to_xarray()
-    dimension, column, own = variables["force"]
-    assert (dimension, own) == ("row", {"units": "N"})
-    np.testing.assert_array_equal(column, finished.curve.force)
-    assert attributes["adhesion_force"] == str(finished.results.adhesion_force)
 
 
 def test_a_run_leaves_a_complete_folder_and_a_new_one_takes_it_away(plane: MakeScene, tmp_path: Path) -> None:

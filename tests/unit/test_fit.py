@@ -23,6 +23,8 @@ STIFFNESS = 2.0 * MODULUS * SPHERE.zero_load_radius
 DEPTH = SPHERE.zero_load_radius**2 / RADIUS
 TABOR = (RADIUS * WORK**2 / MODULUS**2) ** (1.0 / 3.0)
 """Range of Maugis's contact with µ = 1 [m]."""
+SPREAD = 0.01 * 1.5 * math.pi * WORK * RADIUS
+"""Of the noise of a curve [N], where nothing else is said."""
 ASSUMED = 0.3e-9
 """Range of attraction where none is given [m]."""
 BASE = {
@@ -40,10 +42,15 @@ def plan(data: Path, **changes: Any) -> dict[str, Any]:
 
 
 def curve(
-    kind: str = "JKR", stiffness: float = STIFFNESS, sphere: Sphere = SPHERE, share: float = 0.01, memory: float = 5.0
+    kind: str = "JKR",
+    stiffness: float = STIFFNESS,
+    sphere: Sphere = SPHERE,
+    share: float = 0.01,
+    memory: float = 5.0,
+    points: int = 200,
 ) -> Array:
-    """Columns z [nm] and F [nN], with noise that is a share of the pull-off force."""
-    z = np.linspace(-2.5, 3.0, 200) * DEPTH
+    """Columns z [nm] and F [nN] of an approach and a retraction, with noise that is a share of the pull-off force."""
+    z = np.linspace(-2.5, 3.0, points) * DEPTH
     draw = np.random.default_rng(1)
     both = noise(draw, 2 * z.size, memory)
     F = measured(sphere, kind, stiffness, z) + share * 1.5 * math.pi * WORK * RADIUS * both
@@ -85,7 +92,7 @@ def test_the_command_leaves_the_parameters_with_intervals_that_hold_them(folder:
         low, high = found["parameters"][name]["interval"]
         assert low < exact < high
     assert found["contact_modulus"]["interval"] == pytest.approx(found["parameters"][E]["interval"])
-    assert found["noise"]["value"] == pytest.approx(0.01 * 1.5 * math.pi * WORK * RADIUS, rel=0.3)
+    assert found["noise"]["value"] == pytest.approx(SPREAD, rel=0.3)
     assert found["reduced_chi_squared"] == pytest.approx(1.0, abs=0.5)
     assert found["tabor_parameter"]["value"] == pytest.approx(TABOR / ASSUMED, rel=0.2)
     assert found["tabor_parameter"]["assumed"]
@@ -107,24 +114,21 @@ def test_the_command_leaves_the_parameters_with_intervals_that_hold_them(folder:
 def test_the_table_of_a_fit_is_the_measured_curve_in_si_beside_the_fitted_one(
     folder: Path, found: dict[str, Any]
 ) -> None:
-    rows, spread = curve(), 0.01 * 1.5 * math.pi * WORK * RADIUS
+    rows = curve()
     with (folder / "out" / "curve.csv").open(encoding="utf-8", newline="") as file:
         table = list(csv.DictReader(file))
-    assert found["points"]["in_file"] == len(rows)
     assert [int(row["line"]) for row in table] == list(range(2, 2 + len(rows)))
     assert [row["segment"] for row in table] == ["approach"] * 200 + ["retract"] * 200
     position, force, predicted = (
         np.array([float(row[name]) for row in table]) for name in ("position [m]", "force [N]", "predicted force [N]")
     )
-    assert position == pytest.approx(1e-9 * rows[:, 0], rel=1e-6, abs=1e-14)
-    assert force == pytest.approx(1e-9 * rows[:, 1], rel=1e-6, abs=1e-14)
+    assert np.column_stack([position, force]) == pytest.approx(1e-9 * rows, rel=1e-6, abs=1e-14)
     used = np.array([row["compared"] == "yes" for row in table])
-    assert used.sum() == found["points"]["compared"]
-    assert float(np.std((force - predicted)[used])) == pytest.approx(spread, rel=0.4)
+    assert found["points"] == {"in_file": len(rows), "compared": used.sum()}
+    assert float(np.std((force - predicted)[used])) == pytest.approx(SPREAD, rel=0.4)
     # Mean variance of a prediction by four unknowns under white noise; one with a memory averages out less.
     least = 1.96 * found["noise"]["value"] * math.sqrt(4.0 / used.sum())
     assert least <= found["run"]["allowed"] < 10.0 * least
-    assert found["fitted_range"]["position"] == pytest.approx([position[used].min(), position[used].max()], rel=1e-6)
 
 
 def test_what_is_known_is_left_when_a_fit_is_broken_off(found: dict[str, Any], tmp_path: Path) -> None:
@@ -207,7 +211,7 @@ def test_a_cone_has_no_radius_for_dmt(tmp_path: Path) -> None:
 
 def test_a_map_has_a_line_for_each_curve(tmp_path: Path) -> None:
     """One of an approach alone, and one whose jumps are hardly seen beside the noise."""
-    parts = [curve(), curve()[:200], curve(share=0.3, memory=0.0)]
+    parts = [curve(points=100), curve()[:200], curve(share=0.3, memory=0.0)]
     rows = [np.column_stack([np.full((len(part), 3), [i, 10.0 * i, 5.0]), part]) for i, part in enumerate(parts)]
     path = written(tmp_path / "map.csv", np.vstack(rows), "curve,x [µm],y [µm],z [nm],F [nN]")
     done = fit_many(plan(path), tmp_path / "fits", workers=1)
@@ -250,12 +254,9 @@ def test_what_a_curve_does_not_tell_is_refused(
     ("text", "words"),
     [
         ("", "is empty"),
-        ("a,b\n1,2\n", "name the columns"),
         ("z,F\n" + "1,2\n" * 60, "z and F without a unit"),
-        ("z [nm],F [nN]\n", "not as many cells"),
         ("z [nm],F [nN]\n" + "-250,0,19,1383\n" * 60, "line 2: has 4 numbers under 2 names"),
         ("z [nm],F [mV]\n" + "1,2\n" * 60, "column F is in volts"),
-        ("z [nm],F [kg]\n" + "1,2\n" * 60, "must be a force"),
         ("z [nm],F [nN]\n" + "1,2\n" * 5 + "1,\n" + "1,2\n" * 9 + "1,x\n", "line 7: F is empty or no number; leave"),
     ],
 )
@@ -266,14 +267,6 @@ def test_a_file_that_is_none(tmp_path: Path, text: str, words: str) -> None:
         fit(plan(path))
     assert words in str(error.value)
     assert "\n" not in str(error.value)
-
-
-def test_a_file_that_is_too_large_is_refused_before_it_is_read(tmp_path: Path) -> None:
-    path = tmp_path / "curve.csv"
-    with path.open("wb") as file:
-        file.truncate(10**9)  # no line in it is one of a curve
-    with pytest.raises(Contact1dError, match="average neighbouring points"):
-        fit(plan(path))
 
 
 def test_mistakes_of_a_fit_file_are_named_together() -> None:

@@ -14,7 +14,6 @@ from contact1d import Run, read_scene, run
 from contact1d.__main__ import app
 from contact1d.analysis import figures, plots
 from contact1d.analysis.chart import Axis, Chart, Panel, Series
-from contact1d.analysis.pressure import Profile
 from contact1d.workflow.units import Scales, scale_of
 from tests.pages import figures_on
 from tests.scenes import chains
@@ -60,12 +59,6 @@ def test_the_line_load_is_a_step_for_each_particle_with_the_contact_radius_marke
             if abs(p) > 0.01 * np.abs(shown.pressure).max():
                 assert {(x - 0.5, p), (x + 0.5, p)} <= (compression if p > 0.0 else tension)
         assert axis.get_ylabel() == "line load (FU/LU)"
-
-
-def test_a_state_without_contact_says_so() -> None:
-    x = np.arange(5.0)
-    (axis,) = drawn(figures.pressure({"final": Profile(x, x, x, 0.0 * x, x)}, {}))
-    assert axis.get_title(loc="left") == "final state, no contact"
 
 
 def test_jkr_over_displacement_obeys_its_own_equations(pulled: Run) -> None:
@@ -189,16 +182,6 @@ def test_axes_words_and_ticks_are_in_si() -> None:
     labels = [float(text.get_text().replace("\N{MINUS SIGN}", "-")) for text in bare.get_xticklabels()]
     assert labels == pytest.approx(list(bare.get_xticks()))
     assert list(axis.get_lines()[0].get_xdata()) == pytest.approx([0.0, 80.0])
-
-
-@pytest.mark.parametrize(("log", "numbers"), [(False, (-3.0, 5.0)), (True, (0.01, 300.0)), (False, (0.5, 0.5 + 1e-13))])
-def test_an_axis_ends_around_its_numbers_and_a_line_across_at_its_ends(log: bool, numbers: tuple[float, float]) -> None:
-    across = Series(np.array([-np.inf, np.inf]), np.full(2, numbers[0]))
-    line = Series(np.array(numbers), np.array(numbers))
-    (axis,) = drawn(Chart(Axis("x", log=log), [Panel(Axis("y"), [line, across])]))
-    low, high = axis.get_xlim()
-    assert low < numbers[0] <= numbers[1] < high
-    assert list(axis.get_lines()[1].get_xdata()) == [low, high]
 
 
 def pressure(r: np.ndarray[Any, Any], p: np.ndarray[Any, Any], **theory: figures.Theory) -> Any:

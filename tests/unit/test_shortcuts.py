@@ -53,10 +53,11 @@ def test_figures_are_drawn_when_they_are_asked_for() -> None:
         "import sys, contact1d;"
         f"run = contact1d.sphere('2 mm', **{PAIR}).load('1 mN');"
         "assert not [*run.folder.glob('*.png')];"
-        "assert not {'matplotlib', 'pint'} & set(sys.modules);"
-        "assert run.plot()._repr_png_().startswith(bytes([137]) + b'PNG')"
+        "assert not {'matplotlib', 'pint'} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True, timeout=120)
+    run = contact1d.sphere("2 mm", **PAIR).load("1 mN")
+    assert run.plot()._repr_png_().startswith(b"\x89PNG")
 
 
 def test_a_stiff_tip_has_one_answer_at_both_doors(tmp_path: Path) -> None:
