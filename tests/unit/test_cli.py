@@ -73,6 +73,8 @@ def test_run_prints_numbers_in_si_closed_forms_and_a_picture() -> None:
     (radius,) = (line for line in rest if "contact radius a" in line)
     hertz = (0.75 * 4e-6 * 50e-6 / 1e6) ** (1.0 / 3.0) * 1e6
     assert re.search(rf"± .* µm +Hertz {hertz:.5g} µm \([+-].*%\)$", radius)
+    top = rest[next(i for i, line in enumerate(rest) if line.startswith("line load")) + 1]
+    assert "█" in top  # as high as the picture
     axis = next(i for i, line in enumerate(rest) if "─" in line)
     assert [any("█" in line for line in part) for part in (rest[:axis], rest[axis + 1 :])] == [True, False]
     assert next(line for line in rest if "^" in line).count("^") == 2
@@ -88,6 +90,7 @@ def test_a_run_that_fails_exits_with_3_and_says_why_in_words() -> None:
     done = contact1d("run", "plane.toml", "--set", "experiment.force=30")
     assert done.exit_code == 3
     assert "end of the chain" in done.stderr
+    assert "files kept in " in done.stderr
     assert "±" not in done.stdout
 
 

@@ -152,6 +152,17 @@ def test_what_is_known_is_left_when_a_fit_is_broken_off(found: dict[str, Any], t
     assert low < MODULUS < high < low + free[1] - free[0]
 
 
+def test_what_is_known_of_a_parameter_counts_as_a_measurement(found: dict[str, Any], tmp_path: Path) -> None:
+    """Known as well as measured, and two half-widths of the interval off: the mean of both."""
+    entry = found["parameters"][E]
+    half_width = 0.5 * (entry["interval"][1] - entry["interval"][0])
+    known = f"{entry['value'] + 2.0 * half_width} ± {half_width} Pa"
+    base = BASE | {"material": {"contact_modulus": known}}
+    result = fit(plan(written(tmp_path / "curve.csv", curve()), base=base))
+    assert "counts as a measurement" in result.warnings["prior"]
+    assert result.fit.values[E] == pytest.approx(entry["value"] + half_width, abs=0.2 * half_width)
+
+
 def test_a_jump_that_is_small_beside_the_force_in_contact(tmp_path: Path) -> None:
     rows = curve(sphere=Sphere(MODULUS, 0.1 * WORK, RADIUS))
     result = fit(plan(written(tmp_path / "curve.csv", rows)))
