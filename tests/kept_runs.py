@@ -17,12 +17,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import Run, Scene, read_scene
+from contact1d import Run, RunError, Scene, load_run, read_scene
 from contact1d.analysis.curve import Columns, profile_columns
 from contact1d.analysis.pressure import Profile
-from contact1d.workflow.runs.finished import Results, read_run
-from contact1d.workflow.runs.report import quantities_in
-from contact1d.workflow.units import Quantity
 from validation.paper.fig9 import asperity
 
 KEPT = Path(__file__).parents[1] / "validation" / "results" / "runs.json.gz"
@@ -78,10 +75,18 @@ def _write(found: Mapping[str, Any]) -> None:
     KEPT.write_bytes(gzip.compress(text.encode(), mtime=0))
 
 
+def _finished_or_failed(folder: Path) -> Run:
+    try:
+        return load_run(folder).model
+    except RunError:
+        document = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+        return Run(folder, document, read_scene(document["scene"]), {})
+
+
 def keep(runs: Path) -> None:
     """Write what is read of all runs in a folder."""
-    found = {folder.name: kept(read_run(folder).model, folder.name) for folder in sorted(runs.iterdir())
-             if (folder / "results.json").is_file()}  # fmt: skip
+    folders = (folder for folder in sorted(runs.iterdir()) if (folder / "results.json").is_file())
+    found = {folder.name: kept(_finished_or_failed(folder), folder.name) for folder in folders}
     _write({"runs": found})
     kept_runs.cache_clear()
 
@@ -109,10 +114,7 @@ def _run(name: str, entry: dict[str, Any]) -> Run:
 
 def in_model_units(run: Run) -> Run:
     """A run whose tables are in units of the model already, as `Run.model`."""
-    entries = quantities_in(run.document).items()
-    numbers = {name: Quantity(entry["value"], entry["uncertainty"], entry["unit"]) for name, entry in entries}
-    vars(run).update(results=Results(numbers), model=run)
-    return run
+    return run.model
 
 
 @cache

@@ -1,11 +1,16 @@
-"""What a page shows of a run or of a record, between its markers: compared with it, and written with WRITE_DOCS=1."""
+"""What a page shows of a run or of a record, between its markers: compared with it, and written with WRITE_DOCS=1.
+
+Also the data of the figures on a page of `contact1d report`.
+"""
 
 from __future__ import annotations
 
+import json
 import os
 import re
 from decimal import Decimal
 from pathlib import Path
+from typing import Any
 
 from validation.page import write_between
 
@@ -30,3 +35,11 @@ def require_shown(page: str, name: str, text: str, exactly: bool = False) -> Non
     for there, here in zip(NUMBER.findall(shown), NUMBER.findall(text), strict=True):
         last = Decimal((0, (1,), int(Decimal(there).as_tuple().exponent))) if "." in there else 0
         assert abs(Decimal(there) - Decimal(here)) <= last, f"{page}: {there}"
+
+
+def figures_on(page: Path) -> dict[str, Any]:
+    """The data of the figures on a page of `contact1d report`."""
+    found = re.search(r'<script type="application/json" id="data">(.*?)</script>', page.read_text("utf-8"), re.DOTALL)
+    assert found
+    read: dict[str, Any] = json.loads(found[1])
+    return read

@@ -1,15 +1,13 @@
-"""A sweep of a quick scene, and executors that keep what they are given."""
+"""A sweep of a quick scene, executors that keep what they are given, and what is no results.json of a run."""
 
 from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import Executor, Future
 from pathlib import Path
 from typing import Any
-
-from contact1d.workflow.sweep.table import TABLE, Answer
 
 PLANE: dict[str, Any] = {
     "title": "on a plane",
@@ -21,6 +19,7 @@ PLANE: dict[str, Any] = {
 }  # fmt: skip
 RADIUS = "bodies.profile.radius"
 FORCE = "experiment.force"
+RADIUS_IN_WORDS = "radius of curvature R at the apex"
 
 
 def plane(*axes: Mapping[str, Any], **more: Any) -> dict[str, Any]:
@@ -43,22 +42,41 @@ class Here(Executor):
         self.given += [path.name for _, path in args[0]]
         future: Future[Any] = Future()
         try:
-            future.set_result(fn(*args, **kwargs))
+            future.set_result(self.run(fn, *args))
         except Exception as error:
             future.set_exception(error)
         return future
 
+    def run(self, fn: Any, tasks: Any) -> Any:
+        """Run tasks, each a scene and a folder."""
+        return fn(tasks)
 
-class Stub(Here):
-    """Answers without running anything."""
 
-    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        return super().submit(lambda tasks: [Answer("failed", "a stub")] * len(tasks), *args)
+class Lost(Here):
+    """Runs nothing, as a node of a cluster that is lost."""
+
+    def run(self, fn: Any, tasks: Any) -> Any:
+        raise RuntimeError("the node is lost")
+
+
+class Stated(Here):
+    """Leaves runs with stated displacements [LU] and uncertainties, in turn, beside the other results of a run."""
+
+    def __init__(self, document: Mapping[str, Any], stated: Iterable[tuple[float, float]]) -> None:
+        super().__init__()
+        self.document, self.stated = document, iter(stated)
+
+    def run(self, fn: Any, tasks: Any) -> Any:
+        for (_, folder), (value, uncertainty) in zip(tasks, self.stated, strict=False):
+            entry = {"value": value, "uncertainty": uncertainty, "unit": "LU"}
+            folder.mkdir(parents=True)
+            (folder / "results.json").write_text(json.dumps(self.document | {"displacement": entry, "theory": []}))
+        raise RuntimeError("the job ended without its answer")
 
 
 def rows(folder: Path) -> list[dict[str, str]]:
     """The table of a sweep."""
-    with (folder / TABLE).open(newline="") as file:
+    with (folder / "results.csv").open(newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
 
 
@@ -81,13 +99,11 @@ def lacking(key: str) -> Callable[[Document], str]:
 
 
 BROKEN: dict[str, Callable[[Document], str]] = {
-    "empty": lambda _: "", "half": lambda whole: json.dumps(whole)[:-200], "words": lambda _: "results",
-    "a table": lambda _: "{}", "a list": lambda _: "[1, 2]", "null": lambda _: "null", "a text": lambda _: '"done"',
-    "nested": lambda _: "[" * 5000 + "]" * 5000, "digits": with_force(value=10**400),
+    "empty": lambda _: "", "half": lambda whole: json.dumps(whole)[:-200],
+    "a list": lambda _: "[1, 2]", "nested": lambda _: "[" * 5000 + "]" * 5000, "digits": with_force(value=10**400),
     "NaN": with_force(value=float("nan")), "Infinity": with_force(uncertainty=float("inf")),
-    "words for a number": with_force(value="1.0"), "truth for a number": with_force(value=True),
-    "no uncertainty": changed(force={"value": 1.0, "unit": "FU"}), "no unit": with_force(unit=None),
-    "no status": lacking("status"), "another status": changed(status="well"), "no error": changed(status="failed"),
+    "truth for a number": with_force(value=True), "no uncertainty": changed(force={"value": 1.0, "unit": "FU"}),
+    "no unit": with_force(unit=None), "another status": changed(status="well"), "no error": changed(status="failed"),
     "an error without words": changed(status="failed", error={}), "no scene": lacking("scene"),
     "no warnings": lacking("warnings"), "other warnings": changed(warnings=[3]), "other times": changed(timing=3),
     "a theory without values": changed(theory=[{"name": "Hertz"}]), "an accuracy in words": changed(accuracy="high"),

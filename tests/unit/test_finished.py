@@ -1,4 +1,4 @@
-"""A finished run from memory and from its folder: one face; and folders that hold no run."""
+"""A run and its folder: what is written, replaced and refused; a finished run from memory and from its folder."""
 
 from __future__ import annotations
 
@@ -8,16 +8,18 @@ import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import contact1d
-from contact1d import Contact1dError, FolderError, Quantity, Run, RunError, Scene, load_run, run
+from contact1d import Contact1dError, FolderError, Quantity, Run, RunError, Scene, load_run, read_scene, run, write_deck
 from tests.sweeps import BROKEN
 
 MakeScene = Callable[..., Scene]
+ALWAYS = {
+    "results.json", "curve.csv", "profile.csv", "scene.toml", "system.data", "in.lammps", "log.lammps", "curve.txt",
+}  # fmt: skip
 STEEL = {"youngs_modulus": 210e9, "poisson_ratio": 0.3}
 SHORT = 1300
 """Characters that a run shows of itself, sentences of warnings among them; it has hundreds of thousands of numbers."""
@@ -77,27 +79,13 @@ def test_a_run_draws_its_figures_and_gives_its_atoms(finished: Run) -> None:
     files = {path.stem for path in finished.folder.glob("*.png")}
     assert files == {"force_displacement", "force_radius", "pressure", "pressure_3d"}
     loaded = load_run(finished.folder)
-    for one in (finished, loaded):
-        assert [axis.get_xlabel() for axis in one.plot().axes] == ["displacement (nm), compression positive"]
-        assert len(one.plot("pressure").axes) == 2
-        assert one.plot().get_suptitle().startswith(one.scene.title)
-        there = "force_displacement, force_radius, pressure, pressure_3d"
-        with pytest.raises(ValueError, match=f"no figure 'friction', it has {there}"):
-            one.plot("friction")
-        np.testing.assert_array_equal(one.atoms().positions, contact1d.atoms(finished.folder).positions)
-        assert len(one.atoms(0)) == 160
-
-
-def test_numbers_are_there_before_the_figures(plane: MakeScene, tmp_path: Path) -> None:
-    seen: list[Run] = []
-
-    def printed(run: Run) -> None:
-        assert json.loads((run.folder / "results.json").read_text())["status"] == "done"
-        assert not [*run.folder.glob("*.png")]
-        seen.append(run)
-
-    assert seen == [run(plane(), tmp_path / "run", printed=printed)]
-    assert (tmp_path / "run" / "pressure.png").is_file()
+    assert [axis.get_xlabel() for axis in loaded.plot().axes] == ["displacement (nm), compression positive"]
+    assert loaded.plot().get_suptitle().startswith(loaded.scene.title)
+    there = "force_displacement, force_radius, pressure, pressure_3d"
+    with pytest.raises(ValueError, match=f"no figure 'friction', it has {there}"):
+        loaded.plot("friction")
+    np.testing.assert_array_equal(finished.atoms().positions, contact1d.atoms(finished.folder).positions)
+    assert len(loaded.atoms(0)) == 160
 
 
 def test_results_and_tables_go_to_other_programs(finished: Run, tmp_path: Path) -> None:
@@ -127,26 +115,54 @@ def test_results_are_a_table_of_latex(finished: Run) -> None:
     ]
 
 
-def test_a_table_is_a_dataset_of_xarray_where_that_is_installed(finished: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_dataset_says_what_to_install(finished: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "xarray", None)
     with pytest.raises(Contact1dError, match=r"needs xarray: install it with pip install 'contact1d\[tables\]'"):
         finished.to_xarray()
-    monkeypatch.setitem(sys.modules, "xarray", SimpleNamespace(Dataset=lambda variables, attrs: (variables, attrs)))
-    variables, attributes = finished.to_xarray()
-    dimension, column, own = variables["force"]
-    assert (dimension, own) == ("row", {"units": "N"})
-    np.testing.assert_array_equal(column, finished.curve.force)
-    assert attributes["adhesion_force"] == str(finished.results.adhesion_force)
 
 
-def test_a_run_that_failed_raises_its_own_message(plane: MakeScene, tmp_path: Path) -> None:
-    with pytest.raises(RunError) as failed:
-        run(plane(force=30.0), tmp_path / "run")
+def test_a_run_leaves_a_complete_folder_and_a_new_one_takes_it_away(plane: MakeScene, tmp_path: Path) -> None:
+    """Numbers are there before the figures; one that fails has none and raises its own message again."""
+    seen: list[Run] = []
+
+    def printed(run: Run) -> None:
+        assert json.loads((run.folder / "results.json").read_text())["status"] == "done"
+        assert not [*run.folder.glob("*.png")]
+        seen.append(run)
+
+    folder = tmp_path / "run"
+    done = run(plane(), folder, printed=printed)
+    assert seen == [done]
+    present = {path.name for path in folder.iterdir()}
+    assert present >= ALWAYS | {"pressure.png"}
+    assert not any(name.endswith(".part") for name in present)
+    document = json.loads((folder / "results.json").read_text())
+    assert document == done.document
+    assert (document["status"], document["effects"]) == ("done", [])
+    assert document["force"].keys() == {"value", "uncertainty", "unit"}
+    assert document["timing"].keys() == {"total_s", "lammps_s", "lammps_cpu_s", "rows_s", "steps"}
+    assert read_scene(folder / "scene.toml") == plane()
+    with pytest.raises(RunError, match="end of the chain") as failed:
+        run(plane(force=30.0), folder, figures=False)
+    document = json.loads((folder / "results.json").read_text())
+    assert (document["status"], document["error"]["phase"]) == ("failed", "loading")
+    assert not any(isinstance(entry, dict) and "value" in entry for entry in document.values())
+    assert (folder / "in.lammps").exists()
+    assert not {"pressure.png", "curve.csv"} & {path.name for path in folder.iterdir()}
     with pytest.raises(RunError) as loaded:
-        load_run(tmp_path / "run")
-    assert "end of the chain" in loaded.value.message
+        load_run(folder)
     assert loaded.value.message in failed.value.message
-    assert loaded.value.folder == failed.value.folder
+    assert loaded.value.folder == failed.value.folder == folder
+
+
+def test_a_folder_of_other_things_is_left_alone(plane: MakeScene, tmp_path: Path) -> None:
+    (tmp_path / "thesis.tex").write_text("precious")
+    for folder, words in ((tmp_path, "do not belong to a run"), (tmp_path / "thesis.tex", "is a file")):
+        with pytest.raises(FolderError, match=words):
+            write_deck(plane(), folder)
+    assert [path.name for path in tmp_path.iterdir()] == ["thesis.tex"]
+    deck = write_deck(plane(), tmp_path / "deck")
+    assert {path.name for path in deck.iterdir()} == {"in.lammps", "scene.toml", "system.data"}
 
 
 def test_a_folder_without_a_run_is_refused_in_words(plane: MakeScene, tmp_path: Path) -> None:
@@ -156,10 +172,9 @@ def test_a_folder_without_a_run_is_refused_in_words(plane: MakeScene, tmp_path: 
     results = folder / "results.json"
     whole = json.loads(results.read_text())
     table = (folder / "curve.csv").read_text()
-    for change, words in (({"scene": whole["scene"] | {"law": "other"}}, "law: unknown"),):
-        results.write_text(json.dumps(whole | change))
-        with pytest.raises(FolderError, match=words):
-            load_run(folder)
+    results.write_text(json.dumps(whole | {"scene": whole["scene"] | {"law": "other"}}))
+    with pytest.raises(FolderError, match="law: unknown"):
+        load_run(folder)
     for text in BROKEN.values():
         results.write_text(text(whole))
         with pytest.raises(FolderError, match=r"is not the results\.json of a run; .* run its scene again$"):

@@ -1,18 +1,21 @@
-"""What a fit is made of: contact models beside their closed forms, and noise beside its covariance."""
+"""What a fit is made of: files of curves to their bounds, contact models beside closed forms, noise and covariance."""
 
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy.stats import t as student
 
-from contact1d.workflow.fit.curve import BESIDE_JUMP, ForceCurve
-from contact1d.workflow.fit.forward import LAWS, Body
+from contact1d import read_scene
+from contact1d.workflow.fit.curve import ForceCurve
+from contact1d.workflow.fit.data import DataError, curves
+from contact1d.workflow.fit.forward import LAWS, Body, Branch
 from contact1d.workflow.fit.noise import averaged, noises
-from contact1d.workflow.scene import Circle, Cone, FlatPunch, Parabola
+from contact1d.workflow.fit.plan import read_fit
 from validation.references.force_curves import Sphere, measured
 
 MODULUS, WORK, RADIUS = 2e6, 0.05, 5e-6
@@ -24,75 +27,150 @@ STIFF = 2.0 * MODULUS * SPHERE.zero_load_radius
 CURVE = 2e-4
 """Of the pull-off force: 6000 places of the reference, with straight lines between."""
 ROUND_OFF = 1e-9
-QUARTER = 0.15
-"""Relative: a quarter of the tension is gone between two edges of the branch; measured 0.09."""
 Array = np.ndarray[Any, np.dtype[np.float64]]
+BASE = {
+    "bodies": {"profile": {"kind": "parabola", "radius": "5 µm"}},
+    "material": {"contact_modulus": "1 MPa"},
+    "adhesion": {"work_of_adhesion": "20 mJ/m²"},
+}
+PLAN = {"parameters": ["material.contact_modulus"], "base": BASE, "instrument": {"stiffness": "0.5 N/m"}}
+
+
+def curve_in(path: Path, text: str, **changes: Any) -> ForceCurve:
+    path.write_text(text, encoding="utf-8")
+    ((_, _, curve),) = curves(path, read_fit(PLAN | {"data": str(path)} | changes))
+    if isinstance(curve, DataError):
+        raise curve
+    return curve
+
+
+def rows(count: int = 60) -> Array:
+    """z [nm] up and down again, and F [nN], an approach of half the points that touches in its middle."""
+    z = np.round(np.linspace(-100.0, 100.0, count // 2), 2)
+    z = np.append(z, z[::-1][: count - count // 2])
+    z = np.append(z, z[-1:] - 1.0) if z.size < count else z
+    return np.column_stack([z, np.round(np.maximum(z, 0.0) ** 1.5 / 10.0 + 0.01 * np.cos(37.0 * np.arange(count)), 4)])
+
+
+def text(numbers: Array, names: str = "z [nm],F [nN]", separator: str = ",") -> str:
+    return names + "\n" + "".join(separator.join(f"{x:.4f}" for x in row) + "\n" for row in numbers)
+
+
+@pytest.mark.parametrize(
+    ("content", "size", "first"),
+    [
+        (text(rows(), "z,F\n\n[µm],[µN]"), 1e3, 4),
+        (text(rows(), "z [nm];F [nN]", ";").replace(".", ","), 1.0, 2),
+        (text(rows(), "height force\nnm nN", " "), 1.0, 3),
+        ("\ufeff# an instrument\n\n" + text(rows()).replace("nN]\n", "nN]\n# a remark\n", 1), 1.0, 5),
+        (text(np.column_stack([rows()[:, 0], rows()]), "time,z [nm],F [nN]"), 1.0, 2),
+    ],
+    ids=["units below", "decimal commas", "spaces", "remarks", "another column"],
+)
+def test_any_form_of_a_file_has_its_numbers_in_si_with_their_lines(
+    content: str, size: float, first: int, tmp_path: Path
+) -> None:
+    curve = curve_in(tmp_path / "curve.csv", content)
+    assert curve.positions == pytest.approx(size * 1e-9 * rows()[:, 0], rel=1e-12, abs=1e-20)
+    assert curve.forces == pytest.approx(size * 1e-9 * rows()[:, 1], rel=1e-12, abs=1e-20)
+    assert curve.lines.tolist() == list(range(first, first + 60))
+    assert curve.turn == 30
+
+
+def test_signs_segments_and_indentations_are_as_they_are_said_to_be(tmp_path: Path) -> None:
+    """z = d + F/k."""
+    file = tmp_path / "curve.csv"
+    given = curve_in(file, text(-rows(), "d [nm],F [nN]"), reverse=["d", "F"])
+    assert given.forces == pytest.approx(1e-9 * rows()[:, 1], rel=1e-12, abs=1e-20)
+    assert given.positions == pytest.approx(1e-9 * (rows()[:, 0] + rows()[:, 1] / 0.5), rel=1e-12, abs=1e-20)
+    lines = text(rows()).splitlines()
+    words = ["segment", *["Approach"] * 27, *["retract"] * 33]
+    assert curve_in(file, "\n".join(map(",".join, zip(lines, words, strict=True)))).turn == 27
+    for word, said in (("pause", "words other than approach"), ("retract", "the approach must come before")):
+        words[3] = word
+        with pytest.raises(DataError, match=said):
+            curve_in(file, "\n".join(map(",".join, zip(lines, words, strict=True))))
+
+
+def cut(rank: int) -> Array:
+    """Forces above the one of this rank are equal to it."""
+    return np.column_stack([rows()[:, 0], np.minimum(rows()[:, 1], np.sort(rows()[:, 1])[-rank])])
+
+
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [
+        (rows(40), ""),
+        (rows(39), "39 points, and at least 40"),
+        (cut(5), ""),
+        (cut(6), "saturated: 6 points"),
+        (np.delete(rows(), slice(8, 14), axis=0), ""),
+        (np.delete(rows(), slice(8, 16), axis=0), "gap in z after line 9"),
+        (rows(70)[:45], ""),
+        (rows(70)[:44], r"one segment only \(35 points approach, 9 retract\)"),
+        (rows() * [-1.0, 1.0], r'reverse = \["z"\]'),
+    ],
+)
+def test_what_is_just_a_curve_and_what_is_none(data: Array, words: str, tmp_path: Path) -> None:
+    if not words:
+        assert curve_in(tmp_path / "curve.csv", text(data)).turn >= 20
+        return
+    with pytest.raises(DataError, match=words):
+        curve_in(tmp_path / "curve.csv", text(data))
+
+
+def forces(*jump: float) -> ForceCurve:
+    """Approach and retraction of 60 points each, with noise of 0.1, and a jump of these steps in both."""
+    draw = np.random.default_rng(8)
+    fall = np.concatenate([np.zeros(30), -np.cumsum(jump), np.full(30 - len(jump), -sum(jump))])
+    z = np.concatenate([np.arange(60.0), 59.0 - np.arange(60.0)])
+    F = 5.0 + np.concatenate([fall, fall[::-1]]) + 0.1 * draw.uniform(-1.0, 1.0, 120)
+    return ForceCurve(z, F, 60, np.arange(120) + 2)
+
+
+@pytest.mark.parametrize("jump", [(4.0,), (1.0, 2.5, 0.9)])
+def test_a_jump_has_its_steps_and_three_points_beside_it_are_left_out(jump: tuple[float, ...]) -> None:
+    curve = forces(*jump)
+    approach, retraction = curve.segments
+    many = len(jump)
+    assert (approach.jump, retraction.jump) == ((29, 29 + many), (30 - many, 30))
+    assert approach.held.tolist() == list(range(29 + many, 60))
+    assert approach.apart.tolist() == list(range(30))
+    assert retraction.held.tolist() == list(range(60, 91 - many))
+    assert retraction.apart.tolist() == list(range(90, 120))
+    assert set(range(60)) - set(approach.compared.tolist()) == set(range(27, 32 + many))
+    assert curve.baseline == pytest.approx(5.0, abs=0.05)
+    rising = ForceCurve(curve.positions, np.linspace(0.0, 119.0, 120), 60, curve.lines)
+    assert rising.baseline == pytest.approx(5.5)  # without a jump the first fifth of the approach
+
+
+def branch_of(kind: str) -> Branch:
+    bodies = BASE["bodies"] | {"particles": 3, "spacing": "1 nm", "bulk_stiffness": "auto", "lower": "rigid_plane"}
+    load = {"kind": "load", "force": "1 nN"}
+    scene = read_scene({"title": kind, "bodies": bodies, "material": BASE["material"], "experiment": load})
+    return LAWS[kind].branch(Body.of(scene.bodies.profile, 4.0 * DEPTH), MODULUS, WORK, TABOR)
 
 
 @pytest.mark.parametrize("kind", LAWS)
 @pytest.mark.parametrize("stiffness", [STIFF, 100.0 * STIFF])
 def test_a_contact_model_on_a_spring_is_the_closed_form(kind: str, stiffness: float) -> None:
     """Approach and retraction, with the place and the force at which the contact is lost."""
-    body = Body.of(Parabola(kind="parabola", radius=RADIUS), 4.0 * DEPTH)
-    branch = LAWS[kind].branch(body, MODULUS, WORK, TABOR)
+    branch = branch_of(kind)
     z = np.linspace(-2.5, 3.0, 300) * DEPTH
     up, down = np.split(measured(SPHERE, kind, stiffness, z), 2)
     force, down = 1.5 * math.pi * WORK * RADIUS, down[::-1]
     lost, _ = branch.snap_out(stiffness)
     d, F = SPHERE.branch(kind)
-    exact = d + F / stiffness
-    assert lost == pytest.approx(exact.min(), abs=1e-4 * DEPTH)
+    assert lost == pytest.approx((d + F / stiffness).min(), abs=1e-4 * DEPTH)
     held = z > lost + 0.02 * DEPTH
-    assert branch.forces_at(z[held], stiffness, True) == pytest.approx(down[held], rel=1e-4, abs=CURVE * force)
     touching = z > (-TABOR if kind == "Maugis" else 0.0) + 0.02 * DEPTH
-    assert branch.forces_at(z[touching], stiffness, True) == pytest.approx(up[touching], rel=1e-4, abs=CURVE * force)
+    for where, exact in ((held, down), (touching, up)):
+        found = branch.forces_at(z[where], stiffness, True)
+        assert found == pytest.approx(exact[where], rel=1e-4, abs=CURVE * force)
     pitch = float(z[1] - z[0])
     let_go = branch.forces_at(z, stiffness, False, pitch)
     assert np.all(let_go[z < lost - pitch] == 0.0)
     assert let_go[held] == pytest.approx(down[held], rel=1e-4, abs=CURVE * force)
-
-
-@pytest.mark.parametrize("kind", ["JKR", "DMT"])
-def test_a_contact_that_is_known_to_hold_goes_on_where_the_model_has_lost_it(kind: str) -> None:
-    """Straight, three times as steep as from there to where a quarter of the tension is gone."""
-    branch = LAWS[kind].branch(Body.of(Parabola(kind="parabola", radius=RADIUS), 4.0 * DEPTH), MODULUS, WORK, 0.0)
-    lost, force = branch.snap_out(STIFF)
-    z = np.linspace(lost, 3.0 * DEPTH, 20_000)
-    quarter = float(np.interp(0.75 * force, branch.forces_at(z, STIFF, True), z))
-    slope = 3.0 * -0.25 * force / (quarter - lost)
-    below = lost - np.array([0.1, 1.0]) * DEPTH
-    assert branch.forces_at(below, STIFF, True) == pytest.approx(force - slope * (lost - below), rel=QUARTER)
-
-
-def test_the_first_touch_is_between_the_axis_and_the_first_edge() -> None:
-    """F = (4/3) E* √R d^(3/2)."""
-    body = Body.of(Parabola(kind="parabola", radius=RADIUS), 4.0 * DEPTH)
-    d = 0.5 * body.heights[1:2]
-    exact = 4.0 / 3.0 * MODULUS * math.sqrt(RADIUS) * d**1.5
-    assert LAWS["Hertz"].branch(body, MODULUS, 0.0, 0.0).forces_at(d, math.inf, True) == pytest.approx(exact, rel=0.2)
-
-
-@pytest.mark.parametrize("kind", ["Hertz", "JKR"])
-@pytest.mark.parametrize("shape", ["cone", "punch", "circle"])
-def test_any_body_has_its_integral(kind: str, shape: str) -> None:
-    """A cone g = (π/2) a tan θ, a punch g = 0 up to its edge, a circle g = a artanh(a/R)."""
-    profile, height, area = {
-        "cone": (Cone(kind="cone", slope=0.2), lambda a: 0.1 * math.pi * a, lambda a: 0.05 * math.pi * a**2),
-        "punch": (FlatPunch(kind="flat_punch", radius=RADIUS), lambda a: 0.0 * a, lambda a: 0.0 * a),
-        "circle": (
-            Circle(kind="circle", radius=RADIUS),
-            lambda a: a * np.arctanh(a / RADIUS),
-            lambda a: 0.5 * (RADIUS * a - (RADIUS**2 - a**2) * np.arctanh(a / RADIUS)),
-        ),
-    }[shape]
-    body = Body.of(profile, DEPTH)
-    branch, a = LAWS[kind].branch(body, MODULUS, WORK, 0.0), body.edges[1:]
-    a = a[a < 0.9 * RADIUS] if shape == "circle" else a
-    d = height(a) - (np.sqrt(2.0 * math.pi * a * WORK / MODULUS) if kind == "JKR" else 0.0)
-    size = 2.0 * MODULUS * a[-1] * np.abs(d).max()
-    assert branch.displacements[1 : 1 + a.size] == pytest.approx(d, rel=1e-6, abs=0.0)
-    assert branch.forces[1 : 1 + a.size] == pytest.approx(2.0 * MODULUS * (a * d - area(a)), abs=2e-4 * size)
-    assert float(profile.transformed(a[-1:])[0]) >= 8.0 * DEPTH or body.edges[-1] == pytest.approx(profile.reach)
 
 
 RUNS = [np.array([0, 1, 2, 5, 6, 7, 8, 12]), np.arange(20, 32)]
@@ -116,95 +194,26 @@ def test_a_line_in_white_noise_has_the_interval_of_student() -> None:
     slopes = np.column_stack([np.ones(12), np.arange(12.0)])
     residuals = np.tile([1.0, -1.2, 0.4], 4) + 0.3 * np.arange(12.0)
     found = averaged([np.arange(12)], residuals, slopes, np.zeros((0, 3)), looks=1)
-    white = next(one for one in found.estimates if one.noise.share == 0.0)
+    white = next(estimate for estimate in found.estimates if estimate.noise.share == 0.0)
     step, (squares,), *_ = np.linalg.lstsq(slopes, residuals)
     assert white.step == pytest.approx(step, rel=ROUND_OFF)
     assert white.deviation == pytest.approx(math.sqrt(squares / 10.0), rel=1e-4)
     assert white.covariance == pytest.approx(squares / 10.0 * np.linalg.inv(slopes.T @ slopes), rel=1e-4)
     assert found.freedom == 10.0
-    assert sum(one.weight for one in found.estimates) == pytest.approx(1.0)
+    weights = np.array([estimate.weight for estimate in found.estimates])
+    assert weights.sum() == pytest.approx(1.0)
     for level in (0.025, 0.5, 0.9, 0.975):
-        at = found.quantile(1, level)
-        by = [
-            one.weight * student.cdf((at - one.step[1] + found.best.step[1]) / math.sqrt(one.covariance[1, 1]), 10.0)
-            for one in found.estimates
-        ]
-        assert sum(by) == pytest.approx(level, abs=1e-5)
+        quantile = found.quantile(1, level) + found.best.step[1]
+        offs = [(quantile - each.step[1]) / math.sqrt(each.covariance[1, 1]) for each in found.estimates]
+        assert weights @ student.cdf(offs, 10.0) == pytest.approx(level, abs=1e-5)
 
 
 def test_what_is_known_counts_as_a_further_point() -> None:
-    """A parameter known to ± 1 and measured to ± 1 is their mean, known to ± 1/√2."""
-    residuals = np.tile([1.0, -1.0], 2000) + 3.0
-    slopes, prior = np.full((4000, 1), 1.0 / math.sqrt(4000.0)), np.array([[1.0, 0.0]])
-    found = averaged([np.arange(4000)], residuals, math.sqrt(4000.0) * slopes, prior, looks=1)
-    white = next(one for one in found.estimates if one.noise.share == 0.0)
-    weight = 4000.0 / white.deviation**2
-    assert white.step[0] == pytest.approx(3.0 * weight / (weight + 1.0), rel=1e-6)
-    assert white.covariance[0, 0] == pytest.approx(1.0 / (weight + 1.0), rel=1e-6)
-    assert found.freedom == 4000.0
-
-
-def test_what_is_known_of_one_parameter_moves_the_other_that_is_tied_to_it() -> None:
-    """Only their sum is measured, to be 5 with next to no doubt; the second is known to be 2 ± 1."""
+    """Only the sum of two parameters is measured, to be 5 with next to no doubt; the second is known to be 2 ± 1."""
     slopes, prior = np.ones((100, 2)), np.array([[0.0, 1.0, 2.0]])
     residuals = 5.0 + 1e-6 * np.random.default_rng(1).standard_normal(100)
     found = averaged([np.arange(100)], residuals, slopes, prior, looks=1)
-    white = next(one for one in found.estimates if one.noise.share == 0.0)
+    white = next(estimate for estimate in found.estimates if estimate.noise.share == 0.0)
     assert white.step == pytest.approx([3.0, 2.0], rel=1e-5)
     assert np.sqrt(np.diag(white.covariance)) == pytest.approx(1.0, rel=1e-5)
     assert found.freedom == 99.0
-
-
-@pytest.mark.parametrize("memory", [0.0, 8.0])
-def test_the_noise_of_a_series_is_found(memory: float) -> None:
-    draw = np.random.default_rng(4)
-    drawn, kept = draw.standard_normal(800), math.exp(-1.0 / memory) if memory else 0.0
-    for i in range(1, 800):
-        drawn[i] = kept * drawn[i - 1] + math.sqrt(1.0 - kept**2) * drawn[i]
-    found = averaged([np.arange(400), np.arange(400, 800)], 2.0 * drawn, np.ones((800, 1)), np.zeros((0, 2)), looks=2)
-    weights = np.array([one.weight for one in found.estimates])
-    deviation = weights @ [one.deviation for one in found.estimates]
-    share, length = (weights @ [getattr(one.noise, name) for one in found.estimates] for name in ("share", "memory"))
-    assert deviation == pytest.approx(2.0, rel=0.25 if memory else 0.1)
-    if memory:
-        assert share > 0.9
-        assert length == pytest.approx(memory, rel=0.4)
-    else:
-        assert share < 0.2
-
-
-def forces(*jump: float) -> ForceCurve:
-    """Approach and retraction of 60 points each, with noise of 0.1, and a jump of these steps in both."""
-    draw = np.random.default_rng(8)
-    fall = np.concatenate([np.zeros(30), -np.cumsum(jump), np.full(30 - len(jump), -sum(jump))])
-    z = np.concatenate([np.arange(60.0), 59.0 - np.arange(60.0)])
-    F = 5.0 + np.concatenate([fall, fall[::-1]]) + 0.1 * draw.uniform(-1.0, 1.0, 120)
-    return ForceCurve(z, F, 60, np.arange(120) + 2)
-
-
-@pytest.mark.parametrize("jump", [(4.0,), (2.0, 2.5), (1.0, 2.5, 0.9)])
-def test_a_jump_has_its_steps_and_what_is_beside_it_is_left_out(jump: tuple[float, ...]) -> None:
-    curve = forces(*jump)
-    approach, retraction = curve.segments
-    many = len(jump)
-    assert approach.jump == (29, 29 + many)
-    assert retraction.jump == (30 - many, 30)
-    assert approach.held.tolist() == list(range(29 + many, 60))
-    assert approach.apart.tolist() == list(range(30))
-    assert retraction.held.tolist() == list(range(60, 91 - many))
-    assert retraction.apart.tolist() == list(range(90, 120))
-    left = set(range(60)) - set(approach.compared.tolist())
-    assert left == set(range(30 - BESIDE_JUMP, 29 + many + BESIDE_JUMP))
-    assert curve.baseline == pytest.approx(5.0, abs=0.05)
-    assert curve.depth == 59.0
-
-
-def test_without_a_jump_all_is_compared_and_nothing_known_to_hold() -> None:
-    curve = forces(0.0)
-    for one in curve.segments:
-        assert one.jump is None
-        assert one.compared.tolist() == one.points.tolist()
-        assert not one.held.size
-        assert not one.apart.size
-    rising = ForceCurve(curve.positions, np.linspace(0.0, 119.0, 120), 60, curve.lines)
-    assert rising.baseline == pytest.approx(5.5)  # the first fifth of the approach

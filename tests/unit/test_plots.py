@@ -1,57 +1,36 @@
-"""Figures: what is drawn is what was measured, beside theories written out here; every file is whole."""
+"""Figures: what is drawn is what was measured, beside theories written out here, in the units that its axes say."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 from contact1d import Run, read_scene, run
+from contact1d.__main__ import app
 from contact1d.analysis import figures, plots
-from contact1d.analysis.chart import Axis, Chart
-from contact1d.analysis.curve import Columns
-from contact1d.analysis.pressure import Profile
-from contact1d.analysis.radius import ContactRadius
-from contact1d.workflow.report.report import report
-from contact1d.workflow.units import scale_of
+from contact1d.analysis.chart import Axis, Chart, Panel, Series
+from contact1d.workflow.units import Scales, scale_of
+from tests.pages import figures_on
 from tests.scenes import chains
 
 ROUND_OFF = 1e-12  # relative; closed forms of a few operations
 GRID = 2e-3  # of F_A; the theory is drawn with 400 points
 SPACING = 1.0
-PNG = b"\x89PNG\r\n\x1a\n"
+SCALES = Scales(2e-9, 3e-6)
+BEGINS = {"png": b"\x89PNG\r\n\x1a\n", "svg": b"<?xml", "pdf": b"%PDF"}
+"""How a file of each format begins."""
 
 
-def profile(depth: float) -> Profile:
-    x = np.arange(-60.0, 61.0)
-    pressure = depth * np.exp(-(x**2) / 200.0) - 0.02 * np.exp(-((np.abs(x) - 28.0) ** 2) / 50.0)
-    return Profile(x, 0.0 * x, 0.0 * x, pressure, 0.0 * x)
-
-
-@pytest.fixture
-def curve() -> Columns:
-    down, up = np.linspace(-0.1, 0.3, 30), np.linspace(0.3, -0.3, 40)
-    displacement = np.concatenate([down, up])
-    radius = np.concatenate([100.0 * np.sqrt(down + 0.1), 60.0 * np.sqrt(up + 0.3)])
-    radius[-1] = math.nan
-    force = np.concatenate([4.0 * down - 0.5, 5.0 * up])
-    branch = np.array(["loading"] * 30 + ["unloading"] * 40)
-    return Columns(
-        {"displacement": displacement, "force": force, "contact_radius": radius, "branch": branch,
-         "contact_radius_uncertainty": np.zeros(70)}
-    )  # fmt: skip
-
-
-LEGS = [("loading", np.arange(30)), ("unloading", np.arange(30, 70))]
-
-
-def drawn(chart: Chart) -> list[Any]:
-    """The panels of a chart, as they are drawn."""
-    return list(plots.draw(chart.written(scale_of)).axes)
+def drawn(chart: Chart, scales: Scales | None = None) -> list[Any]:
+    """The panels of a chart, in units of SI if they are known, as they are drawn."""
+    figure = plots.draw(chart.written(scales.written, scales.in_words) if scales else chart.written(scale_of))
+    figure.draw_without_rendering()
+    return list(figure.axes)
 
 
 def lines(axis: Any) -> dict[str, np.ndarray]:
@@ -60,68 +39,26 @@ def lines(axis: Any) -> dict[str, np.ndarray]:
     return {label: points for label, points in found.items() if label and not label.startswith("_")}
 
 
-def edges(radius: float) -> ContactRadius:
-    return ContactRadius(radius, 0.0, -radius, radius, False)
-
-
-def test_every_particle_that_carries_pressure_is_a_step_of_its_sign() -> None:
-    shown = profile(0.05)
-    (axis,) = drawn(figures.pressure({"zero_load": shown}, {"zero_load": edges(28.0)}))
-    steps = [np.asarray(part.get_xy()) for part in axis.patches]
-    colours = [tuple(part.get_facecolor()) for part in axis.patches]
-    assert len(set(colours)) == len(steps) == 2  # compression, tension
-    for x, p in zip(shown.x, shown.pressure, strict=True):
-        if abs(p) > 0.01 * shown.pressure.max():
-            own = steps[0 if p > 0.0 else 1]
-            here = own[(np.abs(own[:, 0] - x) <= 0.5) & (own[:, 1] == p)]
-            assert sorted({*here[:, 0]}) == [x - 0.5, x + 0.5]
-    assert axis.get_ylabel() == "line load (FU/LU)"
-    assert axis.get_xlabel() == "x (LU)"
-
-
-def test_the_contact_radius_is_marked_on_both_sides_and_named() -> None:
-    radii = {"zero_load": 28.25, "critical": 15.5}
-    profiles = {"zero_load": profile(0.05), "critical": profile(-0.01)}
-    axes = drawn(figures.pressure(profiles, {name: edges(radius) for name, radius in radii.items()}))
-    for axis, (name, radius) in zip(axes, radii.items(), strict=True):
-        places = {place for line in axis.get_lines() if line.get_linestyle() == "--" for place in line.get_xdata()}
-        assert places == {-radius, radius}
-        assert name.replace("_", " ") in axis.get_title(loc="left")
-        assert f"{radius:.4g} LU" in axis.get_title(loc="left")
-
-
-@pytest.mark.parametrize("radii", [{}, {"final": edges(0.0)}])
-def test_a_state_without_contact_says_so(radii: dict[str, ContactRadius]) -> None:
-    x = np.arange(5.0)
-    (axis,) = drawn(figures.pressure({"final": Profile(x, x, x, 0.0 * x, x)}, radii))
-    assert axis.get_title(loc="left") == "final state, no contact"
-
-
-def test_states_that_part_are_left_out_and_the_others_shown_where_they_touch() -> None:
-    held = profile(0.05)
-    seen = figures.seen({"final": held, "parted": replace(held, pressure=1e-6 * held.pressure)})
-    assert list(seen) == ["final"]
-    carries = np.abs(held.pressure) > 0.01 * held.pressure.max()
-    assert np.abs(held.x[carries]).max() < seen["final"].x.max() < held.x.max()
-
-
-def test_the_branches_are_drawn_as_measured(curve: Columns) -> None:
-    force = Axis("force", "FU"), curve.force, ()
-    (axis,) = drawn(figures.path(Axis("displacement", "LU"), curve.displacement, LEGS, force))
-    found = lines(axis)
-    assert set(found) == {"loading", "unloading"}
-    points = np.column_stack([curve.displacement, curve.force])
-    np.testing.assert_array_equal(found["loading"], points[:30])
-    np.testing.assert_array_equal(found["unloading"], points[30:])
-    assert "(LU)" in axis.get_xlabel()
-    assert "(FU)" in axis.get_ylabel()
-
-
 @pytest.fixture(scope="module")
 def pulled(tmp_path_factory: pytest.TempPathFactory) -> Run:
     pull = {"kind": "pull_off", "preload": 0.2}
     tables = chains(50.0, bodies={"particles": 40}, accuracy={"tolerance": 1e-2}, experiment=pull)
     return run(read_scene(tables), tmp_path_factory.mktemp("pulled"), figures=False)
+
+
+def test_the_line_load_is_a_step_for_each_particle_with_the_contact_radius_marked(pulled: Run) -> None:
+    radii = {"zero_load": pulled.results.zero_load_radius.value, "critical": pulled.results.critical_radius.value}
+    for axis, (state, radius) in zip(pulled.plot("pressure").axes, radii.items(), strict=True):
+        name = state.replace("_", " ")
+        assert axis.get_title(loc="left").startswith(f"{name} state, contact radius a = {radius:.4g} LU")
+        places = {place for line in axis.get_lines() if line.get_linestyle() == "--" for place in line.get_xdata()}
+        assert sorted(places) == pytest.approx([-radius, radius])
+        compression, tension = ({*map(tuple, np.asarray(part.get_xy()))} for part in axis.patches)
+        shown = pulled.profiles[state]
+        for x, p in zip(shown.x, shown.pressure, strict=True):
+            if abs(p) > 0.01 * np.abs(shown.pressure).max():
+                assert {(x - 0.5, p), (x + 0.5, p)} <= (compression if p > 0.0 else tension)
+        assert axis.get_ylabel() == "line load (FU/LU)"
 
 
 def test_jkr_over_displacement_obeys_its_own_equations(pulled: Run) -> None:
@@ -180,7 +117,7 @@ HELD = {
 
 @pytest.mark.parametrize("kind", ["force", "displacement"])
 def test_a_hold_is_drawn_over_time(kind: str, tmp_path: Path) -> None:
-    """What is free over the time of its states; in a file and on the page."""
+    """What is free over the time of its states; in a whole file and on the page."""
     held = {"force": {"displacement": 0.5}, "displacement": {"force": 4.0}}[kind] | {"kind": "hold", "duration": 5.0}
     plate = {"plate": {"mass": 20.0}} if kind == "displacement" else {}
     done = run(read_scene(HELD | plate | {"experiment": held}), tmp_path / "run")
@@ -188,10 +125,13 @@ def test_a_hold_is_drawn_over_time(kind: str, tmp_path: Path) -> None:
     assert axis.get_xlabel() == "time (TU)"
     assert axis.get_ylabel().startswith(kind)
     np.testing.assert_array_equal(lines(axis)["holding"], np.column_stack([done.curve.time, done.curve[kind]]))
-    assert (done.folder / f"{kind}_time.png").read_bytes().startswith(PNG)
+    file = (done.folder / f"{kind}_time.png").read_bytes()
+    assert file.startswith(BEGINS["png"])
+    assert file[-8:-4] == b"IEND"
     assert (done.folder / "force_displacement.png").is_file() == (kind == "displacement")  # it is held otherwise
-    page = report([done.folder], tmp_path / "r.html").read_text()
-    assert f'"title": "{kind.capitalize()} over time"' in page
+    page = tmp_path / "r.html"
+    assert CliRunner().invoke(app, ["report", str(done.folder), "--out", str(page)]).exit_code == 0
+    assert f"{kind.capitalize()} over time" in [chart["title"] for chart in figures_on(page)["charts"]]
 
 
 def test_the_pull_off_force_is_drawn_across_with_its_uncertainty(pulled: Run) -> None:
@@ -203,17 +143,6 @@ def test_the_pull_off_force_is_drawn_across_with_its_uncertainty(pulled: Run) ->
     ends = np.asarray(band.get_xy())[:, 1]
     spread = tension.uncertainty
     assert [ends.min(), ends.max()] == pytest.approx([-tension.value - spread, -tension.value + spread], rel=1e-9)
-
-
-def test_each_cycle_of_a_pull_off_has_its_own_legs(tmp_path: Path) -> None:
-    pull = {"kind": "pull_off", "preload": 0.2, "cycles": 2}
-    tables = chains(50.0, bodies={"particles": 40}, accuracy={"tolerance": 1e-2}, experiment=pull)
-    done = run(read_scene(tables), tmp_path / "run", figures=False)
-    legs = [line for line in done.plot().axes[0].get_lines() if line.get_label() in ("loading", "unloading")]
-    assert [line.get_label() for line in legs] == ["loading", "unloading"] * 2
-    for number, line in enumerate(legs):
-        rows = (done.curve.cycle == 1 + number // 2) & (done.curve.branch == line.get_label())
-        np.testing.assert_array_equal(line.get_xdata(), np.sort(done.curve.displacement[rows]))
 
 
 def test_particles_within_the_stick_radius_stick_and_the_others_slip(tmp_path: Path) -> None:
@@ -238,16 +167,48 @@ def test_particles_within_the_stick_radius_stick_and_the_others_slip(tmp_path: P
     assert f"stick radius c = {done.results.stick_radius.value:.4g} LU" in marks
 
 
-def test_every_figure_is_a_whole_file(curve: Columns, tmp_path: Path) -> None:
-    for name, chart in {
-        "pressure": figures.pressure({"final": profile(0.05)}, {"final": edges(28.0)}),
-        "force_time": figures.path(Axis("time", "TU"), curve.displacement, LEGS, (Axis("force"), curve.force, ())),
-        "detachments": figures.detachments(curve.force),
-    }.items():
-        plots.save_figure(plots.draw(chart.written(scale_of)), tmp_path / f"{name}.png")
-    files = sorted(tmp_path.iterdir())
-    assert [f.name for f in files] == ["detachments.png", "force_time.png", "pressure.png"]
-    for file in files:
-        data = file.read_bytes()
-        assert data.startswith(PNG)
-        assert data[-8:-4] == b"IEND"
+def test_axes_words_and_ticks_are_in_si() -> None:
+    """What a figure holds are the numbers that its ticks show; an axis without a unit stays as it is."""
+    line = Series(np.array([0.0, 40.0]), np.array([0.0, 5.0]), "W = 1 FU/LU")
+    panels = [
+        Panel(Axis("pressure", "FU/LU²"), [line], "a = 15 LU, F = 2e-05 FU"),
+        Panel(Axis("force $F/F_A$"), [line]),
+    ]
+    axis, bare = drawn(Chart(Axis("displacement", "LU", ", compression positive"), panels), SCALES)
+    assert bare.get_xlabel() == "displacement (nm), compression positive"
+    assert (axis.get_ylabel(), bare.get_ylabel()) == ("pressure (TPa)", "force $F/F_A$")
+    assert axis.get_title(loc="left") == "a = 30 nm, F = 60 pN"
+    assert axis.get_legend().get_texts()[0].get_text() == "W = 1.5 kN/m"
+    labels = [float(text.get_text().replace("\N{MINUS SIGN}", "-")) for text in bare.get_xticklabels()]
+    assert labels == pytest.approx(list(bare.get_xticks()))
+    assert list(axis.get_lines()[0].get_xdata()) == pytest.approx([0.0, 80.0])
+
+
+def test_a_pressure_without_bound_does_not_hide_the_rest() -> None:
+    """A punch's at its edge."""
+    r = np.linspace(0.0, 0.999, 200)
+    columns = {"r": r, "pressure": 1.0 / np.sqrt(1.0 - r**2), "pressure_uncertainty": 0.0 * r}
+    (axis,) = drawn(figures.body("pressure", {"final": columns}, {"final": {"contact radius a": 1.0}}, {}), SCALES)
+    assert axis.get_ylim()[1] < 10.0 * SCALES.written(10.0, "FU/LU²")[0]
+    assert axis.get_xlim()[1] >= 1.0 * SCALES.written(1.0, "LU")[0]
+
+
+def test_figures_come_in_the_format_that_is_asked_for(tmp_path: Path) -> None:
+    """A new run in the same folder takes those of another format away; a body's pressure is in SI."""
+    scene = read_scene({
+        "title": "Steel on glass",
+        "bodies": {"particles": "auto", "spacing": 2.0, "profile": {"kind": "parabola", "radius": 10000.0},
+                   "bulk_stiffness": "auto", "lower": "rigid_plane"},
+        "material": {"contact_modulus": 55e9, "length_unit": 1e-6, "force_unit": 1.0},
+        "experiment": {"kind": "load", "force": 1.0},
+    })  # fmt: skip
+    for form in ("pdf", "svg"):
+        done = run(scene, tmp_path / "run", figures=form)
+        found = {path for path in done.folder.iterdir() if path.suffix[1:] in BEGINS}
+        names = ("force_displacement", "force_radius", "pressure", "pressure_3d")
+        assert {path.name for path in found} == {f"{name}.{form}" for name in names}
+        assert all(path.read_bytes().startswith(BEGINS[form]) for path in found)
+    figure = done.plot("pressure_3d")
+    assert figure.get_suptitle() == "Steel on glass"
+    assert figure.axes[0].get_ylabel() == "pressure (MPa)"
+    assert done.results.peak_pressure.value == pytest.approx(done.body_pressures["final"].pressure[0], rel=1e-9)

@@ -1,27 +1,26 @@
-"""The page of runs or of a sweep: what stands on it, and that it needs nothing beside it."""
+"""The page of runs and their animation: what stands on them, and that they need nothing beside them."""
 
 from __future__ import annotations
 
-import json
-import re
 from html import unescape
 from html.parser import HTMLParser
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
+from typer.testing import CliRunner, Result
 
-from contact1d import Contact1dError, FolderError, Run, read_scene, run, sphere, sweep
-from contact1d.workflow.report.animation import animate, ovito_script
-from contact1d.workflow.report.report import report
+from contact1d import Run, RunError, run
+from contact1d.__main__ import app
+from tests.pages import figures_on
 from tests.scenes import chains
+from tests.sweeps import PLANE
 
 SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
-SHIPPED = [SCENES / f"{name}.toml" for name in ("hertz_plane", "path_hysteresis", "mindlin", "pull_off")]
-SHORTER = {"path_hysteresis": ["experiment.displacements.steps=4", "bodies.particles=60"]}
 VOID = {"meta", "link", "img", "br", "hr", "input"}
 PULL_OFF = chains(400.0, experiment={"kind": "pull_off", "preload": 0.5}, title="<a> pull-off & more")
+MOVES = PLANE | {"experiment": {"kind": "path", "displacements": [0.0, 0.05, 0.1]}}
 TAIL = 0.05  # relative: the part of the force beyond the window that is drawn
 SEVEN_DIGITS = 1e-6  # relative: what single precision and the page's rounding keep
 
@@ -47,20 +46,28 @@ class Balance(HTMLParser):
         assert self.open.pop() == tag
 
 
+def contact1d(*arguments: str | Path) -> Result:
+    return CliRunner().invoke(app, [*map(str, arguments)])
+
+
+def page_of(*folders: Path) -> Path:
+    """The page of these runs, in the first of their folders; well-formed, with all that it needs."""
+    page = folders[0] / "r.html"
+    done = contact1d("report", *folders, "--out", page)
+    assert done.exit_code == 0, done.output
+    checked = Balance(page.read_text(encoding="utf-8"))
+    assert (checked.open, checked.outside) == ([], [])
+    assert len(set(checked.ids)) == len(checked.ids)
+    return page
+
+
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory: pytest.TempPathFactory) -> Run:
     return run(PULL_OFF, tmp_path_factory.mktemp("runs") / "pull_off", figures=False)
 
 
-def data_on(page: str) -> dict[str, Any]:
-    found = re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.DOTALL)
-    assert found
-    read: dict[str, Any] = json.loads(found[1])
-    return read
-
-
-def test_the_page_of_a_run_says_results_scene_cost_deck_and_versions(finished: Run, tmp_path: Path) -> None:
-    page = report([finished.folder], tmp_path / "r.html").read_text()
+def test_the_page_of_a_run_says_results_scene_cost_deck_and_versions(finished: Run) -> None:
+    page = page_of(finished.folder).read_text(encoding="utf-8")
     for quantity in finished.results.values():
         assert str(quantity) in page
     assert "&lt;a&gt; pull-off &amp; more" in page
@@ -71,130 +78,89 @@ def test_the_page_of_a_run_says_results_scene_cost_deck_and_versions(finished: R
         assert f"<dt>{name}</dt>" in page
 
 
-def test_the_page_needs_nothing_beside_it_and_is_well_formed(finished: Run, tmp_path: Path) -> None:
-    page = report([finished.folder], tmp_path / "r.html").read_text()
-    checked = Balance(page)
-    assert checked.open == []
-    assert checked.outside == []
-    assert len(set(checked.ids)) == len(checked.ids)
-
-
-def test_the_slider_moves_through_every_state_with_its_own_numbers(finished: Run, tmp_path: Path) -> None:
-    way = data_on(report([finished.folder], tmp_path / "r.html").read_text())["path"]
+def test_the_slider_moves_through_every_state_with_its_own_numbers(finished: Run) -> None:
+    path = figures_on(page_of(finished.folder))["path"]
     count = len(finished.curve.force)
-    curve, loads, bodies = (chart["data"] for chart in way["charts"])
-    assert len(way["words"]) == len(loads[0]["y"]) == len(bodies[0]["y"]) == len(bodies[1]["y"]) == count
-    against = [one for (one,) in curve[-1]["y"]]
-    np.testing.assert_allclose(against, finished.curve.force, rtol=SEVEN_DIGITS, atol=SEVEN_DIGITS)
+    curve, loads, bodies = (chart["data"] for chart in path["charts"])
+    assert len(path["words"]) == len(loads[0]["y"]) == len(bodies[0]["y"]) == len(bodies[1]["y"]) == count
+    marked = [force for (force,) in curve[-1]["y"]]
+    np.testing.assert_allclose(marked, finished.curve.force, rtol=SEVEN_DIGITS, atol=SEVEN_DIGITS)
     spacing = finished.scene.bodies.spacing
     shown = [spacing * sum(row) for row in loads[0]["y"]]
     strong = np.argmax(np.abs(finished.curve.force))
     assert shown[strong] == pytest.approx(finished.curve.force[strong], rel=TAIL)
 
 
-def test_several_runs_are_overlaid_and_a_failed_one_says_why(finished: Run, tmp_path: Path) -> None:
-    other = run(chains(600.0, experiment={"kind": "pull_off", "preload": 0.5}, title="other"), tmp_path / "o", False)
-    with pytest.raises(Exception, match="end of the chain"):
-        run(chains(400.0, experiment={"kind": "load", "force": 0.5}, bodies={"particles": 7}), tmp_path / "f", False)
-    page = report([finished.folder, other.folder, tmp_path / "f"], tmp_path / "r.html").read_text()
-    names = [unescape(trace["name"]) for trace in data_on(page)["charts"][0]["data"]]
-    assert {name.partition(",")[0] for name in names} >= {finished.scene.title, "other"}
-    assert "end of the chain" in page
-    assert str(other.results.adhesion_force) in page
-
-
-def test_runs_share_a_panel_where_each_has_a_twentieth_of_its_axes(tmp_path: Path) -> None:
+def test_runs_share_a_panel_where_each_has_a_twentieth_of_its_axes_and_a_failed_one_says_why(tmp_path: Path) -> None:
     """Spheres by Hertz, d ∝ F^(2/3): ten times the force is 4.6 times the displacement, a thousand times is 100."""
-    ball = sphere(radius="10 mm", contact_modulus="70 GPa", tolerance=1e-2)
-    folders = [ball.load(force, tmp_path / force).folder for force in ("10 N", "10 mN", "1 N", "100 mN")]
-    page = data_on(report(folders, tmp_path / "r.html").read_text())
+    folders = []
+    for force in (1e4, 1e1, 1e3, 1e2):
+        load = {"title": f"{force:g}", "experiment": {"kind": "load", "force": force}}
+        bodies = PLANE["bodies"] | {"particles": "auto", "reduction": "mdr"}
+        folders.append(run(PLANE | load | {"bodies": bodies}, tmp_path / f"{force:g}", figures=False).folder)
+    with pytest.raises(RunError):
+        run(PLANE | {"experiment": {"kind": "load", "force": 900.0}}, tmp_path / "failed", figures=False)
+    page = page_of(*folders, tmp_path / "failed")
+    assert "end of the chain" in page.read_text(encoding="utf-8")
     over = "Force over displacement"
-    found = {chart["title"]: chart["data"] for chart in page["charts"] if chart["title"].startswith(over)}
-    strong, weak = ("10\u00a0N", "1\u00a0N"), ("10\u00a0mN", "100\u00a0mN")
-    assert list(found) == [f"{over}: {', '.join(names)}" for names in (strong, weak)]
-    for names, traces in zip((strong, weak), found.values(), strict=True):
-        assert {trace["name"].partition(",")[0] for trace in traces} == {*names, "Hertz"}
-    together = data_on(report([folders[0], folders[2]], tmp_path / "r.html").read_text())
+    found = {chart["title"]: chart["data"] for chart in figures_on(page)["charts"] if chart["title"].startswith(over)}
+    pairs = ("10000", "1000"), ("10", "100")
+    assert list(found) == [f"{over}: {', '.join(names)}" for names in pairs]
+    for names, traces in zip(pairs, found.values(), strict=True):
+        assert {unescape(trace["name"]).partition(",")[0] for trace in traces} == {*names, "Hertz"}
+    together = figures_on(page_of(folders[0], folders[2]))
     assert over in [chart["title"] for chart in together["charts"]]
 
 
 def test_a_page_replaces_a_page_and_nothing_else(finished: Run, tmp_path: Path) -> None:
-    page = report([finished.folder], tmp_path / "r.html")
+    page = page_of(finished.folder)
     written = page.read_text()
     older = written.replace('<meta name="generator" content="contact1d report">', "")  # as 0.1 wrote it
     assert older != written
     page.write_text(older)
-    assert report([finished.folder], page).read_text() == written
+    assert page_of(finished.folder).read_text() == written
     scene = tmp_path / "scene.toml"
     scene.write_text("title = 'mine'")
     (tmp_path / "folder").mkdir()
     (tmp_path / "other.html").write_text("<!DOCTYPE html>\n<html></html>\n")
     (tmp_path / "link.html").symlink_to(scene)
     for name in ("scene.toml", "folder", "other.html", "link.html"):
-        with pytest.raises(FolderError, match=rf"{name} is no page of contact1d.*choose another file") as refused:
-            report([finished.folder], tmp_path / name)
-        assert refused.value.exit_code == 2
+        refused = contact1d("report", finished.folder, "--out", tmp_path / name)
+        assert refused.exit_code == 2
+        assert f"{name} is no page of contact1d" in refused.stderr
     assert scene.read_text() == "title = 'mine'"
 
 
-def test_the_page_of_a_sweep_has_its_table_and_a_figure_for_each_result(tmp_path: Path) -> None:
-    base = chains(400.0, experiment={"kind": "load", "force": 0.5})
-    axes = [{"key": "experiment.force", "values": [0.25, 0.5]}, {"key": "bodies.profile.radius", "values": [400.0]}]
-    done = sweep({"title": "forces", "base": base, "axes": axes}, tmp_path / "s", workers=1, figures=False)
-    page = report([tmp_path / "s"], tmp_path / "r.html").read_text()
-    assert Balance(page).open == []
-    charts = [chart["title"].partition(" over ")[0] for chart in data_on(page)["charts"]]
-    assert (
-        {"Displacement", "Contact radius"}
-        <= set(charts)
-        <= {name.replace("_", " ").capitalize() for name in done.quantities}
-    )
-    assert "Separation energy" not in charts  # it is the same everywhere
-    assert page.count("<td>done</td>") == 2
-
-
-@pytest.mark.parametrize("name", [path.stem for path in SHIPPED])
-def test_every_kind_of_run_has_a_page(name: str, tmp_path: Path) -> None:
-    """A shipped scene for each kind of experiment: what it moves on, and a place on it for each state."""
-    scene = read_scene(SCENES / f"{name}.toml", SHORTER.get(name, []))
-    kept = run(scene, tmp_path / "run", figures=False)
-    page = report([tmp_path / "run"], tmp_path / "r.html").read_text()
-    assert Balance(page).open == []
-    data = data_on(page)
+@pytest.mark.parametrize("name", ["hertz_plane", "mindlin"])
+def test_a_moving_run_has_a_place_on_its_curve_for_each_state(name: str, tmp_path: Path) -> None:
+    done = run(SCENES / f"{name}.toml", tmp_path / "run", figures=False)
+    data = figures_on(page_of(done.folder))
     assert data["charts"]
-    if len(kept.curve.force) > 1:
-        assert len(data["path"]["charts"][0]["data"][-1]["x"]) == len(data["path"]["words"])
+    places = data["path"]["charts"][0]["data"][-1]["x"]
+    assert len(places) == len(data["path"]["words"]) == len(done.curve.force)
 
 
-def test_the_way_of_a_run_moves_a_picture_for_each_state(tmp_path: Path) -> None:
-    from PIL import Image
-
-    path = {"kind": "path", "displacements": [0.0, 0.05, 0.1]}
-    finished = run(chains(400.0, experiment=path), tmp_path / "run", figures=False)
-    with Image.open(animate(finished.folder)) as picture:
-        assert picture.n_frames == len(finished.curve.force)
+def test_an_animation_has_a_picture_for_each_state_and_a_script_for_ovito_lies_beside_them(tmp_path: Path) -> None:
+    """The script is Python of its own, which knows nothing of this program; a new run removes it."""
+    done = run(MOVES, tmp_path / "run", figures=False)
+    assert contact1d("animate", done.folder).exit_code == 0
+    with Image.open(done.folder / "way.gif") as picture:
+        assert picture.n_frames == len(done.curve.force)
         shown = [np.asarray(picture.convert("RGB")) for frame in range(2) if picture.seek(frame) is None]
     assert np.any(shown[0] != shown[1])
-    assert not list(finished.folder.glob("*.part*"))
-
-
-@pytest.mark.parametrize(("name", "words"), [("way.avi", "ends in .gif or .mp4"), ("way.gif", "has a single state")])
-def test_what_cannot_move_is_told(name: str, words: str, tmp_path: Path) -> None:
-    run(chains(400.0, experiment={"kind": "path", "displacements": [0.1]}), tmp_path / "run", figures=False)
-    with pytest.raises(Contact1dError, match=words):
-        animate(tmp_path / "run", tmp_path / name)
-
-
-def test_the_script_for_ovito_lies_beside_the_states_and_a_new_run_removes_it(tmp_path: Path) -> None:
-    """It is Python of its own, which knows nothing of this program."""
-    path = {"kind": "path", "displacements": [0.0, 0.05]}
-    finished = run(chains(400.0, experiment=path), tmp_path / "run", figures=False)
-    script = ovito_script(finished.folder)
+    assert not list(done.folder.glob("*.part*"))
+    script = Path(contact1d("animate", done.folder, "--ovito").stdout.strip())
     text = script.read_text()
     compile(text, str(script), "exec")
     assert "contact1d" not in text
-    (finished.folder / "states.lammpstrj").unlink()
-    with pytest.raises(FolderError, match=r"lacks states\.lammpstrj.*run the scene again"):
-        ovito_script(finished.folder)
-    run(finished.scene, finished.folder, figures=False)
+    (done.folder / "states.lammpstrj").unlink()
+    lacking = contact1d("animate", done.folder, "--ovito")
+    assert lacking.exit_code == 2
+    assert "lacks states.lammpstrj" in lacking.stderr
+    still = {"experiment": {"kind": "path", "displacements": [0.1]}}
+    run(PLANE | still, done.folder, figures=False)
     assert not script.exists()
+    for name, words in (("a.avi", "ends in .gif or .mp4"), ("a.gif", "has a single state")):
+        refused = contact1d("animate", done.folder, "--out", tmp_path / name)
+        assert refused.exit_code == 2
+        assert words in refused.stderr
