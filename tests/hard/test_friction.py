@@ -90,7 +90,7 @@ def test_a_contact_that_grows_on_a_steeper_way_slips_all_over(tmp_path: Path) ->
     assert value(done, "stick_radius") == 0.0
 
 
-@pytest.mark.parametrize("nudge", [-1e-12, 0.0, 1e-12])
+@pytest.mark.parametrize("nudge", [-1e-12, 1e-12])
 def test_a_particle_on_the_edge_of_the_contact_or_of_its_stick_zone(tmp_path: Path, nudge: float) -> None:
     """d = h(10.5), where a particle just touches, and then k_t u = μ k_n (d − h(5.5)), where one just slips."""
     depth = 10.5**2 / RADIUS + nudge
