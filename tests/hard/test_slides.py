@@ -50,7 +50,7 @@ def test_a_chain_too_short_for_the_way_is_refused_with_a_number_that_is_enough(t
 def test_an_upper_chain_of_its_own_that_is_too_short_is_the_one_that_is_named(tmp_path: Path) -> None:
     scene = scene_of({"bodies.particles": 40, "bodies.upper_particles": 20})
     # How long the trial takes depends on the machine.
-    with pytest.raises(RunError, match=": --set bodies.upper_particles=40 --set bodies.particles=auto"):
+    with pytest.raises(RunError, match=r": --set bodies\.upper_particles=40 --set bodies\.particles=auto"):
         run(scene, tmp_path / "run", figures=False)
 
 

@@ -1,8 +1,8 @@
 """Claim: where pairs snap, or nearly do, F_A is that of the highest tooth within what is claimed.
 
-Reference: `tests.pair_lattice`, each pair inverted with its folds, unloaded from where the run had been deepest. "Ratio"
-is a pair's greatest negative stiffness over its springs in series: towards 1, F(d) has a tooth for each pair that lets
-go, with a top as narrow as (1 - ratio)^(3/2) ranges. Above it pairs snap: between a tooth and the next the force of a
+Reference: `tests.pair_lattice`, each pair inverted with its folds, unloaded from where the run had been deepest. A
+"ratio" is a pair's greatest negative stiffness over its springs in series: towards 1, F(d) has a tooth for each pair
+that lets go, with a top as narrow as (1 - ratio)^(3/2) ranges. Above it pairs snap: between a tooth and the next the force of a
 sharp body passes 0, and soft springs follow the attraction far out.
 
 A dynamic tension within the tolerance of F_A is held with a warning, and one beyond it is not held at all.

@@ -6,7 +6,6 @@ References: scipy's root of the body's height, scans of thousands of displacemen
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -82,40 +81,7 @@ def test_a_terrace_that_is_just_as_high_is_no_longer_below() -> None:
     assert found.half_width(2.0, 0.0) == pytest.approx(4.0, rel=WIDTH)
 
 
-@dataclass(frozen=True)
-class Counted:
-    """A parabola that counts what it is asked."""
-
-    asked: list[int]
-    reach: float = math.inf
-
-    def height(self, x: Array) -> Array:
-        self.asked.append(np.asarray(x).size)
-        return np.asarray(x**2 / 60.0)
-
-    def __hash__(self) -> int:
-        return id(self)
-
-
-def test_a_width_takes_less_than_a_bisection_and_marks_some_thousands_of_places() -> None:
-    """A bisection to all digits asks a body 60 times, and a search for a place of F(d) would some 40 times 400."""
-    profile = Counted([])
-    found = of_pairs(PAIR, profile, ROW, 0.7, CUTOFF, REST)
-    assert 3000 < found.gap.size < 6000
-    found.half_width(0.3, CUTOFF)
-    assert len(profile.asked) < 60
-    assert sum(profile.asked) < 1000
-    single = sum(profile.asked) + 401  # of a force, its width and its places
-    for asks, most in (
-        (found.pull_off_force, 100), (lambda: found.displacement_at(1.0), 200), (lambda: found.parted(0.5), 600),
-    ):  # fmt: skip
-        profile.asked.clear()
-        asks()
-        assert sum(profile.asked) < most * single
-
-
-@pytest.mark.parametrize("stiffness", [0.4, 0.7, 5.0])
-@pytest.mark.parametrize("shape", ["parabola", "cone", "circle", "punch"])
+@pytest.mark.parametrize(("shape", "stiffness"), [("parabola", 0.4), ("cone", 5.0), ("circle", 0.7), ("punch", 0.7)])
 def test_marks_are_those_of_a_dense_scan(shape: str, stiffness: float) -> None:
     found = pairs(shape, stiffness)
     felt = REST - float(found.gap[-1])
@@ -148,10 +114,10 @@ def test_one_pair_at_least_is_stuck() -> None:
     assert found.stuck_stiffness(twice) == pytest.approx(2.0 * found.stiffness, rel=1e-9)
 
 
-@pytest.mark.parametrize("points", [400, 4000])
-@pytest.mark.parametrize("stiffness", [0.03, 0.06, 0.1])
-def test_a_pair_snaps_over_the_fall_of_its_own_grid(stiffness: float, points: int) -> None:
+@pytest.mark.parametrize("stiffness", [0.03, 0.1])
+def test_a_pair_snaps_over_the_fall_of_its_own_grid(stiffness: float) -> None:
     """Undeformed gaps G(r) = r − 2 f(r)/k, one after the other: the first that is not exceeded next, and the return."""
+    points = 400
     found = pairs("parabola", stiffness, points)
     r = [CUTOFF * (i + 1) / points for i in range(points)]
     force = [float(f) for f in row_force(PAIR, np.array(r), ROW, CUTOFF)]
@@ -168,13 +134,7 @@ def test_a_pair_snaps_over_the_fall_of_its_own_grid(stiffness: float, points: in
     assert found.stiffness == 0.5 * stiffness
 
 
-def test_pairs_that_do_not_snap_do_not_detach_prematurely() -> None:
-    found = pairs("parabola", 5.0)
-    assert not found.snaps
-    assert found.premature_detachment(1.0, 1.0) == 0.0
-
-
-@pytest.mark.parametrize("stiffness", np.geomspace(0.01, 100.0, 24).tolist())
+@pytest.mark.parametrize("stiffness", [0.01, 0.5, 100.0])
 @pytest.mark.parametrize("shape", ["circle", "punch"])
 def test_a_body_carries_no_more_than_all_its_particles_on_the_opposite_ones(shape: str, stiffness: float) -> None:
     found = pairs(shape, stiffness)
@@ -183,44 +143,14 @@ def test_a_body_carries_no_more_than_all_its_particles_on_the_opposite_ones(shap
     assert caught.value.most == pytest.approx(12.0 / ROW * float(found.force[0]), rel=1e-9)
 
 
-@pytest.mark.parametrize("depth", [1e-3, 10.0, 5e5])
-def test_a_plane_is_felt_as_deep_as_a_body_may_go(depth: float) -> None:
-    found = on_plane(Independent, body("punch"), ROW, 0.5)
-    assert not found.snaps
-    assert found.premature_detachment(1.0, 1.0) == 0.0
-    assert found.snap == (0.0, 0.0)
-    assert found.contact_force(depth) == pytest.approx(12.0 / ROW * 0.5 * depth, rel=1e-6)
-    assert found.displacement_at(12.0 / ROW * 0.5 * depth) == pytest.approx(depth, rel=1e-6)
-
-
-@pytest.mark.parametrize("d", [1e-3, 0.3, 20.0])
+@pytest.mark.parametrize("d", [1e-3, 20.0])
 def test_springs_on_a_plane_are_as_stiff_as_their_contact_is_wide(d: float) -> None:
     """dF/dd = 2a k/s; a difference over a thousandth of the way is off by a quarter of that."""
     found = on_plane(Independent, body("parabola"), ROW, 0.5)
+    assert not found.snaps
+    assert found.premature_detachment(1.0, 1.0) == 0.0
     a = found.half_width(d, 0.0)
     assert found.stiffness_under(found.contact_force(d)) == pytest.approx(2.0 * a / ROW * 0.5, rel=4e-4)
-
-
-class Flat(Counted):
-    """A body of no height and without an end."""
-
-    def height(self, x: Array) -> Array:
-        return np.zeros_like(x)
-
-
-def test_a_spacing_whose_square_is_nothing_is_told_at_once() -> None:
-    with pytest.raises(OverflowError, match="too small compared with the body"):
-        on_plane(Independent, body("parabola"), 1e-200, 1.0).displacement_at(1.0)
-    with pytest.raises(OverflowError, match="too wide compared"):
-        on_plane(Independent, Flat([]), 1.0, 1.0).half_width(1.0, 0.0)
-
-
-def test_an_estimate_that_scenes_share_is_not_to_be_written_to() -> None:
-    found = pairs("parabola")
-    assert pairs("parabola") is found
-    for shared in (found.gap, found.force):
-        with pytest.raises(ValueError, match="read-only"):
-            shared[0] = 1.0
 
 
 @pytest.mark.parametrize(("work", "reach", "jumps"), [(1e-3, 1.0, False), (2e-2, 0.1, True)])
