@@ -147,14 +147,7 @@ def test_what_is_not_finite_or_not_there_is_refused_by_name(
     assert message in failure(tmp_path, ask).message
 
 
-def test_a_crash_between_requests_is_noticed_at_the_next(tmp_path: Path) -> None:
-    """Or the worker is replaced at the next session."""
-
-    def act(session: Session) -> None:
-        os.kill(session.pid, signal.SIGKILL)
-        session.value("step")
-
-    assert "SIGKILL" in failure(tmp_path, act).message
+def test_a_process_that_was_killed_while_idle_is_replaced(tmp_path: Path) -> None:
     with Engine.session(tmp_path) as session:
         pass
     os.kill(session.pid, signal.SIGKILL)

@@ -6,7 +6,6 @@ the scene gives the number of particles, these are what was asked for and nothin
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -28,12 +27,12 @@ SCENES: dict[str, tuple[dict[str, Any], set[str]]] = {
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_the_other_parity_is_within_the_uncertainty(tmp_path: Path, name: str) -> None:
+def test_the_other_parity_is_within_the_uncertainty(name: str) -> None:
     tables, differ = SCENES[name]
     scene = read_scene(tables)
-    auto = run(scene, tmp_path / "auto", figures=False)
+    auto = run(scene)
     count = len(next(iter(auto.profiles.values())).x)
-    other = run(scene.with_({"bodies.particles": count + 1}), tmp_path / "other", figures=False)
+    other = run(scene.with_({"bodies.particles": count + 1}))
     for quantity in auto.results.keys() & other.results.keys():
         ours, theirs = auto.results[quantity], other.results[quantity]
         assert abs(ours.value - theirs.value) <= ours.uncertainty + theirs.uncertainty, quantity
@@ -42,13 +41,13 @@ def test_the_other_parity_is_within_the_uncertainty(tmp_path: Path, name: str) -
     assert "lattice" in auto.warnings
     assert auto.document["accuracy"]["refinements"] == 0
     if name == "on a plane under a force":
-        given = run(scene.with_({"bodies.particles": count}), tmp_path / "given", figures=False)
+        given = run(scene.with_({"bodies.particles": count}))
         assert "lattice" not in given.warnings
         assert given.results.displacement.uncertainty < TOLERANCE["tolerance"] * given.results.displacement.value
 
 
-def test_a_blunt_contact_is_left_as_certain_as_it_was(tmp_path: Path) -> None:
+def test_a_blunt_contact_is_left_as_certain_as_it_was() -> None:
     blunt = PAIRS | {"bodies": PAIRS["bodies"] | {"profile": {"kind": "parabola", "radius": 1000.0}}}
-    found = run(blunt | {"experiment": {"kind": "load", "force": 1.0}}, tmp_path, figures=False)
+    found = run(blunt | {"experiment": {"kind": "load", "force": 1.0}})
     assert found.results.displacement.uncertainty < TOLERANCE["tolerance"] * abs(found.results.displacement.value)
     assert "lattice" not in found.warnings

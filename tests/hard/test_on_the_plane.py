@@ -10,7 +10,6 @@ from typing import Any
 import pytest
 
 from contact1d import RunError, run
-from contact1d.analysis.theory.indenters import PowerLaw
 from validation.references.indenters import jkr
 from validation.references.mdr import ReducedContact
 
@@ -39,19 +38,6 @@ def steel(**more: Any) -> dict[str, Any]:
     return {"title": "odd", "bodies": bodies, "material": {"upper": elastic, "lower": elastic}} | more
 
 
-def test_adhesion_without_an_energy_is_none(tmp_path: Path) -> None:
-    load = scene(experiment={"kind": "load", "force": 1.0})
-    nothing = load | {"adhesion": {"work_of_adhesion": 0.0, "range": 0.1}}
-    results = [run(tables, tmp_path / str(i), figures=False).results for i, tables in enumerate((load, nothing))]
-    assert results[0] == results[1]
-
-
-def test_a_load_has_its_digits_however_few_particles_carry_it(tmp_path: Path) -> None:
-    tables = scene(experiment={"kind": "load", "force": 0.1})
-    tables["bodies"] |= {"particles": 41, "profile": {"kind": "parabola", "radius": 100.0}}
-    assert run(tables, tmp_path, figures=False).results.force.value == pytest.approx(0.1, rel=DIGITS)
-
-
 @pytest.mark.parametrize(
     ("tables", "words"),
     [
@@ -74,30 +60,10 @@ def test_what_cannot_be_resolved_or_held_has_the_remedy_that_helps(
         run(scene(**tables), tmp_path / "run", figures=False)
 
 
-def test_the_energy_of_many_cycles_is_as_uncertain_as_that_of_one(tmp_path: Path) -> None:
-    """Relative to itself, which the warning compares with the tolerance."""
-    shares = []
-    for count in (1, 100):
-        way = {"kind": "tangential", "normal_force": 40.0, "displacements": [0.2, -0.2] * count}
-        found = run(scene(friction={"coefficient": 0.3}, experiment=way), tmp_path / str(count), figures=False)
-        lost = found.results.dissipated_energy
-        shares.append(lost.uncertainty / lost.value)
-        assert "dissipated_energy" in found.warnings["lattice"]
-    assert shares[1] == pytest.approx(shares[0], rel=0.5)
-
-
-def test_an_adhesive_contact_in_metres_finds_its_own_spacing(tmp_path: Path) -> None:
-    found = run(steel(**ADHERES, experiment={"kind": "pull_off", "preload": "1 mN"}), tmp_path / "run", figures=False)
-    radius = PowerLaw.sphere(0.01, MODULUS, WORK).zero_load_radius()
-    assert 20.0 < radius / found.scene.bodies.spacing < 100.0
-    force = found.results.adhesion_force
-    assert abs(force.value - 1.5 * math.pi * WORK * 0.01) <= force.uncertainty
-
-
-def test_a_path_down_and_up_again_has_the_tension_of_its_way_apart(tmp_path: Path) -> None:
+def test_a_path_down_and_up_again_has_the_tension_of_its_way_apart() -> None:
     """On the way together the bodies jump into contact at 8/9 of JKR's largest tension."""
     span = {"from": "10 nm", "to": "-10 nm", "steps": 200}
-    found = run(steel(**ADHERES, experiment={"kind": "path", "displacements": span}), tmp_path, figures=False)
+    found = run(steel(**ADHERES, experiment={"kind": "path", "displacements": span}))
     force = found.results.adhesion_force
     assert abs(force.value - 1.5 * math.pi * WORK * 0.01) <= force.uncertainty
 
@@ -121,7 +87,7 @@ def energies(contact: ReducedContact) -> tuple[float, float, float]:
     ],
 )
 def test_a_path_with_adhesion_has_the_energy_of_its_instabilities(
-    slope: Callable[[float], float], ends: tuple[float, float], returns: bool, steps: int, tmp_path: Path
+    slope: Callable[[float], float], ends: tuple[float, float], returns: bool, steps: int
 ) -> None:
     """Dissipated by a closed path, lost by an open one; and the work from F = 0 to separation."""
     contact = ReducedContact(slope, 1.0, ENERGY)
@@ -132,7 +98,7 @@ def test_a_path_with_adhesion_has_the_energy_of_its_instabilities(
     span = {"from": start, "to": end, "steps": steps, "return": returns}
     tables = scene(adhesion={"work_of_adhesion": ENERGY}, experiment={"kind": "path", "displacements": span})
     tables["bodies"] |= {"profile": profile}
-    found = run(tables, tmp_path / "run", figures=False)
+    found = run(tables)
     parts = ends == (1.0, -1.0) or (returns and ends[0] == -1.0)
     touches = ends[0] < 0.0
     exact = {"dissipated_energy" if returns and parts else "instability_energy": touches * snap_in + parts * separation}
@@ -143,36 +109,31 @@ def test_a_path_with_adhesion_has_the_energy_of_its_instabilities(
     assert steps == 40 or set(exact) <= found.results.keys()
 
 
-def test_a_path_that_only_loads_says_that_nothing_was_pulled(tmp_path: Path) -> None:
+def test_a_path_that_only_loads_says_that_nothing_was_pulled() -> None:
     path = {"kind": "path", "displacements": {"from": -1.0, "to": 1.0, "steps": 20, "return": False}}
-    found = run(scene(adhesion={"work_of_adhesion": ENERGY}, experiment=path), tmp_path / "run", figures=False)
+    found = run(scene(adhesion={"work_of_adhesion": ENERGY}, experiment=path))
     assert "adhesion_force" not in found.results
     assert "never unloads the contact" in found.warnings["no_peak"]
 
 
-def test_the_finest_tolerance_claims_what_its_particles_leave(tmp_path: Path) -> None:
+def test_the_finest_tolerance_claims_what_its_particles_leave() -> None:
     tables = steel(accuracy={"tolerance": 1e-7}, experiment={"kind": "load", "force": "10 N"})
-    found = run(tables, tmp_path / "run", figures=False)
+    found = run(tables)
     exact = (0.75 * 10.0 / MODULUS / math.sqrt(0.01)) ** (2.0 / 3.0)
     place = found.results.displacement
     assert abs(place.value - exact) <= place.uncertainty <= 1e-7 * exact
     assert "tolerance" not in found.warnings
 
 
-def test_an_adhesive_load_keeps_its_tolerance_in_its_mean_pressure_too(tmp_path: Path) -> None:
-    tables = steel(**ADHERES, experiment={"kind": "load", "force": "1 N"})
-    assert "tolerance" not in run(tables, tmp_path / "run", figures=False).warnings
-
-
 @pytest.mark.parametrize(("kind", "times"), [("parabola", 1e4), ("circle", 300.0)])
-def test_a_large_preload_does_not_lose_the_pull_off(kind: str, times: float, tmp_path: Path) -> None:
+def test_a_large_preload_does_not_lose_the_pull_off(kind: str, times: float) -> None:
     """The attraction is then less than a thousandth of the way back."""
     exact = jkr(1.0, 1.0, 2.8e-10)
     spacing = exact.zero_load_radius() / 30.0
     tables = scene(adhesion={"work_of_adhesion": 2.8e-10})
     tables["bodies"] |= {"spacing": spacing, "bulk_stiffness": spacing, "profile": {"kind": kind, "radius": 1.0}}
     preload = {"kind": "pull_off", "preload": times * exact.pull_off_force()}
-    found = run(tables | {"experiment": preload}, tmp_path / "run", figures=False).results
+    found = run(tables | {"experiment": preload}).results
     for name, value in (("adhesion_force", exact.pull_off_force()), ("zero_load_radius", exact.zero_load_radius())):
         assert found[name].value == pytest.approx(value, rel=1e-3)
         assert abs(found[name].value - value) <= found[name].uncertainty

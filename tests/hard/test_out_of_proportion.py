@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from contact1d import read_scene, run, write_deck
 from contact1d.workflow.errors import SettingsError
 from tests.scenes import LAW, chains
-from validation.references.interaction import Exponential, PairInteraction
+from validation.references.interaction import PairInteraction
 
 SHIPPED = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 LOAD = {"kind": "load", "force": 0.5}
@@ -31,10 +31,6 @@ def on_plane(**profile: Any) -> dict[str, Any]:
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "a radius in metres": (chains(1e-6, experiment=LOAD), r"too sharp .* rises by 1\.25e\+05 LU .* another unit"),
     "a cone without an end": (on_plane(kind="cone", slope=1e-9), "particles per body, more than"),
-    "an endless attraction": (
-        chains(100.0, law=(0.18, 0.13, 0.09, 1e20), experiment=LOAD),
-        r"would interact with .* at most 5000 .* another unit",
-    ),
     "a load that a planet carries": (chains(100.0, experiment={"kind": "load", "force": 1e9}), r"particles per body"),
     "more than particles carry that stand on each other": (
         chains(1.0, bodies={"profile": {"kind": "flat_punch", "radius": 5.0}}, experiment=LOAD | {"force": 1e4}),
@@ -47,10 +43,6 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "more pairs than any memory holds": (
         chains(100.0, law=(0.18, 0.13, 0.09, 150.0), bodies={"particles": 10_000_000}, experiment=LOAD),
         r"GB of memory, and this machine has",
-    ),
-    "a path into the earth": (
-        chains(100.0, bodies={"particles": 20}, experiment={"kind": "path", "displacements": [0.0, 1e6]}),
-        r"the path would need .* load steps",
     ),
     "springs of nothing": (
         chains(100.0, bodies={"particles": 20, "bulk_stiffness": 1e-300}, experiment=LOAD),
@@ -94,9 +86,9 @@ def test_a_shipped_scene_with_such_a_number_is_refused_at_once(
 def test_a_single_pair_under_a_steep_body_is_the_closed_forms(tmp_path: Path) -> None:
     """Its ends rise to 7e5 LU, beyond all forces: the box has larger bins."""
     tables = chains(1e-3, bodies={"particles": 15, "spacing": 5.0}, experiment={"kind": "load", "force": 0.3})
-    found = run(tables, tmp_path / "run", figures=False)
+    found = run(tables)
     assert "bin_edge" in (tmp_path / "run" / "in.lammps").read_text()
-    pair = PairInteraction(Exponential(*LAW[:2]), Exponential(*LAW[2:]))
+    pair = PairInteraction.of(*LAW)
 
     def off(r: float) -> float:
         return LAW[0] / LAW[1] * math.exp(-r / LAW[1]) - LAW[2] / LAW[3] * math.exp(-r / LAW[3]) - 0.3
@@ -111,5 +103,5 @@ def test_neighbours_a_million_times_stiffer_than_the_bulk_come_to_rest_sideways(
         100.0, bodies={"particles": 24}, neighbours={"stiffness": 0.83e6}, horizontal={}, accuracy={"tolerance": 1e-2},
         experiment={"kind": "path", "displacements": [0.0]},
     )  # fmt: skip
-    assert run(tables, tmp_path / "run", figures=False).curve.force_uncertainty[-1] < CLAIMED
+    assert run(tables).curve.force_uncertainty[-1] < CLAIMED
     assert "bin_edge" in (tmp_path / "run" / "in.lammps").read_text()

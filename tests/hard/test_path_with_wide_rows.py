@@ -6,7 +6,6 @@ in a round, one loop for each pair that snaps.
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,11 +15,11 @@ from contact1d import Run, run
 from tests.pair_lattice import PairLattice
 from tests.scenes import chains
 from validation.hard.cases import TENSION, PairCase, reach, shaped
-from validation.references.interaction import Exponential, PairInteraction
+from validation.references.interaction import PairInteraction
 
 RANGE = 0.03
 NUMBERS = (0.0024, 0.015, 0.0012, RANGE)
-LAW = PairInteraction(Exponential(*NUMBERS[:2]), Exponential(*NUMBERS[2:]))
+LAW = PairInteraction.of(*NUMBERS)
 RADIUS, COUNT = 100.0, 20
 ROWS = 2e-3
 """Largest difference of a force from the reference's over the largest; measured 1e-4: the law's tail, residuals."""
@@ -31,7 +30,7 @@ BEFORE = 1e-3
 """A row over the range, before the snap."""
 
 
-def test_every_row_is_on_its_branch(tmp_path: Path) -> None:
+def test_every_row_is_on_its_branch() -> None:
     ratio, wide = 6.0, 3.0
     stiffness = 2.0 * float(LAW.force_slope(LAW.extremum_distance(2))) / ratio
     places = np.arange(COUNT) - 0.5 * (COUNT - 1)
@@ -39,7 +38,7 @@ def test_every_row_is_on_its_branch(tmp_path: Path) -> None:
     steps = round((DEEPEST + pairs.snap_off + 2.0 * RANGE) / (wide * RANGE)) + 1
     way = {"from": DEEPEST - steps * wide * RANGE, "to": DEEPEST, "steps": steps, "return": True}
     path = {"kind": "path", "displacements": way}
-    found = run(chains(RADIUS, stiffness, NUMBERS, bodies={"particles": COUNT}, experiment=path), tmp_path, False).curve
+    found = run(chains(RADIUS, stiffness, NUMBERS, bodies={"particles": COUNT}, experiment=path)).curve
     stuck, d, force = pairs.stuck_after(DEEPEST), found.displacement, found.force
     exact = np.array([
         pairs.force(place, pairs.stuck_after(place) if phase == "loading" else stuck)
@@ -50,35 +49,24 @@ def test_every_row_is_on_its_branch(tmp_path: Path) -> None:
     assert abs(loop - true) < AREA * np.trapezoid(np.abs(exact), d[0] + np.cumsum(np.abs(np.diff(d, prepend=d[0]))))
 
 
-def path_of(case: PairCase, folder: Path, **path: Any) -> Run:
+def path_of(case: PairCase, **path: Any) -> Run:
     tables = {"title": "rows"} | case.scene() | {"experiment": {"kind": "path"} | path}
-    return run(tables, folder, figures=False)
+    return run(tables)
 
 
-def test_a_sharp_maximum_between_two_rows_is_within_the_claim(tmp_path: Path) -> None:
+def test_a_sharp_maximum_between_two_rows_is_within_the_claim() -> None:
     """Polynomials through wide rows agree with each other by chance: the claim was up to 460 times too small."""
     ratio = 0.74
     case = PairCase("rows", ratio, shaped("flat_punch", 6, 1.5 * reach(ratio)), 6, TENSION, 1e-3)
     pairs = case.exact()
     way = {"from": -reach(ratio), "to": pairs.deepest(TENSION), "steps": 33}
-    found = path_of(case, tmp_path, displacements=way).results.adhesion_force
+    found = path_of(case, displacements=way).results.adhesion_force
     exact, _ = pairs.adhesion(TENSION)
     assert abs(found.value - exact) <= found.uncertainty <= 0.5 * exact
 
 
-def test_pairs_that_are_drawn_apart_hold_until_their_snap(tmp_path: Path) -> None:
-    """A body that is moved with its particles puts a pair behind the top that still holds it: up to 2 % of a range."""
-    case = PairCase("hold", 3.0, shaped("flat_punch", 3, 0.0), 3, 0.0, 1e-3)
-    pairs = case.exact()
-    assert pairs.fold is not None
-    off = pairs.interaction.force_free_distance() - pairs.fold.gap_off
-    rows = [off + BEFORE * RANGE + i * 0.1 * RANGE for i in range(6)]
-    held = path_of(case, tmp_path, displacements=[DEEPEST, *rows[::-1]]).curve.force[-1]
-    assert held == pytest.approx(float(pairs.unloading(np.array([rows[0]]), DEEPEST)[0]), rel=ROWS)
-
-
 @pytest.mark.parametrize(("ratio", "first"), [(2.0, 0.02), (8.0, -0.02)])
-def test_a_path_begins_on_the_branch_that_the_scene_names(ratio: float, first: float, tmp_path: Path) -> None:
+def test_a_path_begins_on_the_branch_that_the_scene_names(ratio: float, first: float) -> None:
     """From afar, or with start = "contact" back from the largest displacement: pairs have two states between."""
     case = PairCase("start", ratio, shaped("parabola", 40, reach(ratio)), 40, 0.0)
     deepest, exact = 0.06, case.exact()
@@ -86,7 +74,7 @@ def test_a_path_begins_on_the_branch_that_the_scene_names(ratio: float, first: f
     top, found = max(abs(float(one)) for one in states.values()), {}
     for start, force in states.items():
         rows = [first, 0.5 * (first + deepest), deepest]
-        done = path_of(case, tmp_path / start, displacements=rows, start=start).curve
+        done = path_of(case, displacements=rows, start=start).curve
         found[start] = float(done.force[0])
         assert done.displacement == pytest.approx(rows, abs=1e-12)
         assert found[start] == pytest.approx(float(force), abs=1e-3 * top)

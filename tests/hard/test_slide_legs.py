@@ -19,14 +19,14 @@ TRACE = 1e-3
 PATH = [[0.02, 1.0], [0.0, 0.5], [-0.02, 2.0], [0.03, 0.5]]
 
 
-def test_there_and_back_with_a_rest_is_the_motion_of_the_integrator(tmp_path: Path) -> None:
+def test_there_and_back_with_a_rest_is_the_motion_of_the_integrator() -> None:
     scene = read_scene(SCENE).with_({
         "accuracy.tolerance": 1e-2, "bodies.particles": 48, "bodies.upper_particles": 32,
         "experiment": {"kind": "slide", "normal_force": 1.0, "path": PATH},
     })  # fmt: skip
     settings = settings_for(scene)
     scene = scene.with_({"bodies.upper_offset": start_offset(scene, settings)})
-    found = run(scene, tmp_path / "run", figures=False)
+    found = run(scene)
     body, drive, friction = Integrator(slide_model(scene, settings)), 0.0, []
     body.settle(settings.motion.time_step, 1e-6)
     for leg in settings.motion.drive:

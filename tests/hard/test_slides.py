@@ -22,8 +22,8 @@ def scene_of(changes: dict[str, Any]) -> Scene:
     return read_scene(SCENES / "slide.toml").with_(quick | changes)
 
 
-def test_adhesion_holds_a_slide_that_is_pulled_up(tmp_path: Path) -> None:
-    found = run(scene_of({"experiment.normal_force": -0.3}), tmp_path / "run", figures=False).results
+def test_adhesion_holds_a_slide_that_is_pulled_up() -> None:
+    found = run(scene_of({"experiment.normal_force": -0.3})).results
     assert found["static_friction"].value > found["mean_friction"].value > 0.0
 
 
@@ -47,32 +47,18 @@ def test_a_chain_too_short_for_the_way_is_refused_with_a_number_that_is_enough(t
     write_deck(scene_of({"bodies.particles": enough, "bodies.upper_particles": 36}), tmp_path / "run")
 
 
-def test_an_upper_chain_of_its_own_that_is_too_short_is_the_one_that_is_named(tmp_path: Path) -> None:
-    scene = scene_of({"bodies.particles": 40, "bodies.upper_particles": 20})
-    # How long the trial takes depends on the machine.
-    with pytest.raises(RunError, match=r": --set bodies\.upper_particles=40 --set bodies\.particles=auto"):
-        run(scene, tmp_path / "run", figures=False)
-
-
-def test_a_drive_beyond_what_particles_follow_is_warned(tmp_path: Path) -> None:
+def test_a_drive_beyond_what_particles_follow_is_warned() -> None:
     fast = scene_of({"cantilever.velocity": 0.3, "experiment.distance": 6.0})
-    warnings = run(fast, tmp_path / "run", figures=False).warnings
+    warnings = run(fast).warnings
     assert "the bodies cannot follow" in warnings["fast"]
     assert "drag" in warnings
 
 
-def test_little_drag_throws_no_slide_through_the_other_body_while_it_is_loaded(tmp_path: Path) -> None:
+def test_little_drag_throws_no_slide_through_the_other_body_while_it_is_loaded() -> None:
     """The plate would swing to 25 LU below; the drag of the loading is its own, and gone before the drive starts."""
     scene = scene_of({"damping.coefficient": 0.02, "plate.damping": 0.2, "experiment.distance": 4.0})
-    friction = run(scene, tmp_path / "run", figures=False).friction["friction"]
+    friction = run(scene).friction["friction"]
     assert friction[0] == pytest.approx(0.0, abs=0.05 * np.abs(friction).max())
-
-
-def test_a_slide_that_only_rests_is_not_asked_for_periods(tmp_path: Path) -> None:
-    resting = {"experiment": {"kind": "slide", "normal_force": 1.0, "path": [[0.0, 1.0]]}}
-    found = run(scene_of(resting), tmp_path / "run", figures=False)
-    assert "unsteady" not in found.warnings
-    assert "mean_friction" not in found.results
 
 
 def flat(**bodies: Any) -> dict[str, Any]:
@@ -98,20 +84,20 @@ def test_bodies_without_end_that_cannot_be_are_refused(bodies: dict[str, Any], w
     assert words in str(caught.value)
 
 
-def slid(folder: Path, stiffness: float, load: float, velocity: float = 0.01, **more: Any) -> Any:
+def slid(stiffness: float, load: float, velocity: float = 0.01, **more: Any) -> Any:
     """Flat bodies without end."""
     bodies = {key: more.pop(key) for key in list(more) if key not in ("damping", "accuracy", "path")}
     tables = flat(**bodies) | {"cantilever": {"stiffness": stiffness, "velocity": velocity}}
     way = {"path": more.pop("path")} if "path" in more else {"distance": 4.0}
     tables |= more | {"experiment": {"kind": "slide", "normal_force": load} | way}
-    return run(tables, folder, figures=False)
+    return run(tables)
 
 
-def test_two_and_three_particles_slide_as_one_does(tmp_path: Path) -> None:
+def test_two_and_three_particles_slide_as_one_does() -> None:
     """The rigid plate of two anchors is a line, that of one no rigid body at all."""
     friction = [
         slid(
-            tmp_path / str(count), 0.05 * count, 0.2 * count, damping={"coefficient": 1.0},
+            0.05 * count, 0.2 * count, damping={"coefficient": 1.0},
             upper_particles=count, particles=6, upper_spacing=6.0 / count,
         ).results.mean_friction.value / count
         for count in (1, 2, 3)
@@ -122,18 +108,16 @@ def test_two_and_three_particles_slide_as_one_does(tmp_path: Path) -> None:
 SINGLE = {"particles": 4, "lower": "particles"}
 
 
-def test_a_tolerance_far_below_the_period_has_far_bonds_whose_bins_fit_into_the_box(tmp_path: Path) -> None:
+def test_a_tolerance_far_below_the_period_has_far_bonds_whose_bins_fit_into_the_box() -> None:
     """Bonds of 10/tolerance spacings in a box of four: LAMMPS wants no bin a hundred times the box."""
     tight = {"accuracy": {"tolerance": 1e-4}, "upper_particles": 4, "bulk_stiffness_tangential": 0.6}
-    assert slid(tmp_path / "run", 0.4, 0.8, 0.02, **SINGLE, **tight).results.mean_friction.value > 0.0
+    assert slid(0.4, 0.8, 0.02, **SINGLE, **tight).results.mean_friction.value > 0.0
 
 
-def test_a_slide_back_over_a_body_that_repeats_itself_is_the_mirror_image(tmp_path: Path) -> None:
+def test_a_slide_back_over_a_body_that_repeats_itself_is_the_mirror_image() -> None:
     """Off either end of the lower chain there is the next one, to what is beside and below a particle."""
     loose = {"accuracy": {"tolerance": 1e-2}, "upper_particles": 1, "bulk_stiffness": 4.0}
-    there, back = (
-        slid(tmp_path / str(way), 0.5, 0.2, **SINGLE, **loose, path=[[0.01 * way, 3.0]]) for way in (1.0, -1.0)
-    )
+    there, back = (slid(0.5, 0.2, **SINGLE, **loose, path=[[0.01 * way, 3.0]]) for way in (1.0, -1.0))
     for name in ("plate_x", "friction"):
         assert back.friction[name] == pytest.approx(-there.friction[name], abs=MIRRORED)
     for name, one in there.results.items():

@@ -58,10 +58,8 @@ def test_a_minimisation_that_is_cut_short_is_no_result(tmp_path: Path, monkeypat
     assert "not converged" in failure(path(0.3), tmp_path / "run")
 
 
-def test_particles_closer_than_the_table_was_chosen_for_get_a_warning(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_particles_closer_than_the_table_was_chosen_for_get_a_warning(monkeypatch: pytest.MonkeyPatch) -> None:
     leap = path(0.0, 1.7)  # the rows between are the program's
-    assert "table_core" not in run(leap, tmp_path / "run", figures=False).warnings
+    assert "table_core" not in run(leap).warnings
     spoil(monkeypatch, "forces", table_from=0.1)
-    assert "table_core" in run(leap, tmp_path / "run", figures=False).warnings
+    assert "table_core" in run(leap).warnings

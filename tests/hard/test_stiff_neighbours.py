@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 
 from contact1d import run, write_deck
 from tests.scenes import chains
-from validation.references.interaction import Exponential, PairInteraction
+from validation.references.interaction import PairInteraction
 from validation.references.model import ChainModel
 from validation.references.solver import ChainSolver
 
@@ -26,9 +26,9 @@ def scene(neighbours: float, particles: int | str = "auto") -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("ratio", [0.3, 1000.0])
-def test_an_automatic_chain_is_long_enough(tmp_path: Path, ratio: float) -> None:
-    done = run(scene(0.83 * ratio), tmp_path, figures=False)
-    law = PairInteraction(Exponential(0.18, 0.13), Exponential(0.09, 0.26))
+def test_an_automatic_chain_is_long_enough(ratio: float) -> None:
+    done = run(scene(0.83 * ratio))
+    law = PairInteraction.of(0.18, 0.13, 0.09, 0.26)
     longer = 2 * len(done.profiles["final"].x)
     solver = ChainSolver(ChainModel(longer, 0.83, law, radius=200.0, neighbour_stiffness=0.83 * ratio))
     found = done.results.displacement
@@ -39,8 +39,8 @@ def test_an_automatic_chain_is_long_enough(tmp_path: Path, ratio: float) -> None
     assert "chain_end" not in done.warnings
 
 
-def test_a_given_chain_that_ends_too_soon_is_warned_of(tmp_path: Path) -> None:
-    warnings = run(scene(830.0, 60), tmp_path, figures=False).warnings
+def test_a_given_chain_that_ends_too_soon_is_warned_of() -> None:
+    warnings = run(scene(830.0, 60)).warnings
     assert "spread the load over 31.6 LU" in warnings["chain_end"]
 
 

@@ -17,6 +17,7 @@ from contact1d import sweep
 from contact1d.workflow.errors import Contact1dError
 from tests.slurm import slurm
 
+pytestmark = pytest.mark.cluster
 POINTS, MANY = 12, 105
 """Of one job, and of two: the second has five."""
 TABLE = "results.csv"
@@ -47,7 +48,6 @@ def in_slurm(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[dict[s
         yield environment
 
 
-@pytest.mark.cluster
 def test_a_partition_that_is_not_there_is_told_before_anything_is_written(
     tmp_path: Path, in_slurm: dict[str, str]
 ) -> None:
@@ -56,7 +56,6 @@ def test_a_partition_that_is_not_there_is_told_before_anything_is_written(
     assert not (tmp_path / "there").exists()
 
 
-@pytest.mark.cluster
 def test_points_of_a_job_that_was_cancelled_are_missing_and_run_next_time(
     tmp_path: Path, in_slurm: dict[str, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -82,7 +81,6 @@ def test_points_of_a_job_that_was_cancelled_are_missing_and_run_next_time(
     assert all(path.stat().st_mtime_ns == stamp for path, stamp in stamps.items())
 
 
-@pytest.mark.cluster
 def test_a_sweep_through_slurm_has_the_table_of_one_here(tmp_path: Path, in_slurm: dict[str, str]) -> None:
     many = SWEEP | {"axes": [SWEEP["axes"][0] | {"steps": MANY - 1}]}
     there = sweep(many, tmp_path / "there", "slurm", figures=False)

@@ -2,8 +2,8 @@
 
 Reference: `tests.pair_lattice`, each pair inverted with its folds, unloaded from where the run had been deepest. A
 "ratio" is a pair's greatest negative stiffness over its springs in series: towards 1, F(d) has a tooth for each pair
-that lets go, with a top as narrow as (1 - ratio)^(3/2) ranges. Above it pairs snap: between a tooth and the next the force of a
-sharp body passes 0, and soft springs follow the attraction far out.
+that lets go, with a top as narrow as (1 - ratio)^(3/2) ranges. Above it pairs snap: between a tooth and the next the
+force of a sharp body passes 0, and soft springs follow the attraction far out.
 
 A dynamic tension within the tolerance of F_A is held with a warning, and one beyond it is not held at all.
 """
@@ -21,10 +21,10 @@ from contact1d import RunError, read_scene, run
 from tests.pair_lattice import PairLattice
 from tests.scenes import chains
 from validation.hard.cases import TENSION, PairCase, reach, shaped
-from validation.references.interaction import Exponential, PairInteraction
+from validation.references.interaction import PairInteraction
 
 NUMBERS = (0.011, 0.015, 0.01, 0.03)
-LAW = PairInteraction(Exponential(*NUMBERS[:2]), Exponential(*NUMBERS[2:]))
+LAW = PairInteraction.of(*NUMBERS)
 """Short against the spacing, so that a particle feels its opposite alone."""
 PROFILES: dict[str, dict[str, Any]] = {
     "flat punch": {"kind": "flat_punch", "radius": 5.0},
@@ -52,15 +52,13 @@ CASES = [
 
 
 @pytest.mark.parametrize(("profile", "ratio", "tolerance"), CASES)
-def test_adhesion_force_is_that_of_the_highest_tooth(
-    tmp_path: Path, profile: str, ratio: float, tolerance: float
-) -> None:
+def test_adhesion_force_is_that_of_the_highest_tooth(profile: str, ratio: float, tolerance: float) -> None:
     stiffness = 2.0 * float(LAW.force_slope(LAW.extremum_distance(2))) / ratio
     asked = read_scene(chains(
         1.0, stiffness, NUMBERS, bodies={"profile": PROFILES[profile], "reduction": "geike_popov"},
         accuracy={"tolerance": tolerance}, experiment={"kind": "pull_off", "preload": PRELOAD},
     ))  # fmt: skip
-    done = run(asked, tmp_path, figures=False)
+    done = run(asked)
     pairs = PairLattice(LAW, stiffness, asked.bodies.height(done.profiles["zero_load"].x))
     assert pairs.ratio == pytest.approx(ratio)
     d, force = done.curve.displacement, done.curve.force
@@ -78,11 +76,11 @@ def test_adhesion_force_is_that_of_the_highest_tooth(
         assert before <= EVEN * after
 
 
-def test_a_tension_in_time_is_carried_by_the_next_tooth_where_pairs_nearly_snap(tmp_path: Path) -> None:
+def test_a_tension_in_time_is_carried_by_the_next_tooth_where_pairs_nearly_snap() -> None:
     """With the drag of a smooth contact the plate swung past it: 1.5 % too small, 270 times the claim."""
     case = PairCase("tooth", 0.99, shaped("parabola", 21, reach(0.99)), 21, 1.5 * TENSION, 1e-4, dynamic=True)
     exact, _ = case.exact().adhesion(case.preload)
-    found = run({"title": "tooth"} | case.scene(), tmp_path / "run", figures=False).results.adhesion_force
+    found = run({"title": "tooth"} | case.scene()).results.adhesion_force
     assert abs(found.value - exact) <= min(found.uncertainty, CARRIED * exact)
 
 
@@ -93,7 +91,7 @@ NEAR = (0.018, 0.03, 0.009, 0.06)
 @cache
 def largest_tension() -> float:
     x = np.arange(PARTICLES) - 0.5 * (PARTICLES - 1)
-    law = PairInteraction(Exponential(*NEAR[:2]), Exponential(*NEAR[2:]))
+    law = PairInteraction.of(*NEAR)
     return float(PairLattice(law, STIFFNESS, x**2 / (2.0 * RADIUS)).pull_off(0.05)[0])
 
 
@@ -111,4 +109,4 @@ def test_a_tension_in_time_is_doubted_near_the_pull_off_force_and_lost_beyond_it
         with pytest.raises(RunError, match="does not sustain"):
             run(tables, tmp_path, figures=False)
     else:
-        assert ("near_pull_off" in run(tables, tmp_path, figures=False).warnings) == near
+        assert ("near_pull_off" in run(tables).warnings) == near

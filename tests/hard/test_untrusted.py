@@ -10,7 +10,7 @@ import pytest
 
 from contact1d import RunError, run
 from tests.scenes import LAW, chains
-from validation.references.interaction import Exponential, PairInteraction
+from validation.references.interaction import PairInteraction
 from validation.references.model import ChainModel
 from validation.references.pull_off import pull_off
 
@@ -21,9 +21,6 @@ UNTRUSTED: dict[str, tuple[dict[str, Any], str]] = {
             horizontal={}, experiment={"kind": "pull_off", "preload": 0.5},
         ),
         "went through each other",
-    ),
-    "end of the chain": (
-        chains(100.0, bodies={"particles": 13}, experiment={"kind": "load", "force": 2.0}), "end of the chain",
     ),
     "more tension than adhesion": (
         chains(100.0, bodies={"particles": 60}, experiment={"kind": "load", "force": -5.0}), "never reached",
@@ -60,17 +57,11 @@ def test_no_number_comes_out_not_even_of_the_run_before(name: str, tmp_path: Pat
     assert not {"curve.csv", "profile.csv"} & files
 
 
-def test_a_chain_that_cuts_the_tail_of_the_contact_gets_a_warning(tmp_path: Path) -> None:
-    pull = {"kind": "pull_off", "preload": 0.3}
-    found = run(chains(100.0, bodies={"particles": 34}, experiment=pull), tmp_path, figures=False)
-    assert set(found.warnings) == {"chain_end"}
-
-
 def test_a_tension_is_held_up_to_the_adhesion_force_and_no_further(tmp_path: Path) -> None:
     """That of the reference solver, which shares nothing with the program, within 0.2 %; asked of it are 0.3 %."""
-    law = PairInteraction(Exponential(*LAW[:2]), Exponential(*LAW[2:]))
+    law = PairInteraction.of(*LAW)
     adhesion = pull_off(ChainModel(60, 0.83, law, radius=100.0), 0.1).adhesion_force
-    held = run(load(-0.998 * adhesion), tmp_path / "run", figures=False).results.force.value
+    held = run(load(-0.998 * adhesion)).results.force.value
     assert held == pytest.approx(-0.998 * adhesion, rel=1e-3)  # the tolerance of the scene
     with pytest.raises(RunError, match="never reached"):
         run(load(-1.002 * adhesion), tmp_path / "run", figures=False)

@@ -87,12 +87,6 @@ def test_the_depth_is_exact_over_a_tilted_plane_in_any_order() -> None:
     assert depth == pytest.approx(float(np.max(0.3 * x - 1.0 - (z - 3.0))), rel=ROUND_OFF)
 
 
-def test_only_particles_below_the_lower_surface_have_a_depth() -> None:
-    x_low = np.arange(5.0)
-    assert penetration_depth([-3.0, 0.5, 2.5, 9.0], [-7.0, -0.25, 1.0, -7.0], x_low, np.zeros(5)) == 0.25
-    assert penetration_depth(x_low, x_low + 0.1, x_low, x_low) == 0.0
-
-
 def test_the_share_at_the_ends_counts_tension_and_compression() -> None:
     x = np.arange(4.0)
     assert end_pressure_share(profile(x, np.array([0.1, -4.0, 2.0, -0.2]))) == pytest.approx(0.05, rel=ROUND_OFF)

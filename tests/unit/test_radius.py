@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 import pytest
@@ -27,8 +26,6 @@ SNAP_ERROR = 0.1  # spacings; 0.03 measured: a particle's snap is seen on the la
 TYPICAL_ERROR = 0.15  # spacings, 95 % of cases; 0.04 measured: dips of the shortest range are three spacings wide
 ROUND_OFF = 1e-9
 """[LU], roots of a parabola through three doubles."""
-SPACING, FAR = 0.25, 400.0
-"""Of samples, and where they begin: a place is not a distance."""
 
 
 def profile(x: np.ndarray, pressure: np.ndarray) -> Profile:
@@ -102,18 +99,18 @@ def errors(snaps: bool, noise: float, seed: int) -> tuple[np.ndarray, np.ndarray
     return np.array(rows)[:, 0], np.array(rows)[:, 1]
 
 
-@pytest.mark.parametrize(("snaps", "median"), [(False, MEDIAN_ERROR), (True, SNAP_ERROR)])
-def test_the_tensile_radius_is_that_of_the_closed_form_wherever_the_lattice_lies(snaps: bool, median: float) -> None:
-    error, uncertainty = errors(snaps, 0.0, 11)
-    assert np.median(error) < median
-    assert snaps or np.quantile(error, 0.95) < TYPICAL_ERROR
-    assert np.mean(error <= uncertainty) >= COVERED
-
-
 def test_the_uncertainty_covers_as_much_as_is_said_where_nothing_snaps() -> None:
     """0.995 measured on 600 cases; half of this uncertainty would cover 0.987 of them, a third 0.980."""
-    cases = [errors(False, 0.0, seed) for seed in (11, 14, 15)]
-    assert np.mean(np.concatenate([error <= uncertainty for error, uncertainty in cases])) >= COVERED_SMOOTH
+    error, uncertainty = np.concatenate([errors(False, 0.0, seed) for seed in (11, 14, 15)], axis=1)
+    assert np.median(error) < MEDIAN_ERROR
+    assert np.quantile(error, 0.95) < TYPICAL_ERROR
+    assert np.mean(error <= uncertainty) >= COVERED_SMOOTH
+
+
+def test_the_uncertainty_covers_what_a_snap_hides() -> None:
+    error, uncertainty = errors(True, 0.0, 11)
+    assert np.median(error) < SNAP_ERROR
+    assert np.mean(error <= uncertainty) >= COVERED
 
 
 def test_the_uncertainty_covers_the_error_of_a_noisy_profile() -> None:
@@ -188,42 +185,26 @@ def test_round_off_of_the_largest_pressure_is_no_tension(share: float) -> None:
     x = np.arange(-6.0, 7.0)
     p = np.maximum(9.5 - x**2, 0.0)
     p[0] = -share * p.max()
-    compressed, tensile = partial(compressive_radius, profile(x, p)), partial(tensile_radius, profile(x, p))
-    allowed, refused, words = (
-        (compressed, tensile, "no particle carries") if share < 1e-12 else (tensile, compressed, "carry")
-    )
-    assert allowed().value == pytest.approx(math.sqrt(9.5) if share < 1e-12 else allowed().value, abs=1e-6)
-    with pytest.raises(ValueError, match=f"{words} tension"):
-        refused()
+    found = profile(x, p)
+    if share < 1e-12:
+        assert compressive_radius(found).value == pytest.approx(math.sqrt(9.5), abs=1e-6)
+    with pytest.raises(ValueError, match=r"carr(y|ies) tension"):
+        tensile_radius(found) if share < 1e-12 else compressive_radius(found)
 
 
-@pytest.mark.parametrize("scale", [2.0**-20, 1.0, 2.0**20])
+@pytest.mark.parametrize("scale", [2.0**-20, 2.0**20])
 def test_a_contact_drawn_along_by_more_than_a_spacing_has_its_centre_where_its_pressure_is(scale: float) -> None:
     x = scale * np.arange(-10.0, 11.0)
-    for to, moved in ((0, 0.0), (1, 0.0), (2, 2.0), (-1, 0.0), (-2, -2.0), (5, 5.0)):
+    for to, moved in ((1, 0.0), (2, 2.0), (-2, -2.0)):
         p = np.zeros(21)
         p[9 + to : 12 + to] = 1.0, -4.0, 1.0
         assert moved_centre(profile(x, p)) == pytest.approx(moved * scale, rel=ROUND_OFF)
-    assert moved_centre(profile(x, np.zeros(21))) == 0.0
-    assert moved_centre(profile(x[:1], np.ones(1))) == 0.0
-    assert moved_centre(profile(scale * np.array([3.0, 4.0]), np.ones(2))) == 3.5 * scale
-    assert moved_centre(profile(scale * np.array([3.0, 4.0, 5.0]), np.ones(3))) == 4.0 * scale
+    assert moved_centre(profile(x, np.zeros(21))) == moved_centre(profile(x[:1], np.ones(1))) == 0.0
 
 
 def layer(x: np.ndarray, radius: float, centre: float = 0.0) -> np.ndarray:
     """Springs under a parabola: p = k/s (d - x²/2R) where positive, d = a²/2R."""
     return 0.8 * np.maximum(0.0, radius**2 - (x - centre) ** 2) / (2.0 * BODY_RADIUS)
-
-
-def test_the_compressive_radius_of_a_layer_of_springs_is_exact() -> None:
-    rng = np.random.default_rng(16)
-    for radius in rng.uniform(4.0, 60.0, CASES):
-        x = np.arange(-80.0, 81.0) + rng.uniform(-0.5, 0.5)
-        found = compressive_radius(profile(x, layer(x, radius, centre=3.3)))
-        assert found.value == pytest.approx(radius, abs=ROUND_OFF)
-        assert found.left == pytest.approx(3.3 - radius, abs=ROUND_OFF)
-        assert abs(found.value - radius) <= found.uncertainty < 1e-6
-        assert not found.reaches_end
 
 
 def test_the_uncertainty_covers_a_noisy_layer() -> None:
@@ -268,52 +249,19 @@ def test_three_loaded_particles_fix_a_parabola_and_a_fourth_tells_how_well() -> 
         assert found.uncertainty == pytest.approx(0.55, abs=1e-6) if loaded == 3 else found.uncertainty < 1e-6
 
 
-def sampled(values: list[float] | np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    y = np.asarray(values, dtype=np.float64)
-    return FAR + SPACING * np.arange(y.size), y, np.arange(y.size)
-
-
-def test_a_side_on_which_nothing_pulls_has_its_minimum_anywhere() -> None:
-    """A body pressed on so hard that one side alone has a particle under tension."""
-    x, y, _ = sampled([0.0] * 20 + [-2e-4] + [1.0] * 40 + [0.0] * 20)
-    place = position_of_minimum(x, y, np.arange(40, 81))
-    assert abs(place.position - x[71]) <= 2.0 * SPACING
-    assert place.uncertainty >= 9.5 * SPACING
-
-
 @pytest.mark.parametrize(("width", "known"), [(0.7, 1.0), (2.8, 0.1), (5.6, 1e-3)])
 def test_a_dip_is_known_the_better_the_more_samples_it_has(width: float, known: float) -> None:
     """One narrower than a sample is anywhere between those beside the lowest, one of ten samples is where it is."""
-    place = position_of_minimum(*sampled(-1.0 / np.cosh((np.arange(60.0) - 30.3) / width)))
-    assert abs(place.position - (FAR + SPACING * 30.3)) <= place.uncertainty <= known * SPACING
+    every, spacing, far = np.arange(60), 0.25, 400.0  # a place is not a distance
+    place = position_of_minimum(far + spacing * every, -1.0 / np.cosh((every - 30.3) / width), every)
+    assert abs(place.position - (far + spacing * 30.3)) <= place.uncertainty <= known * spacing
 
 
-def test_a_flat_dip_in_noise_is_found_within_its_claim_and_better_than_its_lowest_sample() -> None:
-    """Noise of 1 % of the depth hides which of some fifteen samples is lowest."""
-    random = np.random.default_rng(13)
-    t, middle = np.arange(61.0), 30.3
-    law = 1e-4 * ((t - middle) ** 2 + 0.01 * np.abs(t - middle) ** 3)
-    errors, claims, lowest = [], [], []
-    for _ in range(200):
-        y = law + 1e-3 * random.normal(size=t.size)
-        found = position_of_minimum(t, y, np.arange(t.size))
-        errors.append(found.position - middle)
-        claims.append(found.uncertainty)
-        lowest.append(t[y.argmin()] - middle)
-    assert np.mean(np.abs(errors) <= claims) >= 0.95
-    assert np.sqrt(np.mean(np.square(errors))) < 0.5 * np.sqrt(np.mean(np.square(lowest)))
-    assert np.median(claims) < 6.0 * np.sqrt(np.mean(np.square(errors)))
-
-
-@pytest.mark.parametrize("beside", [(0.95, 0.1), (0.1, 0.95)])
-def test_a_dip_of_one_sample_may_lie_anywhere_up_to_both_of_its_neighbours(beside: tuple[float, float]) -> None:
-    y = np.full(21, 1.0)
-    y[9:12] = beside[0], 0.0, beside[1]
-    x, y, every = sampled(y)
-    place = position_of_minimum(x, y, every)
-    assert place.position + place.uncertainty >= x[11] - 1e-9
-    assert place.position - place.uncertainty <= x[9] + 1e-9
-    assert place.uncertainty <= 2.0 * SPACING
+def test_two_samples_that_tie_leave_no_doubt_of_their_own() -> None:
+    every = np.arange(24)
+    place = position_of_minimum(1.0 * every, -1.0 / np.cosh(0.2 * (every - 11.5)), every)
+    assert place.position == pytest.approx(11.5, abs=1e-8)
+    assert place.uncertainty < 1e-3
 
 
 @pytest.mark.parametrize("spacing", [2.0**-12, 1.0, 2.0**12])

@@ -7,7 +7,6 @@ bodies that points were taken from, by quadrature of the MDR (`validation.refere
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -29,9 +28,9 @@ SHARP: dict[str, dict[str, Any]] = {
 
 
 @pytest.mark.parametrize("name", SHARP)
-def test_a_pressure_without_bound_has_no_largest_one(name: str, tmp_path: Path) -> None:
+def test_a_pressure_without_bound_has_no_largest_one(name: str) -> None:
     tables = on_plane(SHARP[name], 1.0, 1e-3) | {"title": name, "experiment": {"kind": "load", "force": FORCE}}
-    assert "peak_pressure" not in run(tables, tmp_path / "run", False).results
+    assert "peak_pressure" not in run(tables).results
 
 
 RIM, SLOPE, TOLERANCE = 10.0, 0.02, 1e-3
@@ -40,7 +39,7 @@ FEW, MANY = 5.4, 33.3
 """Points of a table in that radius; the rim is between two."""
 
 
-def of_a_table(kind: str, inside: float, adheres: bool, folder: Path) -> tuple[Run, dict[str, float]]:
+def of_a_table(kind: str, inside: float, adheres: bool) -> tuple[Run, dict[str, float]]:
     """A body from a table of its points, pressed to 1.7 RIM or drawn off; p(0) and the largest pressure of the body."""
     body = kinked_body(kind, RIM, SLOPE, np.random.default_rng(11))
     contact = with_rest_radius(body, 1.0, 1.4 * RIM) if adheres else Contact(body)
@@ -48,7 +47,7 @@ def of_a_table(kind: str, inside: float, adheres: bool, folder: Path) -> tuple[R
     load = {"kind": "load", "force": contact.force(a)}
     pull_off = {"kind": "pull_off", "preload": -2.0 * contact.force(contact.critical(RIM)) if adheres else 0.0}
     scene = on_plane(sampled(body, RIM / inside, 6.0 * RIM, None), RIM / 61.0, TOLERANCE, contact.work)
-    found = run(scene | {"title": kind, "experiment": pull_off if adheres else load}, folder, False)
+    found = run(scene | {"title": kind, "experiment": pull_off if adheres else load})
     return found, {"central_pressure": contact.central_pressure(a), "peak_pressure": contact.peak_pressure(a)}
 
 
@@ -60,15 +59,13 @@ def of_a_table(kind: str, inside: float, adheres: bool, folder: Path) -> tuple[R
         ("two_radii", FEW, False), ("steps", MANY, True),
     ],
 )  # fmt: skip
-def test_a_pressure_of_a_table_is_within_its_uncertainty_or_null(
-    kind: str, inside: float, adheres: bool, tmp_path: Path
-) -> None:
+def test_a_pressure_of_a_table_is_within_its_uncertainty_or_null(kind: str, inside: float, adheres: bool) -> None:
     """Also where p(0) is a small difference of the pressure of the shape and the tension of the edge.
 
     Points that show a rounded edge give its largest pressure. Five points to a rim show as much of a steep rounding;
     more of them show the rim, and there is no number.
     """
-    found, exact = of_a_table(kind, inside, adheres, tmp_path / "run")
+    found, exact = of_a_table(kind, inside, adheres)
     for name in exact.keys() & found.results.keys():
         one = found.results[name]
         assert abs(one.value - exact[name]) <= one.uncertainty
@@ -83,13 +80,13 @@ def test_a_pressure_of_a_table_is_within_its_uncertainty_or_null(
         assert "peak_pressure" not in found.document
 
 
-def test_a_rim_beside_a_point_holds_as_much_as_the_body(tmp_path: Path) -> None:
+def test_a_rim_beside_a_point_holds_as_much_as_the_body() -> None:
     """A worn tip, flat to b and a cone beyond, parts at F_A = √(8πE*Wb³)."""
     points, share, work = 44.0, 0.95, 5e-4
     body = kinked_body("land_cone", RIM, SLOPE, np.random.default_rng(11))
     table = sampled(body, RIM / (points + share), 6.0 * RIM, None)
     pull_off = {"title": "worn tip", "experiment": {"kind": "pull_off", "preload": 1.0}}
-    found = run(on_plane(table, RIM / 9.3, TOLERANCE, work) | pull_off, tmp_path / "run", False).results
+    found = run(on_plane(table, RIM / 9.3, TOLERANCE, work) | pull_off).results
     exact = math.sqrt(8.0 * math.pi * work * RIM**3)
     assert found["adhesion_force"].value == pytest.approx(exact, rel=1e-6)
     assert found["critical_radius"].value == pytest.approx(RIM, rel=1e-6)
