@@ -65,7 +65,8 @@ def workers(folder: Path) -> list[int]:
 
 def running(folder: Path) -> list[int]:
     """The same, once LAMMPS runs there. What waits for ever ends a test by its time limit."""
-    while not (folder / "log.lammps").is_file():
+    log = folder / "log.lammps"
+    while not (log.is_file() and "Step" in log.read_text()):
         time.sleep(0.02)
     time.sleep(0.7)
     return workers(folder)
@@ -214,7 +215,7 @@ def test_what_an_installation_lacks_is_named_and_how_to_install_it(
         if not path.name.startswith(missing) and path.suffix != ".pth":
             (target / path.name).symlink_to(path)
     python = str(tmp_path / "bare" / "bin" / "python")
-    (tmp_path / "scene.toml").write_text(str(read_scene(RANKS["pull_off"])))
+    (tmp_path / "scene.toml").write_text(str(read_scene(LOAD)))
     command = [python, "-m", "contact1d", "run", "scene.toml", "--out", "out", "--ranks", str(ranks)]
     done = subprocess.run(
         command, cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(ROOT / "src")}, capture_output=True, text=True
@@ -228,9 +229,9 @@ BODIES = {"particles": 120}
 LOAD = chains(1000.0, bodies=BODIES, experiment={"kind": "load", "force": 1.0})
 RANKS: dict[str, dict[str, Any]] = {
     "load in time": LOAD | TIMED,
-    "pull_off": chains(
+    "path with neighbours": chains(
         1000.0, bodies=BODIES, neighbours={"stiffness": 0.3}, horizontal={},
-        experiment={"kind": "pull_off", "preload": 1.0},
+        experiment={"kind": "path", "displacements": [0.0, 0.1, -0.2]},
     ),
 }  # fmt: skip
 
@@ -242,7 +243,7 @@ def test_two_ranks_have_the_numbers_of_one_as_has_the_deck_by_hand(name: str, tm
     for key, quantity in one.results.items():
         assert two.results[key].value == pytest.approx(quantity.value, rel=SAME), key
     assert two.timing["steps"] == one.timing["steps"]
-    if name == "pull_off":
+    if name == "path with neighbours":
         bin_ = Path(sys.executable).parent
         hand = [str(bin_ / "mpiexec"), "-n", "2", str(bin_ / "lmp"), "-in", "in.lammps", "-screen", "none"]
         environment = os.environ | {"UCX_TLS": "self,sm"}

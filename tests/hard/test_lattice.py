@@ -22,7 +22,6 @@ PAIRS = chains(10.0, 1.5, law=(0.011, 0.05, 0.01, 0.1), accuracy=TOLERANCE)
 SCENES: dict[str, tuple[dict[str, Any], set[str]]] = {
     "on a plane under a force": (CIRCLE, {"displacement", "contact_radius", "mean_pressure"}),
     "pairs under a force": (PAIRS | {"experiment": {"kind": "load", "force": 0.1}}, {"displacement"}),
-    "pairs pulled off": (PAIRS | {"experiment": {"kind": "pull_off", "preload": 0.1}}, {"adhesion_force"}),
 }
 
 

@@ -21,16 +21,8 @@ CLAIMED = 1e-3
 """Of a displacement, the scenes' own tolerance."""
 
 
-def on_plane(**profile: Any) -> dict[str, Any]:
-    return chains(
-        1.0, interaction=None, experiment={"kind": "path", "displacements": [0.1]},
-        bodies={"lower": "rigid_plane", "profile": profile},
-    )  # fmt: skip
-
-
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "a radius in metres": (chains(1e-6, experiment=LOAD), r"too sharp .* rises by 1\.25e\+05 LU .* another unit"),
-    "a cone without an end": (on_plane(kind="cone", slope=1e-9), "particles per body, more than"),
     "a load that a planet carries": (chains(100.0, experiment={"kind": "load", "force": 1e9}), r"particles per body"),
     "more than particles carry that stand on each other": (
         chains(1.0, bodies={"profile": {"kind": "flat_punch", "radius": 5.0}}, experiment=LOAD | {"force": 1e4}),
@@ -43,10 +35,6 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "more pairs than any memory holds": (
         chains(100.0, law=(0.18, 0.13, 0.09, 150.0), bodies={"particles": 10_000_000}, experiment=LOAD),
         r"GB of memory, and this machine has",
-    ),
-    "springs of nothing": (
-        chains(100.0, bodies={"particles": 20, "bulk_stiffness": 1e-300}, experiment=LOAD),
-        r"would reach .* another unit",
     ),
     "springs that digits do not resolve": (
         chains(100.0, stiffness=1e12, bodies={"particles": 40}, experiment={"kind": "pull_off", "preload": 0.3}),
@@ -83,11 +71,11 @@ def test_a_shipped_scene_with_such_a_number_is_refused_at_once(
         write_deck(read_scene(SHIPPED / f"{shipped}.toml", [change]), tmp_path / "run")
 
 
-def test_a_single_pair_under_a_steep_body_is_the_closed_forms(tmp_path: Path) -> None:
+def test_a_single_pair_under_a_steep_body_is_the_closed_forms() -> None:
     """Its ends rise to 7e5 LU, beyond all forces: the box has larger bins."""
-    tables = chains(1e-3, bodies={"particles": 15, "spacing": 5.0}, experiment={"kind": "load", "force": 0.3})
+    tables = chains(1e-3, bodies={"particles": 7, "spacing": 10.0}, experiment={"kind": "load", "force": 0.3})
     found = run(tables)
-    assert "bin_edge" in (tmp_path / "run" / "in.lammps").read_text()
+    assert "bin_edge" in (found.folder / "in.lammps").read_text()
     pair = PairInteraction.of(*LAW)
 
     def off(r: float) -> float:
@@ -97,11 +85,12 @@ def test_a_single_pair_under_a_steep_body_is_the_closed_forms(tmp_path: Path) ->
     assert found.results.displacement.value == pytest.approx(pair.force_free_distance() - gap, rel=CLAIMED)
 
 
-def test_neighbours_a_million_times_stiffer_than_the_bulk_come_to_rest_sideways(tmp_path: Path) -> None:
+def test_neighbours_a_million_times_stiffer_than_the_bulk_come_to_rest_sideways() -> None:
     """The anchors lie far beside the chains, so the box needs larger bins."""
     tables = chains(
-        100.0, bodies={"particles": 24}, neighbours={"stiffness": 0.83e6}, horizontal={}, accuracy={"tolerance": 1e-2},
+        100.0, bodies={"particles": 12}, neighbours={"stiffness": 0.83e6}, horizontal={}, accuracy={"tolerance": 1e-2},
         experiment={"kind": "path", "displacements": [0.0]},
     )  # fmt: skip
-    assert run(tables).curve.force_uncertainty[-1] < CLAIMED
-    assert "bin_edge" in (tmp_path / "run" / "in.lammps").read_text()
+    found = run(tables)
+    assert found.curve.force_uncertainty[-1] < CLAIMED
+    assert "bin_edge" in (found.folder / "in.lammps").read_text()

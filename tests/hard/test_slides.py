@@ -93,16 +93,16 @@ def slid(stiffness: float, load: float, velocity: float = 0.01, **more: Any) -> 
     return run(tables)
 
 
-def test_two_and_three_particles_slide_as_one_does() -> None:
+def test_two_particles_slide_as_one_does() -> None:
     """The rigid plate of two anchors is a line, that of one no rigid body at all."""
     friction = [
         slid(
             0.05 * count, 0.2 * count, damping={"coefficient": 1.0},
             upper_particles=count, particles=6, upper_spacing=6.0 / count,
         ).results.mean_friction.value / count
-        for count in (1, 2, 3)
+        for count in (1, 2)
     ]  # fmt: skip
-    assert friction[1:] == pytest.approx(friction[:1] * 2, rel=5e-3)
+    assert friction[1:] == pytest.approx(friction[:1], rel=5e-3)
 
 
 SINGLE = {"particles": 4, "lower": "particles"}

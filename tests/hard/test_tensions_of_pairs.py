@@ -10,7 +10,6 @@ A dynamic tension within the tolerance of F_A is held with a warning, and one be
 
 from __future__ import annotations
 
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -43,10 +42,9 @@ BESIDE, EVEN = 7, 2.0
 """Load steps on either side of the maximum, and the ratio of the ways that they take; one of them is the maximum."""
 APART = 0.03
 """Tension over F_A of bodies that are pulled apart."""
-SLOW = [("flat punch", 30.0), ("sharp", 1.05), ("sharp", 3.0), ("cone", 3.0)]
+SLOW = [("flat punch", 30.0), ("cone", 1.05), ("sharp", 1.05), ("sharp", 3.0), ("cone", 3.0)]
 CASES = [
-    ("power", 0.7, 1e-4), ("blunt", 0.999, 1e-4), ("power", 0.999, 1e-4),
-    ("flat punch", 1.05, 1e-2), ("flat punch", 3.0, 1e-2), ("cone", 1.05, 1e-2),
+    ("blunt", 0.999, 1e-4), ("power", 0.999, 1e-4), ("flat punch", 3.0, 1e-2),
     *(pytest.param(name, ratio, 1e-2, marks=pytest.mark.slow) for name, ratio in SLOW),
 ]  # fmt: skip
 
@@ -88,18 +86,14 @@ TOLERANCE, PARTICLES, RADIUS, STIFFNESS = 1e-3, 40, 100.0, 0.83
 NEAR = (0.018, 0.03, 0.009, 0.06)
 
 
-@cache
 def largest_tension() -> float:
     x = np.arange(PARTICLES) - 0.5 * (PARTICLES - 1)
     law = PairInteraction.of(*NEAR)
     return float(PairLattice(law, STIFFNESS, x**2 / (2.0 * RADIUS)).pull_off(0.05)[0])
 
 
-@pytest.mark.parametrize(("share", "near"), [(0.9997, False), (0.99999, True), (1.0 + 2.0 * TOLERANCE, True)])
-def test_a_tension_in_time_is_doubted_near_the_pull_off_force_and_lost_beyond_it(
-    share: float, near: bool, tmp_path: Path
-) -> None:
-    """The first within a tolerance of it, which a refinement, run because the displacement goes with a root, tells."""
+@pytest.mark.parametrize("share", [0.99999, 1.0 + 2.0 * TOLERANCE])
+def test_a_tension_in_time_is_doubted_near_the_pull_off_force_and_lost_beyond_it(share: float, tmp_path: Path) -> None:
     tables = chains(
         RADIUS, STIFFNESS, NEAR, bodies={"particles": PARTICLES}, damping={"coefficient": "auto"}, plate={},
         accuracy={"tolerance": TOLERANCE},
@@ -109,4 +103,4 @@ def test_a_tension_in_time_is_doubted_near_the_pull_off_force_and_lost_beyond_it
         with pytest.raises(RunError, match="does not sustain"):
             run(tables, tmp_path, figures=False)
     else:
-        assert ("near_pull_off" in run(tables).warnings) == near
+        assert "near_pull_off" in run(tables).warnings
