@@ -5,7 +5,6 @@ refused in words before anything runs.
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -29,33 +28,27 @@ def scene(places: Any, coefficient: float = MU, bodies: dict[str, Any] | None = 
     return {"title": "hard", "bodies": own | (bodies or {}), "friction": friction, "experiment": experiment}
 
 
-def finished(folder: Path, tables: dict[str, Any]) -> Run:
-    return run(read_scene(tables), folder, figures=False)
+def finished(tables: dict[str, Any]) -> Run:
+    return run(tables)
 
 
 def value(run: Run, name: str) -> float:
     return run.results[name].value
 
 
-def test_without_friction_nothing_resists_and_nothing_is_lost(tmp_path: Path) -> None:
-    done = finished(tmp_path, scene([0.1, -0.3, 5.0], coefficient=0.0))
-    assert done.friction["tangential_force"].tolist() == [0.0] * 3
-    assert value(done, "dissipated_energy") == value(done, "stick_radius") == 0.0
-    assert value(done, "normal_force") == pytest.approx(LOAD, rel=EXACT)
+def test_without_friction_nothing_resists_and_endless_friction_gives_all_back() -> None:
+    places = [0.1, -0.3, 0.2]
+    none, endless = (finished(scene(places, coefficient=mu)) for mu in (0.0, 1e6))
+    assert none.friction["tangential_force"].tolist() == [0.0] * 3
+    touching = int((endless.profiles["final"].pressure > 0.0).sum())
+    assert endless.friction["tangential_force"] == pytest.approx(0.8 * touching * np.array(places), rel=EXACT)
+    assert value(none, "dissipated_energy") == value(endless, "dissipated_energy") == value(none, "stick_radius") == 0.0
+    assert value(endless, "stick_radius") == pytest.approx(value(endless, "contact_radius"), rel=1e-3)
 
 
-def test_endless_friction_sticks_all_over_and_gives_all_back(tmp_path: Path) -> None:
-    done = finished(tmp_path, scene([0.1, -0.3, 0.2], coefficient=1e6))
-    touching = int((done.profiles["final"].pressure > 0.0).sum())
-    expected = 0.8 * touching * np.array([0.1, -0.3, 0.2])
-    assert done.friction["tangential_force"] == pytest.approx(expected, rel=EXACT)
-    assert value(done, "dissipated_energy") == 0.0
-    assert value(done, "stick_radius") == pytest.approx(value(done, "contact_radius"), rel=1e-3)
-
-
-def test_a_load_that_is_taken_away_while_stuck_takes_all_force_with_it(tmp_path: Path) -> None:
+def test_a_load_that_is_taken_away_while_stuck_takes_all_force_with_it() -> None:
     """All that the springs held is dissipated, little by little from the edge inwards; then the contact begins anew."""
-    done = finished(tmp_path, scene([0.1, 0.1, 0.15, 0.15], normal_force=[LOAD, 0.0, 0.0, LOAD]))
+    done = finished(scene([0.1, 0.1, 0.15, 0.15], normal_force=[LOAD, 0.0, 0.0, LOAD]))
     forces, columns = done.friction["tangential_force"], done.friction
     assert forces[0] > 0.0
     assert forces[1:] == pytest.approx([0.0] * 3, abs=EXACT * MU * LOAD)
@@ -66,36 +59,22 @@ def test_a_load_that_is_taken_away_while_stuck_takes_all_force_with_it(tmp_path:
     assert columns["dissipated_energy"][3] == columns["dissipated_energy"][1]
 
 
-def test_a_body_that_is_lifted_off_and_put_down_again_has_forgotten(tmp_path: Path) -> None:
-    done = finished(tmp_path, scene([0.2, 0.2, 0.5, 0.5, 0.6], normal_displacement=[0.9, -0.5, -0.5, 0.9, 0.9]))
-    again = finished(tmp_path, scene([0.1], normal_displacement=0.9))
-    assert value(done, "tangential_force") == pytest.approx(value(again, "tangential_force"), rel=EXACT)
+def test_a_contact_that_grows_while_it_is_drawn_sticks_within_the_cone_of_friction() -> None:
+    """On one straight way from the first touch F_x/F_N = k_t u/k_n d: below μ nothing slips, beyond it all does."""
+    within, beyond = (finished(scene([0.0, way], normal_displacement=[0.0, 0.9])) for way in (0.27, 0.5))
+    assert value(within, "tangential_force") == pytest.approx(0.8 * 0.3 * value(within, "normal_force"), rel=1e-9)
+    assert value(within, "dissipated_energy") == pytest.approx(0.0, abs=1e-12)
+    assert value(within, "stick_radius") == pytest.approx(value(within, "contact_radius"), rel=1e-3)
+    assert value(beyond, "tangential_force") == pytest.approx(MU * value(beyond, "normal_force"), rel=1e-12)
+    assert value(beyond, "stick_radius") == 0.0
 
 
-def test_a_contact_that_grows_while_it_is_drawn_sticks_within_the_cone_of_friction(tmp_path: Path) -> None:
-    """On one straight way from the first touch F_x/F_N = k_t u/k_n d, below μ: nothing slips, in rows or in one."""
-    rows = np.linspace(0.0, 0.9, 7)
-    places = (0.3 * rows).tolist()
-    for depths in (rows.tolist(), [0.0, 0.9]):
-        ways = places if len(depths) > 2 else [places[0], places[-1]]
-        done = finished(tmp_path, scene(ways, normal_displacement=depths))
-        assert value(done, "tangential_force") == pytest.approx(0.8 * 0.3 * value(done, "normal_force"), rel=1e-9)
-        assert value(done, "dissipated_energy") == pytest.approx(0.0, abs=1e-12)
-        assert value(done, "stick_radius") == pytest.approx(value(done, "contact_radius"), rel=1e-3)
-
-
-def test_a_contact_that_grows_on_a_steeper_way_slips_all_over(tmp_path: Path) -> None:
-    done = finished(tmp_path, scene([0.0, 0.5], normal_displacement=[0.0, 0.9]))
-    assert value(done, "tangential_force") == pytest.approx(MU * value(done, "normal_force"), rel=1e-12)
-    assert value(done, "stick_radius") == 0.0
-
-
-@pytest.mark.parametrize("nudge", [-1e-12, 0.0, 1e-12])
-def test_a_particle_on_the_edge_of_the_contact_or_of_its_stick_zone(tmp_path: Path, nudge: float) -> None:
+@pytest.mark.parametrize("nudge", [-1e-12, 1e-12])
+def test_a_particle_on_the_edge_of_the_contact_or_of_its_stick_zone(nudge: float) -> None:
     """d = h(10.5), where a particle just touches, and then k_t u = μ k_n (d − h(5.5)), where one just slips."""
     depth = 10.5**2 / RADIUS + nudge
     place = MU / 0.8 * (10.5**2 - 5.5**2) / RADIUS + nudge
-    done = finished(tmp_path, scene([place, 0.5 * place, place], normal_displacement=depth))
+    done = finished(scene([place, 0.5 * place, place], normal_displacement=depth))
     profile = done.profiles["final"]
     chain = SpringSliders((profile.x**2 / RADIUS).tolist(), 1.0, 0.8, MU)
     expected = []
@@ -107,10 +86,10 @@ def test_a_particle_on_the_edge_of_the_contact_or_of_its_stick_zone(tmp_path: Pa
     assert done.friction["stick_radius"][0] == pytest.approx(5.5, abs=1e-3)
 
 
-def test_a_flat_punch_sticks_and_then_slips_as_a_whole(tmp_path: Path) -> None:
+def test_a_flat_punch_sticks_and_then_slips_as_a_whole() -> None:
     body = {"profile": {"kind": "flat_punch", "radius": 10.0}}
     tables = scene([0.1, 0.74, 0.76, 0.5], normal_force=40.0, bodies=body)
-    done = finished(tmp_path, tables)
+    done = finished(tables)
     # 20 particles: each carries 2 FU and gives 0.8 u up to 0.6 FU.
     expected = [1.6, 11.84, 12.0, 12.0 - 20.0 * 0.8 * 0.26]
     assert done.friction["tangential_force"] == pytest.approx(expected, rel=EXACT)
@@ -118,14 +97,12 @@ def test_a_flat_punch_sticks_and_then_slips_as_a_whole(tmp_path: Path) -> None:
     assert value(done, "dissipated_energy") == pytest.approx(12.0 * 0.01, rel=1e-9)
 
 
-@pytest.mark.parametrize(("count", "load"), [("auto", 1e-6), (3, 1e-3)])
-def test_so_small_a_load_that_one_or_two_particles_carry_it(tmp_path: Path, count: Any, load: float) -> None:
+def test_so_small_a_load_that_two_particles_carry_it() -> None:
     """Figures and all; each carries its share and gives as its spring and slider say."""
-    tables = scene([0.1 * load, 2.0 * load, 1.5 * load], bodies={"particles": count}, normal_force=load)
-    done = run(read_scene(tables), tmp_path)
-    touching = int((done.profiles["final"].pressure > 0.0).sum())
-    expected = np.array([0.08 * touching, MU, max(MU - 0.4 * touching, -MU)]) * load
-    assert touching == (1 if count == 3 else 2)
+    load = 1e-6
+    done = run(scene([0.1 * load, 2.0 * load, 1.5 * load], normal_force=load), figures=True)
+    assert int((done.profiles["final"].pressure > 0.0).sum()) == 2
+    expected = np.array([0.08 * 2, MU, max(MU - 0.4 * 2, -MU)]) * load
     assert done.friction["tangential_force"] == pytest.approx(expected, abs=1e-6 * load)
 
 
@@ -135,13 +112,10 @@ def test_so_small_a_load_that_one_or_two_particles_carry_it(tmp_path: Path, coun
         ({"normal_displacement": None}, "experiment.normal_force: missing"),
         ({"normal_force": 1.0, "normal_displacement": 1.0}, "not together with normal_force"),
         ({"normal_force": [1.0]}, "as many as there are displacements, 2"),
-        ({"normal_displacement": [1.0, 2.0, 3.0]}, "as many as there are displacements, 2"),
-        ({"normal_force": [0.0, 0.0]}, "never touch"),
         ({"normal_displacement": -1.0}, "never touch"),
     ],
 )
 def test_a_load_that_is_none_or_two_or_too_many_is_refused(load: dict[str, Any], words: str) -> None:
-    with pytest.raises(SceneError) as caught:
+    with pytest.raises(SceneError, match=words) as caught:
         read_scene(scene([0.1, 0.2], **load))
-    assert words in str(caught.value)
     assert len(caught.value.problems) == 1

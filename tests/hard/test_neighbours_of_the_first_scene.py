@@ -17,8 +17,6 @@ from typing import Any
 import pytest
 
 from contact1d import Contact1dError, read_scene, run
-from contact1d.workflow.runs import advised
-from contact1d.workflow.scene.read import set_values
 
 SCENE = Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "pull_off.toml"
 KEYS = (
@@ -28,11 +26,6 @@ KEYS = (
     "neighbours.stiffness", "experiment.preload",
 )  # fmt: skip
 FACTOR = 3.0
-RADII = (20.0, 40.0, 80.0, 150.0, 300.0, 500.0, 1000.0, 1500.0, 2500.0, 4000.0)
-RANGES = (0.26, 0.3, 0.35, 0.42, 0.5, 0.6)
-"""Of the attraction; the repulsion has half of it, as in the scene."""
-PATIENT = 1000.0
-"""Seconds for a trial."""
 FIRST = re.compile(r"Tried: (.*?) gives a result")
 
 
@@ -56,35 +49,16 @@ def neighbours() -> Iterator[dict[str, float]]:
         yield from (changed(one, f) | changed(other, g) for f in factors for g in factors)
 
 
-def grid() -> Iterator[dict[str, float]]:
-    for radius, reach in itertools.product(RADII, RANGES):
-        yield {
-            "bodies.profile.radius": radius,
-            "interaction.attraction.range": reach,
-            "interaction.repulsion.range": 0.5 * reach,
-        }
-
-
 def named(change: dict[str, float]) -> str:
     return " ".join(f"{key.split('.', 1)[1]}={number:.4g}" for key, number in change.items())
 
 
-def scene_with(change: dict[str, float]) -> dict[str, Any]:
-    tables = tomllib.loads(SCENE.read_text(encoding="utf-8"))
-    assert set_values(tables, change) == []
-    return tables
-
-
-@pytest.fixture(autouse=True)
-def _without_haste(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A busy machine tries as much as an idle one."""
-    monkeypatch.setattr(advised, "TRIAL", PATIENT)
-
-
-def require_result_or_remedy(change: dict[str, float], folder: Path) -> None:
-    tables = scene_with(change)
+@pytest.mark.slow
+@pytest.mark.parametrize("change", list(neighbours()), ids=named)
+def test_neighbour_gives_a_result_or_a_remedy_that_does(change: dict[str, float], tmp_path: Path) -> None:
+    scene = read_scene(SCENE).with_(change)
     try:
-        found = run(tables, folder / "first", figures=False)
+        found = run(scene, tmp_path / "first", figures=False)
     except Contact1dError as error:
         first = FIRST.search(str(error))
         if first is None:
@@ -94,17 +68,5 @@ def require_result_or_remedy(change: dict[str, float], folder: Path) -> None:
         options = list(zip(words[::2], words[1::2], strict=True))
         sets = [text for option, text in options if option == "--set"]
         without = [text for option, text in options if option == "--without"]
-        found = run(read_scene(tables, sets, without), folder / "second", figures=False)
+        found = run(read_scene(scene, sets, without), tmp_path / "second", figures=False)
     assert found.results.adhesion_force.value > 0.0
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("change", list(neighbours()), ids=named)
-def test_neighbour_gives_a_result_or_a_remedy_that_does(change: dict[str, float], tmp_path: Path) -> None:
-    require_result_or_remedy(change, tmp_path)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("change", list(grid()), ids=named)
-def test_radius_and_range_give_a_result_or_a_remedy_that_does(change: dict[str, float], tmp_path: Path) -> None:
-    require_result_or_remedy(change, tmp_path)

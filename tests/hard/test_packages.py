@@ -108,7 +108,7 @@ def test_installed_elsewhere_it_runs_a_scene_from_another_folder(
     )  # fmt: skip
     assert ran.returncode == 0, ran.stdout + ran.stderr
     assert json.loads((elsewhere / "out" / "results.json").read_text())["status"] == "done"
-    asked = [home / "bin" / "python", "-c", "import contact1d.workflow.runs; print(contact1d.workflow.runs.__file__)"]
+    asked = [home / "bin" / "python", "-c", "import contact1d.analysis; print(contact1d.analysis.__file__)"]
     found = subprocess.run(asked, cwd=elsewhere, capture_output=True, text=True, check=True).stdout
     assert Path(found.strip()).is_relative_to(site)
 

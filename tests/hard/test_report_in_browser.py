@@ -6,15 +6,18 @@ import itertools
 import re
 import shutil
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
+from typer.testing import CliRunner
 
 import contact1d
 from contact1d import run
-from contact1d.workflow.report.report import report
+from contact1d.__main__ import app
 from tests.scenes import chains
 
+pytestmark = pytest.mark.browser
 HERE = ("file:", "data:", "blob:")
 """Addresses that need no network."""
 THEORY = "#555555"
@@ -29,11 +32,19 @@ PIXEL = 1.0
 """To which a browser rounds the place of a box [px]."""
 
 
+def page_of(folder: Path) -> str:
+    """The address of the page of all runs in a folder."""
+    runs = [str(path) for path in sorted(folder.iterdir())]
+    done = CliRunner().invoke(app, ["report", *runs, "--out", str(folder / "report.html")])
+    assert done.exit_code == 0, done.output
+    return (folder / "report.html").as_uri()
+
+
 @pytest.fixture(scope="module")
 def address(tmp_path_factory: pytest.TempPathFactory) -> str:
     folder = tmp_path_factory.mktemp("report")
     run(chains(400.0, experiment={"kind": "pull_off", "preload": 0.5}), folder / "run", figures=False)
-    return report([folder / "run"], folder / "report.html").as_uri()
+    return page_of(folder)
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +54,7 @@ def loop(tmp_path_factory: pytest.TempPathFactory) -> str:
     ball = contact1d.sphere(radius="10 mm", contact_modulus="70 GPa", tolerance=1e-2)
     cycles = {"amplitude": "0.5 µm", "number": 2, "points": 8}
     ball.tangential("10 N", 0.3, folder / "run", cycles=cycles)
-    return report([folder / "run"], folder / "report.html").as_uri()
+    return page_of(folder)
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +64,7 @@ def overlaid(tmp_path_factory: pytest.TempPathFactory) -> str:
     ball = contact1d.sphere(radius="10 mm", contact_modulus="70 GPa", tolerance=1e-2)
     for force in ("10 N", "5 N", "5 mN"):
         ball.load(force, folder / f"steel ball on glass under {force}")
-    return report(sorted(folder.iterdir()), folder / "report.html").as_uri()
+    return page_of(folder)
 
 
 @pytest.fixture(scope="module")
@@ -66,14 +77,11 @@ def browser() -> Iterator[Any]:
         chromium.close()
 
 
-@pytest.mark.browser
 def test_the_slider_moves_force_profile_and_words_by_mouse_and_keyboard(browser: Any, address: str) -> None:
     page = browser.new_page()
     errors: list[str] = []
     page.on("pageerror", lambda error: errors.append(str(error)))
-    page.on(
-        "request", lambda asked: None if asked.url.startswith(("file:", "data:", "blob:")) else errors.append(asked.url)
-    )
+    page.on("request", lambda asked: None if asked.url.startswith(HERE) else errors.append(asked.url))
     page.goto(address, timeout=PATIENCE)
     assert page.locator(".js-plotly-plot").count() >= 5
     titles = page.locator(".modebar-btn").evaluate_all("buttons => buttons.map(one => one.dataset.title)")
@@ -103,23 +111,6 @@ def test_the_slider_moves_force_profile_and_words_by_mouse_and_keyboard(browser:
     assert errors == []
 
 
-@pytest.mark.browser
-def test_a_phone_shows_the_page_without_scrolling_sideways(browser: Any, address: str) -> None:
-    page = browser.new_page(viewport=PHONE)
-    page.goto(address, timeout=PATIENCE)
-    assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["width"]
-
-
-@pytest.mark.browser
-def test_on_paper_the_numbers_are_there_and_the_slider_is_not(browser: Any, address: str) -> None:
-    page = browser.new_page()
-    page.goto(address, timeout=PATIENCE)
-    page.emulate_media(media="print")
-    assert not page.locator("#state").is_visible()
-    assert page.get_by_text("adhesion force").first.is_visible()
-
-
-@pytest.mark.browser
 @pytest.mark.parametrize("width", SCREENS)
 def test_a_loop_is_drawn_leg_by_leg_in_si_beside_mindlins_and_its_axes_change_by_keyboard(
     browser: Any, loop: str, width: int
@@ -163,7 +154,6 @@ def within(one: Any, other: Any) -> bool:
     return all(a[i] >= b[i] - PIXEL and a[i + 2] <= b[i + 2] + PIXEL for i in range(2))
 
 
-@pytest.mark.browser
 @pytest.mark.parametrize("width", SCREENS)
 @pytest.mark.parametrize("name", ["address", "loop", "overlaid"])
 def test_the_tool_bar_covers_neither_legend_nor_plot_and_no_figure_is_cut(
@@ -188,53 +178,13 @@ def test_the_tool_bar_covers_neither_legend_nor_plot_and_no_figure_is_cut(
             assert within(words, chart), words.text_content()
 
 
-@pytest.mark.browser
-def test_a_name_in_the_legend_hides_and_shows_its_lines_by_keyboard(browser: Any, address: str) -> None:
-    page = browser.new_page()
-    page.goto(address, timeout=PATIENCE)
-    figure = page.locator("figure", has_text="Force over displacement").first
-    name = figure.get_by_role("button", name="unloading", exact=True)
-
-    def shown() -> list[bool]:
-        traces = "chart => chart.data.filter(one => one.name === 'unloading').map(one => one.visible !== false)"
-        return list(figure.locator(".chart").evaluate(traces))
-
-    assert shown() == [True]
-    for pressed in (False, True):
-        name.focus()
-        page.keyboard.press("Space")
-        assert shown() == [pressed]
-        assert name.get_attribute("aria-pressed") == str(pressed).lower()
-
-
-@pytest.mark.browser
-@pytest.mark.parametrize("name", ["address", "overlaid"])
-def test_on_a_phone_a_number_is_on_one_line_and_its_quantity_stays_beside_it(
-    name: str, browser: Any, request: pytest.FixtureRequest
-) -> None:
-    """A table of several runs scrolls in its own region."""
-    page = browser.new_page(viewport=PHONE)
-    page.goto(request.getfixturevalue(name), timeout=PATIENCE)
-    region = page.locator(".scroll")
-    line = page.evaluate("parseFloat(getComputedStyle(document.querySelector('td')).lineHeight)")
-    numbers = region.locator("td .n").all()
-    assert numbers
-    assert all(number.bounding_box()["height"] <= line + PIXEL for number in numbers)
-    quantities = region.get_by_role("rowheader").all()
-    before = [box_of(one) for one in quantities]
-    if region.evaluate("one => one.scrollWidth > one.clientWidth"):
-        region.evaluate("one => one.scrollLeft = one.scrollWidth")
-        assert [box_of(one) for one in quantities] == before
-        assert all(within(row.locator("td").last, region) for row in region.locator("tbody tr").all())
-
-
-@pytest.mark.browser
-@pytest.mark.parametrize("width", SCREENS)
-def test_on_paper_a_figure_is_whole(width: int, browser: Any, overlaid: str) -> None:
+def test_on_paper_a_figure_is_whole(browser: Any, overlaid: str) -> None:
     """It was drawn for the screen, and keeps its size; the browser's own print layout is that of a narrower page."""
-    page = browser.new_page(viewport=PHONE | {"width": width})
+    page = browser.new_page(viewport=PHONE)
     page.goto(overlaid, timeout=PATIENCE)
     page.emulate_media(media="print")
+    assert not page.locator("#state").is_visible()
+    assert page.get_by_text("displacement").first.is_visible()
     panels = [panel for panel in page.locator(".panel").all() if panel.is_visible()]
     assert panels
     for panel in panels:

@@ -14,14 +14,13 @@ from typing import Any
 import pytest
 
 from contact1d import sweep
-from contact1d.workflow.sweep import sweep as executors
-from contact1d.workflow.sweep.sweep import ExecutorError
-from contact1d.workflow.sweep.table import TABLE
+from contact1d.workflow.errors import Contact1dError
 from tests.slurm import slurm
 
-POINTS = 12
-JOB = 5
-"""Points of a job here: three jobs, the last of two points."""
+pytestmark = pytest.mark.cluster
+POINTS, MANY = 12, 105
+"""Of one job, and of two: the second has five."""
+TABLE = "results.csv"
 SWEEP: dict[str, Any] = {
     "title": "a sweep",
     "base": {
@@ -49,16 +48,14 @@ def in_slurm(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[dict[s
         yield environment
 
 
-@pytest.mark.cluster
 def test_a_partition_that_is_not_there_is_told_before_anything_is_written(
     tmp_path: Path, in_slurm: dict[str, str]
 ) -> None:
-    with pytest.raises(ExecutorError, match="no partition 'night': take local"):
+    with pytest.raises(Contact1dError, match="no partition 'night': take local"):
         sweep(SWEEP, tmp_path / "there", "slurm", figures=False, partition="night")
     assert not (tmp_path / "there").exists()
 
 
-@pytest.mark.cluster
 def test_points_of_a_job_that_was_cancelled_are_missing_and_run_next_time(
     tmp_path: Path, in_slurm: dict[str, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -84,14 +81,10 @@ def test_points_of_a_job_that_was_cancelled_are_missing_and_run_next_time(
     assert all(path.stat().st_mtime_ns == stamp for path, stamp in stamps.items())
 
 
-@pytest.mark.cluster
-def test_a_sweep_through_slurm_has_the_table_of_one_here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(executors, "JOB_POINTS", JOB)
-    with slurm(tmp_path / "slurm") as environment:
-        for name in ("PATH", "SLURM_CONF"):
-            monkeypatch.setenv(name, environment[name])
-        there = sweep(SWEEP, tmp_path / "there", "slurm", figures=False)
-    here = sweep(SWEEP, tmp_path / "here", "local", workers=1, figures=False)
+def test_a_sweep_through_slurm_has_the_table_of_one_here(tmp_path: Path, in_slurm: dict[str, str]) -> None:
+    many = SWEEP | {"axes": [SWEEP["axes"][0] | {"steps": MANY - 1}]}
+    there = sweep(many, tmp_path / "there", "slurm", figures=False)
+    here = sweep(many, tmp_path / "here", "local", workers=1, figures=False)
     assert there.counts == here.counts
     assert set(here.counts) == {"done", "failed"}
     assert (tmp_path / "there" / TABLE).read_text() == (tmp_path / "here" / TABLE).read_text()

@@ -6,25 +6,23 @@ References: scipy's root of the body's height, scans of thousands of displacemen
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from contact1d import read_scene
 from contact1d.potentials import DoubleExponential, Exponential
-from contact1d.workflow.laws import Independent, Law, Maugis, law_of
+from contact1d.workflow.laws import Law, Maugis, law_of
 from contact1d.workflow.laws.law import NotCarriedError
-from contact1d.workflow.laws.pairs import of_pairs, on_plane, row_force
-from contact1d.workflow.laws.shape import Profile, Tabulated
+from contact1d.workflow.laws.pairs import of_pairs, row_force
+from contact1d.workflow.laws.shape import Profile
 from tests.scenes import LAW, chains
 
 Array = NDArray[np.float64]
-WIDTH, CANCELLED = 1e-13, 1e-15
-"""Relative: a bracket that is cut to the last digits; absolute [LU]: a height that is a difference."""
+WIDTH = 1e-13
+"""Relative: a bracket that is cut to the last digits."""
 SCAN = 1e-4
 """Relative, of a flat top between places of a scan."""
 SLOPE = 0.04
@@ -51,71 +49,7 @@ def pairs(shape: str, stiffness: float = 0.7, points: int = 4000) -> Law:
     return of_pairs(PAIR, body(shape), ROW, stiffness, CUTOFF, REST, points)
 
 
-@pytest.mark.parametrize("spacing", [1e-3, 0.8, 40.0])
-@pytest.mark.parametrize("shape", SHAPES)
-def test_half_widths_are_roots_of_the_height_at_most_the_bodys_own(shape: str, spacing: float) -> None:
-    profile = body(shape)
-    found = Independent(np.array([-1.0, 0.3]), np.array([1.0, 0.0]), 0.1, profile, spacing, 1.0)
-    displacements = np.array([-0.5, -0.2, -0.2 + 1e-9, -0.1, 0.0, 0.3, 2.0, 5.0, 5.9, 1e3])
-    for d, width in zip(displacements.tolist(), found.half_widths(displacements, 0.3).tolist(), strict=True):
-        height = 0.3 - 0.1 + d
-
-        def over(x: float, height: float = height) -> float:
-            return float(profile.height(np.array([x]))[0]) - height
-
-        end = min(profile.reach, 1e4)
-        if height <= 0.0:
-            assert width == spacing
-        elif over(end) <= 0.0:
-            assert width == profile.reach
-        else:
-            root = brentq(over, 0.0, end, xtol=1e-300, rtol=1e-15, maxiter=5000)
-            assert width == pytest.approx(root, rel=WIDTH, abs=CANCELLED)
-        assert found.half_width(d, 0.3) == width
-
-
-def test_a_terrace_that_is_just_as_high_is_no_longer_below() -> None:
-    terrace = Tabulated(np.array([0.0, 1.0, 3.0, 4.0]), np.array([0.0, 1.0, 1.0, 2.0]))
-    found = on_plane(Independent, terrace, 0.7, 1.0)
-    assert found.half_width(1.0, 0.0) == pytest.approx(1.0, rel=WIDTH)
-    assert found.half_width(1.0 + 1e-12, 0.0) == pytest.approx(3.0, rel=1e-9)
-    assert found.half_width(2.0, 0.0) == pytest.approx(4.0, rel=WIDTH)
-
-
-@dataclass(frozen=True)
-class Counted:
-    """A parabola that counts what it is asked."""
-
-    asked: list[int]
-    reach: float = math.inf
-
-    def height(self, x: Array) -> Array:
-        self.asked.append(np.asarray(x).size)
-        return np.asarray(x**2 / 60.0)
-
-    def __hash__(self) -> int:
-        return id(self)
-
-
-def test_a_width_takes_less_than_a_bisection_and_marks_some_thousands_of_places() -> None:
-    """A bisection to all digits asks a body 60 times, and a search for a place of F(d) would some 40 times 400."""
-    profile = Counted([])
-    found = of_pairs(PAIR, profile, ROW, 0.7, CUTOFF, REST)
-    assert 3000 < found.gap.size < 6000
-    found.half_width(0.3, CUTOFF)
-    assert len(profile.asked) < 60
-    assert sum(profile.asked) < 1000
-    single = sum(profile.asked) + 401  # of a force, its width and its places
-    for asks, most in (
-        (found.pull_off_force, 100), (lambda: found.displacement_at(1.0), 200), (lambda: found.parted(0.5), 600),
-    ):  # fmt: skip
-        profile.asked.clear()
-        asks()
-        assert sum(profile.asked) < most * single
-
-
-@pytest.mark.parametrize("stiffness", [0.4, 0.7, 5.0])
-@pytest.mark.parametrize("shape", ["parabola", "cone", "circle", "punch"])
+@pytest.mark.parametrize(("shape", "stiffness"), [("parabola", 0.4), ("cone", 5.0), ("circle", 0.7), ("punch", 0.7)])
 def test_marks_are_those_of_a_dense_scan(shape: str, stiffness: float) -> None:
     found = pairs(shape, stiffness)
     felt = REST - float(found.gap[-1])
@@ -139,19 +73,10 @@ def test_marks_are_those_of_a_dense_scan(shape: str, stiffness: float) -> None:
     assert found.stuck_stiffness(0.1) == pytest.approx(together, rel=0.1 if found.snaps else WIDTH)
 
 
-def test_one_pair_at_least_is_stuck() -> None:
-    found = pairs("parabola")
-    edge = float(found.gap[int(np.argmin(found.force))])
-    nearly = REST - edge + (0.2 * ROW) ** 2 / 60.0  # a fifth of a spacing to each side
-    assert found.stuck_stiffness(nearly) == found.stiffness == 0.35
-    twice = REST - edge + ROW**2 / 60.0
-    assert found.stuck_stiffness(twice) == pytest.approx(2.0 * found.stiffness, rel=1e-9)
-
-
-@pytest.mark.parametrize("points", [400, 4000])
-@pytest.mark.parametrize("stiffness", [0.03, 0.06, 0.1])
-def test_a_pair_snaps_over_the_fall_of_its_own_grid(stiffness: float, points: int) -> None:
+@pytest.mark.parametrize("stiffness", [0.03, 0.1])
+def test_a_pair_snaps_over_the_fall_of_its_own_grid(stiffness: float) -> None:
     """Undeformed gaps G(r) = r − 2 f(r)/k, one after the other: the first that is not exceeded next, and the return."""
+    points = 400
     found = pairs("parabola", stiffness, points)
     r = [CUTOFF * (i + 1) / points for i in range(points)]
     force = [float(f) for f in row_force(PAIR, np.array(r), ROW, CUTOFF)]
@@ -168,59 +93,13 @@ def test_a_pair_snaps_over_the_fall_of_its_own_grid(stiffness: float, points: in
     assert found.stiffness == 0.5 * stiffness
 
 
-def test_pairs_that_do_not_snap_do_not_detach_prematurely() -> None:
-    found = pairs("parabola", 5.0)
-    assert not found.snaps
-    assert found.premature_detachment(1.0, 1.0) == 0.0
-
-
-@pytest.mark.parametrize("stiffness", np.geomspace(0.01, 100.0, 24).tolist())
+@pytest.mark.parametrize("stiffness", [0.01, 0.5, 100.0])
 @pytest.mark.parametrize("shape", ["circle", "punch"])
 def test_a_body_carries_no_more_than_all_its_particles_on_the_opposite_ones(shape: str, stiffness: float) -> None:
     found = pairs(shape, stiffness)
     with pytest.raises(NotCarriedError) as caught:
         found.displacement_at(1e9)
     assert caught.value.most == pytest.approx(12.0 / ROW * float(found.force[0]), rel=1e-9)
-
-
-@pytest.mark.parametrize("depth", [1e-3, 10.0, 5e5])
-def test_a_plane_is_felt_as_deep_as_a_body_may_go(depth: float) -> None:
-    found = on_plane(Independent, body("punch"), ROW, 0.5)
-    assert not found.snaps
-    assert found.premature_detachment(1.0, 1.0) == 0.0
-    assert found.snap == (0.0, 0.0)
-    assert found.contact_force(depth) == pytest.approx(12.0 / ROW * 0.5 * depth, rel=1e-6)
-    assert found.displacement_at(12.0 / ROW * 0.5 * depth) == pytest.approx(depth, rel=1e-6)
-
-
-@pytest.mark.parametrize("d", [1e-3, 0.3, 20.0])
-def test_springs_on_a_plane_are_as_stiff_as_their_contact_is_wide(d: float) -> None:
-    """dF/dd = 2a k/s; a difference over a thousandth of the way is off by a quarter of that."""
-    found = on_plane(Independent, body("parabola"), ROW, 0.5)
-    a = found.half_width(d, 0.0)
-    assert found.stiffness_under(found.contact_force(d)) == pytest.approx(2.0 * a / ROW * 0.5, rel=4e-4)
-
-
-class Flat(Counted):
-    """A body of no height and without an end."""
-
-    def height(self, x: Array) -> Array:
-        return np.zeros_like(x)
-
-
-def test_a_spacing_whose_square_is_nothing_is_told_at_once() -> None:
-    with pytest.raises(OverflowError, match="too small compared with the body"):
-        on_plane(Independent, body("parabola"), 1e-200, 1.0).displacement_at(1.0)
-    with pytest.raises(OverflowError, match="too wide compared"):
-        on_plane(Independent, Flat([]), 1.0, 1.0).half_width(1.0, 0.0)
-
-
-def test_an_estimate_that_scenes_share_is_not_to_be_written_to() -> None:
-    found = pairs("parabola")
-    assert pairs("parabola") is found
-    for shared in (found.gap, found.force):
-        with pytest.raises(ValueError, match="read-only"):
-            shared[0] = 1.0
 
 
 @pytest.mark.parametrize(("work", "reach", "jumps"), [(1e-3, 1.0, False), (2e-2, 0.1, True)])

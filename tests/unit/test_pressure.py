@@ -19,8 +19,8 @@ from contact1d.analysis.pressure import (
 from contact1d.potentials import DoubleExponential, Exponential
 from contact1d.potentials.table import table_for
 
-ROUND_OFF = 1e-14  # relative; a few operations on doubles
-TABLE_DIGITS = 0.5  # MPa; the 784 MPa are given to three digits
+ROUND_OFF = 1e-14
+"""Relative: a few operations on doubles."""
 
 
 def profile(x: np.ndarray, pressure: np.ndarray) -> Profile:
@@ -38,19 +38,19 @@ def test_a_profile_is_sorted_and_per_spacing_and_keeps_signs() -> None:
     np.testing.assert_array_equal(made.shear, [0.2, 0.4, 0.6])
 
 
-@pytest.mark.parametrize("spacing", [0.0, -1.0, math.nan])
-def test_a_spacing_must_be_positive(spacing: float) -> None:
-    with pytest.raises(ValueError, match="spacing"):
-        pressure_profile([0.0], [0.0], [0.0], [0.0], [0.0], spacing)
-
-
 def test_what_is_not_a_profile_is_refused() -> None:
-    with pytest.raises(ValueError, match="finite"):
-        pressure_profile([0.0, 1.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, math.nan], 1.0)
-    with pytest.raises(ValueError, match="equally long"):
-        pressure_profile([0.0, 1.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0], 1.0)
+    zeros = [0.0, 0.0]
+    for last, spacing, words in (
+        ([0.0, math.nan], 1.0, "finite"),
+        ([0.0], 1.0, "equally long"),
+        (zeros, 0.0, "spacing"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            pressure_profile([0.0, 1.0], zeros, zeros, zeros, last, spacing)
     with pytest.raises(ValueError, match="sorted"):
         profile(np.array([1.0, 0.0]), np.zeros(2))
+    with pytest.raises(ValueError, match="above 0"):
+        mean_pressure(profile(np.arange(3.0), np.ones(3)), 1.0, 0.0)
 
 
 def test_the_mean_pressure_is_that_of_the_paper() -> None:
@@ -63,23 +63,11 @@ def test_the_mean_pressure_is_that_of_the_paper() -> None:
     load = adhesion_force * (4.0 * ratio**3 - 4.0 * ratio**1.5)
     x = np.linspace(-20.0, 20.0, 9)
     made = profile(x, np.full(9, load / 9.0 / 2.0))
-    assert mean_pressure(made, 2.0, a) * stress / 1e6 == pytest.approx(784.0, abs=TABLE_DIGITS)
+    assert mean_pressure(made, 2.0, a) * stress / 1e6 == pytest.approx(784.0, abs=0.5)  # given to three digits
 
 
-def test_a_contact_without_extent_has_no_mean_pressure() -> None:
-    with pytest.raises(ValueError, match="above 0"):
-        mean_pressure(profile(np.arange(3.0), np.ones(3)), 1.0, 0.0)
-
-
-def test_the_smallest_distance_is_that_of_all_pairs() -> None:
-    rng = np.random.default_rng(3)
-    upper, lower = rng.uniform(0.0, 10.0, (2, 40)), rng.uniform(0.0, 10.0, (2, 25))
-    every = [math.hypot(xu - xl, zu - zl) for xu, zu in upper.T for xl, zl in lower.T]
-    assert smallest_distance(*upper, *lower) == pytest.approx(min(every), rel=ROUND_OFF)
-
-
-@pytest.mark.parametrize("seed", range(40))
-def test_the_smallest_distance_of_chains_in_any_place(seed: int) -> None:
+@pytest.mark.parametrize("seed", range(16))
+def test_the_smallest_distance_is_that_of_all_pairs_of_chains_in_any_place(seed: int) -> None:
     """Beside, above and through each other, with places taken twice: what a search along the chain could miss."""
     rng = np.random.default_rng(seed)
     count, other = rng.integers(1, 40, 2)
@@ -91,12 +79,6 @@ def test_the_smallest_distance_of_chains_in_any_place(seed: int) -> None:
     assert smallest_distance(x_upper, z_upper, x_lower, z_lower) == pytest.approx(every.min(), rel=ROUND_OFF)
 
 
-@pytest.mark.parametrize("lower", [0, 1])
-def test_no_distance_to_no_body(lower: int) -> None:
-    with pytest.raises(ValueError, match="in each"):
-        smallest_distance([0.0] * (1 - lower), [0.0] * (1 - lower), [0.0] * lower, [0.0] * lower)
-
-
 def test_the_depth_is_exact_over_a_tilted_plane_in_any_order() -> None:
     rng = np.random.default_rng(2)
     x_low = rng.permutation(np.linspace(-5.0, 5.0, 11))
@@ -105,27 +87,15 @@ def test_the_depth_is_exact_over_a_tilted_plane_in_any_order() -> None:
     assert depth == pytest.approx(float(np.max(0.3 * x - 1.0 - (z - 3.0))), rel=ROUND_OFF)
 
 
-def test_particles_below_the_lower_surface_are_found_with_their_depth() -> None:
-    x_low = np.arange(5.0)
-    assert penetration_depth([-3.0, 0.5, 2.5, 9.0], [-7.0, -0.25, 1.0, -7.0], x_low, np.zeros(5)) == 0.25
-    assert penetration_depth(x_low, x_low + 0.1, x_low, x_low) == 0.0
-    assert penetration_depth(x_low, x_low, x_low, x_low) == 0.0
-    assert penetration_depth([7.0], [-1.0], x_low, np.zeros(5)) == 0.0
-
-
 def test_the_share_at_the_ends_counts_tension_and_compression() -> None:
     x = np.arange(4.0)
     assert end_pressure_share(profile(x, np.array([0.1, -4.0, 2.0, -0.2]))) == pytest.approx(0.05, rel=ROUND_OFF)
-    assert end_pressure_share(profile(x, np.array([0.0, 1.0, 2.0, 2.0]))) == 1.0
     assert end_pressure_share(profile(x, np.zeros(4))) == 0.0
-    for scale in (2.0**-60, 2.0**60):
-        assert end_pressure_share(profile(x, scale * np.array([0.25, -4.0, 2.0, -0.125]))) == 0.0625
 
 
-@pytest.mark.parametrize("cutoff", [1.1, 2.6])
-def test_what_a_table_leaves_out_is_summed_over_all_pairs(cutoff: float) -> None:
+def test_what_a_table_leaves_out_is_summed_over_all_pairs() -> None:
     """Beyond the cutoff up to five ranges all of the force, below it the table's error; each along z."""
-    law = DoubleExponential(Exponential(0.18, 0.13), Exponential(0.09, 0.26))
+    law, cutoff = DoubleExponential(Exponential(0.18, 0.13), Exponential(0.09, 0.26)), 1.1
     table, x = table_for(law, cutoff, 0.2, 1e-3), 0.4 * np.arange(15)
     state = Profile(x, 0.01 * np.sin(x), 0.3 + 0.02 * (x - 2.0) ** 2, np.ones(15), np.zeros(15))
     total = 0.0
