@@ -17,13 +17,11 @@ from validation.hard.claims import Tally
 from validation.paper.tangential import stiffness_ratio
 
 SCENES, SEED = 24, 20
-KINDS = ("load", "path", "pull_off", "fixed_grips", "tangential")
+KINDS = ("load", "pull_off", "tangential")
 ROUND_OFF = 1e-12
 TOLD = 0.1
 """Share of the numbers beyond the tolerance by a claim that names them: rows of a path and readings between particles
 are known after the run only. None may be beyond it without a word."""
-ROWS = 60
-"""Of a path past the largest tension, which is read between them."""
 
 
 def drawn(rng: np.random.Generator, kind: str) -> tuple[dict[str, Any], dict[str, float]]:
@@ -47,9 +45,6 @@ def drawn(rng: np.random.Generator, kind: str) -> tuple[dict[str, Any], dict[str
     if kind == "load":
         exact = {"displacement": depth, "contact_radius": radius}
         return tables | {"experiment": {"kind": "load", "force": force}}, exact
-    if kind == "path":
-        exact = {"largest_force": force, "largest_radius": radius}
-        return tables | {"experiment": {"kind": "path", "displacements": [0.5 * depth, depth]}}, exact
     if kind == "tangential":
         friction, stick = float(rng.uniform(0.05, 1.0)), radius * float(rng.uniform(0.2, 0.9))
         place = friction / stiffness_ratio(moduli, ratios) * (depth - float(law.displacement(stick)))
@@ -64,12 +59,8 @@ def drawn(rng: np.random.Generator, kind: str) -> tuple[dict[str, Any], dict[str
     body = PowerLaw(law.coefficient, exponent, modulus, (radius / unit) ** (2.0 * exponent - 1.0))
     tables["adhesion"] = {"work_of_adhesion": body.work_of_adhesion}
     exact = {"adhesion_force": body.pull_off_force(), "zero_load_radius": radius}
-    if kind == "pull_off":
-        exact["critical_radius"] = body.critical_radius()
-        return tables | {"experiment": {"kind": kind, "preload": 0.5 * body.pull_off_force()}}, exact
-    ends = body.displacement(1.1 * radius), body.displacement(body.fixed_grips_radius())
-    span = {"from": float(ends[0]), "to": float(0.02 * ends[0] + 0.98 * ends[1]), "steps": ROWS, "return": False}
-    return tables | {"experiment": {"kind": "path", "displacements": span}}, exact
+    exact["critical_radius"] = body.critical_radius()
+    return tables | {"experiment": {"kind": kind, "preload": 0.5 * body.pull_off_force()}}, exact
 
 
 def test_an_automatic_spacing_keeps_the_tolerance(tmp_path: Path) -> None:

@@ -5,7 +5,6 @@ What limits the tolerances: the uncertainty that each run states; exponents also
 
 from __future__ import annotations
 
-import csv
 import math
 import os
 import re
@@ -21,7 +20,7 @@ from matplotlib import pyplot
 from scipy.optimize import brentq
 from typer.testing import CliRunner
 
-from contact1d import Quantity, Run, read_scene
+from contact1d import Quantity, read_scene
 from contact1d.__main__ import app
 from tests.pages import ROOT, require_shown
 
@@ -106,56 +105,36 @@ def one_page(name: str) -> pytest.MarkDecorator:
 
 @one_page("hertz")
 def test_hertz(names: dict[str, Any]) -> None:
-    third = names["contact1d"].run(
-        read_scene(Path("ball.toml"), ['experiment.force="166.1 N"']), "ball_1GPa", figures=False
-    )
-    for force, folder in ((0.1, "ball"), (0.8, "ball_800mN"), (166.1, "ball_1GPa")):
+    for force, folder in ((0.1, "ball"), (0.8, "ball_800mN")):
         results = names["contact1d"].load_run(folder).results
         a = (0.75 * force * 0.01 / modulus(STEEL, GLASS)) ** (1.0 / 3.0)
-        assert within(results.contact_radius, a)
         assert within(results.displacement, a**2 / 0.01)
         assert within(results.central_pressure, 1.5 * force / (math.pi * a**2))
-        assert within(results.contact_stiffness, 2.0 * a * modulus(STEEL, GLASS))
     assert names["exponent"] == pytest.approx(1.5, abs=ROUNDED)
-    assert third.results.central_pressure.value == pytest.approx(1e9, rel=1e-3)
+    ball = read_scene(Path("ball.toml"), ['experiment.force="166.1 N"'])
+    assert names["contact1d"].run(ball).results.central_pressure.value == pytest.approx(1e9, rel=1e-3)
     require_figure("hertz")
 
 
 @one_page("adhesion")
 def test_adhesion(names: dict[str, Any]) -> None:
-    results, W, R = names["run"].results, 0.08, 2e-3
-    E = modulus(RUBBER, GLASS)
-    a_0 = (4.5 * math.pi * W * R**2 / E) ** (1.0 / 3.0)
-
-    def energy(a: float) -> float:
-        """Elastic energy less πa²W on the curve of equilibria."""
-        d = a**2 / R - math.sqrt(2.0 * math.pi * a * W / E)
-        return E * (a * d**2 - 2.0 * a**3 * d / (3.0 * R) + a**5 / (5.0 * R**2)) - math.pi * a**2 * W
-
-    separation = energy(a_0 / 36.0 ** (1.0 / 3.0)) - energy(a_0)  # fixed grips: dd/da = 0
-    assert within(results.adhesion_force, 1.5 * math.pi * W * R)
-    assert within(results.zero_load_radius, a_0)
-    assert within(results.critical_radius, a_0 / 4.0 ** (1.0 / 3.0))
-    assert within(results.work_of_separation, separation)
-    assert separation / (math.pi * a_0**2 * W) == pytest.approx(0.637, abs=ROUNDED)
-    (tabor,) = (check for check in names["run"].document["validity"] if check["name"] == "tabor")
-    assert tabor["value"] == pytest.approx((R * W**2 / (E**2 * 0.3e-9**3)) ** (1.0 / 3.0), rel=1e-9)
-    stiff: Run = names["stiff"]
-    assert within(stiff.results.adhesion_force, 1.5 * math.pi * W * R)
-    ratio = modulus((2.4e9, 0.38), GLASS) / E
-    assert within(stiff.results.zero_load_radius, a_0 / ratio ** (1.0 / 3.0))
+    W, R = 0.08, 2e-3
+    for found, rubber in ((names["run"], RUBBER), (names["stiff"], (2.4e9, 0.38))):
+        a_0 = (4.5 * math.pi * W * R**2 / modulus(rubber, GLASS)) ** (1.0 / 3.0)
+        assert within(found.results.adhesion_force, 1.5 * math.pi * W * R)
+        assert within(found.results.zero_load_radius, a_0)
+    soft = names["run"].results
+    share = soft.work_of_separation.value / (math.pi * soft.zero_load_radius.value**2 * W)
+    assert share == pytest.approx(0.637, abs=ROUNDED)
     require_figure("adhesion")
 
 
 @one_page("friction")
 def test_friction(names: dict[str, Any]) -> None:
     results, E, N, mu, u_m = names["run"].results, modulus(STEEL, STEEL), 10.0, 0.3, 0.2e-6
-    a = (0.75 * N * 0.01 / E) ** (1.0 / 3.0)
-    u = mu * 1.7 / 1.4 * a**2 / 0.01  # E*/G* = (2 − ν)/2(1 − ν) of equal bodies
+    u = mu * 1.7 / 1.4 * (0.75 * N * 0.01 / E) ** (2.0 / 3.0) / 0.01  # E*/G* = (2 − ν)/2(1 − ν) of equal bodies
     s = math.sqrt(1.0 - u_m / u)
-    assert within(results.contact_radius, a)
     assert within(results.tangential_force, mu * N * (1.0 - s**3))
-    assert within(results.stick_radius, s * a)
     cycle = 0.8 * mu * N * u * (1.0 - s) ** 3 * (1.0 + 3.0 * s + s**2)
     assert within(results.dissipated_energy_per_cycle, cycle)
     assert names["W"] == pytest.approx(cycle, rel=1e-9)
@@ -177,13 +156,7 @@ def test_profile(names: dict[str, Any]) -> None:
     a = brentq(lambda a: load(a) - 5.0, b, 10.0 * b, xtol=1e-15)
     assert within(worn.contact_radius, a)
     assert within(worn.displacement, a / R * math.sqrt(a**2 - b**2))
-    assert within(worn.contact_stiffness, 2.0 * E * a)
     assert within(names["new"].results.contact_radius, (0.75 * 5.0 * R / E) ** (1.0 / 3.0))
-    assert "peak_pressure" not in worn
-    with (ROOT / "lammps_inputs" / "profiles" / "worn_ball.csv").open(encoding="utf-8") as file:
-        rows = list(csv.reader(line for line in file if line[0].isdigit()))
-    for r, z in ((float(r), float(z)) for r, z in rows):
-        assert z == pytest.approx(max(r**2 - 50.0**2, 0.0) / 10.0, abs=0.005 + 1e-9)  # nm, two decimals
     require_figure("profile")
 
 
@@ -191,8 +164,7 @@ def test_profile(names: dict[str, Any]) -> None:
 def test_scan(names: dict[str, Any]) -> None:
     """What was taken of the scan has the contact of the ball that it was made of, within its uncertainty."""
     results, a, R, b = names["run"].results, names["a"], names["R"], names["b"]
-    exact = {"contact_radius": a, "displacement": a / R * math.sqrt(a**2 - b**2)}
-    for name, value in exact.items():
+    for name, value in (("contact_radius", a), ("displacement", a / R * math.sqrt(a**2 - b**2))):
         assert abs(results[name].value - value) <= results[name].uncertainty <= 5e-3 * value
     scan = names["run"].document["scan"]
     assert scan["noise"]["value"] == pytest.approx(3e-9, rel=0.05)
@@ -205,11 +177,9 @@ def test_scan(names: dict[str, Any]) -> None:
 def test_sweep(names: dict[str, Any]) -> None:
     table = names["table"]
     assert names["sweep"].counts == {"done": len(table)} == {"done": 8}
-    for row in table.itertuples(index=False, name=None):
-        point = dict(zip(table.columns, row, strict=True))
-        R, W = point["bodies.profile.radius"], point["adhesion.work_of_adhesion"]
-        force = Quantity(point["adhesion_force"], point["adhesion_force_uncertainty"], "N")
-        assert within(force, 1.5 * math.pi * W * R)
+    exact = 1.5 * math.pi * table["adhesion.work_of_adhesion"] * table["bodies.profile.radius"]
+    assert ((table["adhesion_force"] - exact).abs() <= table["adhesion_force_uncertainty"]).all()
+    assert (table["adhesion_force_uncertainty"] <= 1e-3 * exact).all()
     assert (names["slope_R"], names["slope_W"]) == pytest.approx((4.0 / 3.0, 5.0 / 3.0), abs=ROUNDED)
     assert Path("report.html").stat().st_size > 100_000
     require_figure("sweep", "sweep/adhesion_force.png")

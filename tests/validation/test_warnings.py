@@ -3,43 +3,37 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
-from pathlib import Path
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
 
-from contact1d import Run, run
-from contact1d.workflow.runs.refinement import nested
+from contact1d import Run
 from tests.scenes import LAW, chains
 
+RunTables = Callable[[dict[str, Any]], Run]
 TOLERANCE = 1e-3
 PLANE = {"lower": "rigid_plane"}
 
 
-def contact(folder: Path, **bodies: Any) -> Run:
+def contact(**bodies: Any) -> dict[str, Any]:
     """A load of 3 FU on two chains, or on one over a plane, whose springs and pairs are the same per length."""
-    experiment = {"kind": "load", "force": 3.0}
     spacing = bodies.setdefault("spacing", 1.0)
     law = (LAW[0] * spacing, LAW[1], LAW[2] * spacing, LAW[3])
-    scene = chains(200.0, 0.83 * spacing, law, experiment=experiment, accuracy={"tolerance": TOLERANCE}, bodies=bodies)
-    if "lower" in bodies:
-        del scene["interaction"]
-    return run(scene, folder, figures=False)
+    only = {"interaction": None} if "lower" in bodies else {}
+    experiment = {"kind": "load", "force": 3.0}
+    return chains(
+        200.0, 0.83 * spacing, law, experiment=experiment, accuracy={"tolerance": TOLERANCE}, bodies=bodies, **only
+    )
 
 
-def warned(found: Run) -> dict[str, str]:
-    return {one["name"]: one["message"] for one in found.document["warnings"]}
-
-
-@pytest.mark.parametrize(("spacing", "lower"), [(2.0, {}), (2.0, PLANE), (4.0, PLANE)], ids=str)
+@pytest.mark.parametrize(("spacing", "lower"), [(2.0, {}), (4.0, PLANE)], ids=str)
 def test_an_advised_spacing_is_fine_enough_and_not_eight_times_too_fine(
-    spacing: float, lower: dict[str, Any], tmp_path: Path
+    spacing: float, lower: dict[str, Any], run_tables: RunTables
 ) -> None:
     def at(spacing: float) -> str:
-        found = contact(tmp_path / f"{spacing:g}", spacing=spacing, **lower)
-        return warned(found).get("lattice", "")
+        return run_tables(contact(spacing=spacing, **lower)).warnings.get("lattice", "")
 
     said = re.search(r"about ([\d.e-]+) LU", at(spacing))
     assert said is not None
@@ -47,34 +41,25 @@ def test_an_advised_spacing_is_fine_enough_and_not_eight_times_too_fine(
     assert at(8.0 * float(said[1]))
 
 
-def test_no_spacing_is_advised_by_a_result_while_another_is_unknown(tmp_path: Path) -> None:
+def test_no_spacing_is_advised_by_a_result_while_another_is_unknown(run_tables: RunTables) -> None:
     """What is known well at 4 LU is known well enough at 2.7; the radius, which is not, needs 0.3."""
-    found = warned(contact(tmp_path / "run", spacing=4.0))
+    found = run_tables(contact(spacing=4.0)).warnings
     assert "contact_radius" in found["unknown"]
     assert "displacement" in found["lattice"]
     assert "about" not in found["lattice"]
 
 
-@pytest.mark.parametrize("particles", [53, 59, 62, 68])
-def test_a_chain_is_too_short_where_its_ends_carry_more_than_the_tolerance(particles: int, tmp_path: Path) -> None:
-    found = contact(tmp_path / "run", particles=particles)
-    pressure = np.abs(found.outcome.states[-1].profile.pressure)
-    assert ("chain_end" in warned(found)) == (max(pressure[0], pressure[-1]) > TOLERANCE * pressure.max())
+@pytest.mark.parametrize("particles", [59, 62])
+def test_a_chain_is_too_short_where_its_ends_carry_more_than_the_tolerance(
+    particles: int, run_tables: RunTables
+) -> None:
+    found = run_tables(contact(particles=particles))
+    pressure = np.abs(found.profiles["final"].pressure)
+    assert ("chain_end" in found.warnings) == (max(pressure[0], pressure[-1]) > TOLERANCE * pressure.max())
 
 
-def test_a_run_in_finer_settings_that_contradicts_the_first_is_as_uncertain_as_that(tmp_path: Path) -> None:
-    """Each errs by at most what it states, unless the two differ by more than both: then by that share more."""
-    fine = contact(tmp_path / "run").outcome
-    one = fine.results["displacement"]
-    for apart, factor in ((0.5, 1.0), (1.9, 1.0), (2.2, 1.1), (-6.0, 3.0)):
-        moved = replace(one, value=one.value + apart * one.uncertainty)
-        found = nested(replace(fine, results={"displacement": moved}), fine).results
-        assert found["displacement"].uncertainty == pytest.approx(factor * one.uncertainty, rel=1e-9, abs=0.0)
-        given = 10.0 * one.uncertainty  # by a number with ±, which is the same in both
-        open_, coarse = (replace(two, errors={**two.errors, "input": given}, given=given) for two in (one, moved))
-        again = nested(replace(fine, results={"displacement": coarse}), replace(fine, results={"displacement": open_}))
-        own = again.results["displacement"].uncertainty - given
-        assert own == pytest.approx(factor * one.uncertainty, rel=1e-9, abs=0.0)
-        assert {name: found[name].uncertainty for name in found if name != "displacement"} == {
-            name: other.uncertainty for name, other in fine.results.items() if name != "displacement"
-        }
+@pytest.mark.parametrize(("cutoff", "warns"), [(1.5, True), (6.0, False)])
+def test_a_tail_beyond_the_cutoff_that_matters_is_named(run_tables: RunTables, cutoff: float, warns: bool) -> None:
+    tables = chains(1000.0, experiment={"kind": "load", "force": 1.0})
+    tables["interaction"] = tables["interaction"] | {"cutoff": cutoff}
+    assert ("cutoff" in run_tables(tables).warnings) is warns

@@ -1,0 +1,210 @@
+"""Claim: a slide is the motion of the model: its trace is that of an integrator written independently, in numpy.
+
+Particles, plate, cantilever and drag as the scene says; only the numbers that the program chose (timestep, cutoff,
+automatic drag and mass) are taken over. `validation hard` has many more.
+
+Flat chains slide as Prandtl and Tomlinson's particle does. Below the threshold of its springs, max(−U″) of the
+corrugation U(x) = min_z Σ V + F_N z that the row has, a particle slides without slips. Commensurate chains are so many
+particles. Incommensurate ones on springs k to a common body (Frenkel, Kontorova and Tomlinson without springs between
+neighbours) are all of them in one well each for k > κ = max(−U″), and the body's energy does not depend on its place;
+for k < κ they jump one after the other, and the friction of a slow drive is finite. κ is that of a particle at the
+height that all share: on the top it presses its spring.
+
+Under heat a slide has its temperature, also the plate, whose own drag comes with its heat: M ⟨(V − v)²⟩ = k_BT, the
+ratio's own spread over independent times as error. ⟨F⟩(T, v) of one particle on a row is that of Smoluchowski's
+equation, and of an ensemble for fast drives: a free energy by quadrature and a density in finite volumes, and a
+vectorised integrator of other form (BAOAB) than LAMMPS's.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from contact1d import Run, Scene, read_scene, run
+from validation.paper import heat
+from validation.paper.fig9.curved import integrated
+from validation.references.incommensurate import threshold
+from validation.references.prandtl_tomlinson import corrugation
+
+TRACE = 1e-4
+"""Of the peak: the table of the law, the rest from which the slide starts, and the order of the sums."""
+MEAN = 3e-4
+"""Of the peak: the samples of the cantilever's force, every fifth step, against every step of the integrator."""
+CLOSED = 5e-4
+"""Work that is neither dissipated nor stored: the drag is sampled at every fifth step."""
+WAY = 3.0
+"""[LU]: as much as a mean needs, and as the integrator does."""
+LAW = (1.0, 0.5, 0.5, 1.0)
+LOAD = 0.2
+MOTION = 2e-3
+"""Of ⟨F⟩: the cutoff changes the corrugation by 1e-4, and means are over other periods."""
+FAST, LATE = 2e-3, 5e-4
+"""Velocities [LU/TU], a factor of 4 apart: 1 for a friction that is finite at v = 0, 4 for one proportional to v."""
+SMOOTH, PINNED, FREE = 2.5, 1.7, 3.5
+WARM = 3.0
+"""Standard errors of a temperature."""
+SIGMAS = 4.0
+"""Standard errors of run and reference: one test in 16 000 would fail by chance, and the seeds are fixed."""
+EXCHANGED = 5e-3
+"""Work that is neither given to the baths nor stored, over the energy that the drive and the baths exchange."""
+
+
+def test_a_curved_slide_is_that_of_the_integrator(tmp_path: Path) -> None:
+    """Trace, means over whole periods, the largest friction before the plate slides; work is dissipated or stored.
+
+    The friction is had by the balance of the momentum, and of the integrator as the sum of the lower body's forces.
+    """
+    scene = read_scene({
+        "title": "slide",
+        "bodies": {
+            "particles": 40, "upper_particles": 24, "upper_offset": 0.5, "spacing": 1.0, "mass": 1.0,
+            "bulk_stiffness": 2.0, "bulk_stiffness_tangential": 1.2, "profile": {"kind": "parabola", "radius": 30.0},
+        },
+        "interaction": {"repulsion": {"amplitude": 1.0, "range": 0.5}, "attraction": {"amplitude": 0.5, "range": 1.0}},
+        "neighbours": {"stiffness": 0.3},
+        "horizontal": {},
+        "damping": {"coefficient": 0.4},
+        "plate": {"free": ["x", "z"], "mass": 24.0, "damping": 4.0},
+        "cantilever": {"stiffness": 0.4, "velocity": 0.02},
+        "accuracy": {"tolerance": 1e-3},
+        "experiment": {"kind": "slide", "normal_force": 1.0, "distance": WAY},
+    })  # fmt: skip
+    slid, expected = run(scene, tmp_path / "run", figures=False), integrated(scene).trace
+    found, results = slid.friction, slid.results
+    peak = float(np.abs(expected.friction).max())
+    assert found["time"] == pytest.approx(expected.time, rel=1e-12)
+    assert found["friction"] == pytest.approx(expected.friction, abs=TRACE * peak)
+    assert found["cantilever_force"] == pytest.approx(expected.cantilever_force, abs=TRACE * peak)
+    assert found["plate_x"] == pytest.approx(expected.place, abs=TRACE)
+    assert found["drive"][-1] == pytest.approx(WAY, abs=1e-12)
+    end, period = expected.time[-1], 1.0 / 0.02
+    starts = [first * period for first in (1, 2)]  # where the run-in ends is the program's choice
+    means = [(expected.impulse[-1] - np.interp(t, expected.time, expected.impulse)) / (end - t) for t in starts]
+    assert min(abs(results.mean_friction.value - mean) for mean in means) <= MEAN * peak
+    largest, before = results.static_friction, expected.friction[expected.place < 1.0].max()
+    assert largest.value == pytest.approx(before, abs=largest.uncertainty + TRACE)
+    work, lost = results.cantilever_work.value, results.dissipated_energy.value
+    assert work == pytest.approx(lost + results.stored_energy.value, abs=CLOSED * work)
+    assert found["cantilever_work"][-1] == work > 0.0
+    assert lost > 0.0
+
+
+def slid(folder: Path, velocity: float, stiffness: float, cantilever: float, distance: float, **tables: Any) -> Run:
+    """A flat body of which each particle has a spring along x, on a rigid row."""
+    bodies = {
+        "particles": 32, "upper_particles": 1, "upper_offset": 0.0, "spacing": 1.0, "lower": "rigid_chain",
+        "periodic": True, "profile": {"kind": "flat"}, "bulk_stiffness": 1.0, "bulk_stiffness_tangential": stiffness,
+        "mass": 1.0,
+    } | tables.pop("bodies", {})  # fmt: skip
+    scene = {
+        "title": "flat",
+        "bodies": bodies,
+        "interaction": {
+            "repulsion": {"amplitude": LAW[0], "range": LAW[1]}, "attraction": {"amplitude": LAW[2], "range": LAW[3]},
+        },
+        "horizontal": {},
+        "damping": {"coefficient": 0.4},
+        "plate": {"free": ["x", "z"], "damping": 0.0},
+        "cantilever": {"stiffness": cantilever * bodies["upper_particles"], "velocity": velocity},
+        "experiment": {"kind": "slide", "normal_force": LOAD * bodies["upper_particles"], "distance": distance},
+    }  # fmt: skip
+    return run(read_scene(scene | tables), folder, figures=False)
+
+
+def pulled(folder: Path, eta: float, velocity: float, **tables: Any) -> Run:
+    """A particle whose spring to the drive, its own and the cantilever's in series, is max(−U″)/η."""
+    stiffness = corrugation(LAW, 1.0, LOAD).steepest / eta
+    return slid(folder, velocity, 1.0, 1.0 / (1.0 / stiffness - 1.0), 4.0, **tables)
+
+
+def test_below_the_threshold_it_slides_smoothly(tmp_path: Path) -> None:
+    """η = 0.8: no slip, and a friction that falls with the velocity."""
+    fast, slow = (pulled(tmp_path / f"{v}", 0.8, v).results for v in (FAST, LATE))
+    assert slow.slips.value == 0
+    assert fast.mean_friction.value / slow.mean_friction.value > SMOOTH
+
+
+def test_a_commensurate_chain_is_so_many_particles(tmp_path: Path) -> None:
+    """With the same spring and force for each, and springs between them."""
+    alone = pulled(tmp_path / "alone", 2.0, FAST).results
+    eight = {"upper_particles": 8, "particles": 8, "upper_offset": 0.5}
+    chained = pulled(tmp_path / "chained", 2.0, FAST, bodies=eight, neighbours={"stiffness": 0.5}).results
+    for name in ("mean_friction", "static_friction"):
+        assert chained[name].value == pytest.approx(8.0 * alone[name].value, rel=MOTION), name
+    assert alone.static_friction.value == pytest.approx(corrugation(LAW, 1.0, LOAD).largest_force, rel=5e-3)
+
+
+def test_an_incommensurate_chain_changes_from_pinned_to_viscous_at_the_threshold(tmp_path: Path) -> None:
+    stiffness = threshold(LAW, 1.0, LOAD, 1.0)
+    assert stiffness == pytest.approx(0.1225, abs=1e-4)
+    bodies = {"particles": 34, "upper_particles": 21, "upper_spacing": 34 / 21}
+    ratios = {}
+    for share in (0.75, 1.6):
+        fast, slow = (
+            slid(tmp_path / f"{share}-{v}", v, share * stiffness, 5.0, 3.0, bodies=bodies, damping={"coefficient": 0.3})
+            for v in (FAST, LATE)
+        )
+        ratios[share] = fast.results.mean_friction.value / slow.results.mean_friction.value
+    assert ratios[0.75] < PINNED
+    assert ratios[1.6] > FREE
+
+
+def hot_pair(**tables: Any) -> Scene:
+    """A flat pair of eight particles that slides slowly under heat."""
+    base = heat.FLAT_PAIR | {"experiment": {"kind": "slide", "normal_force": 1.6, "distance": 12.0}}
+    changed = {name: base.get(name, {}) | tables.get(name, {}) for name in {**base, **tables}}
+    return read_scene({"title": "slide under heat"} | changed)
+
+
+@pytest.mark.parametrize(
+    ("share", "velocity", "distance"), [pytest.param(0.15, 2e-2, 30.0, marks=pytest.mark.slow), (0.05, 2e-3, 6.0)]
+)
+def test_the_friction_under_heat_is_that_of_its_reference(
+    share: float, velocity: float, distance: float, tmp_path: Path
+) -> None:
+    found = run(heat.scene(share, velocity, distance, seed=7), tmp_path / "run", figures=False).results["mean_friction"]
+    mean, error = heat.expected(share, velocity)
+    sigma = (found.uncertainty**2 / heat.INTERVAL**2 + error**2) ** 0.5
+    assert found.value == pytest.approx(mean, abs=SIGMAS * sigma)
+    assert found.uncertainty < 0.5 * mean
+
+
+def test_the_plate_is_as_warm_as_its_particles(tmp_path: Path) -> None:
+    """A drag of 4 beside 8 · 0.4 of the particles would cool it to 0.44 T if it had no heat of its own."""
+    at_rest = {"kind": "slide", "normal_force": 1.6, "path": [[0.0, 12.0]]}
+    found = run(hot_pair().with_({"experiment": at_rest}), tmp_path / "run", figures=False).results["plate_temperature"]
+    assert found.value == pytest.approx(heat.TEMPERATURE, abs=WARM * found.uncertainty / 2.0)
+    assert found.uncertainty < 0.2 * heat.TEMPERATURE
+
+
+def test_heat_lowers_the_friction_and_the_balance_of_energy_holds(tmp_path: Path) -> None:
+    hot = run(hot_pair(), tmp_path / "hot", figures=False)
+    work, lost, stored = (hot.results[f"{n}"].value for n in ("cantilever_work", "dissipated_energy", "stored_energy"))
+    assert work == pytest.approx(lost + stored, abs=EXCHANGED * max(abs(work), abs(lost), abs(stored)))
+    cold = run(hot_pair().with_(without="noise"), tmp_path / "cold", figures=False).results
+    assert hot.results.mean_friction.value < cold.mean_friction.value
+    assert np.isfinite(hot.friction["friction"]).all()
+
+
+def test_a_plate_at_rest_relaxes_with_its_drag(tmp_path: Path) -> None:
+    """Pulled aside and left, its force falls as the drag N γ + c on all that moves lets it, where nothing else holds.
+
+    The friction of the incommensurate, stiff pair is nil; the time is that of the drag, with and without heat.
+    """
+    scene = hot_pair(
+        bodies={"particles": 13, "upper_particles": 8, "upper_spacing": 13 / 8, "bulk_stiffness": 4.0},
+        plate={"free": ["x", "z"], "mass": 8.0, "damping": 16.0},
+        cantilever={"stiffness": 1.0, "velocity": 0.02},
+        noise={"temperature": 1e-11},
+    ).with_({"experiment": {"kind": "slide", "normal_force": 1.6, "path": [[0.5, 1.0], [0.0, 0.5]]}})
+    total = 8 * 0.4 + 16.0
+    rate = total / 32.0 * (1.0 - np.sqrt(1.0 - 4.0 * 16.0 / total**2))
+    for name, one in (("hot", scene), ("cold", scene.with_(without="noise"))):
+        found = run(one, tmp_path / name, figures=False)
+        resting = found.friction["time"] > 15.0  # the particles have come to rest, too
+        time, pull = found.friction["time"][resting], found.friction["cantilever_force"][resting]
+        assert -np.polyfit(time, np.log(np.abs(pull)), 1)[0] == pytest.approx(rate, rel=0.03)
