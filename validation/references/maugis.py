@@ -14,19 +14,18 @@ Source: D. Maugis, J. Colloid Interface Sci. 150 (1992) 243.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
-from scipy.optimize import brentq
 from scipy.special import spherical_jn
+
+from validation.references.numerics import Pair, root
 
 LAMBDA_OVER_TABOR = 2.0 * math.cbrt(9.0 / (16.0 * math.pi))
 """For the stress W/h_0 (Maugis 1992)."""
 JKR_SIDE, DMT_SIDE = 1e-3, 1e-7
 """t (1 + lambda) of a contact much wider than one without a load; pi/2 - t, over lambda below 1, of one much narrower
 than that of the largest tension."""
-Pair = tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -86,17 +85,17 @@ class Reduced:
         while self.state(low).a < a:
             low *= 0.1
         high = high if self.state(high).a < a else 0.5 * math.pi
-        return self.state(_root(lambda t: self.state(t).a - a, low, high))
+        return self.state(root(lambda t: self.state(t).a - a, low, high))
 
     @cached_property
     def critical(self) -> State:
         """Of the largest tension."""
-        return self.state(_root(lambda t: self.slopes(t)[0], *self.ends))
+        return self.state(root(lambda t: self.slopes(t)[0], *self.ends))
 
     @cached_property
     def free(self) -> State:
         """Without a load."""
-        return self.state(_root(lambda t: self.state(t).load, *self.ends))
+        return self.state(root(lambda t: self.state(t).load, *self.ends))
 
     @property
     def has_fold(self) -> bool:
@@ -107,7 +106,7 @@ class Reduced:
     def snap_out(self) -> State:
         """The last state under fixed grips."""
         if self.has_fold:
-            return self.state(_root(lambda t: self.slopes(t)[1], *self.ends))
+            return self.state(root(lambda t: self.slopes(t)[1], *self.ends))
         return self.alone(8.0 / (3.0 * math.pi) * self.parameter)
 
 
@@ -175,9 +174,5 @@ def tabor_of(ratio: float, parameters: Pair) -> Pair:
 
     if off(low) * off(high) > 0.0:
         return math.nan, math.nan
-    parameter = math.exp(float(brentq(off, low, high)))
+    parameter = math.exp(root(off, low, high))
     return parameter / LAMBDA_OVER_TABOR, marks(parameter)[1]
-
-
-def _root(function: Callable[[float], float], low: float, high: float) -> float:
-    return float(brentq(function, low, high, xtol=1e-300, rtol=1e-14))
