@@ -34,10 +34,9 @@ class Creeping:
     def _volume(self, t: Number) -> Number:
         """int C dF [length^2] at one time or many."""
         yielded = self.material.yielded
-        volume: Number = sum(
-            rate * (yielded(np.maximum(t - start, 0.0)) - yielded(np.maximum(t - stop, 0.0)))
-            for start, stop, rate in self.force.pieces(-math.inf, math.inf)
-        )
+        pieces = self.force.pieces(-math.inf, math.inf)
+        past = (s * (yielded(np.maximum(t - a, 0.0)) - yielded(np.maximum(t - b, 0.0))) for a, b, s in pieces)
+        volume: Number = sum(past, 0.0 * t)
         return volume
 
     @cached_property

@@ -105,7 +105,7 @@ class Material:
     def yielded(self, t: Number) -> Number:
         """int_0^t C [time/stress]."""
         at_once, flow, arms = self.retarded
-        slow: Number = sum(c * (np.expm1(s * t) / s - t) for c, s in arms)
+        slow: Number = sum((c * (np.expm1(s * t) / s - t) for c, s in arms), 0.0 * t)
         return at_once * t + 0.5 * flow * t * t + slow
 
 
