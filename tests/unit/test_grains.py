@@ -18,7 +18,7 @@ from validation.grains import STUDIES, cases
 from validation.grains.granular import DECKS
 from validation.grains.page import blocks
 from validation.grains.studies import AGREES
-from validation.references.grains import Spheres, coeff_restitution, kelvin_voigt, restoring, tsuji
+from validation.references.grains import coeff_restitution, kelvin_voigt, restoring, tsuji
 from validation.study import Study, answered, read_record
 
 RECORD = read_record(RESULTS / "grains.json")
@@ -52,10 +52,11 @@ def test_references_are_those_of_theory() -> None:
     assert 1.0 - kelvin_voigt(1e-3).restitution == pytest.approx(first, rel=2e-3)
     assert restoring(coeff_restitution(0.6), limited=False).restitution == pytest.approx(0.6, abs=1e-7)
     assert restoring(2.0**0.5 * tsuji(0.6), limited=False).restitution == pytest.approx(0.6, abs=1e-3)
-    spheres = Spheres(1e-3)
-    assert spheres.lost(spheres.fixed_grips) == pytest.approx(7.0922e-5, rel=1e-5)
-    shares = [spheres.force_at(0.0), spheres.force(spheres.fixed_load), spheres.force(spheres.fixed_grips)]
-    assert shares == pytest.approx([-one * spheres.pull_off() for one in (8.0 / 9.0, 1.0, 5.0 / 9.0)], rel=1e-9)
+    pair = cases.SPHERES
+    assert pair.lost == pytest.approx(7.0922e-5, rel=1e-5)
+    pull_off = 1.5 * math.pi * cases.WORK_OF_ADHESION
+    shares = [pair.force_at(0.0), pair.force(pair.critical), pair.force(pair.grips)]
+    assert shares == pytest.approx([-one * pull_off for one in (8.0 / 9.0, 1.0, 5.0 / 9.0)], rel=1e-9)
 
 
 def test_the_deck_to_send_shows_both_deviations_by_itself(tmp_path: Path) -> None:
