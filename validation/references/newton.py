@@ -94,11 +94,6 @@ def minimise(
     raise RuntimeError(f"no minimum within {descent.iterations} steps, gradient {np.max(np.abs(gradient)):.3g}")
 
 
-def is_stable(band: Floats) -> bool:
-    """Return whether a symmetric matrix in lower band storage, shape (bandwidth + 1, dofs), is positive definite."""
-    return _factor(band) is not None
-
-
 def softest_direction(band: Floats, first: Floats) -> tuple[Floats, Floats]:
     """Return a direction of (nearly) the lowest curvature and the Cholesky factor of the shifted matrix.
 

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from scipy.linalg import solve_banded
 from scipy.optimize import brentq
 
-from validation.references.detachment import garg
+from validation.references.detachment import garg, implicit
 from validation.references.interaction import PairInteraction
 from validation.references.prandtl_tomlinson import HARMONICS, POINTS, Corrugation, slow_friction
 
@@ -106,21 +106,14 @@ def thermal_friction(
     energy = 0.5 * stiffness * y**2 + wells.energy(y)
     p = np.exp(-(energy - energy.min()) / temperature)
     p /= p.sum()
-    bands, means = np.zeros((3, y.size)), [math.inf]
+    means = [math.inf]
     least = math.ceil(FORGOTTEN * drag / stiffness * velocity / s)
     while len(means) <= MOST_PERIODS:
         total = 0.0
         for moment in range(1, moments + 1):
             here = (entries + moment) % moments
-            rise = h / temperature * (slopes[here] + spring)
-            moved = share * mobility[here]
-            there = moved * _bernoulli(rise)  # flux from a place to the next: D [B(Δu) p_i − B(−Δu) p_{i+1}]
-            back = there + moved * rise  # B(−x) = B(x) + x
-            bands[1] = 1.0
-            bands[1, :-1] += there
-            bands[1, 1:] += back
-            bands[0, 1:], bands[2, :-1] = -back, -there
-            p = solve_banded((1, 1), bands, p, check_finite=False)
+            step_ahead = implicit(share * mobility[here], h / temperature * (slopes[here] + spring))
+            p = solve_banded((1, 1), step_ahead, p, check_finite=False)
             total -= stiffness * float(p @ y)
         means.append(total / moments)
         if len(means) > least and abs(means[-1] - means[-2]) < SAME * wells.largest_force:
@@ -139,10 +132,3 @@ def textbook_friction(wells: Corrugation, stiffness: float, drag: float, tempera
     largest = wells.largest_force
     slips = garg(largest, bend, drag, temperature, stiffness * velocity)
     return slow_friction(wells, stiffness) - (largest - slips)
-
-
-def _bernoulli(x: Array) -> Array:
-    """x/(e^x − 1)."""
-    small = np.abs(x) < 1e-5
-    safe = np.where(small, 1.0, x)
-    return np.where(small, 1.0 - 0.5 * x, safe / np.expm1(safe))
