@@ -54,14 +54,11 @@ def free_corrugation(
     """
     pair = PairInteraction.of(*law)
     reach = math.ceil(REACH * pair.longest_range / spacing)
-    row = spacing * np.arange(-reach, reach + 1)
+    row = spacing * np.arange(-reach, reach + 1)[:, None]
     x = spacing * np.arange(POINTS // 2 + 1) / POINTS
     highest = 8.0 * pair.longest_range + 40.0 * temperature / normal_force
     z = np.linspace(0.05 * pair.shortest_range, highest, HEIGHTS)
-    energy = np.empty((x.size, z.size))
-    for i, place in enumerate(x):
-        r = np.hypot(place - row[:, None], z[None, :])
-        energy[i] = pair.energy(r).sum(axis=0) + normal_force * z
+    energy = np.array([pair.energy(np.hypot(place - row, z)).sum(axis=0) + normal_force * z for place in x])
     lowest = energy.min(axis=1, keepdims=True)
     weights = np.exp(-(energy - lowest) / temperature)
     free = lowest[:, 0] - temperature * np.log(weights.sum(axis=1))
