@@ -73,7 +73,7 @@ def band_limited_radius(places: Floats, pressure: Floats) -> float:
     def slope(x: float) -> float:
         t = (x - places) / spacing
         away = np.where(t == 0.0, 1.0, t)
-        wave = np.where(t == 0.0, 0.0, (np.cos(math.pi * t) - np.sinc(t)) / away) - np.sinc(t) * t / WINDOW
+        wave = np.where(t == 0.0, 0.0, (np.cos(math.pi * t) - np.sinc(t)) / away) - np.sinc(t) * t / WINDOW**2
         return float(pressure @ (wave * np.exp(-0.5 * (t / WINDOW) ** 2)))
 
     radii = []
