@@ -176,7 +176,7 @@ def garg(strongest: float, bend: float, drag: float, temperature: float, rate: f
         temperature: kT [FU·LU].
         rate: Ḟ [FU/TU].
     """
-    barrier = 2.0 * math.sqrt(2.0) / 3.0 * strongest**1.5 / math.sqrt(bend)
+    barrier = 4.0 * math.sqrt(2.0) / 3.0 * strongest**1.5 / math.sqrt(bend)
     attempts = math.sqrt(2.0 * bend * strongest) / (2.0 * math.pi * drag)
     x = attempts * 2.0 / 3.0 * strongest * temperature / barrier / rate
     return strongest * (1.0 - (temperature / barrier * math.log(x)) ** (2.0 / 3.0)) if x >= 1.0 else math.nan

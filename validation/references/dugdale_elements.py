@@ -31,6 +31,10 @@ STEEP = 4
 """Annuli at an end of N have the width N^-STEEP: 3 leaves less than third order, 6 is lost in round-off at N = 200."""
 
 
+VIEWED = 200
+"""Radii in the zone, and as many beyond it, at which the inequalities are looked at."""
+
+
 @dataclass(frozen=True)
 class Elements:
     """A body on an elastic half-space.
@@ -109,10 +113,10 @@ class Solved:
         down = one.pressed(radii, self.ends) @ self.pressures - one.stress * one.pressed(radii, zone)[:, 0]
         return np.asarray(one.height(radii) - self.displacement + down)
 
-    def violation(self, points: int = 200) -> float:
+    def violation(self) -> float:
         """The most by which an inequality does not hold [sigma_0 or h_0]; at most 0 where all hold."""
-        inside = np.linspace(self.a, self.c, points + 2)[1:-1]
-        outside = self.c * np.geomspace(1.0 + 1e-6, 5.0, points)
+        inside = np.linspace(self.a, self.c, VIEWED + 2)[1:-1]
+        outside = self.c * np.geomspace(1.0 + 1e-6, 5.0, VIEWED)
         tension = float(np.max(-self.pressures)) / self.problem.stress - 1.0
         closed, opened = self.gap(inside) / self.problem.reach, self.gap(outside) / self.problem.reach
         return max(tension, float(np.max(-closed)), float(np.max(closed)) - 1.0, 1.0 - float(np.min(opened)))

@@ -34,6 +34,8 @@ from validation.references.relaxing import KelvinVoigt, Material, Power
 EXACT = {"method": "DOP853", "rtol": 1e-11, "dense_output": True}
 SMALL = 1e-14
 """Absolute error of a motion over the largest elastic displacement, velocity and force."""
+LOOKS = 400
+"""Times of a motion at which its largest force is looked for."""
 SHARE = 50.0
 """Elastic durations after which nothing is waited for."""
 
@@ -73,9 +75,9 @@ def turned(_: float, y: Any) -> float:
     return float(y[1])
 
 
-def peak(function: Function, end: float, count: int = 400) -> float:
+def peak(function: Function, end: float) -> float:
     """The largest value from the time 0 to an end."""
-    return largest(function, [end * i / count for i in range(count + 1)])[1]
+    return largest(function, [end * i / LOOKS for i in range(LOOKS + 1)])[1]
 
 
 def kelvin_voigt(one: KelvinVoigt, mass: float, velocity: float) -> Bounce:
