@@ -69,16 +69,17 @@ def test_without_heat_the_free_energy_is_the_corrugation() -> None:
     assert top - hollow == pytest.approx(2.0 * WELLS.heights[1], rel=5e-2)
 
 
-def test_the_ensemble_agrees_with_smoluchowski_where_both_hold_and_the_textbook_comes_near() -> None:
-    temperature, velocity, mass = 0.1 * BARRIER, 2e-2, 0.2
+def test_the_ensemble_agrees_with_smoluchowski_where_both_hold() -> None:
+    """At half the temperature friction would be twelve standard errors larger."""
+    temperature, velocity, mass = 0.4 * BARRIER, 1e-2, 0.2
     wells, heights = free_corrugation(LAW, 1.0, LOAD, temperature)
     expected = thermal_friction(wells, heights, SPRING, DRAG, temperature, velocity, mass)
     fine = thermal_friction(wells, heights, SPRING, DRAG, temperature, velocity, mass, finer=8)
     body = PulledParticle(LAW, 1.0, LOAD, 40.0 * SPRING, SPRING / (1.0 - 1.0 / 40.0), mass, 0.1, DRAG, temperature)
-    mean, error = ensemble_friction(body, velocity, copies=200, periods=4, time_step=0.05, seed=2)
+    mean, error = ensemble_friction(body, velocity, copies=300, periods=4, time_step=0.1, seed=2)
     assert fine == pytest.approx(expected, rel=2e-3)
     assert mean == pytest.approx(expected, abs=4.0 * error + 0.02 * expected)
-    assert error < 0.05 * expected
+    assert error < 0.04 * expected
     assert math.isnan(textbook_friction(WELLS, SPRING, DRAG, temperature, 9.0))
 
 
