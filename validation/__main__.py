@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 from pathlib import Path
 from typing import Annotated
 
@@ -14,41 +15,44 @@ ROOT = Path(__file__).parents[1]
 RESULTS = Path(__file__).parent / "results"
 FAILS, CALL_IS_WRONG = 1, 2
 Only = Annotated[list[str] | None, typer.Option(metavar="NAME", help="One study, as often as needed.")]
-Out = Annotated[Path | None, typer.Option(help="Folder for record, figures and runs; finished runs are reused.")]
+Out = Annotated[Path, typer.Option(help="Folder for record, figures and runs; finished runs are reused.")]
 Full = Annotated[bool, typer.Option("--full", help="The long form: hours in place of minutes.")]
 Workers = Annotated[int | None, typer.Option(min=1, help="At a time.", show_default="processors")]
+COMMANDS: dict[str, tuple[str, int | None, str]] = {
+    "paper": ("reproduced", None, "Every statement of the paper, beside the printed value and beside theory."),
+    "hard": ("stability", None, "Hard cases, each against a bound that is not the program's own."),
+    "speed": ("speed", 1, "Times side by side in one run, one study after the other."),
+    "grains": ("grains", 1, "LAMMPS's granular contact models beside exact answers."),
+}
+"""By the package of the studies: the folder, how many run at a time, and what they are. Exit code 1: a row fails."""
 
 
-@app.command()
-def paper(only: Only = None, out: Out = None, full: Full = False, workers: Workers = None) -> None:
-    """Every statement of the paper, beside the printed value and beside theory. Exit code 1: a row fails."""
-    from validation.paper import STUDIES
+def _add(name: str, folder: str, at_a_time: int | None, words: str) -> None:
+    @app.command(name, help=f"{words} Exit code 1: a row fails.")
+    def conducted(only: Only = None, out: Out = Path(folder), full: Full = False, workers: Workers = at_a_time) -> None:
+        from validation.page import agreement, duration, number
+        from validation.study import RECORD, Study, conduct
 
-    _conduct(STUDIES, out or Path("reproduced"), only, full, workers)
+        chosen: tuple[Study, ...] = importlib.import_module(f"validation.{name}").STUDIES
+        try:
+            record = conduct(chosen, out, only or (), full, workers, typer.echo)
+        except (KeyError, FolderError) as error:
+            known = f"--only {error}: no such study; there are {', '.join(one.name for one in chosen)}"
+            typer.echo(known if isinstance(error, KeyError) else str(error), err=True)
+            raise typer.Exit(CALL_IS_WRONG) from None
+        for answer in record.answers:
+            typer.echo(f"{answer.name:<16} {agreement(answer.rows)}, in {duration(answer.wall_s)}")
+            for row in answer.rows:
+                if row.verdict == "FAIL":
+                    found, wanted = number(row.value), number(row.reference.value)
+                    typer.secho(f"  FAIL {row.name}: {found} {row.unit}, {wanted}", fg="red")
+        typer.echo(f"{agreement(record.rows)}; {out / RECORD}")
+        if any(row.verdict == "FAIL" for row in record.rows):
+            raise typer.Exit(FAILS)
 
 
-@app.command()
-def hard(only: Only = None, out: Out = None, full: Full = False, workers: Workers = None) -> None:
-    """Hard cases, each against a bound that is not the program's own. Exit code 1: a row fails."""
-    from validation.hard import STUDIES
-
-    _conduct(STUDIES, out or Path("stability"), only, full, workers)
-
-
-@app.command()
-def speed(only: Only = None, out: Out = None, full: Full = False, workers: Workers = 1) -> None:
-    """Times side by side in one run, one study after the other. Exit code 1: an asked figure is not reached."""
-    from validation.speed import STUDIES
-
-    _conduct(STUDIES, out or Path("speed"), only, full, workers)
-
-
-@app.command()
-def grains(only: Only = None, out: Out = None, full: Full = False, workers: Workers = 1) -> None:
-    """LAMMPS's granular contact models beside exact answers. Exit code 1: a row fails."""
-    from validation.grains import STUDIES
-
-    _conduct(STUDIES, out or Path("grains"), only, full, workers)
+for name, given in COMMANDS.items():
+    _add(name, *given)
 
 
 @app.command()
@@ -79,31 +83,6 @@ def ages() -> None:
 
     for line in lines():
         typer.echo(line)
-
-
-def _conduct(studies: object, out: Path, only: list[str] | None, full: bool, workers: int | None) -> None:
-    from validation.page import agreement, duration, number
-    from validation.study import RECORD, Study, conduct
-
-    assert isinstance(studies, tuple)
-    chosen: tuple[Study, ...] = studies
-    try:
-        record = conduct(chosen, out, only or (), full, workers, typer.echo)
-    except KeyError as error:
-        typer.echo(f"--only {error}: no such study; there are {', '.join(one.name for one in chosen)}", err=True)
-        raise typer.Exit(CALL_IS_WRONG) from None
-    except FolderError as error:
-        typer.echo(str(error), err=True)
-        raise typer.Exit(CALL_IS_WRONG) from None
-    for answer in record.answers:
-        typer.echo(f"{answer.name:<16} {agreement(answer.rows)}, in {duration(answer.wall_s)}")
-        for row in answer.rows:
-            if row.verdict == "FAIL":
-                found, wanted = number(row.value), number(row.reference.value)
-                typer.secho(f"  FAIL {row.name}: {found} {row.unit}, {wanted}", fg="red")
-    typer.echo(f"{agreement(record.rows)}; {out / RECORD}")
-    if any(row.verdict == "FAIL" for row in record.rows):
-        raise typer.Exit(FAILS)
 
 
 if __name__ == "__main__":

@@ -178,9 +178,9 @@ def at_most(
     return Row(name, value, Reference(bound, source, evidence), Bound("at most", 0.0, limited_by))
 
 
-def at_least(name: str, value: float, bound: float, source: str, evidence: Evidence = "closed form") -> Row:
+def at_least(name: str, value: float, bound: float, source: str) -> Row:
     """A row that passes where `value` ≥ `bound`."""
-    return Row(name, value, Reference(bound, source, evidence), Bound("at least", 0.0, "–"))
+    return Row(name, value, Reference(bound, source), Bound("at least", 0.0, "–"))
 
 
 def so(name: str, wrong: bool, source: str = "what must be", limited_by: str = "–") -> Row:

@@ -13,8 +13,8 @@ from validation.figures import Array
 from validation.references.slide import Integrator, SlideModel, Trace
 
 
-def slide_model(scene: Scene, settings: Settings, beyond: int = 0) -> SlideModel:
-    """Places, springs and drags of a slide, with the values that it leaves open; a lower body longer by so many."""
+def slide_model(scene: Scene, settings: Settings) -> SlideModel:
+    """Places, springs and drags of a slide, with the values that it leaves open."""
     bodies = scene.bodies
     assert scene.cantilever is not None
     assert isinstance(scene.experiment, Slide)
@@ -22,7 +22,7 @@ def slide_model(scene: Scene, settings: Settings, beyond: int = 0) -> SlideModel
     def row(count: int, spacing: float) -> Array:
         return np.asarray((np.arange(count) - 0.5 * (count - 1)) * spacing, dtype=np.float64)
 
-    below, along = row(settings.chains.lower + beyond, bodies.spacing), row(settings.chains.upper, bodies.own_spacing)
+    below, along = row(settings.chains.lower, bodies.spacing), row(settings.chains.upper, bodies.own_spacing)
     height = settings.forces.rest + bodies.profile.height(along)
     upper = np.column_stack([along + start_offset(scene, settings), height])
     return SlideModel(

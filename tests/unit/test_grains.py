@@ -18,7 +18,7 @@ from validation.grains import STUDIES, cases
 from validation.grains.granular import DECKS
 from validation.grains.page import blocks
 from validation.grains.studies import AGREES
-from validation.references.grains import Spheres, coeff_restitution, kelvin_voigt, restoring, tsuji
+from validation.references.grains import coeff_restitution, kelvin_voigt, restoring, tsuji
 from validation.study import Study, answered, read_record
 
 RECORD = read_record(RESULTS / "grains.json")
@@ -44,21 +44,19 @@ def test_the_record_has_every_study_and_no_printed_digit_changes_in_half_the_tim
 def test_references_are_those_of_theory() -> None:
     assert [kelvin_voigt(A).restitution for A in cases.TIMED] == pytest.approx([0.8327, 0.6091, 0.2808], abs=5e-5)
     elastic, peak = kelvin_voigt(0.0), (15.0 / 16.0) ** 0.4
-    assert elastic.restitution == pytest.approx(1.0, abs=1e-8)
     time = 0.8 * math.sqrt(math.pi) * math.gamma(0.4) / math.gamma(0.9) * peak  # 2.9433 peak / v
     assert elastic.contact_time == pytest.approx(time, rel=1e-8)
     assert elastic.peak_overlap == pytest.approx(peak, rel=1e-8)
     assert elastic.peak_force == pytest.approx(4.0 / 3.0 * peak**1.5, rel=1e-8)
-    small = 1e-3
-    first = 1.7302 * small * (4.0 / 3.0) ** 0.4  # Ramirez et al. (1999)
-    assert 1.0 - kelvin_voigt(small).restitution == pytest.approx(first, rel=2e-3)
+    first = 1.7302e-3 * (4.0 / 3.0) ** 0.4  # Ramirez et al. (1999)
+    assert 1.0 - kelvin_voigt(1e-3).restitution == pytest.approx(first, rel=2e-3)
     assert restoring(coeff_restitution(0.6), limited=False).restitution == pytest.approx(0.6, abs=1e-7)
     assert restoring(2.0**0.5 * tsuji(0.6), limited=False).restitution == pytest.approx(0.6, abs=1e-3)
-    spheres = Spheres(1e-3)
-    assert spheres.lost(spheres.fixed_grips) == pytest.approx(7.0922e-5, rel=1e-5)
-    assert spheres.force_at(0.0) == pytest.approx(-8.0 / 9.0 * spheres.pull_off(), rel=1e-9)
-    assert spheres.force(spheres.fixed_load) == pytest.approx(-spheres.pull_off(), rel=1e-12)
-    assert spheres.force(spheres.fixed_grips) == pytest.approx(-5.0 / 9.0 * spheres.pull_off(), rel=1e-12)
+    pair = cases.SPHERES
+    assert pair.lost == pytest.approx(7.0922e-5, rel=1e-5)
+    pull_off = 1.5 * math.pi * cases.WORK_OF_ADHESION
+    shares = [pair.force_at(0.0), pair.force(pair.critical), pair.force(pair.grips)]
+    assert shares == pytest.approx([-one * pull_off for one in (8.0 / 9.0, 1.0, 5.0 / 9.0)], rel=1e-9)
 
 
 def test_the_deck_to_send_shows_both_deviations_by_itself(tmp_path: Path) -> None:
@@ -91,11 +89,9 @@ def test_the_nearest_coefficients_are(place: int) -> None:
     velocities = np.geomspace(cases.DECADE[0], cases.DECADE[-1], 9)
     exact = np.array([kelvin_voigt(cases.TIMED[place] * v**0.2).restitution for v in velocities])
     for model in cases.FITTED:
-        near = cases.NEAREST[model.name][place]
-        if model is cases.RESTITUTION:
-            off = [np.max(abs(c - exact)) for c in (near - 0.01, near, near + 0.01)]
-        else:
-            given = 2.0 * cases.TIMED[place] * velocities**0.2
-            laws = [[model.law(c * float(one)).restitution for one in given] for c in (near - 0.01, near, near + 0.01)]
-            off = [np.max(abs(np.array(law) - exact)) for law in laws]
+        given = 1.0 if model is cases.RESTITUTION else 2.0 * cases.TIMED[place] * velocities**0.2
+        off = [
+            np.max(abs(np.array([model.law(c).restitution for c in near * given * np.ones(9)]) - exact))
+            for near in (cases.NEAREST[model.name][place] + change for change in (-0.01, 0.0, 0.01))
+        ]
         assert off[1] <= min(off), model.name

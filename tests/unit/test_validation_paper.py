@@ -18,7 +18,6 @@ from tests.kept_runs import KeptBench, in_model_units, kept_paper, kept_runs, so
 from validation.paper import STUDIES, fig9, tangential
 from validation.paper.scenes import barquins_reduced
 from validation.references.slide import Trace
-from validation.row import Row
 from validation.study import Findings, Study, read_record
 
 RECORD = Path(__file__).parents[2] / "validation" / "results" / "paper.json"
@@ -31,12 +30,15 @@ BY_INTEGRATOR = ("⟨F⟩ of a curved", "largest friction of a curved", "what it
 EACH = [pytest.param(one, id=one.name, marks=[pytest.mark.slow] * (one.name in LONG)) for one in STUDIES]
 
 
+def integrated(mean: float, static: float, points: int = 2) -> fig9.curved.Integrated:
+    known = np.full(points, mean)
+    return fig9.curved.Integrated(mean, static, Trace(known, known, known, known, known))
+
+
 def as_the_run(scene: Scene) -> fig9.curved.Integrated:
     """In place of the integrator: what the run itself has."""
     run = next(run for run in kept_runs().values() if run.scene == scene)
-    known = np.full(2, 1.0)
-    mean, static = (run.results[name].value for name in ("mean_friction", "static_friction"))
-    return fig9.curved.Integrated(mean, static, Trace(known, known, known, known, known))
+    return integrated(*(run.results[name].value for name in ("mean_friction", "static_friction")))
 
 
 @cache
@@ -48,27 +50,18 @@ def judged(study: Study) -> Findings:
         return study.measure(bench)
 
 
-def recorded(study: Study) -> list[Row]:
-    return list(next(answer.rows for answer in read_record(RECORD).answers if answer.name == study.name))
-
-
 @pytest.mark.parametrize("study", EACH)
-def test_the_record_is_what_a_study_makes_of_its_runs(study: Study) -> None:
-    for ours, known in zip(judged(study).rows, recorded(study), strict=True):
-        assert ours.name == known.name
-        assert ours.verdict == ("PASS" if ours.known is None else "DIFFERS"), ours.name
+def test_the_record_is_what_a_study_makes_of_the_runs_that_it_asks_for(study: Study) -> None:
+    known = next(answer.rows for answer in read_record(RECORD).answers if answer.name == study.name)
+    for ours, row in zip(judged(study).rows, known, strict=True):
+        assert (ours.name, ours.verdict) == (row.name, "PASS" if ours.known is None else "DIFFERS")
         if not ours.name.startswith(BY_INTEGRATOR):
-            assert ours.value == pytest.approx(known.value, rel=SAME, abs=SMALL), ours.name
-            assert ours.reference.value == pytest.approx(known.reference.value, rel=SAME), ours.name
-            assert ours.bound.size == pytest.approx(known.bound.size, rel=SAME), ours.name
-
-
-@pytest.mark.parametrize("study", EACH)
-def test_the_kept_runs_are_of_the_scenes_that_a_study_asks_for(study: Study) -> None:
+            assert ours.value == pytest.approx(row.value, rel=SAME, abs=SMALL), ours.name
+            assert ours.reference.value == pytest.approx(row.reference.value, rel=SAME), ours.name
+            assert ours.bound.size == pytest.approx(row.bound.size, rel=SAME), ours.name
     assert study.scenes is not None
-    scenes = study.scenes(kept_paper())
-    assert {run for row in judged(study).rows for run in row.runs} <= set(scenes)
-    assert set(scenes) <= set(kept_runs())
+    scenes = set(study.scenes(kept_paper()))
+    assert {run for row in judged(study).rows for run in row.runs} <= scenes <= set(kept_runs())
 
 
 ABOUT = {
@@ -109,36 +102,29 @@ class WrongRuns(dict[str, Run]):
             document[quantity] = entry | {"si": {"value": 1e-9 * wrong(value), "uncertainty": 0.0, "unit": unit}}
         if "horizontal" in name and "dynamic" not in name and float(name.split("_")[0].removeprefix("preload")) > 2.0:
             document = {"status": "failed", "error": {"message": "it went through at displacement 9.9 LU"}}
-        count = 200
-        x = np.arange(count) - 0.5 * (count - 1)
-        profile = Profile(x, 0.0 * x, 0.0 * x, rng.uniform(-0.3, 0.3, count), 0.0 * x)
+        x = np.arange(200) - 99.5
+        profile = Profile(x, 0.0 * x, 0.0 * x, rng.uniform(-0.3, 0.3, 200), 0.0 * x)
         a = np.linspace(45.0, 8.0, POINTS)
-        force = wrong(1.47) * barquins_reduced(a / 28.53)
-        d = np.linspace(wrong(0.5), -0.5, POINTS)
-        branch = np.array(["unloading"] * POINTS)
-        spread = np.full(POINTS, 1e-3)
-        columns = {"displacement": d, "force": force, "contact_radius": a, "contact_radius_uncertainty": spread}
-        curve = Columns(columns | {"branch": branch})
+        curve: dict[str, Any] = {
+            "displacement": np.linspace(wrong(0.5), -0.5, POINTS), "force": wrong(1.47) * barquins_reduced(a / 28.53),
+            "contact_radius": a, "contact_radius_uncertainty": np.full(POINTS, 1e-3),
+            "branch": np.array(["unloading"] * POINTS),
+        }  # fmt: skip
         rows = len(tangential.OUT) + len(tangential.LOOP) - 1
         friction = {
             name: wrong(2.0) + rng.uniform(0.0, 1.0, SLIDE if name in COLUMNS[-2:] else rows).cumsum()
             for name in COLUMNS
         }
         profiles = Columns(profile_columns({"zero_load": profile, "deepest": profile}))
-        tables: Any = {"curve": curve, "profile": profiles, "friction": friction}
+        tables: Any = {"curve": Columns(curve), "profile": profiles, "friction": friction}
         self[name] = in_model_units(Run(Path(name), document, kept_paper(), tables))
         return self[name]
 
 
-def no_integrator(scene: Scene) -> fig9.curved.Integrated:
-    """In place of the integrator, which takes minutes and knows nothing of the runs."""
-    known = np.full(SLIDE // 2, 0.07)
-    return fig9.curved.Integrated(0.07, 0.17, Trace(known, known, known, known, known))
-
-
 @pytest.mark.parametrize("study", EACH)
 def test_no_row_passes_where_every_run_is_wrong(study: Study, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(fig9.curved, "integrated", no_integrator)
+    """The integrator, which takes minutes and knows nothing of the runs, has about what is right."""
+    monkeypatch.setattr(fig9.curved, "integrated", lambda _: integrated(0.07, 0.17, SLIDE // 2))
     bench: Any = KeptBench(WrongRuns(), kept_paper())
     with solved_once():
         found = study.measure(bench)

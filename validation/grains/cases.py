@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from validation.references.grains import Impact, Spheres, coeff_restitution, restoring, tsuji, viscoelastic
+from validation.references.grains import Impact, coeff_restitution, restoring, spheres, tsuji, viscoelastic
 
 OURS = "contact1d"
 """Stands in place of a model in the names of the program's own rows."""
@@ -13,7 +13,7 @@ HERTZ = "hertz 1.3333333333333333"
 """k = 4/3, E* = 1."""
 WORK_OF_ADHESION = 1e-3
 """W of the decks' adhesive spheres."""
-SPHERES = Spheres(WORK_OF_ADHESION)
+SPHERES = spheres(WORK_OF_ADHESION)
 
 
 @dataclass(frozen=True)

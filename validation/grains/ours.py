@@ -26,7 +26,7 @@ FORCE_UNIT = MASS
 """m v/T."""
 STICKING = math.sqrt(
     (WORK / WORK_OF_ADHESION) ** (5 / 3) * RADIUS ** (4 / 3) / MASS
-) * SPHERES.sticking_velocity()  # fmt: skip
+) * SPHERES.sticking_velocity(1.0)  # fmt: skip
 """v_s [LU/TU]: ½ m v_s² is as (W⁵R⁴/E*²)^(1/3)."""
 
 

@@ -42,6 +42,15 @@ class Rows(dict[str, Row]):
             return [NOWHERE]
         return [measured(row.value, row.uncertainty, "1") if row.value else STICK]
 
+    def of(self, models: Sequence[cases.Model], at: str, quantity: str = "restitution") -> list[Row]:
+        """The rows of models at the same place."""
+        return [self[row_name(model.name, at, quantity)] for model in models]
+
+    def beside(self, A: float, quantity: str = "restitution") -> list[str]:
+        """Cells of a Kelvin-Voigt body: what is exact, the program's own, LAMMPS's without and with a limit."""
+        found = self.of(cases.DAMPED, at_number(A), quantity)
+        return [value(found[0].reference.value), *self.ours(at_number(A), quantity), *map(both, found)]
+
     @property
     def our_head(self) -> list[str]:
         """Its head."""
@@ -132,31 +141,23 @@ def _quantity(name: str) -> str:
 
 
 def _viscoelastic(rows: Rows) -> str:
-    lines = []
-    for A in cases.NUMBERS:
-        found = [rows[row_name(model.name, at_number(A), "restitution")] for model in cases.DAMPED]
-        exact = value(found[0].reference.value)
-        lines.append([f"{A:g}", exact, *rows.ours(at_number(A), "restitution"), *map(both, found)])
+    lines = [[f"{A:g}", *rows.beside(A)] for A in cases.NUMBERS]
     return table(["A", "exact e", *rows.our_head, "`viscoelastic`", "with `limit_damping`"], lines)
 
 
 def _times(rows: Rows) -> str:
-    lines = []
-    for A in cases.TIMED:
-        for quantity in ("contact_time", "peak_force"):
-            found = [rows[row_name(model.name, at_number(A), quantity)] for model in cases.DAMPED]
-            exact, name = value(found[0].reference.value), quantity.replace("_", " ").replace("peak", "largest")
-            lines.append([f"{A:g}", name, exact, *rows.ours(at_number(A), quantity), *map(both, found)])
+    names = {"contact_time": "contact time", "peak_force": "largest force"}
+    lines = [[f"{A:g}", words, *rows.beside(A, name)] for A in cases.TIMED for name, words in names.items()]
     return table(["A", "quantity", "exact", *rows.our_head, "`viscoelastic`", "with `limit_damping`"], lines)
 
 
 def _asked(rows: Rows) -> str:
-    lines = []
-    for e in cases.ASKED:
-        found = [rows[row_name(model.name, f"e = {e:g}", "restitution")] for model in cases.BY_RESTITUTION]
-        lines.append([f"{e:g}", *map(both, found)])
-    names = [f"`{model.name.replace(' ', '` with `')}`" for model in cases.BY_RESTITUTION]
-    return table(["given e", *names], lines)
+    lines = [[f"{e:g}", *map(both, rows.of(cases.BY_RESTITUTION, f"e = {e:g}"))] for e in cases.ASKED]
+    return table(["given e", *(_words(model) for model in cases.BY_RESTITUTION)], lines)
+
+
+def _words(model: cases.Model) -> str:
+    return f"`{model.name.replace(' ', '` with `')}`"
 
 
 def _nearest(rows: Rows) -> str:
@@ -167,7 +168,7 @@ def _nearest(rows: Rows) -> str:
             given = cases.NEAREST[model.name][place]
             words = f"e = {given:g}" if model is cases.RESTITUTION else f"η = {given:g} · 2 E* τ/m"
             cells = [f"{value(row.value)} ({_signed(row.value - row.reference.value)})" for row in found]
-            lines.append([f"{A:g}", f"`{model.name.replace(' ', '` with `')}`", words, *cells])
+            lines.append([f"{A:g}", _words(model), words, *cells])
     return table(["A", "model", "nearest coefficient", "e at v/√10", "at v", "at √10 v"], lines)
 
 

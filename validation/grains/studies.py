@@ -23,11 +23,15 @@ EARLY = "it separates at the pull-off force"
 AS_SPHERE = "it acts as a body of the sphere's own material, E* = E/(2(1 − ν²))"
 DEEPEST = 0.02
 """To which spheres are pressed, over R."""
-LENGTH, ENERGY, TENSION = (math.pi * WORK_OF_ADHESION) ** (2 / 3), WORK_OF_ADHESION ** (5 / 3), SPHERES.pull_off()
+LENGTH, ENERGY, TENSION = (
+    (math.pi * WORK_OF_ADHESION) ** (2 / 3),
+    WORK_OF_ADHESION ** (5 / 3),
+    -SPHERES.force(SPHERES.critical),
+)
 """(π²W²R/E*²)^(1/3), (W⁵R⁴/E*²)^(1/3), (3/2)πWR."""
-LATE = SPHERES.overlap(SPHERES.fixed_grips) / LENGTH, SPHERES.lost(SPHERES.fixed_grips) / ENERGY
+LATE = SPHERES.displacement(SPHERES.grips) / LENGTH, SPHERES.lost / ENERGY
 """Overlap at which fixed grips separate, and the energy that is lost."""
-SOON = SPHERES.overlap(SPHERES.fixed_load) / LENGTH, SPHERES.lost(SPHERES.fixed_load) / ENERGY
+SOON = SPHERES.displacement(SPHERES.critical) / LENGTH, SPHERES.lost_to(SPHERES.critical) / ENERGY
 """The same at the pull-off force."""
 
 
@@ -99,7 +103,7 @@ def _near(model: Model, place: int) -> Iterator[Row]:
 
 def adhesive(_: Bench) -> Findings:
     """Elastic spheres that adhere."""
-    sticking = SPHERES.sticking_velocity()
+    sticking = SPHERES.sticking_velocity(1.0)
     later = math.sqrt(SOON[1] / LATE[1])
     rows = []
     for over in cases.OVER_STICKING:

@@ -23,19 +23,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-import numpy as np
-from scipy.integrate import quad
-from scipy.optimize import brentq, minimize_scalar
+from validation.references.numerics import Function, integral, largest, root
 
-ACCURACY = 1e-12
-"""Relative accuracy asked of each piece of a quadrature."""
-SCAN = 48
-"""Radii of the first search for sign changes between two kinks, and per decade beyond the last."""
-DECADES = 4.0
-"""Of radii that are searched on either side of the guess."""
+SCAN, DECADES = 48, 4.0
+"""Radii of the first search for sign changes, between two kinks and per decade; decades on either side of the guess."""
 CLOSE = 1e-9
 """Relative distance of a radius from a kink at which it counts as beyond it."""
-Function = Callable[[float], float]
+NO_POLE = 20.0
+"""m of the substitution r = v^m under the axis, whose integrand has no pole at 0 from f' ~ r^0.05 on."""
 
 
 @dataclass(frozen=True)
@@ -58,19 +53,18 @@ class Body:
     end: float = math.inf
     limit: float = math.inf
 
+    def corners(self, low: float, high: float) -> list[float]:
+        """Two radii and the kinks between them [length]."""
+        return [low, *(b for b in self.kinks if low < b < high), high]
+
     def height(self, radius: float) -> float:
         """f(r) [length]."""
-        ends = [0.0, *(b for b in self.kinks if b < radius), radius]
-        return sum(_piece(self.slope, low, high) for low, high in pairwise(ends))
+        return integral(self.slope, *self.corners(0.0, radius))
 
-    def angles(self, radius: float) -> list[float]:
-        """0, the angles phi of the kinks inside the radius, pi/2."""
-        return [0.0, *(math.asin(b / radius) for b in self.kinks if b < radius), 0.5 * math.pi]
-
-    def over_angles(self, function: Callable[[float, float], float], radius: float) -> float:
-        """int_0^(pi/2) function(r, phi) dphi with r = radius sin phi, piece by piece."""
-        ends = self.angles(radius)
-        return sum(_piece(lambda phi: function(radius * math.sin(phi), phi), low, high) for low, high in pairwise(ends))
+    def over_angles(self, function: Callable[[float, float], float], radius: float, **given: float) -> float:
+        """int_0^(pi/2) function(r, phi) dphi with r = radius sin phi, between the kinks, `given` as of `integral`."""
+        ends = [math.asin(b / radius) for b in self.corners(0.0, radius)] if radius > 0.0 else [0.0, 0.5 * math.pi]
+        return integral(lambda phi: function(radius * math.sin(phi), phi), *ends, **given)
 
     def transformed(self, x: float) -> float:
         """g(x) [length]; x >= 0."""
@@ -79,24 +73,15 @@ class Body:
     def rise(self, x: float) -> float:
         """x g'(x) [length], infinite at a kink of the slope; x > 0."""
         jumps = sum(
-            jump * b * x / math.sqrt((x - b) * (x + b)) if x > b else math.inf if x == b and jump > 0.0 else 0.0
+            jump * b * x / math.sqrt((x - b) * (x + b)) if x > b else math.inf
             for b, jump in zip(self.kinks, self.jumps, strict=True)
-            if x >= b
+            if x >= b and jump > 0.0
         )
         return self.transformed(x) + x * x * self.over_angles(lambda r, phi: self.bend(r) * math.sin(phi), x) + jumps
 
     def area(self, x: float) -> float:
         """int_0^x g dx = int_0^x f'(r) sqrt(x^2 - r^2) dr [length^2]."""
         return x * x * self.over_angles(lambda r, phi: self.slope(r) * math.cos(phi) ** 2, x) if x > 0.0 else 0.0
-
-
-def _piece(function: Function, low: float, high: float) -> float:
-    """The integral between two kinks."""
-    return (
-        float(quad(function, low, high, epsrel=ACCURACY, epsabs=0.0, limit=400, full_output=1)[0])
-        if high > low
-        else 0.0
-    )
 
 
 @dataclass(frozen=True)
@@ -123,19 +108,15 @@ class Contact:
         """F of a contact of radius a at a displacement d, which differ by a punch's own."""
         return 2.0 * self.modulus * (a * d - self.body.area(a))
 
+    def elastic_energy(self, a: float, d: float | None = None) -> float:
+        """E* int_0^a (d - g)^2 dx [energy]."""
+        depth = self.displacement(a) if d is None else d
+        ends = self.body.corners(0.0, a)
+        return self.modulus * integral(lambda x: (depth - self.body.transformed(x)) ** 2, *ends, accuracy=1e-10)
+
     def energy(self, a: float, d: float | None = None) -> float:
         """E(a) [energy]."""
-        depth = self.displacement(a) if d is None else d
-        ends = [0.0, *(b for b in self.body.kinks if b < a), a]
-        elastic = sum(
-            float(
-                quad(
-                    lambda x: (depth - self.body.transformed(x)) ** 2, low, high, epsrel=1e-10, limit=200, full_output=1
-                )[0]
-            )
-            for low, high in pairwise(ends)
-        )
-        return self.modulus * elastic - math.pi * a * a * self.work
+        return self.elastic_energy(a, d) - math.pi * a * a * self.work
 
     def pressed_radius(self, force: float, guess: float) -> float:
         """The largest a with F(a) = force, from beyond [length]."""
@@ -159,15 +140,14 @@ class Contact:
             last, added = high, [self.fixed_grips(guess), self.critical(guess)] if closer else []
             for low in sorted({*self._grid(high), *added}, reverse=True):
                 if low < last and function(low) <= 0.0:
-                    return float(brentq(function, low, last, xtol=1e-300, rtol=1e-14))
+                    return root(function, low, last)
                 last = min(last, low)
         raise ValueError("no contact carries so little")
 
     def _grid(self, guess: float) -> list[float]:
         low, high = guess * 10.0**-DECADES, min(guess * 10.0 ** (0.5 * DECADES), self.body.limit)
-        pieces = [low, *(b for b in self.body.kinks if low < b < high), high]
         points: list[float] = []
-        for start, stop in pairwise(pieces):
+        for start, stop in pairwise(self.body.corners(low, high)):
             count = max(SCAN, round(SCAN * math.log10(stop / start)))
             points += [start * (stop / start) ** (i / count) for i in range(count)]
         return [*points, high]
@@ -180,14 +160,16 @@ class Contact:
         def excess(a: float) -> float:
             return self.body.rise(a) - share * self.stretch(a)
 
-        found, grid = [], self._grid(guess)
-        kinks = set(self.body.kinks)
-        for low, high in pairwise(grid):
-            inside = low * (1.0 + CLOSE) if low in kinks else low
-            below, above = excess(inside), excess(high * (1.0 - CLOSE) if high in kinks else high)
+        def beside(a: float, side: float) -> float:
+            return a * (1.0 + side * CLOSE) if a in self.body.kinks else a
+
+        found = []
+        for low, high in pairwise(self._grid(guess)):
+            inside, outside = beside(low, 1.0), beside(high, -1.0)
+            below, above = excess(inside), excess(outside)
             if below < 0.0 <= above:
-                found.append(float(brentq(excess, inside, high * (1.0 - CLOSE) if high in kinks else high, rtol=1e-14)))
-            if high in kinks and excess(high * (1.0 - CLOSE)) < 0.0 < excess(high * (1.0 + CLOSE)):
+                found.append(root(excess, inside, outside))
+            if outside < high and above < 0.0 < excess(beside(high, 1.0)):
                 found.append(high)
         return found
 
@@ -197,8 +179,7 @@ class Contact:
 
     def has_one_edge(self, guess: float) -> bool:
         """Whether d(a) only rises beyond its least value, so that the edge recedes without a jump."""
-        least = self.fixed_grips(guess)
-        return max(self._turns(0.5, guess)) == least
+        return max(self._turns(0.5, guess)) == self.fixed_grips(guess)
 
     def critical(self, guess: float) -> float:
         """a at the largest tension of the contacts that fixed grips hold [length]."""
@@ -213,12 +194,9 @@ class Contact:
         """a of the contact that forms at d = 0: the first at which d(a) rises to 0 [length]."""
         if math.isfinite(self.body.end):
             return self.body.end
-        grid = [a for a in self._grid(guess) if self.displacement(a) < 0.0]
-        low = grid[0]
-        for a in self._grid(guess):
-            if a > low and self.displacement(a) >= 0.0:
-                return float(brentq(self.displacement, low, a, rtol=1e-14))
-            low = max(low, a)
+        for low, high in pairwise(self._grid(guess)):
+            if self.displacement(low) < 0.0 <= self.displacement(high):
+                return root(self.displacement, low, high)
         raise ValueError("no contact at d = 0")
 
     def pressure(self, r: float, a: float, d: float | None = None) -> float:
@@ -226,35 +204,33 @@ class Contact:
 
         p = (E*/pi) [int_0^s g'(x)/x dt - (g(a) - d... the jump at the edge)/s], x^2 = r^2 + t^2, s^2 = a^2 - r^2.
         """
-        s = math.sqrt((a - r) * (a + r))
-        jump = self.body.transformed(a) - (self.displacement(a) if d is None else d)
 
         def inner(t: float) -> float:
             x = math.hypot(r, t)
             return self.body.rise(x) / (x * x)
 
-        ends = [0.0, *(math.sqrt((b - r) * (b + r)) for b in self.body.kinks if r < b < a), s]
-        inside = sum(
-            float(quad(inner, low, high, epsrel=1e-9, epsabs=0.0, limit=200, full_output=1)[0])
-            for low, high in pairwise(ends)
-        )
-        return self.modulus / math.pi * (inside - jump / s)
+        ends = [math.sqrt((b - r) * (b + r)) for b in self.body.corners(r, a)]
+        return self.modulus / math.pi * (integral(inner, *ends, accuracy=1e-9) - self._jump(a, d) / ends[-1])
+
+    def _jump(self, a: float, d: float | None) -> float:
+        return self.body.transformed(a) - (self.displacement(a) if d is None else d)
 
     def central_pressure(self, a: float, d: float | None = None) -> float:
         """p(0) [stress]; inf under a tip.
 
-        p(0) = (E*/pi) [int_0^a f'(r) (1/sqrt(a^2 - r^2) + arccos(r/a)/r) dr - jump/a].
+        p(0) = (E*/pi) [int_0^a f'(r) (1/sqrt(a^2 - r^2) + arccos(r/a)/r) dr - jump/a], with r = b v^m up to each kink.
         """
         if self.body.slope(0.0) > 0.0:
             return math.inf
-        jump = self.body.transformed(a) - (self.displacement(a) if d is None else d)
-        ends = [0.0, *(b for b in self.body.kinks if b < a), a]
-        inside = sum(
-            _piece(lambda v: _log_substituted(self.body.slope, a, v), math.log(max(low, 1e-300 * a)), math.log(high))
-            if low > 0.0 else _root(self.body.slope, a, high)
-            for low, high in pairwise(ends)
-        )  # fmt: skip
-        return self.modulus / math.pi * (inside + self.body.transformed(a) / a - jump / a)
+        inside = 0.0
+        for low, high in pairwise(self.body.corners(0.0, a)):
+
+            def by_power(v: float, high: float = high) -> float:
+                r = high * v**NO_POLE
+                return NO_POLE / v * self.body.slope(r) * math.acos(min(1.0, r / a))
+
+            inside += integral(by_power, max(1e-6, (low / high) ** (1.0 / NO_POLE)), 1.0)
+        return self.modulus / math.pi * (inside + (self.body.transformed(a) - self._jump(a, d)) / a)
 
     def peak_pressure(self, a: float, d: float | None = None) -> float:
         """The largest p(r) [stress]; inf under a tip or where the slope jumps inside."""
@@ -263,27 +239,8 @@ class Contact:
         middle = self.central_pressure(a, d)
         if math.isinf(middle):
             return middle
-        places = [a * (i + 0.5) / 24.0 for i in range(23)]
-        values = [self.pressure(r, a, d) for r in places]
-        best = int(np.argmax(values))
-        if best == 0 and middle >= values[0]:
-            return middle
-        low, high = (places[max(0, best - 1)] if best else 1e-6 * a), places[min(best + 1, len(places) - 1)]
-        if best == len(places) - 1:
-            high = a * (1.0 - 1e-9)
-        found = minimize_scalar(lambda r: -self.pressure(r, a, d), bounds=(low, high), method="bounded",
-                                options={"xatol": 1e-9 * a})  # fmt: skip
-        return max(middle, -float(found.fun))
-
-
-def _log_substituted(slope: Function, a: float, v: float) -> float:
-    r = math.exp(v)
-    return slope(r) * math.acos(min(1.0, r / a))
-
-
-def _root(slope: Function, a: float, high: float) -> float:
-    """int_0^high f'(r) arccos(r/a)/r dr with r = high v^20: no pole at 0."""
-    return _piece(lambda v: 20.0 / v * slope(high * v**20) * math.acos(min(1.0, high * v**20 / a)), 1e-6, 1.0)
+        places = [1e-6 * a, *(a * (i + 0.5) / 24.0 for i in range(23)), a * (1.0 - 1e-9)]
+        return max(middle, largest(lambda r: self.pressure(r, a, d), places)[1])
 
 
 def with_rest_radius(body: Body, modulus: float, radius: float) -> Contact:
@@ -299,18 +256,14 @@ def lost_on_path(contact: Contact, points: Sequence[float], start: str, guess: f
     Bodies touch from d = 0 on, and part at the least d of fixed grips.
     """
     last = contact.fixed_grips(guess)
-    limit, touching = contact.displacement(last), points[0] > 0.0
-    into = contact.touch_radius(guess)
-    gained, kept = -contact.energy(into, 0.0), contact.energy(last)
-    if start == "contact":
-        touching = points[0] > limit
-    first, lost, jumps = touching, 0.0, 0
+    limit = contact.displacement(last)
+    jumps = {False: -contact.energy(contact.touch_radius(guess), 0.0), True: contact.energy(last)}
+    first = touching = points[0] > (limit if start == "contact" else 0.0)
+    lost, count = 0.0, 0
     for point in points[1:]:
-        if touching and point < limit:
-            lost, jumps, touching = lost + kept, jumps + 1, False
-        elif not touching and point > 0.0:
-            lost, jumps, touching = lost + gained, jumps + 1, True
-    return lost, jumps, first, touching
+        if point < limit if touching else point > 0.0:
+            lost, count, touching = lost + jumps[touching], count + 1, not touching
+    return lost, count, first, touching
 
 
 @dataclass(frozen=True)
@@ -339,7 +292,7 @@ class Slipping:
         if u >= self.sliding:
             return 0.0
         depth = self.contact.displacement(self.radius) - u * self.ratio / self.friction
-        return float(brentq(lambda c: self.contact.displacement(c) - depth, 0.0, self.radius, xtol=1e-300, rtol=1e-14))
+        return root(lambda c: self.contact.displacement(c) - depth, 0.0, self.radius)
 
     def force(self, u: float) -> float:
         """T(u) [force] on the first loading."""
@@ -348,14 +301,9 @@ class Slipping:
     def loss(self, u: float) -> float:
         """Energy dissipated on the first loading: 2 int_c^a q (u - q/G*) dx, q = mu E* (d - g)."""
         depth, shear = self.contact.displacement(self.radius), self.ratio * self.contact.modulus
-        c = self.stick(u)
 
         def density(x: float) -> float:
             limit = self.friction * self.contact.modulus * (depth - self.contact.body.transformed(x))
             return limit * (u - limit / shear)
 
-        ends = [c, *(b for b in self.contact.body.kinks if c < b < self.radius), self.radius]
-        return 2.0 * sum(
-            float(quad(density, low, high, epsrel=1e-10, epsabs=0.0, limit=200, full_output=1)[0])
-            for low, high in pairwise(ends)
-        )
+        return 2.0 * integral(density, *self.contact.body.corners(self.stick(u), self.radius), accuracy=1e-10)

@@ -13,9 +13,9 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from scipy.optimize import brentq
 
-from validation.references.relaxing import ROOT, Floats, Legs, Material, Power, largest, rule, smooth
+from validation.references.numerics import Floats, root, rule, smooth
+from validation.references.relaxing import Legs, Material, Number, Power, largest
 
 NODES = 24
 """Of a rule for the approach after the largest radius."""
@@ -31,13 +31,18 @@ class Creeping:
     material: Material
     force: Legs
 
-    def _yielded(self, t: float) -> float:
-        return self.force.hereditary(self.material.yielded, t)
+    def _volume(self, t: Number) -> Number:
+        """int C dF [length^2] at one time or many."""
+        yielded = self.material.yielded
+        pieces = self.force.pieces(-math.inf, math.inf)
+        past = (s * (yielded(np.maximum(t - a, 0.0)) - yielded(np.maximum(t - b, 0.0))) for a, b, s in pieces)
+        volume: Number = sum(past, 0.0 * t)
+        return volume
 
     @cached_property
     def turn(self) -> float:
         """When the radius is largest."""
-        turn, _ = largest(self._yielded, self.force.times)
+        turn, _ = largest(self._volume, self.force.times)
 
         def rate(t: float) -> float:
             creep = self.material.creep
@@ -47,14 +52,14 @@ class Creeping:
 
         for low, high in pairwise(self.force.times):
             if low < turn < high and rate(low) > 0.0 > rate(high):
-                return float(brentq(rate, low, high, xtol=1e-300, rtol=ROOT))
+                return root(rate, low, high)
         return turn
 
-    def grown(self, t: float) -> float:
+    def grown(self, t: Number) -> Number:
         """a(t) [length] while the radius grows."""
-        return self.body.of_volume(self._yielded(t))
+        return self.body.of_volume(self._volume(t))
 
-    def _approach(self, t: float) -> float:
+    def _approach(self, t: Number) -> Number:
         """d(t) [length] while the radius grows."""
         return self.body.depth(self.grown(t))
 
@@ -70,7 +75,7 @@ class Creeping:
         start = self.force.touched(0.0)
         if target <= 0.0 or off(self.turn) <= 0.0:  # at the turn itself by round-off
             return start if target <= 0.0 else self.turn
-        return float(brentq(off, start, self.turn, xtol=1e-300, rtol=1e-13))
+        return root(off, start, self.turn, 1e-13)
 
     def _past(self, values: Callable[[Floats], Floats], low: float, high: float, t: float) -> float:
         """int_low^high E(t - s) d values(s), by parts: the values have a steep start, and no derivative there."""
@@ -85,29 +90,11 @@ class Creeping:
 
     def _held(self, before: float, t: float) -> float:
         """2 int_0^t1 E(t - s) a(s) dd(s)."""
-        return self._past(self._volumes, self.force.touched(0.0), before, t)
-
-    def _volumes(self, s: Floats) -> Floats:
-        """int C dF at many times."""
-        at_once, flow, arms = self.material.retarded
-
-        def yielded(t: Floats) -> Floats:
-            slow = sum((c * (np.expm1(k * t) / k - t) for c, k in arms), np.zeros_like(t))
-            return np.asarray(at_once * t + 0.5 * flow * t * t + slow)
-
-        pieces = self.force.pieces(-math.inf, math.inf)
-        parts = (rate * (yielded(np.maximum(s - a, 0.0)) - yielded(np.maximum(s - b, 0.0))) for a, b, rate in pieces)
-        return np.asarray(sum(parts, np.zeros_like(s)))
-
-    def _approaches(self, s: Floats) -> Floats:
-        """d at many times while the radius grows."""
-        n = self.body.exponent
-        radii = (self._volumes(s).clip(0.0) * (n + 1.0) / (2.0 * n * self.body.reduced)) ** (1.0 / (n + 1.0))
-        return np.asarray(self.body.reduced * radii**n)
+        return self._past(self._volume, self.force.touched(0.0), before, t)
 
     def _lost(self, t: float) -> float:
         """int_(t_1)^(t_m) E(t - s) dd(s)."""
-        return self._past(self._approaches, self.before(t), self.turn, t)
+        return self._past(self._approach, self.before(t), self.turn, t)
 
     def radius(self, t: float) -> float:
         """a(t) [length]."""

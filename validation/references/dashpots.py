@@ -14,9 +14,8 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 from itertools import pairwise
 
-from scipy.optimize import brentq
-
-from validation.references.relaxing import KelvinVoigt, Legs, smooth
+from validation.references.numerics import root, smooth
+from validation.references.relaxing import KelvinVoigt, Legs
 
 
 @dataclass(frozen=True)
@@ -46,7 +45,7 @@ class Pressed:
 
         for low, high in pairwise(self.force.times):
             if self.force(high) < self.force(low) and lag(high) < 0.0:
-                return float(brentq(lag, low, high, xtol=1e-300, rtol=1e-15)) if lag(low) > 0.0 else low
+                return root(lag, low, high) if lag(low) > 0.0 else low
         return self.force.times[-1]
 
     def radius(self, t: float) -> float:

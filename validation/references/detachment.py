@@ -25,8 +25,8 @@ from scipy.linalg import solve_banded
 
 Array = NDArray[np.float64]
 TENSIONS = 300
-SMALL = 1e-9
-"""Difference of an energy over kT below which it counts as none."""
+SMALL = 1e-5
+"""Difference of an energy over kT below which B(x) is its series."""
 GONE, MOST_STEPS = 1e-6, 30_000
 """Share of the density that counts as none, and steps of the load after which it is not waited for."""
 
@@ -115,18 +115,7 @@ def detachment_in_time(
     share = temperature / (0.5 * (drags[1:] + drags[:-1])) / h**2 * step
 
     def bands(force: float) -> Array:
-        """Of the implicit step under a force: the rows of a matrix beside its diagonal, as `solve_banded` has them."""
-        rise = h / temperature * (own - force)
-        safe = np.where(np.abs(rise) < SMALL, SMALL, rise)
-        there = share * safe / np.expm1(safe)  # Scharfetter and Gummel
-        back = there + share * safe
-        there[-1], back[-1] = 2.0 * share[-1], 0.0  # nothing comes back from the last place
-        matrix = np.zeros((3, y.size))
-        matrix[1] = 1.0
-        matrix[1, :-1] += there
-        matrix[1, 1:] += back
-        matrix[0, 1:], matrix[2, :-1] = -back, -there
-        return matrix
+        return implicit(share, h / temperature * (own - force), absorbing=True)
 
     forces, densities = [0.0], [p]
     while densities[-1][held].sum() > GONE:
@@ -148,6 +137,29 @@ def detachment_in_time(
     mean = float(load[0] + np.trapezoid(survival, load))
     square = float(load[0] ** 2 + 2.0 * np.trapezoid(load * survival, load))
     return mean, float(np.sqrt(max(square - mean**2, 0.0)))
+
+
+def implicit(share: Array, rise: Array, absorbing: bool = False) -> Array:
+    """Return the implicit step of a density, as `solve_banded` has it: the rows of a matrix beside its diagonal.
+
+    Fluxes as of Scharfetter and Gummel, D Δt/h² [B(Δu) p_i − B(−Δu) p_{i+1}], B(x) = x/(e^x − 1).
+
+    Args:
+        share: D Δt/h² from each place to the next.
+        rise: Δu from each place to the next, over kT.
+        absorbing: whether nothing comes back from the last place.
+    """
+    small = np.abs(rise) < SMALL
+    there = share * np.where(small, 1.0 - 0.5 * rise, rise / np.expm1(np.where(small, 1.0, rise)))
+    back = there + share * rise  # B(−x) = B(x) + x
+    if absorbing:
+        there[-1], back[-1] = 2.0 * share[-1], 0.0
+    matrix = np.zeros((3, rise.size + 1))
+    matrix[1] = 1.0
+    matrix[1, :-1] += there
+    matrix[1, 1:] += back
+    matrix[0, 1:], matrix[2, :-1] = -back, -there
+    return matrix
 
 
 def garg(strongest: float, bend: float, drag: float, temperature: float, rate: float) -> float:

@@ -24,26 +24,21 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 
-from scipy.integrate import quad
-from scipy.optimize import brentq
-
 from validation.references.axisymmetric import Body, Contact
+from validation.references.numerics import integral, rising, root
 
 ACCURACY, ACCEPTED = 1e-11, 1e-8
 """Relative accuracy asked of each piece of a quadrature, and what one may have that round-off beside a kink stops."""
-FINE = 1e-13
-"""Accuracy asked of a piece beside what it is added to."""
+_integral = partial(integral, accuracy=ACCURACY, accepted=ACCEPTED)
 SCAN, DECADES = 12, (4.0, 3.0)
 """Radii per decade of the first search, and decades below and above the guess."""
 CLOSE = 1e-9
 """Relative distance from a kink at which a radius counts as beside it."""
 BEYOND = 1.01
 """Radius over that without a load, inside of which limit points are."""
-DOUBLINGS = 600
-"""How often a search may double or halve its first guess."""
 
 
 @dataclass(frozen=True)
@@ -96,7 +91,7 @@ class Cohesive:
 
     def zone(self, a: float) -> float:
         """s = sqrt(c^2 - a^2) [length] of a contact; a >= 0."""
-        return _rising(lambda s: self.gap(a, s) - self.reach, self.guess)
+        return rising(lambda s: self.gap(a, s) - self.reach, self.guess)
 
     def state(self, a: float) -> State:
         """The contact of a radius a >= 0 [length]."""
@@ -128,15 +123,11 @@ class Cohesive:
 
     def _over(self, function: Callable[[float, float], float], a: float, scale: float) -> float:
         """int_0^(pi/2) function(r, phi) dphi, r = a sin phi, between the kinks; the scale is what it is added to."""
-        return sum(
-            _integral(lambda phi: function(a * math.sin(phi), phi), *two, scale)
-            for two in pairwise(self.body.angles(a))
-        )
+        return self.body.over_angles(function, a, scale=scale, accuracy=ACCURACY, accepted=ACCEPTED)
 
     def _rise(self, a: float, c: float) -> float:
         """f(c) - f(a) [length]."""
-        ends = [a, *(b for b in self.body.kinks if a < b < c), c]
-        return sum(_integral(self.body.slope, *two, self.reach) for two in pairwise(ends))
+        return _integral(self.body.slope, *self.body.corners(a, c), scale=self.reach)
 
     def _widening(self, a: float, s: float) -> float:
         """G [1]."""
@@ -163,11 +154,12 @@ class Cohesive:
         def slope(a: float) -> float:
             return self.slopes(a)[int(of_force)]
 
-        found, values = [], [slope(a) for a in within]
-        for (outer, above), (inner, below) in pairwise(zip(within, values, strict=True)):
-            if above > 0.0 >= below:
-                found.append(float(brentq(slope, inner, outer, xtol=1e-300, rtol=1e-13)))
-        return found
+        slopes = [(a, slope(a)) for a in within]
+        return [
+            root(slope, inner, outer, 1e-13)
+            for (outer, above), (inner, below) in pairwise(slopes)
+            if above > 0.0 >= below
+        ]
 
     @cached_property
     def fold(self) -> float | None:
@@ -205,7 +197,7 @@ class Cohesive:
             return None
         if self.fold is None and displacement < self.state(0.0).displacement:
             low, high = last.c, self.state(0.0).c
-            return self.alone(_root(lambda c: self.alone(c).displacement - displacement, low, high))
+            return self.alone(root(lambda c: self.alone(c).displacement - displacement, low, high, 1e-13))
         return self._outermost(lambda one: one.displacement - displacement, [self.fold or 0.0])
 
     @cached_property
@@ -221,13 +213,12 @@ class Cohesive:
         wide, wanted = self.state(0.0).c, 2.0 / math.pi * self._kappa
         if self.body.slope(wide) <= wanted:
             return wide
-        ends = [0.0, *(b for b in self.body.kinks if b < wide), wide]
-        for low, high in reversed(list(pairwise(ends))):
-            inside = low + CLOSE * (high - low)
-            if self.body.slope(high * (1.0 - CLOSE)) < wanted:
+        for low, high in reversed(list(pairwise(self.body.corners(0.0, wide)))):
+            inside, outside = low + CLOSE * (high - low), high * (1.0 - CLOSE)
+            if self.body.slope(outside) < wanted:
                 return high
             if self.body.slope(inside) < wanted:
-                return _root(lambda c: self.body.slope(c) - wanted, inside, high * (1.0 - CLOSE))
+                return root(lambda c: self.body.slope(c) - wanted, inside, outside, 1e-13)
         return 0.0
 
     def _outermost(self, function: Callable[[State], float], limits: Sequence[float]) -> State:
@@ -243,7 +234,7 @@ class Cohesive:
                 raise ValueError("the contact would cover the body")
         for outer, inner in pairwise(sorted({*grid[first:], *limits, 0.0}, reverse=True)):
             if function(self.state(inner)) <= 0.0:
-                return self.state(_root(lambda a: function(self.state(a)), inner, outer))
+                return self.state(root(lambda a: function(self.state(a)), inner, outer, 1e-13))
         raise ValueError("no contact has so little")
 
     def pressure(self, r: float, state: State) -> float:
@@ -266,7 +257,6 @@ class Cohesive:
         - pi c^2 W: the springs, and W less sigma_0 h in the zone, whose gap h is the transform of g - d + q/E*.
         """
         a, c, d = state.a, state.c, state.displacement
-        ends = sorted({0.0, a, *(b for b in self.body.kinks if b < c), c})
 
         def density(x: float) -> float:
             g = self.body.transformed(x) - d
@@ -275,37 +265,10 @@ class Cohesive:
             square = (c - x) * (c + x)
             return 4.0 * self.stress * (g * math.sqrt(square) - self.stress / self.modulus * square)
 
-        return sum(_integral(density, *two, self.work * c) for two in pairwise(ends)) - math.pi * c * c * self.work
+        ends = sorted({a, *self.body.corners(0.0, c)})
+        return _integral(density, *ends, scale=self.work * c) - math.pi * c * c * self.work
 
     @cached_property
     def touched(self) -> State | None:
         """The state that bodies come into where they meet, at d = -h_0; None if they part at once."""
         return self.at(-self.reach)
-
-
-def _integral(function: Callable[[float], float], low: float, high: float, scale: float = 0.0) -> float:
-    """Adaptively. Raises ArithmeticError where it is not exact enough beside a scale."""
-    if low == high:
-        return 0.0
-    value, error, *_ = quad(function, low, high, epsrel=ACCURACY, epsabs=FINE * scale, limit=200, full_output=1)
-    if error > ACCEPTED * max(abs(value), scale):
-        raise ArithmeticError(f"an integral of {value:g} is off by {error:g}")
-    return float(value)
-
-
-def _root(function: Callable[[float], float], low: float, high: float) -> float:
-    return float(brentq(function, low, high, xtol=1e-300, rtol=1e-13))
-
-
-def _rising(function: Callable[[float], float], guess: float) -> float:
-    """The root of a rising function of a positive number."""
-    low = high = guess
-    for _ in range(DOUBLINGS):
-        if function(low) < 0.0:
-            break
-        low, high = 0.5 * low, low
-    for _ in range(DOUBLINGS):
-        if function(high) > 0.0:
-            break
-        low, high = high, 2.0 * high
-    return _root(function, low, high)

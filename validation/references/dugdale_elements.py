@@ -10,8 +10,8 @@ is a complementarity problem:
     h = 0, p >= -sigma_0 (r < a);    0 < h < h_0, p = -sigma_0 (a < r < c);    h > h_0, p = 0 (r > c)
 
 `solved` has a and c at ends of annuli, and what makes them as equations: p = -sigma_0 in the last annulus in contact,
-h(c) = h_0. `Solved.violation` checks the inequalities, and `contact_set` finds the annuli in contact at a prescribed d
-by an active set. With annuli that shrink towards the axis, kinks and a, errors fall as the third power of their number.
+h(c) = h_0. `Solved.violation` checks the inequalities. With annuli that
+shrink towards the axis, kinks and a, errors fall as the third power of their number.
 Source: K. L. Johnson, Contact Mechanics (1985), section 3.4.
 """
 
@@ -23,16 +23,16 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.optimize import brentq
-from scipy.special import ellipe, ellipk
 
-from validation.references.interaction import Floats
+from validation.references.numerics import Floats, rising, root
+from validation.references.rings import pressed_down
 
 STEEP = 4
 """Annuli at an end of N have the width N^-STEEP: 3 leaves less than third order, 6 is lost in round-off at N = 200."""
-ROUND_OFF = 1e-10
-"""Gap below which annuli do not overlap, over h_0: the last one at a has no pressure over -sigma_0 to show its side."""
+
+
+VIEWED = 200
+"""Radii in the zone, and as many beyond it, at which the inequalities are looked at."""
 
 
 @dataclass(frozen=True)
@@ -62,42 +62,18 @@ class Elements:
             one = self._with_zone(a, math.hypot(a, s))
             return float(one.gap(np.array([one.c]))[0]) - self.reach
 
-        low = high = a
-        while off(low) > 0.0:
-            low *= 0.5
-        while off(high) < 0.0:
-            high *= 2.0
-        return self._with_zone(a, math.hypot(a, float(brentq(off, low, high, rtol=1e-13))))
+        return self._with_zone(a, math.hypot(a, rising(off, a)))
 
     def at(self, displacement: float, narrow: float, wide: float) -> Solved:
         """The contact at a displacement d [length], between two radii at which d is smaller and larger."""
-        return self.solved(float(brentq(lambda a: self.solved(a).displacement - displacement, narrow, wide)))
-
-    def contact_set(self, displacement: float, ends: Floats) -> NDArray[np.bool_]:
-        """Which annuli touch at a displacement where all others are under -sigma_0; ends [length] from 0 to c.
-
-        Raises:
-            RuntimeError: the set does not settle.
-        """
-        middles, influence = self._influence(ends)
-        free = self.height(middles) - displacement - self.stress * influence.sum(axis=1)  # the gap where none touches
-        touching: NDArray[np.bool_] = free < 0.0
-        touching[0] = True
-        for _ in range(10 * middles.size):
-            excess = np.zeros(middles.size)  # p + sigma_0
-            excess[touching] = np.linalg.solve(influence[np.ix_(touching, touching)], -free[touching])
-            gap = free + influence @ excess
-            now = np.where(touching, excess > 0.0, gap < -ROUND_OFF * self.reach)
-            if np.array_equal(now, touching):
-                return touching
-            touching = now
-        raise RuntimeError("the set of touching annuli does not settle")
+        return self.solved(root(lambda a: self.solved(a).displacement - displacement, narrow, wide))
 
     def _with_zone(self, a: float, c: float) -> Solved:
         """Gap 0 in the middle of each annulus; unknown are d and all pressures but the last, which is -sigma_0."""
         ends = self._mesh(a)
-        middles, influence = self._influence(ends)
-        tension = influence[:, -1] + self._influence(np.array([a, c]), middles)[1][:, 0]
+        middles = 0.5 * (ends[1:] + ends[:-1])
+        influence, zone = (self.pressed(middles, edges) for edges in (ends, np.array([a, c])))
+        tension = influence[:, -1] + zone[:, 0]
         matrix = np.column_stack([-influence[:, :-1], np.ones(middles.size)])
         *pressures, displacement = np.linalg.solve(matrix, self.height(middles) - self.stress * tension)
         return Solved(self, a, c, float(displacement), ends, np.array([*pressures, -self.stress]))
@@ -109,11 +85,9 @@ class Elements:
         corners = [0.0, *(b for b in self.kinks if b < a), a]
         return np.concatenate([[0.0], *(low + (high - low) * graded[1:] for low, high in pairwise(corners))])
 
-    def _influence(self, ends: Floats, radii: Floats | None = None) -> tuple[Floats, Floats]:
-        """The middles of annuli, and u(r)/p [length/stress] of each, shape (radii or middles, annuli)."""
-        middles = 0.5 * (ends[1:] + ends[:-1])
-        discs = pressed_down(middles if radii is None else radii, ends) / self.modulus
-        return middles, np.diff(discs, axis=1)
+    def pressed(self, radii: Floats, ends: Floats) -> Floats:
+        """u(r)/p [length/stress] of annuli, shape (radii, annuli)."""
+        return np.asarray(np.diff(pressed_down(radii, ends), axis=1) / self.modulus)
 
 
 @dataclass(frozen=True)
@@ -135,23 +109,14 @@ class Solved:
 
     def gap(self, radii: Floats) -> Floats:
         """h(r) [length]."""
-        down = np.diff(pressed_down(radii, self.ends), axis=1) @ self.pressures
-        down -= self.problem.stress * np.diff(pressed_down(radii, np.array([self.a, self.c])), axis=1)[:, 0]
-        return np.asarray(self.problem.height(radii) - self.displacement + down / self.problem.modulus)
+        one, zone = self.problem, np.array([self.a, self.c])
+        down = one.pressed(radii, self.ends) @ self.pressures - one.stress * one.pressed(radii, zone)[:, 0]
+        return np.asarray(one.height(radii) - self.displacement + down)
 
-    def violation(self, points: int = 200) -> float:
+    def violation(self) -> float:
         """The most by which an inequality does not hold [sigma_0 or h_0]; at most 0 where all hold."""
-        inside = np.linspace(self.a, self.c, points + 2)[1:-1]
-        outside = self.c * np.geomspace(1.0 + 1e-6, 5.0, points)
+        inside = np.linspace(self.a, self.c, VIEWED + 2)[1:-1]
+        outside = self.c * np.geomspace(1.0 + 1e-6, 5.0, VIEWED)
         tension = float(np.max(-self.pressures)) / self.problem.stress - 1.0
         closed, opened = self.gap(inside) / self.problem.reach, self.gap(outside) / self.problem.reach
         return max(tension, float(np.max(-closed)), float(np.max(closed)) - 1.0, 1.0 - float(np.min(opened)))
-
-
-def pressed_down(radii: Floats, discs: Floats) -> Floats:
-    """u E*/p [length] at radii, shape (n,), of discs of uniform pressure, shape (m,): shape (n, m)."""
-    r, b = np.broadcast_arrays(radii[:, None], discs[None, :])
-    inside = r <= b
-    m = np.divide(np.where(inside, r, b), np.where(inside, b, r)) ** 2
-    e, k = ellipe(m), ellipk(np.minimum(m, np.nextafter(1.0, 0.0)))  # (1 - m) K is 0 at the edge
-    return np.asarray(4.0 / math.pi * np.where(inside, b * e, r * (e - (1.0 - m) * k)))

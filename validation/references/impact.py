@@ -26,14 +26,16 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.integrate import quad, solve_ivp
-from scipy.optimize import brentq, minimize_scalar
+from scipy.integrate import solve_ivp
 
-from validation.references.relaxing import KelvinVoigt, Material, Power, smooth
+from validation.references.numerics import Function, largest, root, smooth
+from validation.references.relaxing import KelvinVoigt, Material, Power
 
 EXACT = {"method": "DOP853", "rtol": 1e-11, "dense_output": True}
 SMALL = 1e-14
 """Absolute error of a motion over the largest elastic displacement, velocity and force."""
+LOOKS = 400
+"""Times of a motion at which its largest force is looked for."""
 SHARE = 50.0
 """Elastic durations after which nothing is waited for."""
 
@@ -60,47 +62,45 @@ def deepest(body: Power, modulus: float, mass: float, velocity: float) -> float:
     return float((0.5 * mass * velocity**2 * power / at_one) ** (1.0 / power))
 
 
-def _motion(change: Callable[..., Any], start: list[float], scale: float, until: float, events: Any) -> Any:
-    return solve_ivp(change, (0.0, until), start, atol=SMALL * scale, events=events, **EXACT)
+def motion(
+    change: Callable[..., Any], start: list[float], scale: float, until: float, event: Callable[..., float]
+) -> Any:
+    """The solution of y' = change(t, y) until an event falls through 0, with an absolute error of SMALL scale."""
+    event.terminal, event.direction = True, -1.0  # type: ignore[attr-defined]
+    return solve_ivp(change, (0.0, until), start, atol=SMALL * scale, events=event, **EXACT)
 
 
-def _peak(function: Callable[[float], float], end: float, count: int = 400) -> float:
-    times = np.linspace(0.0, end, count + 1)
-    values = [function(float(t)) for t in times]
-    i = int(np.argmax(values))
-    ends = float(times[max(0, i - 1)]), float(times[min(count, i + 1)])
-    found = minimize_scalar(lambda t: -function(t), bounds=ends, method="bounded", options={"xatol": 1e-9 * end})
-    return max(values[i], -float(found.fun))
+def turned(_: float, y: Any) -> float:
+    """The velocity of the body."""
+    return float(y[1])
+
+
+def peak(function: Function, end: float) -> float:
+    """The largest value from the time 0 to an end."""
+    return largest(function, [end * i / LOOKS for i in range(LOOKS + 1)])[1]
 
 
 def kelvin_voigt(one: KelvinVoigt, mass: float, velocity: float) -> Bounce:
     """Of a half-space of Kelvin and Voigt; elastic with a retardation time of 0."""
     depth = deepest(one.body, one.modulus, mass, velocity)
-    until = SHARE * depth / velocity * (1.0 + one.time * velocity / depth)
+    until, scale = SHARE * depth / velocity * (1.0 + one.time * velocity / depth), min(depth, velocity)
 
     def change(_: float, y: Any) -> list[float]:
         return [y[1], -one.force(y[0], y[1]) / mass]
 
-    def turned(_: float, y: Any) -> float:
-        return float(y[1])
-
     def parted(_: float, y: Any) -> float:
         return float(y[0] + one.time * y[1])
 
-    turned.terminal = parted.terminal = True  # type: ignore[attr-defined]
-    parted.direction = -1.0  # type: ignore[attr-defined]
-    scale = min(depth, velocity)
-    inwards = _motion(change, [0.0, velocity], scale, until, turned)
-    outwards = _motion(change, [float(inwards.y[0, -1]), 0.0], scale, until, parted)
-    top = float(inwards.y[0, -1])
+    inwards = motion(change, [0.0, velocity], scale, until, turned)
+    top, end = float(inwards.y[0, -1]), float(inwards.t[-1])
+    outwards = motion(change, [top, 0.0], scale, until, parted)
 
     def force(t: float) -> float:
         d, rate = inwards.sol(t)
         return one.force(max(0.0, float(d)), max(0.0, float(rate)))
 
-    end = float(inwards.t[-1])
     radii = max(one.radius(float(d), float(v)) for d, v in inwards.y.T)
-    return Bounce(-float(outwards.y[1, -1]) / velocity, end + float(outwards.t[-1]), _peak(force, end), top, radii)
+    return Bounce(-float(outwards.y[1, -1]) / velocity, end + float(outwards.t[-1]), peak(force, end), top, radii)
 
 
 def elastic(body: Power, modulus: float, mass: float, velocity: float) -> Bounce:
@@ -127,12 +127,8 @@ def relaxing(body: Power, material: Material, mass: float, velocity: float) -> B
         flow = 2.0 * body.radius(float(y[0])) * y[1]
         return np.concatenate([[y[1], -held(y) / mass], flow - y[2 : 2 + arms] / tau, y[1] - y[2 + arms :] / tau])
 
-    def turned(_: float, y: Any) -> float:
-        return float(y[1])
-
-    turned.terminal = True  # type: ignore[attr-defined]
     scale = min(depth, velocity, 1.0) * min(1.0, body.radius(depth))
-    inwards = _motion(grow, [0.0, velocity] + [0.0] * (2 * arms), scale, until, turned)
+    inwards = motion(grow, [0.0, velocity] + [0.0] * (2 * arms), scale, until, turned)
     top, turn = inwards.y[:, -1], float(inwards.t[-1])
 
     def carried(since: float, t: float, y: Any) -> float:
@@ -146,7 +142,7 @@ def relaxing(body: Power, material: Material, mass: float, velocity: float) -> B
             return 0.0
         if carried(turn, t, y) >= 0.0:
             return turn
-        return float(brentq(lambda s: carried(s, t, y), 0.0, turn, xtol=1e-16 * turn, rtol=1e-13))
+        return root(lambda s: carried(s, t, y), 0.0, turn, 1e-13)
 
     def shrink(t: float, y: Any) -> Any:
         earlier = before(turn + t, y)
@@ -158,12 +154,11 @@ def relaxing(body: Power, material: Material, mass: float, velocity: float) -> B
     def parted(t: float, y: Any) -> float:
         return rest * float(y[0]) + float(E @ y[2:])
 
-    parted.terminal, parted.direction = True, -1.0  # type: ignore[attr-defined]
-    outwards = _motion(shrink, [float(top[0]), 0.0, *top[2 + arms :]], scale, until, parted)
+    outwards = motion(shrink, [float(top[0]), 0.0, *top[2 + arms :]], scale, until, parted)
     return Bounce(
         -float(outwards.y[1, -1]) / velocity,
         turn + float(outwards.t[-1]),
-        _peak(lambda t: held(inwards.sol(t)), turn),
+        peak(lambda t: held(inwards.sol(t)), turn),
         float(top[0]),
         body.radius(float(top[0])),
     )
@@ -221,14 +216,31 @@ class Adhesive:
         return self._radius(0.5 / self.body.exponent)
 
     @cached_property
-    def lost(self) -> float:
-        """m v_s^2/2 [energy]."""
-        return self.energy(self.grips) - self.energy(self.touch)
+    def critical(self) -> float:
+        """a of the largest tension."""
+        return self._radius(1.5 / self.body.exponent)
+
+    def radius_at(self, displacement: float) -> float:
+        """a [length] of the outer equilibrium at a displacement."""
+        return _beyond(lambda a: self.displacement(a) - displacement, self.grips)
+
+    def radius_under(self, force: float) -> float:
+        """a [length] of the equilibrium that carries a force and is not lost when it falls."""
+        return _beyond(lambda a: self.force(a) - force, self.critical)
+
+    def force_at(self, displacement: float) -> float:
+        """F [force] at a displacement, as long as fixed grips hold it; 0 beyond."""
+        held = displacement >= self.displacement(self.grips)
+        return self.force(self.radius_at(displacement)) if held else 0.0
+
+    def lost_to(self, a: float) -> float:
+        """Energy lost by bodies that touch at d = 0 and part at a radius a."""
+        return self.energy(a) - self.energy(self.touch)
 
     @cached_property
-    def lost_by_force(self) -> float:
-        """The same by quadrature of -F over d."""
-        return float(quad(lambda a: self.force(a) * self.slope(a), self.touch, self.grips, epsrel=1e-12)[0])
+    def lost(self) -> float:
+        """m v_s^2/2 [energy]."""
+        return self.lost_to(self.grips)
 
     def sticking_velocity(self, mass: float) -> float:
         """v_s."""
@@ -241,10 +253,7 @@ class Adhesive:
         def left(a: float) -> float:
             return kinetic + self.energy(touch) - self.energy(a)
 
-        high = 2.0 * touch
-        while left(high) > 0.0:
-            high *= 2.0
-        a = float(brentq(left, touch, high, xtol=1e-300, rtol=1e-15))
+        a = _beyond(lambda a: -left(a), touch)
 
         def slowness(x: float) -> float:
             return self.slope(x) / math.sqrt(2.0 * max(left(x), 1e-300) / mass)
@@ -252,3 +261,11 @@ class Adhesive:
         lasts = smooth(slowness, touch, a, 200) + smooth(slowness, self.grips, a, 200)
         e = math.sqrt(1.0 - self.lost / kinetic)
         return Bounce(e, lasts, self.force(a), self.displacement(a), a)
+
+
+def _beyond(function: Function, low: float) -> float:
+    """The root of a function that rises from a place on."""
+    high = 2.0 * low
+    while function(high) <= 0.0:
+        high *= 2.0
+    return root(function, low, high)

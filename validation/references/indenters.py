@@ -17,13 +17,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.integrate import quad
-from scipy.optimize import brentq
 
-from validation.references.interaction import Floats
+from validation.references.numerics import Floats, integral, rising
 
-DOUBLINGS = 400
-"""How often the search for a radius may double or halve its first guess."""
 STEP = 1e-4
 """Relative, of the difference whose root is a minimum: a stationary place is then exact to its square."""
 
@@ -41,23 +37,23 @@ class Marks(ABC):
 
     def critical_radius(self) -> float:
         """a of the largest tension [length], dF/da = 0."""
-        return _rising(lambda a: _slope(self.force, a), self.zero_load_radius())
+        return rising(lambda a: _slope(self.force, a), self.zero_load_radius())
 
     def fixed_grips_radius(self) -> float:
         """a at which the bodies part under a prescribed displacement [length], dd/da = 0."""
-        return _rising(lambda a: _slope(self.displacement, a), self.zero_load_radius())
+        return rising(lambda a: _slope(self.displacement, a), self.zero_load_radius())
 
     def zero_load_radius(self) -> float:
         """a with F(a) = 0 [length]."""
-        return _rising(lambda a: float(self.force(a)), 1.0)
+        return rising(lambda a: float(self.force(a)), 1.0)
 
     def radius_under(self, force: float) -> float:
         """a of the stable contact that carries a force above that of pull-off [length]."""
-        return _rising(lambda a: float(self.force(a)) - force, self.critical_radius())
+        return rising(lambda a: float(self.force(a)) - force, self.critical_radius())
 
     def snap_in_radius(self) -> float:
         """a with d(a) = 0 [length]: bodies that touch snap into this contact."""
-        return _rising(lambda a: float(self.displacement(a)), self.zero_load_radius())
+        return rising(lambda a: float(self.displacement(a)), self.zero_load_radius())
 
     def pull_off_force(self) -> float:
         """F_A [force], a positive magnitude."""
@@ -84,7 +80,7 @@ class Indenter(Marks):
     def rise(self) -> float:
         """kappa c."""
         n = self.exponent
-        return self.coefficient * n * float(quad(lambda phi: math.sin(phi) ** (n - 1.0), 0.0, 0.5 * math.pi)[0])
+        return self.coefficient * n * integral(lambda phi: math.sin(phi) ** (n - 1.0), 0.0, 0.5 * math.pi)
 
     def displacement(self, radius: Floats | float) -> Floats:
         """d(a) [length]; a >= 0 [length]."""
@@ -115,10 +111,3 @@ def _slope(curve: Callable[[float], Floats | float], a: float) -> float:
     h = STEP * a
     near, far = (float(curve(a + k * h) - curve(a - k * h)) for k in (1.0, 2.0))
     return (8.0 * near - far) / (12.0 * h)
-
-
-def _rising(function: Callable[[float], float], guess: float) -> float:
-    """The root of a function that is negative below it and positive above."""
-    low = next(a for a in (guess * 0.5**k for k in range(DOUBLINGS)) if function(a) < 0.0)
-    high = next(a for a in (guess * 2.0**k for k in range(DOUBLINGS)) if function(a) > 0.0)
-    return float(brentq(function, low, high, xtol=1e-300, rtol=1e-14))

@@ -14,29 +14,36 @@ Source: D. Maugis, J. Colloid Interface Sci. 150 (1992) 243.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Generic, TypeVar
 
-from scipy.optimize import brentq
+import numpy as np
 from scipy.special import spherical_jn
+
+from validation.references.numerics import Floats, Pair, root
 
 LAMBDA_OVER_TABOR = 2.0 * math.cbrt(9.0 / (16.0 * math.pi))
 """For the stress W/h_0 (Maugis 1992)."""
 JKR_SIDE, DMT_SIDE = 1e-3, 1e-7
 """t (1 + lambda) of a contact much wider than one without a load; pi/2 - t, over lambda below 1, of one much narrower
 than that of the largest tension."""
-Pair = tuple[float, float]
+HALVINGS = 60
+"""Of 0 < t < pi/2, down to round-off."""
+Number = TypeVar("Number", float, Floats)
 
 
 @dataclass(frozen=True)
-class State:
-    """A, C, N, D in reduced form."""
+class States(Generic[Number]):
+    """A, C, N, D in reduced form, of one state or of many."""
 
-    a: float
-    c: float
-    load: float
-    displacement: float
+    a: Number
+    c: Number
+    load: Number
+    displacement: Number
+
+
+State = States[float]
 
 
 @dataclass(frozen=True)
@@ -50,20 +57,20 @@ class Reduced:
         """Angles of a wide and of a narrow contact."""
         return JKR_SIDE / (1.0 + self.parameter), 0.5 * math.pi - DMT_SIDE * min(1.0, self.parameter)
 
-    def _width(self, t: float) -> Pair:
+    def _width(self, t: Number) -> tuple[Number, Number]:
         """C, dC/dt."""
-        square = self.parameter * t * t * float(spherical_jn(1, 2.0 * t))
-        linear = 4.0 / 3.0 * self.parameter**2 * (t * math.sin(t) - 2.0 * math.sin(0.5 * t) ** 2)
-        c = 2.0 / (linear + math.sqrt(linear**2 + 4.0 * square))
-        rise = self.parameter * t * (math.sin(2.0 * t) * c + 4.0 / 3.0 * self.parameter * math.cos(t))
+        square = self.parameter * t * t * spherical_jn(1, 2.0 * t)
+        linear = 4.0 / 3.0 * self.parameter**2 * (t * np.sin(t) - 2.0 * np.sin(0.5 * t) ** 2)
+        c = 2.0 / (linear + np.sqrt(linear**2 + 4.0 * square))
+        rise = self.parameter * t * (np.sin(2.0 * t) * c + 4.0 / 3.0 * self.parameter * np.cos(t))
         return c, -c * rise / (2.0 * square * c + linear)
 
-    def state(self, t: float) -> State:
+    def state(self, t: Number) -> States[Number]:
         """In contact."""
         c, _ = self._width(t)
-        a, s = c * math.cos(t), c * math.sin(t)
+        a, s = c * np.cos(t), c * np.sin(t)
         load = a**3 - self.parameter * (a * s + t * c * c)
-        return State(a, c, load, a * a - 4.0 / 3.0 * self.parameter * s)
+        return States(a, c, load, a * a - 4.0 / 3.0 * self.parameter * s)
 
     def slopes(self, t: float) -> Pair:
         """dN/dt, dD/dt."""
@@ -73,10 +80,19 @@ class Reduced:
         dn = 3.0 * a * a * da - 2.0 * self.parameter * c * (rise * (sin * cos + t) + c * cos * cos)
         return dn, 2.0 * a * da - 4.0 / 3.0 * self.parameter * (rise * sin + c * cos)
 
-    def alone(self, c: float) -> State:
+    def alone(self, c: Number) -> States[Number]:
         """Before contact."""
         zone = 0.5 * c * c - 8.0 / (3.0 * math.pi) * self.parameter * c - 2.0 / (math.pi * self.parameter)
-        return State(0.0, c, -0.5 * math.pi * self.parameter * c * c, zone)
+        return States(0.0 * c, c, -0.5 * math.pi * self.parameter * c * c, zone)
+
+    def of_radii(self, a: Floats) -> States[Floats]:
+        """The contacts of those A > 0, by bisection."""
+        low, high = np.zeros_like(a), np.full_like(a, 0.5 * math.pi)
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            wider = self.state(middle).a > a
+            low, high = np.where(wider, middle, low), np.where(wider, high, middle)
+        return self.state(0.5 * (low + high))
 
     def of_radius(self, a: float) -> State:
         """The contact of that A >= 0."""
@@ -86,17 +102,17 @@ class Reduced:
         while self.state(low).a < a:
             low *= 0.1
         high = high if self.state(high).a < a else 0.5 * math.pi
-        return self.state(_root(lambda t: self.state(t).a - a, low, high))
+        return self.state(root(lambda t: self.state(t).a - a, low, high))
 
     @cached_property
     def critical(self) -> State:
         """Of the largest tension."""
-        return self.state(_root(lambda t: self.slopes(t)[0], *self.ends))
+        return self.state(root(lambda t: self.slopes(t)[0], *self.ends))
 
     @cached_property
     def free(self) -> State:
         """Without a load."""
-        return self.state(_root(lambda t: self.state(t).load, *self.ends))
+        return self.state(root(lambda t: self.state(t).load, *self.ends))
 
     @property
     def has_fold(self) -> bool:
@@ -107,7 +123,7 @@ class Reduced:
     def snap_out(self) -> State:
         """The last state under fixed grips."""
         if self.has_fold:
-            return self.state(_root(lambda t: self.slopes(t)[1], *self.ends))
+            return self.state(root(lambda t: self.slopes(t)[1], *self.ends))
         return self.alone(8.0 / (3.0 * math.pi) * self.parameter)
 
 
@@ -175,9 +191,5 @@ def tabor_of(ratio: float, parameters: Pair) -> Pair:
 
     if off(low) * off(high) > 0.0:
         return math.nan, math.nan
-    parameter = math.exp(float(brentq(off, low, high)))
+    parameter = math.exp(root(off, low, high))
     return parameter / LAMBDA_OVER_TABOR, marks(parameter)[1]
-
-
-def _root(function: Callable[[float], float], low: float, high: float) -> float:
-    return float(brentq(function, low, high, xtol=1e-300, rtol=1e-14))

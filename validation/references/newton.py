@@ -32,6 +32,8 @@ ROUND_OFF = 1e-14
 NEAR = 1e-6
 """Newton steps over the step limit below which the gradient alone judges them: energies that nearly cancel are too
 coarse to show so small a decrease."""
+ITERATIONS = 3000
+"""Limit on the number of steps."""
 POWER_STEPS = 12
 """Inverse iterations for the softest direction."""
 
@@ -44,13 +46,11 @@ class Descent:
         step_limit: largest change of one degree of freedom in one iteration [LU].
         gradient_tolerance: the descent ends when no component of the gradient exceeds it [FU].
         preferred: direction, shape (dofs,), which picks one of two equal ways down from a saddle.
-        iterations: limit on the number of steps.
     """
 
     step_limit: float
     gradient_tolerance: float
     preferred: Floats
-    iterations: int = 3000
 
 
 def minimise(
@@ -72,7 +72,7 @@ def minimise(
     """
     u = np.array(start, dtype=np.float64)
     energy, gradient = energy_gradient(u)
-    for _ in range(descent.iterations):
+    for _ in range(ITERATIONS):
         band = hessian(u)
         factor = _factor(band)
         if np.max(np.abs(gradient)) <= descent.gradient_tolerance:
@@ -91,12 +91,7 @@ def minimise(
                 continue
         step *= min(1.0, descent.step_limit / longest)
         u, energy, gradient = _search(energy_gradient, u, step, energy, gradient)
-    raise RuntimeError(f"no minimum within {descent.iterations} steps, gradient {np.max(np.abs(gradient)):.3g}")
-
-
-def is_stable(band: Floats) -> bool:
-    """Return whether a symmetric matrix in lower band storage, shape (bandwidth + 1, dofs), is positive definite."""
-    return _factor(band) is not None
+    raise RuntimeError(f"no minimum within {ITERATIONS} steps, gradient {np.max(np.abs(gradient)):.3g}")
 
 
 def softest_direction(band: Floats, first: Floats) -> tuple[Floats, Floats]:

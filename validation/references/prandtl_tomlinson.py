@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.references.interaction import PairInteraction
+from validation.references.numerics import root
 
 Array = NDArray[np.float64]
 POINTS = 128
@@ -92,35 +93,24 @@ def corrugation(
     """
     pair = PairInteraction.of(*law)
     reach = math.ceil(60.0 * pair.longest_range / spacing)
-    row = spacing * np.arange(-reach, reach + 1)
+    row = spacing * np.arange(-reach, reach + 1)[:, None]
     half = POINTS // 2 + 1  # from the top to the hollow; the other half of the period mirrors it
-    x = spacing * np.arange(half) / POINTS
-
-    def sums(z: Array) -> tuple[Array, Array]:
-        """dU/dz and d²U/dz² at each x."""
-        r = np.hypot(x[:, None] - row, z[:, None])
-        _, force, rise = pair.evaluate(r)
-        cosine = z[:, None] / r
-        slope = normal_force + stiffness * (z - place) - (force * cosine).sum(axis=1)
-        return slope, stiffness - (rise * cosine**2 + force * (1.0 - cosine**2) / r).sum(axis=1)
-
-    low, high = np.empty(half), np.empty(half)
+    places, z = spacing * np.arange(half) / POINTS, np.empty(half)
     grid = np.geomspace(1e-2 * pair.shortest_range, 20.0 * pair.longest_range, HEIGHTS)
-    for i in range(half):  # the innermost minimum: slope rises through 0
-        r = np.hypot(x[i] - row[:, None], grid[None, :])
-        slope = normal_force + stiffness * (grid - place) - (pair.force(r) * grid / r).sum(axis=0)
-        above = np.flatnonzero((slope[:-1] < 0.0) & (slope[1:] >= 0.0))
+
+    def slope(x: float, heights: Array) -> Array:
+        """dU/dz."""
+        r = np.hypot(x - row, heights)
+        return np.asarray(normal_force + stiffness * (heights - place) - (pair.force(r) * heights / r).sum(axis=0))
+
+    for i, x in enumerate(places):  # the innermost minimum: the slope rises through 0
+        slopes = slope(x, grid)
+        above = np.flatnonzero((slopes[:-1] < 0.0) & (slopes[1:] >= 0.0))
         if above.size == 0:
             raise ArithmeticError(f"the row does not hold {normal_force:g} FU")
-        low[i], high[i] = grid[above[0]], grid[above[0] + 1]
-    z = 0.5 * (low + high)
-    for _ in range(60):
-        slope, stiff = sums(z)
-        low, high = np.where(slope < 0.0, z, low), np.where(slope < 0.0, high, z)
-        newton = z - slope / stiff
-        z = np.where((newton > low) & (newton < high), newton, 0.5 * (low + high))
-    r = np.hypot(x[:, None] - row, z[:, None])
-    energy = pair.energy(r).sum(axis=1) + normal_force * z + 0.5 * stiffness * (z - place) ** 2
+        ends = grid[above[0] : above[0] + 2].tolist()
+        z[i] = root(lambda height, x=x: float(slope(x, np.array([height]))[0]), *ends)  # type: ignore[misc]
+    energy = pair.energy(np.hypot(places - row, z)).sum(axis=0) + normal_force * z + 0.5 * stiffness * (z - place) ** 2
     waves, heights = (np.real(np.fft.hfft(values, POINTS)[:half]) / POINTS * 2.0 for values in (energy, z))
     heights[0] *= 0.5
     return Corrugation(spacing, waves[1 : HARMONICS + 1], float(z[-1]), heights[: HARMONICS + 1])

@@ -11,15 +11,15 @@ Sources: D. Maugis, M. Barquins, J. Phys. D 11 (1978) 1989; E. Barthel, J. Phys.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
-from scipy.integrate import quad, solve_ivp
-from scipy.optimize import brentq, minimize_scalar
+from scipy.integrate import solve_ivp
 
 from validation.references.impact import Adhesive
-from validation.references.relaxing import Legs, smooth
+from validation.references.numerics import integral, root
+from validation.references.relaxing import Legs
 
 LEAST = 1e-3
 """Radius over that of the preload at which the edge is not followed further."""
@@ -50,21 +50,36 @@ class Receding:
         rate = one.modulus * (one.body.depth(a) - d) ** 2 / (2.0 * math.pi * a)
         return max(0.0, rate / one.work - 1.0) if d < one.body.depth(a) else 0.0
 
-    def drawn(self, start: float, velocity: float) -> Any:
-        """The solution a over the way that the body is drawn from the equilibrium of that radius [length]."""
-        one = self.contact
+    def followed(self, a: float, d: float, rate: float, until: float, settling: bool = False) -> Any:
+        """The solution (a, int F dd) over the time since an edge at a recedes, at a displacement d + rate t.
 
-        def change(drawn: float, y: Any) -> list[float]:
-            return [-self.speed / velocity * self.excess(float(y[0]), top - drawn) ** (1.0 / self.exponent)]
+        It ends where next to nothing touches, and where the edge comes to rest at G = W if it is `settling`.
+        """
+        contact = self.contact
+
+        def change(t: float, y: Any) -> list[float]:
+            radius, place = float(y[0]), d + rate * t
+            return [-self.speed * self.excess(radius, place) ** (1.0 / self.exponent), rate * self.force(radius, place)]
 
         def small(_: float, y: Any) -> float:
-            return float(y[0]) - LEAST * start
+            return float(y[0]) - LEAST * a
+
+        def settled(t: float, y: Any) -> float:
+            g = contact.body.depth(float(y[0])) - d - rate * t
+            return contact.modulus * g * abs(g) / (2.0 * math.pi * float(y[0]) * contact.work) - 1.0
 
         small.terminal = True  # type: ignore[attr-defined]
-        top = one.displacement(start)
-        reach = 100.0 * (top - one.displacement(one.grips)) * (1.0 + (velocity / self.speed) ** self.exponent)
-        accuracy = {"method": "LSODA", "rtol": 1e-12, "atol": 1e-15 * start}
-        return solve_ivp(change, (0.0, reach), [start], events=small, dense_output=True, **accuracy)
+        settled.terminal, settled.direction = settling, -1.0  # type: ignore[attr-defined]
+        accuracy = {"method": "LSODA", "rtol": 1e-12, "atol": [1e-15 * a, 1e-14 * abs(contact.lost)]}
+        return solve_ivp(change, (0.0, until), [a, 0.0], events=(small, settled), dense_output=True, **accuracy)
+
+    def drawn(self, start: float, velocity: float) -> Any:
+        """The same over the way that a body is drawn from the equilibrium of that radius [length], until it is off."""
+        one = self.contact
+        reach = 100.0 * (one.displacement(start) - one.displacement(one.grips))
+        each = replace(self, speed=self.speed / velocity)
+        reach *= 1.0 + (velocity / self.speed) ** self.exponent
+        return each.followed(start, one.displacement(start), -1.0, reach)
 
     def pull_off(self, preload: float, velocity: float) -> tuple[float, float]:
         """The largest tension [force] of a body drawn off with a velocity, and the radius there [length]."""
@@ -72,55 +87,41 @@ class Receding:
 
     def largest(self, start: float, velocity: float) -> tuple[float, float]:
         """The same from the equilibrium of a radius."""
-        one = self.contact
-        top, found = one.displacement(start), self.drawn(start, velocity)
+        one, found = self.contact, self.drawn(start, velocity)
 
-        def slope(drawn: float) -> float:
+        def state(way: float) -> tuple[float, float]:
+            return float(found.sol(way)[0]), one.displacement(start) - way
+
+        def slope(way: float) -> float:
             """Of F over the way that it is drawn, over 2 E*: -a - (d - g) (v_0/V) (G/W - 1)^(1/n)."""
-            a, d = float(found.sol(drawn)[0]), top - drawn
-            lost = self.speed / velocity * self.excess(a, d) ** (1.0 / self.exponent)
-            return float(-a + (one.body.depth(a) - d) * lost)
+            a, d = state(way)
+            lost: float = self.speed / velocity * self.excess(a, d) ** (1.0 / self.exponent)
+            return -a + (one.body.depth(a) - d) * lost
 
-        tensions = [-self.force(float(a), top - t) for a, t in zip(found.y[0], found.t, strict=True)]
+        tensions = [-self.force(*state(way)) for way in found.t]
         i = tensions.index(max(tensions))
-        ends = float(found.t[max(0, i - 1)]), float(found.t[min(len(found.t) - 1, i + 1)])
-        at = float(brentq(slope, *ends, xtol=1e-300, rtol=1e-14))
-        radius = float(found.sol(at)[0])
-        return -self.force(radius, top - at), radius
+        at = root(slope, float(found.t[max(0, i - 1)]), float(found.t[min(len(found.t) - 1, i + 1)]))
+        return -self.force(*state(at)), state(at)[0]
 
     def separated(self, start: float, velocity: float) -> tuple[float, float, float]:
         """a and d [length] where F = 0, and the work from there on [energy]."""
         top, found = self.contact.displacement(start), self.drawn(start, velocity)
 
-        def force(t: float) -> float:
-            return self.force(float(found.sol(t)[0]), top - t)
+        def force(way: float) -> float:
+            return self.force(float(found.sol(way)[0]), top - way)
 
-        i = next(i for i, t in enumerate(found.t) if force(float(t)) < 0.0)
-        at = float(brentq(force, float(found.t[i - 1]), float(found.t[i]), xtol=1e-300, rtol=1e-14)) if i else 0.0
-        ends = [at, *(float(t) for t in found.t if t > at)]
-        return float(found.sol(at)[0]), top - at, -sum(smooth(force, *two, count=8) for two in pairwise(ends))
+        i = next(i for i, way in enumerate(found.t) if force(float(way)) < 0.0)
+        at = root(force, float(found.t[i - 1]), float(found.t[i])) if i else 0.0
+        radius, work = map(float, found.sol(at))
+        return radius, top - at, float(found.y[1, -1]) - work
 
     def at(self, displacement: float) -> float:
-        """The radius [length] of the equilibrium at a displacement of at least 0."""
-        high = 2.0 * self.contact.touch
-        while self.contact.displacement(high) < displacement:
-            high *= 2.0
-        low = self.contact.touch
-        return float(brentq(lambda a: self.contact.displacement(a) - displacement, low, high, xtol=1e-300, rtol=1e-14))
+        """The radius [length] of the equilibrium at a displacement."""
+        return self.contact.radius_at(displacement)
 
     def pressed(self, force: float) -> float:
         """The radius [length] of JKR's contact under a force."""
-        high = self.contact.touch
-        while self.contact.force(high) < force:
-            high *= 2.0
-        low = self.contact.grips
-        while self.contact.force(low) > force:
-            low *= 0.5
-        # Between the largest tension and high the force only rises.
-        least = minimize_scalar(
-            lambda a: self.contact.force(a), bounds=(0.5 * low, high), method="bounded", options={"xatol": 1e-12}
-        )
-        return float(brentq(lambda a: self.contact.force(a) - force, float(least.x), high, xtol=1e-300, rtol=1e-14))
+        return self.contact.radius_under(force)
 
 
 @dataclass(frozen=True)
@@ -159,48 +160,27 @@ def _leg(
     one: Receding, a: float, d: Legs, start: float, stop: float, rate: float, states: list[Any]
 ) -> tuple[float, float, float]:
     """a at the end, int F dd, and when the contact is lost."""
-    contact, work = one.contact, 0.0
-    begun, first = start, a
+    contact, here, work = one.contact, d(start), 0.0
+    limit = contact.displacement(contact.grips)
 
-    def at(t: float) -> float:
-        return d(begun) + rate * (t - begun)
+    def at_rest(last: float) -> float:
+        return integral(lambda x: contact.force(x) * contact.slope(x), *sorted((a, last))) * (1.0 if last > a else -1.0)
 
-    if math.isinf(one.speed):
-        limit = contact.displacement(contact.grips)
-        end = begun + (limit - at(begun)) / rate if rate < 0.0 and at(stop) < limit else stop
-        last = contact.grips if end < stop else equilibrium(contact, at(end))
-        part = float(quad(lambda x: contact.force(x) * contact.slope(x), a, last, epsrel=1e-12)[0])
-        return (0.0, part, end) if end < stop else (last, part, math.inf)
-    if one.excess(a, at(begun)) > 0.0 or rate < 0.0:
-
-        def change(t: float, y: Any) -> list[float]:
-            return [-one.speed * one.excess(float(y[0]), at(t)) ** (1.0 / one.exponent), rate * one.force(y[0], at(t))]
-
-        def small(_: float, y: Any) -> float:
-            return float(y[0]) - LEAST * first
-
-        def settled(t: float, y: Any) -> float:
-            g = contact.body.depth(float(y[0])) - at(t)
-            return contact.modulus * g * abs(g) / (2.0 * math.pi * float(y[0]) * contact.work) - 1.0
-
-        small.terminal = True  # type: ignore[attr-defined]
-        settled.terminal, settled.direction = rate > 0.0, -1.0  # type: ignore[attr-defined]
-        accuracy = {"method": "LSODA", "rtol": 1e-11, "atol": [1e-15 * a, 1e-14 * abs(contact.lost)]}
-        found = solve_ivp(change, (begun, stop), [a, 0.0], events=(small, settled), **accuracy)
-        states += [(t, at(t), x, one.force(x, at(t))) for t, x in zip(found.t, found.y[0], strict=True)]
-        begun, a, work = float(found.t[-1]), float(found.y[0, -1]), float(found.y[1, -1])
+    if math.isinf(one.speed) and rate < 0.0 and here + rate * (stop - start) < limit:
+        return 0.0, at_rest(contact.grips), start + (limit - here) / rate
+    if math.isfinite(one.speed) and (one.excess(a, here) > 0.0 or rate < 0.0):
+        found, first = one.followed(a, here, rate, stop - start, rate > 0.0), a
+        states += [(start + t, here + rate * t, x, one.force(x, here + rate * t))
+                   for t, x in zip(found.t, found.y[0], strict=True)]  # fmt: skip
+        start, a, work = start + float(found.t[-1]), float(found.y[0, -1]), float(found.y[1, -1])
         if a <= 1.001 * LEAST * first:
-            return 0.0, work, begun
-    if rate > 0.0 and begun < stop:
-        last = equilibrium(contact, d(stop))
-        work += float(quad(lambda x: contact.force(x) * contact.slope(x), a, last, epsrel=1e-12)[0])
-        a = last
+            return 0.0, work, start
+    if math.isinf(one.speed) or (rate > 0.0 and start < stop):
+        last = contact.radius_at(d(stop))
+        work, a = work + at_rest(last), last
     return a, work, math.inf
 
 
 def equilibrium(contact: Adhesive, displacement: float) -> float:
     """The radius [length] of the outer equilibrium at a displacement."""
-    high = 2.0 * contact.touch
-    while contact.displacement(high) < displacement:
-        high *= 2.0
-    return float(brentq(lambda a: contact.displacement(a) - displacement, contact.grips, high, xtol=1e-300, rtol=1e-14))
+    return contact.radius_at(displacement)

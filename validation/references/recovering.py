@@ -16,6 +16,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,8 +44,7 @@ class Prony:
 
     @cached_property
     def _arms(self) -> tuple[float, Floats, Floats]:
-        shares = np.array([p for p, _ in self.material.terms])
-        times = np.array([tau for _, tau in self.material.terms])
+        shares, times = np.array(self.material.terms).T
         return self.material.modulus * self.material.rest, self.material.modulus * shares, times
 
     @cached_property
@@ -144,15 +144,13 @@ class Springs:
         rate = (stop - start) / duration
         left = np.full(self.depth.size, duration)
         pressure = self.law.pressure(self.state, rate)
-        at_once = self.touching & (pressure < -NEGATIVE * np.abs(pressure).max())
-        self._switched(np.flatnonzero(at_once), False, np.full(int(at_once.sum()), self.time))
-        active = np.arange(self.depth.size)
-        while active.size:
+        at_once = np.flatnonzero(self.touching & (pressure < -NEGATIVE * np.abs(pressure).max()))
+        self._switched(at_once, False, np.full(at_once.size, self.time))
+        while (left > 0.0).any():
             for held in (True, False):
-                some = active[(self.touching[active] == held) & (left[active] > 0.0)]
+                some = np.flatnonzero((self.touching == held) & (left > 0.0))
                 if some.size:
                     self._one_event(some, held, start, rate, duration, left)
-            active = active[left[active] > 0.0]
         self.time += duration
 
     def _switched(self, some: NDArray[np.intp], touching: bool, times: Floats) -> None:
@@ -166,35 +164,36 @@ class Springs:
         else:
             self.left_at[some] = times
 
-    def _off(self, some: NDArray[np.intp], held: bool, d: Floats, rate: float, t: Floats) -> Floats:
-        """What has an event where it becomes negative: q in contact, the gap without."""
-        if held:
-            return self.law.pressure(self.law.held(self.state[:, some], rate, t), rate)
-        return np.asarray(self.law.free(self.state[:, some], t)[0] - (d + rate * t - self.depth[some]))
-
     def _one_event(
         self, some: NDArray[np.intp], held: bool, start: float, rate: float, duration: float, left: Floats
     ) -> None:
         """Go to the next event of each of some springs, or to the end."""
-        rest = left[some].copy()
-        d = start + rate * (duration - rest)
+        rest, law = left[some], self.law
+        gap = start + rate * (duration - rest) - self.depth[some]
+
+        def after(t: Floats, few: Any = slice(None)) -> Floats:
+            state = self.state[:, some[few]]
+            return law.held(state, rate, t) if held else law.free(state, t)
+
+        def off(t: Floats, few: Any = slice(None)) -> NDArray[np.bool_]:
+            """Whether the pressure of springs in contact, or the gap of those without, is negative."""
+            state = after(t, few)
+            return np.asarray((law.pressure(state, rate) if held else state[0] - (gap[few] + rate * t)) < 0.0)
+
         low, high, found = np.zeros(some.size), rest.copy(), np.zeros(some.size, dtype=bool)
         for look in LOOKS:
             t = look * rest
-            new = ~found & (self._off(some, held, d, rate, t) < 0.0)
+            new = ~found & off(t)
             high[new], found = t[new], found | new
             low[~found] = t[~found]
-        if found.any():
-            few, a, b = some[found], low[found], high[found]
-            for _ in range(BISECTIONS):
-                middle = 0.5 * (a + b)
-                below = self._off(few, held, d[found], rate, middle) < 0.0
-                a, b = np.where(below, a, middle), np.where(below, middle, b)
-            high[found] = b
-        after = self.law.held(self.state[:, some], rate, high) if held else self.law.free(self.state[:, some], high)
+        for _ in range(BISECTIONS if found.any() else 0):
+            middle = 0.5 * (low[found] + high[found])
+            below = off(middle, found)
+            low[found], high[found] = np.where(below, low[found], middle), np.where(below, middle, high[found])
+        moved = after(high)
         if not held:
-            after[0][found] = (d + rate * high - self.depth[some])[found]
-        self.state[:, some] = after
+            moved[0][found] = (gap + rate * high)[found]
+        self.state[:, some] = moved
         left[some] = np.where(found, rest - high, 0.0)
         self._switched(some[found], not held, (self.time + duration - left[some])[found])
 
@@ -236,22 +235,19 @@ def followed(
     weight[0] = 0.0
     springs = Springs(law, np.array([depth(float(one)) for one in x]), weight, time=d.times[0])
     every = sorted({*times, *(t for t in d.times if t <= max(times))})
-    force, radius, work, at = {every[0]: 0.0}, {every[0]: 0.0}, {every[0]: 0.0}, 0.0
+    rows = {every[0]: (d(every[0]), 0.0, 0.0, 0.0)}
     for t0, t1 in pairwise(every):
-        d0, d1 = d(t0), d(t1)
-        rate = (d1 - d0) / (t1 - t0)
-        before = springs.force(rate)
-        springs.move(d0, 0.5 * (d0 + d1), 0.5 * (t1 - t0))
-        middle = springs.force(rate)
-        springs.move(0.5 * (d0 + d1), d1, 0.5 * (t1 - t0))
-        force[t1] = springs.force(rate)
+        d0, d1, work = d(t0), d(t1), rows[t0][3]
+        middle, rate, forces = 0.5 * (d0 + d1), (d1 - d0) / (t1 - t0), []
+        for start, stop in ((d0, middle), (middle, d1)):
+            forces.append(springs.force(rate))
+            springs.move(start, stop, 0.5 * (t1 - t0))
+        forces.append(springs.force(rate))
         outermost = int(np.flatnonzero(springs.touching).max(initial=0))
-        radius[t1] = float(x[outermost]) + (0.5 * width / cells if outermost else 0.0)
-        at += (before + 4.0 * middle + force[t1]) * (d1 - d0) / 6.0
-        work[t1] = at
-    F, a, W = (np.array([one[t] for t in times]) for one in (force, radius, work))
-    along = np.array([d(t) for t in times])
-    return Followed(np.array(times), along, F, a, W, springs.first, springs.last, springs.touches)
+        edge = float(x[outermost]) + (0.5 * width / cells if outermost else 0.0)
+        rows[t1] = d1, forces[2], edge, work + float(np.dot((1.0, 4.0, 1.0), forces)) * (d1 - d0) / 6.0
+    along, force, radius, work = np.array([rows[t] for t in times]).T
+    return Followed(np.array(times), along, force, radius, work, springs.first, springs.last, springs.touches)
 
 
 def evenly(d: Legs, per_leg: int) -> list[float]:

@@ -24,45 +24,26 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cached_property, partial
 from itertools import pairwise
+from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.integrate import quad
-from scipy.optimize import brentq, minimize_scalar
 
-ACCURACY = 1e-11
-"""Relative accuracy asked of each piece of a quadrature."""
-ROOT = 1e-14
+from validation.references import numerics
+from validation.references.numerics import Floats, Function, Pair, root
+from validation.references.numerics import smooth as smooth
+
+Number = TypeVar("Number", float, Floats)
+integral = partial(numerics.integral, accuracy=1e-11)
 NO_REST = 1e-12
 """Share of the modulus that remains below which nothing does."""
 SCAN = 60
 """Points of a leg at which a maximum or a turn is first searched for."""
-Floats = NDArray[np.float64]
-Function = Callable[[float], float]
-Pair = tuple[float, float]
-
-
-@cache
-def rule(count: int) -> tuple[Floats, Floats]:
-    """Places and weights on 0 to 1, closer at its ends."""
-    nodes, weights = np.polynomial.legendre.leggauss(count)
-    angle = 0.25 * math.pi * (1.0 + nodes)
-    return np.sin(angle) ** 2, 0.25 * math.pi * np.sin(2.0 * angle) * weights
-
-
 LAYERS = (1.0, 5.0, 25.0, 125.0)
 """Times over a relaxation time, within which forces change by themselves after a corner, or a past is felt."""
-
-
-def integral(function: Function, low: float, high: float) -> float:
-    """By adaptive quadrature."""
-    if not high > low:
-        return 0.0
-    return float(quad(function, low, high, epsrel=ACCURACY, epsabs=0.0, limit=400, full_output=1)[0])
 
 
 @dataclass(frozen=True)
@@ -97,15 +78,11 @@ class Material:
 
         s times the transform of E is N(s)/D(s), D = prod_j (1 + s tau_j); that of C is D/(s N).
         """
-        D = np.poly1d([1.0])
-        for _, tau in self.terms:
-            D *= np.poly1d([tau, 1.0])
+        factors = [np.poly1d([tau, 1.0]) for _, tau in self.terms]
+        D = math.prod(factors, start=np.poly1d([1.0]))
         N = self.rest * D
         for j, (p, tau) in enumerate(self.terms):
-            others = np.poly1d([p * tau, 0.0])
-            for k, (_, other) in enumerate(self.terms):
-                others *= np.poly1d([other, 1.0]) if k != j else np.poly1d([1.0])
-            N += others
+            N += math.prod(factors[:j] + factors[j + 1 :], start=np.poly1d([p * tau, 0.0]))
         N *= self.modulus
         flow, poles = 0.0, N
         if self.rest == 0.0 and self.terms:
@@ -125,10 +102,11 @@ class Material:
         _, flow, arms = self.retarded
         return flow + sum(c * s * math.exp(s * t) for c, s in arms)
 
-    def yielded(self, t: float) -> float:
+    def yielded(self, t: Number) -> Number:
         """int_0^t C [time/stress]."""
         at_once, flow, arms = self.retarded
-        return at_once * t + 0.5 * flow * t * t + sum(c * (math.expm1(s * t) / s - t) for c, s in arms)
+        slow: Number = sum((c * (np.expm1(s * t) / s - t) for c, s in arms), 0.0 * t)
+        return at_once * t + 0.5 * flow * t * t + slow
 
 
 @dataclass(frozen=True)
@@ -144,9 +122,10 @@ class Power:
         n = self.exponent
         return self.factor * 0.5 * math.sqrt(math.pi) * n * math.gamma(0.5 * n) / math.gamma(0.5 * (n + 1.0))
 
-    def depth(self, a: float) -> float:
+    def depth(self, a: Number) -> Number:
         """g(a) [length]."""
-        return float(self.reduced * a**self.exponent)
+        depth: Number = self.reduced * a**self.exponent
+        return depth
 
     def radius(self, d: float) -> float:
         """a [length] of an elastic contact at d."""
@@ -156,10 +135,11 @@ class Power:
         """F/E* [length^2] of an elastic contact of that radius."""
         return 2.0 * self.exponent / (self.exponent + 1.0) * self.depth(a) * a
 
-    def of_volume(self, volume: float) -> float:
+    def of_volume(self, volume: Number) -> Number:
         """The radius [length] where F/E* is that."""
         n = self.exponent
-        return float((max(0.0, volume) * (n + 1.0) / (2.0 * n * self.reduced)) ** (1.0 / (n + 1.0)))
+        radius: Number = np.maximum(0.0, volume * (n + 1.0) / (2.0 * n * self.reduced)) ** (1.0 / (n + 1.0))
+        return radius
 
 
 @dataclass(frozen=True)
@@ -210,12 +190,9 @@ class Legs:
 
     def pieces(self, low: float, high: float) -> list[tuple[float, float, float]]:
         """(from, to, rate) of each leg between two times."""
-        found = []
-        for (a, b), rate in zip(pairwise(self.times), self._slopes, strict=True):
-            start, stop = max(a, low), min(b, high)
-            if stop > start:
-                found.append((start, stop, rate))
-        return found
+        legs = zip(pairwise(self.times), self._slopes, strict=True)
+        parts = ((max(a, low), min(b, high), rate) for (a, b), rate in legs)
+        return [part for part in parts if part[1] > part[0]]
 
     def hereditary(self, impulse: Function, t: float, low: float = -math.inf) -> float:
         """int_low^t kernel(t - s) d value(s), from the integral of the kernel; a first value that is not 0 is a jump
@@ -272,7 +249,7 @@ class Indentation:
         last = self.d.times[-1]
         if last <= self.turn or self._carried(last, self.start) > 0.0:
             return math.inf
-        return float(brentq(lambda t: self._carried(t, self.start), self.turn, last, xtol=1e-300, rtol=ROOT))
+        return root(lambda t: self._carried(t, self.start), self.turn, last)
 
     def _carried(self, t: float, since: float) -> float:
         """int_since^t E(t - s) dd(s): the pressure in one dimension where touched at `since`."""
@@ -284,7 +261,7 @@ class Indentation:
             return t
         if t >= self.end:
             return self.start
-        return float(brentq(lambda s: self._carried(t, s), self.start, self.turn, xtol=1e-300, rtol=ROOT, maxiter=500))
+        return root(lambda s: self._carried(t, s), self.start, self.turn)
 
     def radius(self, t: float) -> float:
         """a(t) [length]."""
@@ -304,7 +281,7 @@ class Indentation:
 
             layers = [t - times * tau for _, tau in self.material.terms for times in LAYERS]
             ends = sorted({low, high, *(self.body.radius(self.d(s)) for s in layers if start < s < stop)})
-            total += sum(integral(carried, *pair) for pair in pairwise(ends)) if rate > 0.0 else 0.0
+            total += integral(carried, *ends) if rate > 0.0 else 0.0
         return 2.0 * total
 
     @cached_property
@@ -323,26 +300,10 @@ class Indentation:
         return total
 
 
-def smooth(function: Function, low: float, high: float, count: int = 60) -> float:
-    """By one rule of Gauss, of a function that is smooth but at the ends, to which points are moved closer."""
-    places, weights = rule(count)
-    values = [function(low + (high - low) * float(x)) for x in places]
-    return (high - low) * float(weights @ np.array(values))
-
-
 def largest(function: Function, corners: Sequence[float]) -> Pair:
     """Where a function that is smooth between corners is largest, and its value there."""
-    points = [a + (b - a) * i / SCAN for a, b in pairwise(corners) for i in range(SCAN)] + [corners[-1]]
-    values = [function(t) for t in points]
-    i = int(np.argmax(values))
-    best = points[i], values[i]
-    for low, high in ((points[max(0, i - 1)], points[i]), (points[i], points[min(len(points) - 1, i + 1)])):
-        if high > low:
-            found = minimize_scalar(
-                lambda t: -function(t), bounds=(low, high), method="bounded", options={"xatol": 1e-9 * (high - low)}
-            )
-            best = max(best, (float(found.x), -float(found.fun)), key=lambda pair: pair[1])
-    return best
+    points = [a + (b - a) * i / SCAN for a, b in pairwise(corners) for i in range(SCAN)]
+    return numerics.largest(function, [*points, corners[-1]])
 
 
 @dataclass(frozen=True)

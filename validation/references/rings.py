@@ -21,21 +21,20 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ellipe, ellipk
 
-Floats = NDArray[np.float64]
+from validation.references.numerics import Floats as Floats
+
 ROUNDS = 200
-NO_TIME = 1e-300
 
 
-def disc(b: Floats, r: Floats) -> Floats:
-    """w(r) E*/p [length] of discs of radii b (columns) at r (rows)."""
-    b, r = np.broadcast_arrays(b[None, :], r[:, None])
-    inside = r < b
-    k = np.where(inside, r / np.maximum(b, NO_TIME), b / np.maximum(r, NO_TIME)) ** 2
-    outer = r * (ellipe(k) - (1.0 - k) * ellipk(np.minimum(k, 1.0 - 1e-16)))
-    return np.asarray(4.0 / math.pi * np.where(inside, b * ellipe(k), outer))
+def pressed_down(radii: Floats, discs: Floats) -> Floats:
+    """Return w E*/p [length] at radii, shape (n,), of discs of uniform pressure, shape (m,): shape (n, m)."""
+    r, b = np.broadcast_arrays(radii[:, None], discs[None, :])
+    inside = r <= b
+    m = np.divide(np.where(inside, r, b), np.where(inside, b, r)) ** 2
+    e, k = ellipe(m), ellipk(np.minimum(m, np.nextafter(1.0, 0.0)))  # (1 - m) K is 0 at the edge
+    return np.asarray(4.0 / math.pi * np.where(inside, b * e, r * (e - (1.0 - m) * k)))
 
 
 @dataclass
@@ -64,8 +63,7 @@ class Rings:
         self.r = np.sqrt(0.5 * (inner**2 + outer**2))
         self.r[0] = 0.5 * outer[0]
         self.area = math.pi * (outer**2 - inner**2)
-        discs = disc(self.edges[1:], self.r)
-        self._A = np.diff(np.concatenate([np.zeros((self.r.size, 1)), discs], axis=1), axis=1)
+        self._A = np.diff(pressed_down(self.r, self.edges), axis=1)
         self._f = self.profile(self.r)
         self._shares, self._times = (np.array([one[i] for one in self.terms]) for i in (0, 1))
         self._arms = np.zeros((len(self.terms), self.r.size))

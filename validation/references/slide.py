@@ -18,6 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+SETTLING = 2000
+"""Spans of 200 steps within which bodies come to rest."""
 
 
 @dataclass(frozen=True)
@@ -103,27 +105,22 @@ class Integrator:
                 rows.append((step * time_step, self.friction, pull, self.plate[0], impulse))
         return Trace(*(np.asarray(column) for column in zip(*rows, strict=True)))
 
-    def settle(self, time_step: float, residual: float, drag: float | None = None, most: int = 400_000) -> None:
+    def settle(self, time_step: float, residual: float, drag: float | None = None) -> None:
         """Move with the drive at rest until nothing moves any more: momentum and forces below `residual` [FU].
 
         `drag`: of particles on the way [FU·TU/LU], in place of the model's.
         """
         own = self.model
-        self.model = replace(own, drag=own.drag if drag is None else drag)
+        self.model = model = replace(own, drag=own.drag if drag is None else drag)
         try:
-            self._settle(time_step, residual, most)
+            for _ in range(SETTLING):
+                self.run(200, time_step, 0.0)
+                _, upper, plate = self._accelerations(0.0, 0.0)
+                forces = np.concatenate([model.mass * upper.ravel(), model.plate_mass * plate])
+                if max(np.abs(forces).max(), np.abs(self.speeds[2]).max() * model.plate_mass) < residual:
+                    return
         finally:
             self.model = own
-
-    def _settle(self, time_step: float, residual: float, most: int) -> None:
-        for _ in range(most // 200):
-            self.run(200, time_step, 0.0)
-            forces = self._accelerations(0.0, 0.0)
-            largest = max(
-                float(np.abs(self.model.mass * forces[1]).max()), float(np.abs(self.model.plate_mass * forces[2]).max())
-            )
-            if largest < residual and float(np.abs(self.speeds[2]).max()) * self.model.plate_mass < residual:
-                return
         raise ArithmeticError("the bodies do not come to rest")
 
     def _places(self) -> tuple[Array, Array, Array]:

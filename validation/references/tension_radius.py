@@ -7,6 +7,7 @@ of a higher polynomial through more of them).
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 from scipy.optimize import brentq
@@ -41,9 +42,8 @@ def tension_radius(places: Floats, pressure: Floats, stencil: int = PARABOLA) ->
         ValueError: if the largest tension is at an end of the chain, which is then too short.
     """
     radii = []
-    for side in (np.flatnonzero(places <= 0.0), np.flatnonzero(places >= 0.0)):
-        lowest = int(side[np.argmin(pressure[side])])
-        if -pressure[lowest] <= NEGLIGIBLE * np.max(np.abs(pressure)):
+    for lowest in _lowest(places, pressure):
+        if lowest is None:
             return math.nan
         if lowest in (0, places.size - 1):
             raise ValueError("the largest tension is at the end of the chain: the chain is too short")
@@ -77,12 +77,18 @@ def band_limited_radius(places: Floats, pressure: Floats) -> float:
         return float(pressure @ (wave * np.exp(-0.5 * (t / WINDOW) ** 2)))
 
     radii = []
-    for side in (np.flatnonzero(places <= 0.0), np.flatnonzero(places >= 0.0)):
-        lowest = int(side[np.argmin(pressure[side])])
-        if -pressure[lowest] <= NEGLIGIBLE * np.max(np.abs(pressure)) or lowest in (0, places.size - 1):
+    for lowest in _lowest(places, pressure):
+        if lowest is None or lowest in (0, places.size - 1):
             raise ValueError("each side must have its largest tension inside the chain")
         radii.append(abs(float(brentq(slope, places[lowest - 1], places[lowest + 1], xtol=ROOT * spacing))))
     return 0.5 * (radii[0] + radii[1])
+
+
+def _lowest(places: Floats, pressure: Floats) -> Iterator[int | None]:
+    """Where the tension is largest on either side; None where a side has none."""
+    for side in (np.flatnonzero(places <= 0.0), np.flatnonzero(places >= 0.0)):
+        lowest = int(side[np.argmin(pressure[side])])
+        yield lowest if -pressure[lowest] > NEGLIGIBLE * np.max(np.abs(pressure)) else None
 
 
 def state_radius(model: ChainModel, state: State, stencil: int = PARABOLA) -> float:

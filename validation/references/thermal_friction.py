@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from scipy.linalg import solve_banded
 from scipy.optimize import brentq
 
-from validation.references.detachment import garg
+from validation.references.detachment import garg, implicit
 from validation.references.interaction import PairInteraction
 from validation.references.prandtl_tomlinson import HARMONICS, POINTS, Corrugation, slow_friction
 
@@ -54,14 +54,11 @@ def free_corrugation(
     """
     pair = PairInteraction.of(*law)
     reach = math.ceil(REACH * pair.longest_range / spacing)
-    row = spacing * np.arange(-reach, reach + 1)
+    row = spacing * np.arange(-reach, reach + 1)[:, None]
     x = spacing * np.arange(POINTS // 2 + 1) / POINTS
     highest = 8.0 * pair.longest_range + 40.0 * temperature / normal_force
     z = np.linspace(0.05 * pair.shortest_range, highest, HEIGHTS)
-    energy = np.empty((x.size, z.size))
-    for i, place in enumerate(x):
-        r = np.hypot(place - row[:, None], z[None, :])
-        energy[i] = pair.energy(r).sum(axis=0) + normal_force * z
+    energy = np.array([pair.energy(np.hypot(place - row, z)).sum(axis=0) + normal_force * z for place in x])
     lowest = energy.min(axis=1, keepdims=True)
     weights = np.exp(-(energy - lowest) / temperature)
     free = lowest[:, 0] - temperature * np.log(weights.sum(axis=1))
@@ -106,21 +103,14 @@ def thermal_friction(
     energy = 0.5 * stiffness * y**2 + wells.energy(y)
     p = np.exp(-(energy - energy.min()) / temperature)
     p /= p.sum()
-    bands, means = np.zeros((3, y.size)), [math.inf]
+    means = [math.inf]
     least = math.ceil(FORGOTTEN * drag / stiffness * velocity / s)
     while len(means) <= MOST_PERIODS:
         total = 0.0
         for moment in range(1, moments + 1):
             here = (entries + moment) % moments
-            rise = h / temperature * (slopes[here] + spring)
-            moved = share * mobility[here]
-            there = moved * _bernoulli(rise)  # flux from a place to the next: D [B(Δu) p_i − B(−Δu) p_{i+1}]
-            back = there + moved * rise  # B(−x) = B(x) + x
-            bands[1] = 1.0
-            bands[1, :-1] += there
-            bands[1, 1:] += back
-            bands[0, 1:], bands[2, :-1] = -back, -there
-            p = solve_banded((1, 1), bands, p, check_finite=False)
+            step_ahead = implicit(share * mobility[here], h / temperature * (slopes[here] + spring))
+            p = solve_banded((1, 1), step_ahead, p, check_finite=False)
             total -= stiffness * float(p @ y)
         means.append(total / moments)
         if len(means) > least and abs(means[-1] - means[-2]) < SAME * wells.largest_force:
@@ -139,10 +129,3 @@ def textbook_friction(wells: Corrugation, stiffness: float, drag: float, tempera
     largest = wells.largest_force
     slips = garg(largest, bend, drag, temperature, stiffness * velocity)
     return slow_friction(wells, stiffness) - (largest - slips)
-
-
-def _bernoulli(x: Array) -> Array:
-    """x/(e^x − 1)."""
-    small = np.abs(x) < 1e-5
-    safe = np.where(small, 1.0, x)
-    return np.where(small, 1.0 - 0.5 * x, safe / np.expm1(safe))

@@ -1,10 +1,9 @@
 """The continuum limit of the boundary elements: a sphere with a hard wall and V = -W exp(-gap/z_0), ring by ring.
 
-Rings of constant pressure on a half-space; the displacement that a disc of uniform pressure p and radius b causes is
-u(r) = (4 p b/pi E*) E(r/b) inside and (4 p r/pi E*) [E(b/r) - (1 - b²/r²) K(b/r)] outside (Johnson, Contact Mechanics,
-section 3.4), a ring the difference of two discs. The rings in contact are prescribed and the displacement is found, by
-Newton's method, so that the curve goes round its folds and a grid has nothing to pin: the outermost ring in contact is
-just about to part, q_c + sigma(0) = 0, and beyond it q_i + sigma(g_i) = 0. It knows nothing of the peers.
+Rings of constant pressure on a half-space, a ring the difference of two discs (`references.rings`). The rings in
+contact are prescribed and the displacement is found, by Newton's method, so that the curve goes round its folds and a
+grid has nothing to pin: the outermost ring in contact is just about to part, q_c + sigma(0) = 0, and beyond it
+q_i + sigma(g_i) = 0. It knows nothing of the peers.
 """
 
 from __future__ import annotations
@@ -13,8 +12,8 @@ from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
-from scipy.special import ellipe, ellipk
 
+from validation.references.rings import pressed_down
 from validation.speed.clock import spent
 from validation.speed.peers.contacts import (
     A_0,
@@ -42,24 +41,13 @@ LONGEST_STEP = 0.5
 """The same, of one step: the law is followed by its tangent no further."""
 
 
-def _disc(places: Array, radii: Array) -> Array:
-    """Return u(r) under discs of uniform pressure 1 [nm³/µN], shape (places, radii)."""
-    r, b = places[:, None], radii[None, :]
-    inside = b * ellipe(np.minimum((r / b) ** 2, 1.0))
-    m = np.minimum((b / r) ** 2, 1.0 - 1e-15)
-    outside = r * (ellipe(m) - (1.0 - m) * ellipk(m))
-    return np.asarray(4.0 / (np.pi * CONTACT_MODULUS) * np.where(r < b, inside, outside))
-
-
 @lru_cache(maxsize=8)
 def curve(tabor: float, rings: int = RINGS) -> tuple[Array, Array]:
     """Return d [nm] and F [µN] of one Tabor number, the contact radius falling."""
     z, stress = law_range(tabor), WORK_OF_ADHESION / law_range(tabor)
     edges = np.linspace(0.0, REACH * A_0, rings + 1)
     places, area = 0.5 * (edges[1:] + edges[:-1]), np.pi * np.diff(edges**2)
-    compliance = _disc(places, edges[1:])
-    compliance[:, 1:] -= compliance[:, :-1].copy()
-    stiffness = np.linalg.inv(compliance)
+    stiffness = np.linalg.inv(np.diff(pressed_down(places, edges), axis=1) / CONTACT_MODULUS)
     height = places**2 / (2.0 * RADIUS)
     columns = stiffness.sum(axis=1)
     touching = np.unique(np.linspace(DEEPEST, LEAST, STEPS) * rings / REACH).astype(int)[::-1]

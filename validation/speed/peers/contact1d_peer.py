@@ -5,8 +5,6 @@ from __future__ import annotations
 import tempfile
 import time
 
-import numpy as np
-
 from validation.speed.clock import spent
 from validation.speed.peers.contacts import (
     A_0,
@@ -45,10 +43,9 @@ def curve(contact: str, setting: Setting) -> Curve:
     data = plane_tables(contact, setting)
     data["experiment"] = {"kind": "path", "displacements": [float(value) for value in d]}
     with tempfile.TemporaryDirectory() as folder:
-        finished = run(read_scene(data), folder, figures=False)
-        table = np.genfromtxt(finished.folder / "curve.csv", delimiter=",", names=True, dtype=None, encoding="utf-8")
+        table = run(read_scene(data), folder, figures=False).curve
     seconds, wall = spent() - began, time.perf_counter() - clock
-    return Curve(table["displacement"], table["force"], seconds, closed_form(contact, d), wall)
+    return Curve(table.displacement, table.force, seconds, closed_form(contact, d), wall)
 
 
 def plane_tables(contact: str, setting: Setting) -> dict[str, object]:
