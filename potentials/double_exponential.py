@@ -17,30 +17,41 @@ class PairPotential(ABC):
 
     @abstractmethod
     def derivative(self, order: int, r: ArrayLike) -> Array:
-        """Return (−1)ⁿ dⁿV/drⁿ [FU·LU/LUⁿ] of this order n for distances r ≥ 0 [LU] of any shape."""
+        """Return (−1)ⁿ dⁿV/drⁿ [FU·LU/LUⁿ] of the `order` n ≥ 0 at distances r ≥ 0 [LU]; same shape as r."""
 
     def energy(self, r: ArrayLike) -> Array:
-        """Return V(r) [FU·LU] for distances r ≥ 0 [LU] of any shape."""
+        """Return V(r) [FU·LU] at distances r ≥ 0 [LU]; same shape as r."""
         return self.derivative(0, r)
 
     def force(self, r: ArrayLike) -> Array:
-        """Return f(r) = −V′(r) [FU], positive where the particles repel each other."""
+        """Return f(r) = −V′(r) [FU] at distances r ≥ 0 [LU]; same shape as r.
+
+        It is positive where the particles repel each other.
+        """
         return self.derivative(1, r)
 
     def stiffness(self, r: ArrayLike) -> Array:
-        """Return V″(r) = −f′(r) [FU/LU], negative where a pair can become unstable."""
+        """Return V″(r) = −f′(r) [FU/LU] at distances r ≥ 0 [LU]; same shape as r.
+
+        It is negative where a pair can become unstable.
+        """
         return self.derivative(2, r)
 
 
 @dataclass(frozen=True)
 class Exponential(PairPotential):
-    """One term amplitude·exp(−r/range); amplitude [FU·LU] > 0, range [LU] > 0."""
+    """One term of the potential, amplitude·exp(−r/range).
+
+    Attributes:
+        amplitude: energy A at r = 0 [FU·LU], > 0.
+        range: decay length a [LU], > 0.
+    """
 
     amplitude: float
     range: float
 
     def derivative(self, order: int, r: ArrayLike) -> Array:
-        """Return (A/aⁿ) exp(−r/a) [FU·LU/LUⁿ] for distances r [LU] of any shape."""
+        """Return (−1)ⁿ dⁿV/drⁿ = (A/aⁿ) exp(−r/a) [FU·LU/LUⁿ] of the `order` n at distances r [LU]; same shape as r."""
         return np.asarray(self.amplitude * np.exp(-np.asarray(r, dtype=float) / self.range)) / self.range**order
 
 
@@ -61,7 +72,12 @@ class DoubleExponential(PairPotential):
     attraction: Exponential | None = None
 
     def __post_init__(self) -> None:
-        """Check that one distance is force-free."""
+        """Check that exactly one distance is force-free where there is an attraction.
+
+        Raises:
+            ValueError: the attraction does not reach further than the repulsion, or the repulsion does not prevail at r
+                = 0.
+        """
         if self.attraction is None:
             return
         if self.attraction.range <= self.repulsion.range:
@@ -70,13 +86,19 @@ class DoubleExponential(PairPotential):
             raise ValueError("the repulsion must prevail at r = 0 (A/a > B/b)")
 
     def derivative(self, order: int, r: ArrayLike) -> Array:
-        """Return the derivative of the repulsion minus that of the attraction."""
+        """Return (−1)ⁿ dⁿV/drⁿ [FU·LU/LUⁿ] of the `order` n at distances r [LU]; same shape as r.
+
+        It is the derivative of the repulsion minus that of the attraction.
+        """
         repulsion = self.repulsion.derivative(order, r)
         return repulsion if self.attraction is None else repulsion - self.attraction.derivative(order, r)
 
     @property
     def formula(self) -> str:
-        """Return V(r) as text, with 17 significant digits."""
+        """V(r) as text, with amplitudes [FU·LU] and ranges [LU] to 17 significant digits.
+
+        Without an attraction it has one term.
+        """
         terms = f"{self.repulsion.amplitude:.17g} exp(-r/{self.repulsion.range:.17g})"
         if self.attraction is not None:
             terms += f" - {self.attraction.amplitude:.17g} exp(-r/{self.attraction.range:.17g})"
@@ -84,14 +106,14 @@ class DoubleExponential(PairPotential):
 
     @property
     def longest_range(self) -> float:
-        """Return the range of the term that dominates at large distance [LU]."""
+        """Range [LU] of the term that dominates at large distance: the attraction, or the repulsion without one."""
         return self.repulsion.range if self.attraction is None else self.attraction.range
 
     def force_free_distance(self) -> float:
-        """Return the distance r₀ with f(r₀) = 0: r₀ = ln[(A/a)/(B/b)] / (1/a − 1/b) [LU].
+        """Return the distance r₀ [LU] > 0 with f(r₀) = 0: r₀ = ln[(A/a)/(B/b)] / (1/a − 1/b).
 
         Raises:
-            ValueError: for a potential without attraction, which is force-free nowhere.
+            ValueError: the potential has no attraction, and so is force-free nowhere.
         """
         if self.attraction is None:
             raise ValueError("an interaction without attraction has no force-free distance")
@@ -99,9 +121,11 @@ class DoubleExponential(PairPotential):
         return math.log(ratio) / (1.0 / self.repulsion.range - 1.0 / self.attraction.range)
 
     def cutoff_for(self, share: float) -> float:
-        """Return the distance [LU] beyond which the force is below `share` of that at r₀ (without attraction: at 0).
+        """Return the distance r₀ + b ln(1/share) [LU], beyond which the force is small.
 
-        The far force is that of the longest term and falls as exp(−r/b), so the cutoff is r₀ + b ln(1/share).
+        The far force is that of the longest term, of range b, and falls as exp(−r/b): at that distance it is about
+        `share` (relative) of that term's force at the force-free distance r₀. Without attraction r₀ is 0, and b the
+        range of the repulsion.
         """
         start = self.force_free_distance() if self.attraction is not None else 0.0
         return start + self.longest_range * math.log(1.0 / share)

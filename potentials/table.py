@@ -46,26 +46,29 @@ class Table:
 
     @property
     def cell(self) -> float:
-        """Return the grid step of r² [LU²]."""
+        """Grid step of r² [LU²]."""
         return self.cutoff**2 / (self.points - 1 - INNER_CELLS)
 
     @property
     def plane_offset(self) -> float:
-        """Return the distance ε of the two bodies' planes [LU]: ε² lies one cell beyond the margin of the grid."""
+        """Distance ε of the two bodies' planes [LU]: ε² lies one cell beyond the margin of the grid."""
         return math.sqrt((INNER_CELLS + 1) * self.cell)
 
     @property
     def core(self) -> float:
-        """Return the distance [LU] below which the force is smoothed to 0."""
+        """Distance [LU] below which the force is smoothed to 0."""
         return math.sqrt(self.cell)
 
     def grid(self) -> Array:
-        """Return r_L² [LU²] of all entries, shape (points,)."""
+        """Return r_L² [LU²] of all entries, rising, (points,)."""
         first = self.plane_offset**2 - INNER_CELLS * self.cell
         return np.asarray(first + self.cell * np.arange(self.points), dtype=np.float64)
 
     def entries(self) -> tuple[Array, Array, Array]:
-        """Return r_L [LU], energy [FU·LU] and F_table [FU] of all entries, each of shape (points,)."""
+        """Return (r_L [LU], energy [FU·LU], F_table [FU]) of all entries, (points,) each.
+
+        F_table is positive where particles repel each other; the energy is 0 at the cutoff.
+        """
         squared = self.grid()
         distance = np.sqrt(squared)
         r = np.sqrt(np.maximum(squared - self.plane_offset**2, self.cell))
@@ -75,10 +78,13 @@ class Table:
         return distance, self.law.energy(r) - self.law.energy(self.cutoff) + inside, slope * distance
 
     def force(self, r: Array) -> Array:
-        """Return the force in the plane [FU] that LAMMPS interpolates from this table at distances r ≤ r_c [LU].
+        """Return the force in the plane [FU] that LAMMPS interpolates from this table at distances 0 ≤ r ≤ r_c [LU].
 
-        It interpolates g = F_table/r_L by a cubic spline over s = r_L² with knots at the entries. Between two of them,
-        at the share t of the cell h: (1 − t) g₀ + t g₁ − t (1 − t) [(2 − t) M₀ + (1 + t) M₁] h²/6, M = g″.
+        Same shape.
+
+        Repulsion is positive. LAMMPS interpolates g = F_table/r_L by a cubic spline over s = r_L² with knots at the
+        entries. Between two of them, at the share t of the cell h: (1 − t) g₀ + t g₁ − t (1 − t) [(2 − t) M₀ + (1 + t)
+        M₁] h²/6, M = g″.
         """
         slope, bend = _knots(self)
         position = (np.square(r) + self.plane_offset**2 - self.grid()[0]) / self.cell
@@ -91,14 +97,17 @@ class Table:
     # Cached, since a scene needs the errors of few tables often.
     @lru_cache(maxsize=64)  # noqa: B019  # a table is small, and equal by value
     def error_beyond(self, r_min: float, samples: int = 20_000) -> float:
-        """Return the largest interpolation error of the force [FU] for r_min ≤ r ≤ r_c, sampled densely near r_min."""
+        """Return the largest interpolation error of the force [FU] ≥ 0 for r_min ≤ r ≤ r_c.
+
+        `r_min`: [LU], > 0; `samples`: number of distances in geometric progression at which it is measured.
+        """
         r = r_min * (self.cutoff / r_min) ** np.linspace(0.0, 1.0, samples)
         return float(np.abs(self.force(r) - self.law.force(r)).max())
 
 
 @lru_cache(maxsize=4)  # each lateral offset of the bodies needs the knots
 def _knots(table: Table) -> tuple[Array, Array]:
-    """Return g at the entries of a table, and M h²/6 of its spline there, each of shape (points,).
+    """Return g = F_table/r_L [FU/LU] at the entries of a table, and M h²/6 of its spline there, (points,) each.
 
     On a uniform grid M₋ + 4 M₀ + M₊ = 6 δ²g/h² is solved by the decaying Green's function z^|j| / 2√3, z = √3 − 2. The
     spline's ends, where LAMMPS has other end conditions, lie in the margin of INNER_CELLS and beyond the cutoff.
@@ -117,8 +126,8 @@ def _knots(table: Table) -> tuple[Array, Array]:
 def table_for(law: DoubleExponential, cutoff: float, closest: float, error: float) -> Table:
     """Return the smallest table whose force error is at most `error` [FU] from `closest` [LU] to the cutoff [LU].
 
-    The number of points doubles until the measured error (`Table.error_beyond`) is small enough, or MOST_POINTS is
-    reached: the header of the file states the error that was reached.
+    The number of points doubles from 2000 on until the measured error (`Table.error_beyond`) is small enough, or 400
+    000 would be exceeded; the error is then larger. `law`: interaction of a pair.
     """
     table = Table(law, cutoff, FEWEST_POINTS)
     while table.error_beyond(closest) > error and 2 * table.points <= MOST_POINTS:
@@ -127,12 +136,19 @@ def table_for(law: DoubleExponential, cutoff: float, closest: float, error: floa
 
 
 def write_table(table: Table, closest: float, path: Path) -> None:
-    """Write the LAMMPS table file atomically; its header states the interaction and the measured error."""
+    """Write the LAMMPS table file atomically; its header states the interaction and the measured error.
+
+    `closest`: distance [LU] from which on that error holds.
+    """
     write_whole(path, _text(table, closest))
 
 
 @lru_cache(maxsize=4)  # scenes run one after the other mostly share their law, and 32 000 rows take 45 ms
 def _text(table: Table, closest: float) -> str:
+    """Return the text of the LAMMPS table file: a header, and a line for each entry.
+
+    The header has the error of the force beyond `closest` [LU].
+    """
     law = table.law
     distance, energy, force = table.entries()
     header = (

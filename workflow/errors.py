@@ -15,7 +15,12 @@ from typing import ClassVar
 
 @dataclass(frozen=True)
 class SceneEdit:
-    """New values by dotted keys, and effects to leave out."""
+    """A change of a scene that may help.
+
+    Attributes:
+        values: new values by dotted keys.
+        without: names of effects to leave out.
+    """
 
     values: Mapping[str, object] = field(default_factory=dict)
     without: tuple[str, ...] = ()
@@ -38,12 +43,12 @@ class Contact1dError(Exception):
 
     @cached_property
     def message(self) -> str:
-        """Return what is wrong, without the folder of the files."""
+        """What is wrong, as text, without the folder of the files."""
         return str(self)
 
     @property
     def changes(self) -> tuple[SceneEdit, ...]:
-        """Return edits of the scene that may help, the best one first."""
+        """Edits of the scene that may help, the best one first; empty without any."""
         return self._changes
 
 
@@ -68,7 +73,7 @@ class RunError(Contact1dError, RuntimeError):
         self.message, self.folder, self.kept = message, folder, kept
 
     def __str__(self) -> str:
-        """Return the message and the run folder."""
+        """Return the message, and on a second line the run folder."""
         return f"{self.message}\n{'files kept in' if self.kept else 'run folder:'} {self.folder}"
 
 
@@ -88,7 +93,7 @@ class UntrustedError(Contact1dError, RuntimeError):
         self.message, self.advice = message, advice
 
     def __str__(self) -> str:
-        """Return the message, followed by the advice."""
+        """Return the message, and behind a colon the advice where there is any."""
         return f"{self.message}: {self.advice}" if self.advice else self.message
 
 
@@ -117,10 +122,17 @@ class RestlessError(UntrustedError):
 
 
 class TensionError(UntrustedError):
-    """A tensile force that the contact does not sustain; `most` is about its pull-off force [FU]."""
+    """A tensile force that the contact does not sustain, with the suggested fix, 0.9 of the pull-off force.
+
+    Attributes:
+        most: about the pull-off force [FU], positive.
+    """
 
     def __init__(self, force: float, most: float) -> None:
-        """Store the required force and the pull-off force [FU], which are the arguments for pickling."""
+        """Store the required `force`, tension negative, and the pull-off force `most`, positive [FU].
+
+        Both are the arguments for pickling.
+        """
         suggested = float(f"{-0.9 * most:.3g}")  # a tensile force that the contact sustains
         super().__init__(
             f"{force:.4g} FU is never reached: the pull-off force is about {most:.4g} FU",

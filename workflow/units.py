@@ -25,7 +25,12 @@ NUMBER = "1"
 
 
 class ModelUnit(NamedTuple):
-    """An SI unit, and the model unit of the same dimension, LU^length FU^force MU^mass, with TU = √(MU·LU/FU)."""
+    """An SI unit, and the model unit of the same dimension, LU^length FU^force MU^mass, with TU = √(MU·LU/FU).
+
+    Attributes:
+        si: the SI unit.
+        length, force, mass: powers of LU, FU and MU.
+    """
 
     si: str
     length: float = 0.0
@@ -34,7 +39,7 @@ class ModelUnit(NamedTuple):
 
     @property
     def powers(self) -> dict[str, float]:
-        """Return the powers that are not 0, by LU, FU and MU: the unit has a size in SI where these have one."""
+        """The powers that are not 0, by "LU", "FU" and "MU": the unit has a size in SI where these have one."""
         return {base: power for base, power in zip(("LU", "FU", "MU"), self[1:], strict=True) if power}
 
 
@@ -69,9 +74,10 @@ EXACTNESS = 1e-8
 
 
 def scale_of(value: float, unit: str) -> tuple[float, str]:
-    """Return the factor, and the unit with its prefix, for a number of this size in an SI `unit`.
+    """Return (factor, unit with its prefix) in which a number of the size of `value` [`unit`] is written.
 
-    In a compound unit (N/m) the first one takes the prefix, as in mN/m.
+    In a compound unit (N/m) the first one takes the prefix, as in mN/m. The factor is 1 and the unit unchanged for 0
+    and infinity, for a unit without prefixes, and for sizes beyond these.
     """
     power = 0
     if value and math.isfinite(value) and unit in WITH_PREFIX:
@@ -82,14 +88,14 @@ def scale_of(value: float, unit: str) -> tuple[float, str]:
 
 
 def prefixed(value: float, unit: str, digits: int = DIGITS) -> str:
-    """Return a value [SI `unit`] as text with this number of digits and a prefix: `2.356 µN`."""
+    """Return a value [SI `unit`] as text with this number of significant digits and a prefix: `2.356 µN`."""
     factor, name = scale_of(value, unit)
     return f"{value * factor:.{digits}g} {name}"
 
 
 @cache
 def registry() -> Any:
-    """Return pint's registry with the units of the model, for arithmetic with quantities."""
+    """Return pint's registry with the units of the model, for arithmetic with quantities; cached."""
     import pint
 
     units: Any = pint.UnitRegistry()
@@ -99,12 +105,18 @@ def registry() -> Any:
 
 
 def _calculated(operation: Callable[[Any, Any], Any]) -> Callable[[Quantity, Any], Quantity]:
-    """Return the operator that applies pint's `operation` to a quantity and another quantity or a number."""
+    """Return the operator that applies one of pint's, `operation`, to a quantity and another one or a number.
+
+    Its result is in an SI unit of the program, else in base units; its uncertainty is the sum of the changes due to the
+    uncertainty of each operand.
+    """
 
     def calculate(self: Quantity, operand: Any) -> Quantity:
+        """Return the result of the operation with its uncertainty."""
         right = operand if isinstance(operand, Quantity) else Quantity(float(operand), 0.0, NUMBER)
 
         def applied(left_value: float, right_value: float) -> Any:
+            """Return pint's result for two values in the units of the operands."""
             return operation(registry().Quantity(left_value, self.unit), registry().Quantity(right_value, right.unit))
 
         result = applied(self.value, right.value)
@@ -137,21 +149,24 @@ class Quantity:
 
     @classmethod
     def of(cls, entry: Mapping[str, Any], in_si: bool = True) -> Quantity:
-        """Return the quantity of an entry in results.json: in SI, where the entry has that and `in_si` asks for it."""
+        """Return the quantity of an entry in results.json, in SI where the entry has that.
+
+        Without `in_si`, and where the scene has no units, it is in model units.
+        """
         entry = entry.get("si", entry) if in_si else entry
         return cls(entry["value"], entry["uncertainty"], entry["unit"])
 
     @property
     def si(self) -> Quantity | None:
-        """Return this quantity where its unit is an SI unit; None where the scene has no units."""
+        """This quantity where its unit is one of SI, or none; None where it is a unit of the model."""
         return None if self.unit in SI and self.unit != NUMBER else self
 
     def entry(self) -> dict[str, Any]:
-        """Return the entry of this quantity in results.json."""
+        """Return the entry of this quantity in results.json: value, uncertainty and unit by these names."""
         return vars(self).copy()
 
     def to(self, unit: str) -> Quantity:
-        """Return the quantity in another unit, "mN" for instance.
+        """Return the quantity, with its uncertainty, in another unit, "mN" for instance.
 
         Raises:
             pint.DimensionalityError: the unit has another dimension.
@@ -167,7 +182,10 @@ class Quantity:
     __pow__ = _calculated(pow)
 
     def __str__(self) -> str:
-        """Return `402.7 ± 1.3 MPa`: the uncertainty with two digits, SI units with a prefix."""
+        """Return `402.7 ± 1.3 MPa`: the uncertainty with two digits, SI units with a prefix.
+
+        With a relative uncertainty of 1e-8 or less it is the value alone, with five digits.
+        """
         factor, unit = (
             (1.0, self.unit) if self.si is None else scale_of(max(abs(self.value), self.uncertainty), self.unit)
         )
@@ -179,7 +197,10 @@ class Quantity:
 
 
 def rounded(value: float, uncertainty: float) -> str:
-    """Return `value ± uncertainty`: the uncertainty with two digits, the value with the same decimals and exponent."""
+    """Return `value ± uncertainty`: the uncertainty with two digits, the value with the same decimals and exponent.
+
+    An uncertainty that is not finite, or below 1e-11 of the value, leaves the value with ten digits.
+    """
     if not math.isfinite(uncertainty) or uncertainty <= 1e-3 * EXACTNESS * abs(value):
         return f"{value:.10g} ± {uncertainty:.2g}"
     place, power = 1 - math.floor(math.log10(uncertainty)), 0
@@ -213,33 +234,41 @@ class Scales:
     ends: tuple[tuple[Scales, ...], ...] = ()
 
     def know(self, unit: str) -> bool:
-        """Return whether the size of one `unit` in SI is known."""
+        """Return whether the size of one `unit` (of the model) in SI is known."""
         return self.known and unit in SI and (self.mass is not None or not SI[unit].mass)
 
     def factor(self, unit: str) -> float:
-        """Return the SI value of one `unit`. Raises KeyError where it is unknown."""
+        """Return the size of one `unit` (of the model) in its SI unit.
+
+        Raises:
+            KeyError: it is unknown.
+        """
         if not self.know(unit):
             raise KeyError(unit)
         powers = SI[unit]
         return float(self.length**powers.length * self.force**powers.force * (self.mass or 1.0) ** powers.mass)
 
     def base(self, unit: str) -> tuple[float, str]:
-        """Return the factor from a model `unit` to the base unit in which its numbers are shown, and that unit.
+        """Return (factor, unit) with which a number in a model `unit` is shown: factor × number [unit].
 
-        This is the SI unit where its size is known, otherwise the model unit.
+        This is the SI unit where its size is known, otherwise the model unit with the factor 1.
         """
         return (self.factor(unit), SI[unit].si) if self.know(unit) else (1.0, unit)
 
     def written(self, value: float, unit: str) -> tuple[float, str]:
-        """Return the factor and the unit of `base`, with the prefix for a number of this size."""
+        """Return (factor, unit) as `base`, the unit with the prefix for a number `value` in the model `unit`."""
         factor, name = self.base(unit)
         prefix, name = scale_of(value * factor, name)
         return factor * prefix, name
 
     def in_words(self, text: str) -> str:
-        """Return a text with its numbers in SI units, where these are known: `1.5 nN` for `1.5e-09 FU`."""
+        """Return a text with its numbers in SI units, where these are known: `1.5 nN` for `1.5e-09 FU`.
+
+        A unit in brackets without a number is replaced as well. Numbers have four digits, or as many as before.
+        """
 
         def shown(match: re.Match[str]) -> str:
+            """Return a number with its unit in SI; unchanged where the size of the unit is unknown."""
             number, _, unit, alone = match.groups()
             if alone or not self.know(unit):
                 return f"({self.base(alone)[1]})" if alone else match[0]
@@ -253,9 +282,12 @@ class Scales:
         return IN_WORDS.sub(shown, text)
 
     def in_si(self, value: float, uncertainty: float, unit: str) -> dict[str, float | str]:
-        """Return value, uncertainty and unit of a quantity in SI, with the relative uncertainty of the scales added.
+        """Return "value", "uncertainty" and "unit" in SI of a quantity in a model `unit`, that of the scales added.
 
-        Independent changes of a scale add up in squares.
+        Changes by different inputs of the scene add up in squares, and then to the uncertainty of the quantity.
+
+        Raises:
+            KeyError: the size of the unit is unknown.
         """
         factor, model_unit = self.factor(unit), SI[unit]
         relative = abs(model_unit.length) * self.length_uncertainty / self.length

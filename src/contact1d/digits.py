@@ -5,7 +5,9 @@ EXACT = 12
 
 
 def digits_apart(value: float, limit: float, least: int = 3) -> int:
-    """Return the digits, at least `least`, that show which one of two numbers is larger.
+    """Return the number of significant digits, at least `least`, that show which one of two numbers is larger.
+
+    17 at most; `least` for equal numbers.
 
     >>> digits_apart(0.10003, 0.1)
     5
@@ -16,7 +18,7 @@ def digits_apart(value: float, limit: float, least: int = 3) -> int:
 
 
 def apart(value: float, limit: float, least: int = 3) -> tuple[str, str]:
-    """Return both numbers as text, with the digits, at least `least`, that show which one is larger.
+    """Return both numbers as text, with the significant digits, at least `least`, that show which one is larger.
 
     >>> apart(0.10003, 0.1)
     ('0.10003', '0.1')
@@ -26,7 +28,7 @@ def apart(value: float, limit: float, least: int = 3) -> tuple[str, str]:
 
 
 def cleaned(value: float) -> float:
-    """Return the number without its round-off error: 1e-05 for 9.999999999999999e-06, on every machine.
+    """Return a number without its round-off error, to 12 digits: 1e-05 for 9.999999999999999e-06, on every machine.
 
     >>> cleaned(0.1 + 0.2)
     0.3

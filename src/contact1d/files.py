@@ -22,7 +22,10 @@ FULL_DISK = {
 
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
-    """Yield the temporary path to write to; it replaces `path` at the end, unless there is an error."""
+    """Yield the temporary path to write to, `path` with ".part" behind it; it replaces `path` at the end.
+
+    Where the block raises an error, `path` remains as it was and the temporary file is left.
+    """
     part = path.with_name(path.name + PART)
     yield part
     os.replace(part, path)
@@ -32,15 +35,18 @@ class UnreadableError(ValueError):
     """A file that can't be read as text; its arguments are the path, and the reason with what to do."""
 
     def __str__(self) -> str:
-        """Return the path and the reason."""
+        """Return the path and the reason, "path: reason"."""
         return ": ".join(self.args)
 
 
 def read_text(path: Path, largest: int = 8_000_000) -> str:
-    """Return the text of a regular file of at most `largest` bytes, in UTF-8. Raises UnreadableError.
+    """Return the text of a regular file of at most `largest` bytes, in UTF-8, without a byte-order mark.
 
     By default a file may be twice as large as a scene with a measured profile of 1e5 points. A pipe or a device is not
-    opened: it may have no end.
+    opened, since it may have no end.
+
+    Raises:
+        UnreadableError: there is no such file, it is too large, no regular file or no text, or it cannot be read.
     """
     try:
         if path.stat().st_size > largest:
@@ -61,6 +67,6 @@ def read_text(path: Path, largest: int = 8_000_000) -> str:
 
 
 def write_whole(path: Path, text: str) -> None:
-    """Write a text file atomically: completely or not at all."""
+    """Write a text file in UTF-8 atomically: completely or not at all; an existing file is replaced."""
     with whole(path) as part:
         part.write_text(text, encoding="utf-8")

@@ -17,5 +17,5 @@ LAWS: tuple[type[Law], ...] = (Maugis, Receding, Jkr, Relaxing, Frictional, Inde
 
 
 def law_of(scene: Scene) -> type[Law]:
-    """Return the class of the law of a scene."""
+    """Return the class of the contact law of a scene: the first of `LAWS` that applies; the last one applies to all."""
     return next(law for law in LAWS if law.applies(scene))

@@ -38,8 +38,9 @@ class Zone:
     """States of a contact; arrays (m,), or columns of the curve.
 
     Attributes:
-        edge, reach: a and c [LU], both 0 of bodies without a force between them.
-        displacement, force: d [LU] and F [FU].
+        edge, reach: contact radius a and radius c of the attraction [LU], both 0 of bodies without a force between
+            them.
+        displacement, force: d [LU] and F [FU], compression positive.
     """
 
     edge: Array
@@ -50,7 +51,7 @@ class Zone:
 
 @dataclass(frozen=True, eq=False)
 class Dugdale:
-    """The contact of a body on a rigid plane.
+    """The equations of the contact of a body on a rigid plane.
 
     Attributes:
         profile, surface: transformed and actual profile, g and f [LU].
@@ -72,17 +73,27 @@ class Dugdale:
 
     @property
     def end(self) -> float:
-        """Half-width [LU] up to which an attraction may act, just inside the body's own."""
+        """Half-width [LU] up to which an attraction may act, 1e-6 (relative) inside the body's own.
+
+        Infinite of an unbounded body.
+        """
         return self.profile.reach * INSIDE
 
     def widest(self) -> float:
-        """Return the largest a [LU] whose attraction ends on the body. Raises SettingsError where there is none."""
+        """Return the largest a [LU] whose attraction ends on the body, 1e-6 (relative) inside.
+
+        Infinite of an unbounded body.
+
+        Raises:
+            SettingsError: even before contact the attraction exceeds the body.
+        """
         from scipy.optimize import elementwise
 
         if self.end == math.inf:
             return math.inf
 
         def error(edge: Array) -> Array:
+            """Return the gap at c less the range, (m,) [LU], of contacts whose attraction ends with the body."""
             width = np.sqrt((self.end - edge) * (self.end + edge))
             return self.gap_error(edge, width, self.profile.height(edge) - self.ratio * width)
 
@@ -93,30 +104,36 @@ class Dugdale:
 
     @property
     def ratio(self) -> float:
-        """Twice the attraction over the modulus, 2σ₀/E* [1]."""
+        """Twice the attraction over the modulus, 2σ₀/E*, dimensionless."""
         return 2.0 * self.stress / self.modulus
 
     @cached_property
     def _areas(self) -> tuple[Array, Array]:
-        """Positions [LU] from 0 on, dense near kinks, and G there [LU²]."""
+        """Positions x [LU] from 0 to `known`, dense near kinks, and G = ∫₀ˣ g dx there [LU²]."""
         x = np.concatenate([[0.0], np.geomspace(1e-6 * self.known, self.known, 2000)])
         x = beside_kinks(x, self.profile)
         return x, np.append(0.0, np.cumsum(self._integral(x[:-1], x[1:])))
 
     def _integral(self, low: Array, high: Array, nodes: int = 8) -> Array:
-        """Return ∫ g dx [LU²] between positions (n,) [LU], by a Gauss quadrature of so many nodes."""
+        """Return ∫ g dx, (n,) [LU²], from positions `low` to `high`, (n,) [LU].
+
+        By a Gauss quadrature of so many `nodes`.
+        """
         node, weight = gauss(nodes)
         half = 0.5 * (high - low)
         return np.asarray(half * (self.profile.height(0.5 * (low + high)[:, None] + half[:, None] * node) @ weight))
 
     def area(self, x: Array) -> Array:
-        """Return G(x) = ∫₀ˣ g [LU²] at positions from 0 to `known` [LU], (n,)."""
+        """Return G(x) = ∫₀ˣ g dx, (n,) [LU²], at positions x from 0 to `known`, (n,) [LU]."""
         knots, areas = self._areas
         cell = np.clip(np.searchsorted(knots, x, side="right") - 1, 0, knots.size - 1)
         return np.asarray(areas[cell] + self._integral(knots[cell], x))
 
     def _pressed(self, edge: Array, width: Array) -> Array:
-        """Return ∫₀ᵃ g/√(c² − x²) dx [LU], c² = a² + s²; x = c sin t, from 0 or a kink on in powers of √(t − t₀)."""
+        """Return ∫₀ᵃ g/√(c² − x²) dx, (n,) [LU], at `edge` a and `width` s, (n,) [LU], with c² = a² + s².
+
+        With x = c sin t the integral goes from 0 or a kink on in powers of √(t − t₀).
+        """
         c = np.hypot(edge, width)
         kinks = [np.minimum(kink, edge) for kink in self.profile.kinks if kink < self.known]
         angles = [np.zeros_like(edge), *(np.arctan2(kink, np.sqrt((c - kink) * (c + kink))) for kink in kinks)]
@@ -129,7 +146,10 @@ class Dugdale:
         return total
 
     def gap_error(self, edge: Array, width: Array, displacement: Array) -> Array:
-        """Return the gap at c less the range [LU], at a, s and d [LU]; 0 in equilibrium, with d = g(a) − 2σ₀s/E*."""
+        """Return the gap at c less the range, (m,) [LU], at `edge` a, `width` s and displacement d, (m,) [LU].
+
+        s = √(c² − a²). The error is 0 in equilibrium, with d = g(a) − 2σ₀s/E*.
+        """
         c = np.hypot(edge, width)
         angle = np.arctan2(edge, width)
         # c − a without a difference of nearly equal numbers
@@ -138,20 +158,31 @@ class Dugdale:
         return np.asarray(self.surface.height(c) - displacement + 2.0 / math.pi * elastic - self.range)
 
     def states(self, edge: Array, width: Array) -> Zone:
-        """Return the states of contacts with these a and s, (m,) [LU]."""
+        """Return the states of contacts with `edge` a and `width` s = √(c² − a²), (m,) [LU].
+
+        Their displacement is that without a singular stress at a.
+        """
         displacement = self.profile.height(edge) - self.ratio * width
         return Zone(edge, np.hypot(edge, width), displacement, self.forces(edge, width, displacement))
 
     def forces(self, edge: Array, width: Array, displacement: Array) -> Array:
-        """Return F [FU] at a, s and d, (m,) [LU]."""
+        """Return F, (m,) [FU], compression positive, at `edge` a, `width` s and displacement d, (m,) [LU].
+
+        s = √(c² − a²), with the radius c up to which the attraction acts.
+        """
         ring = 0.5 * ((edge**2 + width**2) * np.arctan2(width, edge) - edge * width)
         return np.asarray(2.0 * self.modulus * (edge * displacement - self.area(edge)) - 4.0 * self.stress * ring)
 
     def widths(self, edge: Array) -> Array:
-        """Return s [LU] of contacts of radii a [LU], (m,). Raises SettingsError: the attraction exceeds the body."""
+        """Return s = √(c² − a²), (m,) [LU], in equilibrium of contacts of the radii `edge` a, (m,) [LU].
+
+        Raises:
+            SettingsError: the attraction exceeds the body.
+        """
         from scipy.optimize import elementwise  # which takes longer to import than a small run
 
         def error(width: Array, edge: Array) -> Array:
+            """Return the gap at c less the range, (m,) [LU]."""
             return self.gap_error(edge, width, self.profile.height(edge) - self.ratio * width)
 
         most = np.sqrt((self.end - edge) * (self.end + edge))
@@ -169,12 +200,12 @@ class Dugdale:
         return np.asarray(root.x)
 
     def before(self, reach: Array) -> Array:
-        """Return d [LU] of bodies that attract each other up to c, (m,) [LU], and do not touch."""
+        """Return d, (m,) [LU], of bodies that do not touch and attract each other up to a radius, (m,) [LU]."""
         return np.asarray(self.surface.height(reach) - 2.0 / math.pi * self.ratio * reach - self.range)
 
 
 def covered(reach: float) -> SettingsError:
-    """Return the error of an attraction that exceeds its body, which ends at `reach` [LU]."""
+    """Return the error, to be raised, of an attraction that exceeds its body, which ends at `reach` [LU]."""
     return SettingsError(
         f"the attraction would reach beyond the body, which ends at {reach:.6g} LU: lower adhesion.range or "
         "adhesion.work_of_adhesion, or give a wider profile"

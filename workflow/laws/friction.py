@@ -45,7 +45,7 @@ class JenkinsElements:
     coefficient: float
 
     def displacement_under(self, force: float) -> float:
-        """Return the displacement [LU] that carries a force [FU] ≥ 0; for 0, just short of the first touch."""
+        """Return the displacement [LU] that carries a normal force [FU] ≥ 0; for 0, just short of the first touch."""
         heights = np.sort(self.heights)
         if force == 0.0:
             return float(heights[0] - ROUND_OFF * (heights[-1] - heights[0] or 1.0))
@@ -57,14 +57,21 @@ class JenkinsElements:
         return float((force / self.normal + below[touching]) / count[touching])
 
     def touches(self, before: float, after: float) -> list[float]:
-        """Return the displacements [LU] between two, in order, at which a particle begins or ends to touch."""
+        """Return the displacements [LU] strictly between two, in order, at which a particle begins or ends to touch.
+
+        `before`, `after`: displacements [LU]; where `after` is below `before` the order is falling. Empty without any.
+        """
         low, high = min(before, after), max(before, after)
         between = np.unique(self.heights[(self.heights > low) & (self.heights < high)])
         return [float(height) for height in (between if after > before else between[::-1])]
 
 
 def without_stops(path: Sequence[Stop]) -> list[Stop]:
-    """Return a path without intermediate stops on a straight line at constant displacement, which have no effect."""
+    """Return a path without stops between others of a straight tangential line at constant displacement.
+
+    Such stops have no effect. `path`: (displacement, position along x) [LU] of each stop; the first and the last
+    remain.
+    """
     kept = list(path[:2])
     for stop in path[2:]:
         (depth, start), (next_depth, position) = kept[-2:]
@@ -76,14 +83,17 @@ def without_stops(path: Sequence[Stop]) -> list[Stop]:
 
 
 def elements_of(scene: Scene, x: Array) -> JenkinsElements:
-    """Return the Jenkins elements of a scene with [friction], at positions x [LU] from the apex, (n,)."""
+    """Return the Jenkins elements of a scene with [friction], at positions x, (n,) [LU], from the apex."""
     heights = np.asarray(scene.bodies.height(x), dtype=np.float64)
     stiffnesses = scene.bulk_stiffness, scene.tangential_stiffness
     return JenkinsElements(x, heights, *stiffnesses, scene.the(Friction).coefficient)
 
 
 def stops(experiment: Tangential, elements: JenkinsElements) -> list[Stop]:
-    """Return the load at position 0, and the end of each load step of an experiment."""
+    """Return (displacement, position along x) [LU] of the load, at position 0, and of the end of each load step.
+
+    Where the experiment prescribes normal forces, `elements` give the displacements that carry them.
+    """
     normal = experiment.places()
     if not normal:
         depths: dict[float, float] = {}
@@ -99,7 +109,7 @@ class Frictional(Independent):
     """Contact with friction: one Jenkins element for each particle.
 
     Attributes:
-        ratio: tangential over normal stiffness.
+        ratio: tangential over normal stiffness, dimensionless.
         coefficient: coefficient of friction μ.
     """
 
@@ -116,7 +126,7 @@ class Frictional(Independent):
 
     @classmethod
     def of(cls, scene: Scene, profile: Profile) -> Self:
-        """Return the law of springs with the stiffnesses and the coefficient of friction of a scene."""
+        """Return the law of springs on a rigid plane, with the stiffnesses and coefficient of friction of a scene."""
         spring, coefficient = scene.bulk_stiffness, scene.the(Friction).coefficient
         law: Self = on_plane(
             cls, profile, scene.bodies.spacing, spring, scene.tangential_stiffness / spring, coefficient
@@ -124,7 +134,10 @@ class Frictional(Independent):
         return law
 
     def particles(self, x: Array, deepest: float) -> SlidingSprings:
-        """Return the springs with their sliders at positions x, (n,) [LU]."""
+        """Return the springs with their sliders at positions x, (n,) [LU].
+
+        `deepest`: largest expected displacement [LU].
+        """
         return SlidingSprings(self, x, deepest)
 
 
@@ -144,24 +157,31 @@ class SlidingSprings(Springs):
         return JenkinsElements(self.x, heights, normal, self.law.ratio * normal, self.law.coefficient)
 
     def energies(self, path: Path) -> tuple[float, float]:
-        """Return the elastic energy ½ Σ (k u² + s²/k_t), and the dissipated work of slip [FU·LU]."""
+        """Return (elastic energy at the end of a path, dissipated work of slip along it), both [FU·LU].
+
+        The elastic energy is ½ Σ (k u² + s²/k_t) with the tangential force s of each particle [FU].
+        """
         _, steps = self._slid(path)
         stored = 0.5 * float(np.sum(steps.force[-1:] ** 2)) / self.chain.tangential
         return super().energies(path)[0] + stored, float(steps.work.sum())
 
     def prescribed(self, path: Path) -> dict[str, Array]:
-        """Return the displacements and the positions along x of a path, (m,) [LU]."""
+        """Return "displacement" d and "place", the position along x, of the load steps of a path, (m,) [LU] each."""
         return {"displacement": path.displacement, "place": path.along}
 
     def carried(self, columns: Mapping[str, Array]) -> Followed:
-        """Return normal and tangential forces of load steps along which displacements change in proportion."""
+        """Return the normal and tangential forces of load steps by their columns "displacement" and "place", (m,) [LU].
+
+        Both change in proportion within a step. Normal forces are positive in compression; tangential ones are those on
+        the particles, against their motion along x. The path begins without a tangential force.
+        """
         depths, positions = columns["displacement"], columns["place"]
         normal, steps = self._slid(Path(depths, positions, np.zeros_like(depths)))
         shears = np.pad(steps.force, ((1, 0), (0, 0)))
         return Followed(self.x, normal.sum(axis=1), normal.__getitem__, lambda state: -shears[state])
 
     def _slid(self, path: Path) -> tuple[Array, Slip]:
-        """Return the normal forces in each state, (m, n) [FU], and the slip of each load step, (m − 1, n)."""
+        """Return (normal forces in each state, (m, n) [FU] ≥ 0, slip of each load step, (m − 1, n)) along a path."""
         chain = self.chain
         overlap = np.maximum(path.displacement[:, None] - chain.heights, 0.0)
         moved, pressed = np.diff(path.displacement)[:, None], np.diff(overlap, axis=0)

@@ -46,15 +46,22 @@ force: at a kink between two cells all lattices have the same one, so that none 
 
 
 def elongation(x: Array, modulus: float, work: float) -> Array:
-    """Return Δl(x) = √(2π x W/E*) [LU] at positions x ≥ 0, (n,) [LU]; E* [FU/LU²], W [FU/LU]."""
+    """Return Δl(x) = √(2π x W/E*), (n,) [LU], at positions x ≥ 0, (n,) [LU].
+
+    `modulus`: E* [FU/LU²]; `work`: work of adhesion W [FU/LU].
+    """
     return np.asarray(np.sqrt(2.0 * math.pi * work / modulus * x))
 
 
 def _from_share(share: float, middle: float) -> tuple[float, float]:
-    """Return q and κ of the cell of which a share is in contact up to the limit point: φ(q) is the share there.
+    """Return q and κ, dimensionless, of the cell with the limit point, of which a `share` is in contact up to it.
 
-    `middle`: the height at which half of the rest separates, over the heights of that rest; κ, one of 401 values, makes
-    φ nearest to the mean of the share and 1 there.
+    φ(q) is that share there. κ, one of 401 values in −1 … 1, makes φ nearest to the mean of the share and 1 at
+    `middle`.
+
+    Args:
+        share: of the cell, 0 … 1.
+        middle: the height at which half of the rest of the cell separates, over the heights of that rest, 0 … 1.
     """
     bend = np.linspace(-1.0, 1.0, 401)
     start = 2.0 * share / (1.0 + bend + np.sqrt((1.0 + bend) ** 2 - 4.0 * bend * share))
@@ -65,14 +72,14 @@ def _from_share(share: float, middle: float) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Cells:
-    """The cell of each particle of a chain; arrays (n,) [LU], and `bend` without a unit.
+    """The cell of each particle of a chain; arrays (n,).
 
     Attributes:
-        heights: g(x) of the particle.
-        hold: height g − d above which its cell is separated.
-        width: heights below that over which it separates.
-        fall: c of the module's docstring.
-        bend: κ of the module's docstring.
+        heights: g(x) of the particle [LU].
+        hold: height g − d [LU] above which its cell is separated.
+        width: heights [LU] below that over which it separates.
+        fall: c of the module's docstring [LU].
+        bend: κ of the module's docstring, dimensionless.
     """
 
     heights: Array
@@ -82,18 +89,27 @@ class Cells:
     bend: Array
 
     def shares(self, displacements: Array) -> Array:
-        """Return φ of each particle, (m, n), at displacements (m,) [LU] of bodies in contact."""
+        """Return the share φ of each cell in contact, (m, n) in 0 … 1, at displacements (m,) [LU].
+
+        Bodies are taken to be in contact, also where they would have separated.
+        """
         heights = self.heights - displacements[:, None]
         q = np.clip((self.hold - heights) / self.width, 0.0, 1.0)
         return np.asarray(q * (1.0 + self.bend * (1.0 - q)))
 
     def lengths(self, displacements: Array) -> Array:
-        """Return f/k of each particle, (m, n) [LU], at displacements (m,) [LU] of bodies in contact."""
+        """Return the force over the stiffness of each particle, (m, n) [LU], at displacements (m,) [LU].
+
+        Compression is positive. Bodies are taken to be in contact, also where they would have separated.
+        """
         share = self.shares(displacements)
         return np.asarray(share * (displacements[:, None] - self.heights + self.fall * (1.0 - share)))
 
     def forces(self, displacements: Array, stiffness: float) -> Array:
-        """Return F, (m,) [FU], at displacements (m,) [LU] of bodies in contact; `stiffness` of a particle [FU/LU]."""
+        """Return F, (m,) [FU], compression positive, at displacements (m,) [LU] of bodies in contact.
+
+        `stiffness`: of one particle [FU/LU].
+        """
         return np.asarray(stiffness * self.lengths(displacements).sum(axis=1))
 
 
@@ -132,7 +148,9 @@ class Jkr(Law):
 
     @classmethod
     def of(cls, scene: Scene, profile: Profile) -> Law:
-        """Return the law, with its curve computed as far as the experiment needs.
+        """Return the law of a scene, with its curve computed as far as the experiment needs.
+
+        A subclass, where called on one.
 
         Raises:
             SettingsError: the contact would be as wide as the body, or its edge would jump.
@@ -160,27 +178,33 @@ class Jkr(Law):
 
     @classmethod
     def from_jkr(cls, jkr: Jkr, scene: Scene, wanted: float, load: float) -> Jkr:
-        """Return the law of this class that has the given JKR contact as its limit.
+        """Return the law of this class that has the given JKR contact as its limit; here `jkr` itself.
 
-        It is computed up to a displacement `wanted` [LU] and a load [FU].
+        A subclass computes it up to a displacement `wanted` [LU] and a load [FU].
         """
         return jkr
 
     def particles(self, x: Array, deepest: float) -> Particles:
-        """Return the adhesive cells at positions x, (n,) [LU]."""
+        """Return the adhesive cells at positions x, (n,) [LU]; `deepest`: largest expected displacement [LU]."""
         return JkrCells(self, x, deepest)
 
     def extent(self, deepest: float, half: float) -> float:
-        """Return the half-width [LU] of the whole chain: adhesion may reach its end."""
+        """Return `half`, the half-width [LU] of the whole chain, at any displacement: adhesion may reach its end."""
         return half
 
     def columns(self, body: Profile, x: Array) -> Mapping[str, tuple[int, Array]]:
-        """Return the fields of `Cells` at positions x, (n,) [LU], with their powers of a length."""
+        """Return the fields hold, width, fall and bend of `Cells` at positions x, (n,) [LU].
+
+        By name: (p, values (n,) in [LUᵖ]), with p = 1, for bend 0. `body`: the profile as the deck has it.
+        """
         cells = self.cells(x, body)
         return {"hold": (1, cells.hold), "width": (1, cells.width), "fall": (1, cells.fall), "bend": (0, cells.bend)}
 
     def largest_length_change(self, displacement: float) -> float:
-        """Return the largest length change of a spring [LU], of the displacement or of pull-off in fixed grips."""
+        """Return the largest length change of a spring [LU], positive.
+
+        It is the displacement [LU], or that of pull-off under fixed grips without its sign where this is larger.
+        """
         return max(displacement, -self.fixed_grips[1])
 
     @property
@@ -190,9 +214,14 @@ class Jkr(Law):
 
     @cached_property
     def _grid(self) -> tuple[Array, Array, Array, int]:
-        """Positions x [LU], h(x) [LU], F of a contact of the radius x [FU], and the index of the least h."""
+        """Positions x [LU], h(x) [LU], F of a contact of radius x [FU], and the index of the least h.
+
+        Where the contact may be as wide as the body, the last two positions are the same, with a far larger h at the
+        last.
+        """
 
         def opened(x: Array) -> Array:
+            """Return h = g − Δl, (n,) [LU], at positions x, (n,) [LU]."""
             return np.asarray(self.profile.height(x) - elongation(x, self.modulus, self.work))
 
         # The first position lies so many decades inside that the least h is far (30 times) outside of it.
@@ -216,32 +245,36 @@ class Jkr(Law):
 
     @property
     def deepest_known(self) -> float:
-        """Displacement [LU] up to which F is known; infinite where the contact covers the whole body."""
+        """Displacement [LU] up to which F is known; infinite where the contact may cover the whole body."""
         return self.end[1] if self.known < self.profile.reach else math.inf
 
     @property
     def end(self) -> tuple[float, float, float]:
-        """Radius [LU], displacement [LU] and force [FU] of the widest contact that is computed."""
+        """Radius [LU], displacement [LU] and force [FU] of the widest contact that is computed.
+
+        Displacement and force are positive in compression.
+        """
         x, h, force, _ = self._grid
         last = int(np.searchsorted(x, x[-1]))
         return float(x[last]), float(h[last]), float(force[last])
 
     @cached_property
     def fixed_grips(self) -> tuple[float, float]:
-        """Contact radius and displacement [LU] at pull-off under fixed grips."""
+        """Contact radius and displacement [LU] at pull-off under fixed grips; the latter is below 0 in tension."""
         x, h, _, least = self._grid
         return float(x[least]), float(h[least])
 
     def is_beyond(self, wanted: float, load: float, margin: float = 1.2) -> bool:
-        """Return whether the curve goes well beyond pull-off, a displacement [LU] and a load [FU].
+        """Return whether the computed curve goes well beyond pull-off, a displacement `wanted` [LU] and a `load` [FU].
 
-        `margin`: radius, displacement and load at its end over those. The end also exceeds the pull-off force.
+        `margin`: factor by which its last radius, displacement and force must exceed the radius at pull-off under fixed
+        grips, `wanted` and `load`; the last force must also exceed the pull-off force.
         """
         least = margin * self.fixed_grips[0], margin * wanted, max(margin * load, self.pull_off_force())
         return all(known > needed for known, needed in zip(self.end, least, strict=True))
 
     def require_one_edge(self) -> None:
-        """Refuse a profile whose h falls again beyond its least value.
+        """Refuse a profile whose h falls again beyond its least value, so that the contact edge would jump.
 
         Raises:
             SettingsError: with the position.
@@ -256,12 +289,13 @@ class Jkr(Law):
             )
 
     def cells(self, x: Array, body: Profile) -> Cells:
-        """Return the cells of particles of a body at positions x, (n,) [LU]."""
+        """Return the cells of particles of a `body` at positions x, (n,) [LU], one spacing wide each."""
         radius, half = np.abs(x), 0.5 * self.spacing
         heights, narrowest = body.height(radius), NARROWEST * self.spacing
         least = self.fixed_grips[0]
 
         def threshold(position: Array) -> Array:
+            """Return H, (n,) [LU], the least h from a position, (n,) [LU], outwards."""
             outer = np.minimum(np.maximum(position, least), body.reach)
             return np.asarray(body.height(outer) - elongation(outer, self.modulus, self.work))
 
@@ -285,53 +319,78 @@ class Jkr(Law):
         return Cells(heights, heights - inner, width, fall, bend)
 
     def energy(self, displacement: float, radius: float) -> float:
-        """Return U(d, a) = E* ∫_0^a (d − g)² dx − πa²W [FU·LU], 0 of bodies apart; ∂U/∂a = 0 in equilibrium."""
+        """Return U(d, a) = E* ∫₀ᵃ (d − g)² dx − πa²W [FU·LU] at a displacement d and a `radius` a [LU].
+
+        It is 0 of separated bodies, a = 0; ∂U/∂a = 0 in equilibrium.
+        """
         x = np.linspace(0.0, radius, POINTS)
         elastic = self.modulus * float(np.trapezoid((displacement - self.profile.height(x)) ** 2, x))
         return elastic - math.pi * radius**2 * self.work
 
     def contact_forces(self, displacements: Array) -> Array:
-        """Return F(d) of bodies in contact, (m,) [FU], at displacements (m,) [LU]; 0 where no contact is stable."""
+        """Return F(d), (m,) [FU], of bodies in contact at displacements (m,) [LU], compression positive.
+
+        0 below pull-off under fixed grips; beyond the computed curve the force at its end.
+        """
         _, h, force, least = self._grid
         return np.asarray(np.interp(displacements, h[least:], force[least:], left=0.0))
 
     def half_widths(self, displacements: Array, gap: float) -> Array:
-        """Return a(d) of bodies in contact, (m,) [LU], at least a spacing; it is the same for any `gap`."""
+        """Return a(d) of bodies in contact, (m,) [LU], at displacements (m,) [LU], at least a spacing.
+
+        It is the same for any `gap`, which is not used.
+        """
         return np.maximum(self.spacing, self.radii(displacements))
 
     def radii(self, displacements: Array) -> Array:
-        """Return the contact radii a(d) of the continuous body, (m,) [LU], at displacements (m,) [LU]."""
+        """Return the contact radii a(d) of the continuous body, (m,) [LU], at displacements (m,) [LU].
+
+        Below pull-off under fixed grips it is the radius there, beyond the computed curve that at its end.
+        """
         x, h, _, least = self._grid
         return np.asarray(np.interp(displacements, h[least:], x[least:]))
 
     @cached_property
     def _rising(self) -> tuple[Array, Array]:
-        """Displacements [LU] and forces [FU] from the force maximum on."""
+        """Displacements [LU] and forces [FU], (k,), from the force maximum to the end of the curve.
+
+        Forces are positive in compression; the first one is the largest tension.
+        """
         _, h, force, least = self._grid
         peak = least + int(np.argmin(force[least:]))
         return h[peak:], force[peak:]
 
     def pull_off_force(self) -> float:
-        """Return the pull-off force F_A [FU]."""
+        """Return the pull-off force F_A [FU], positive: the largest tension."""
         return max(0.0, -float(self._rising[1][0]))
 
     def displacement_at(self, force: float) -> float:
-        """Return the displacement [LU] at which a contact carries a force [FU]; of the force maximum if none does."""
+        """Return the displacement [LU] at which a contact carries a force [FU], compression positive.
+
+        Of a tension above the pull-off force, the displacement of this force; of a force beyond the computed curve, its
+        end.
+        """
         displacements, forces = self._rising
         return float(np.interp(force, forces, displacements))
 
     def _stiffness_under(self, force: float) -> float:
-        """Return dF/dd [FU/LU] under a force [FU], of a tension at SOFTEST_SHARE of the force maximum at most."""
+        """Return dF/dd [FU/LU] under a force [FU], compression positive.
+
+        A tension counts as 0.998 of the force maximum at most.
+        """
         displacements, forces = self._rising
         slopes = np.gradient(forces, displacements)
         return float(np.interp(max(force, -SOFTEST_SHARE * self.pull_off_force()), forces, slopes))
 
     def parted(self, share: float) -> float:
-        """Return the displacement [LU] of pull-off under fixed grips, where the tensile force vanishes at once."""
+        """Return the displacement [LU] of pull-off under fixed grips, where the tension vanishes at once.
+
+        It does not depend on `share`.
+        """
         return self.fixed_grips[1]
 
     def maxima_distance(self, particles: int) -> float:
-        """Return infinity: without a range and with fractions of cells the force has one maximum."""
+        """Return infinity for any number of particles: the force has one maximum."""
         return math.inf
 
 
@@ -344,11 +403,12 @@ class JkrCells(Particles):
 
     @cached_property
     def _cells(self) -> Cells:
+        """Cells of these particles of the body as the deck has it, (n,) each."""
         return self.law.cells(self.x, self.shape)
 
     @cached_property
     def _once(self) -> tuple[Cells, NDArray[np.intp]]:
-        """Cells at different distances from the axis, and the number of particles at each distance."""
+        """Cells of particles at different distances from the axis, (k,) each, and the number of particles at each."""
         _, first, count = np.unique(np.abs(self.x), return_index=True, return_counts=True)
         return Cells(*(column[first] for column in vars(self._cells).values())), count
 
@@ -358,7 +418,10 @@ class JkrCells(Particles):
         return self.law.fixed_grips[1]
 
     def held(self, displacements: Array) -> Array:
-        """Return F, (m,) [FU], of bodies in contact, at displacements (m,) [LU]."""
+        """Return F, (m,) [FU], of bodies in contact at displacements (m,) [LU], compression positive.
+
+        It goes on below pull-off under fixed grips, where no contact is stable.
+        """
         cells, count = self._once
         return np.asarray(self.law.stiffness * (cells.lengths(displacements) @ count))
 
@@ -373,7 +436,10 @@ class JkrCells(Particles):
         return (self.apart, 0.0)
 
     def _holds(self, displacements: Array) -> NDArray[np.bool_]:
-        """Return whether the bodies are in contact at each displacement [LU] of a path, (m,)."""
+        """Return whether the bodies are in contact at each displacement [LU] of a path, (m,), that begins apart.
+
+        Contact begins at displacement 0 and ends below pull-off under fixed grips.
+        """
         held, touching, apart = np.zeros(displacements.size, dtype=bool), False, self.apart
         for i, displacement in enumerate(displacements.tolist()):
             touching = displacement >= -ROUND_OFF * self.law.spacing or (touching and displacement >= apart)
@@ -381,10 +447,15 @@ class JkrCells(Particles):
         return held
 
     def energies(self, path: Path) -> tuple[float, float]:
-        """Return U(d, a) of JKR, and its losses at the jumps: at touch, and at pull-off under fixed grips [FU·LU]."""
+        """Return U(d, a) of JKR at the end of a path that begins apart, and the energy lost along it [FU·LU].
+
+        U is 0 of separated bodies. Energy is lost in the jumps of U at each touch and at each pull-off under fixed
+        grips.
+        """
         held = self._holds(path.displacement)
 
         def energy(displacement: float) -> float:
+            """Return U [FU·LU] of bodies in contact at a displacement [LU]."""
             return self.law.energy(displacement, float(self.law.radii(np.asarray([displacement]))[0]))
 
         made, lost = (np.count_nonzero(np.diff(held.astype(int), prepend=0) == change) for change in (1, -1))
@@ -392,12 +463,16 @@ class JkrCells(Particles):
         return end, lost * energy(self.apart) - made * energy(0.0)
 
     def carried(self, columns: Mapping[str, Array]) -> Followed:
-        """Return the forces of load steps, which are 0 before the first touch and after pull-off."""
+        """Return the forces of load steps at the column "displacement", (m,) [LU], of a path that begins apart.
+
+        They are 0 before the first touch and after pull-off.
+        """
         displacements = columns["displacement"]
         held = self._holds(displacements)
         total = np.where(held, self.held(displacements), 0.0)
 
         def force(state: int) -> Array:
+            """Return the force of each particle, (n,) [FU], in the state of index `state`."""
             lengths = self._cells.lengths(displacements[state : state + 1])[0]
             return np.asarray(self.law.stiffness * lengths * held[state])
 

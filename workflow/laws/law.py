@@ -38,10 +38,14 @@ SOFTEST_SHARE = 0.998
 
 
 class NotCarriedError(ValueError):
-    """A load that exceeds the force at every displacement; `most` is the largest force [FU]."""
+    """A load that exceeds the force at every displacement.
+
+    Attributes:
+        most: largest force that was found [FU], compression positive.
+    """
 
     def __init__(self, most: float) -> None:
-        """Store the largest force `most` [FU]."""
+        """Store the largest force `most` [FU], compression positive."""
         super().__init__(most)
         self.most = most
 
@@ -52,7 +56,8 @@ class Law(ABC):
 
     A new law derives from this class, or from `Independent` (springs on a rigid plane), and has `applies`, `of` and
     `particles`; every other method has a default, that of an elastic contact without attraction. Scenes that run one
-    after the other share an instance with its cached results.
+    after the other share an instance with its cached results. Displacements d [LU] and forces F [FU] are positive in
+    compression; the undeformed gap is the distance [LU] that two opposite surfaces would have without deformation.
 
     Attributes:
         in_time: whether forces depend on the rate of loading.
@@ -62,15 +67,15 @@ class Law(ABC):
         file: name of the deck's file with the `columns` of the particles; "" without one.
         closed_forms: families of closed forms (`body.theory`) that may be printed with a run.
         exact: those of them that solve this law exactly, so that a run must agree with them.
-        gap: undeformed gap G [LU] over a grid of distances, made monotone where pairs would snap.
-        force: force [FU] of one particle on that grid.
+        gap: undeformed gap G [LU] over a grid of distances, rising, made monotone where pairs would snap.
+        force: force [FU] of one particle on that grid, compression positive.
         rest: distance r₀ [LU] of the apexes at displacement 0.
         profile: shape of the upper body.
         spacing: distance of neighbouring particles [LU].
         stiffness: contact stiffness of one particle [FU/LU], both springs in series.
         snaps: whether pairs snap: G(r) falls somewhere, so that loading and unloading differ.
         bend: |d²G/dr²| at the limit point of a joined pair [1/LU]; 0 where none snaps.
-        outer: where pairs snap, the gap of an approaching pair, made monotone from outside [LU].
+        outer: where pairs snap, the gap of an approaching pair, made monotone from outside [LU]; else None.
     """
 
     in_time: ClassVar[bool] = False
@@ -92,18 +97,21 @@ class Law(ABC):
     outer: Array | None = None
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the fields alone, for another process: cached results hold functions, which cannot be sent."""
+        """Return the fields by name, for another process.
+
+        Cached results are left behind, since they hold functions, which cannot be sent.
+        """
         return {entry.name: getattr(self, entry.name) for entry in fields(self)}
 
     @classmethod
     @abstractmethod
     def applies(cls, scene: Scene) -> bool:
-        """Whether this is the law of a scene to which no law before it in `laws.LAWS` applies."""
+        """Return whether this is the law of a scene to which no law before it in `laws.LAWS` applies."""
 
     @classmethod
     @abstractmethod
     def of(cls, scene: Scene, profile: Profile) -> Law:
-        """Return the law of a scene on a rigid plane, for a body of this profile.
+        """Return the law of a scene whose lower body is a rigid plane, for an upper body of this profile.
 
         Raises:
             SettingsError: the law has no solution for this body.
@@ -115,85 +123,111 @@ class Law(ABC):
 
     @classmethod
     def attracts(cls, scene: Scene) -> bool:
-        """Whether the bodies of a scene attract each other."""
+        """Return whether the bodies attract each other: by default whether [interaction] has an attraction."""
         return bool(scene.interaction and scene.interaction.attraction)
 
     @classmethod
     def rule(cls, scene: Scene) -> type[RadiusRule]:
-        """Return the definition of the contact radius of a scene."""
+        """Return the class that defines the contact radius of a scene.
+
+        `rules[0]` of a profile with an edge, else `rules[1]` of bodies that attract each other, else `rules[2]`.
+        """
         return cls.rules[0 if scene.bodies.profile.has_edge else 1 if cls.attracts(scene) else 2]
 
     @classmethod
     def range_of(cls, scene: Scene, assumed: float) -> float:
-        """Return the range h₀ of the attraction [LU]: `assumed` where the law has none, 0 without attraction."""
+        """Return the range h₀ of the attraction [LU].
+
+        `assumed` [LU] where the attraction has no range, 0 without attraction, as by default.
+        """
         return 0.0
 
     def extent(self, deepest: float, half: float) -> float:
-        """Return the half-width [LU] of the reduced model at a displacement `deepest` [LU]; `half`: of the chain [LU].
+        """Return the half-width [LU] of the reduced model at a displacement `deepest` [LU], below 0 as at 0.
 
-        At least four spacings.
+        It ends where the undeformed gap exceeds the range of the forces, and is four spacings at least; `half`, the
+        half-width of the chain [LU], is not used by this default.
         """
         return max(self.half_width(max(deepest, 0.0), self.cutoff_gap), 4.0 * self.spacing)
 
     def columns(self, body: Profile, x: Array) -> Mapping[str, tuple[int, Array]]:
-        """Return constants of each particle that the deck needs: by name, the power of a length and values (n,).
+        """Return constants of each particle that the deck needs, by name: (p, values (n,) in [LUᵖ]); empty by default.
 
-        `body`: the profile as the deck has it; x: positions of the particles, (n,) [LU].
+        `body`: the profile as the deck has it; `x`: positions of the particles, (n,) [LU].
         """
         return {}
 
     def creep(self, time: float) -> float:
-        """Return the displacement a time [TU] after a load, over the instantaneous one."""
+        """Return the displacement a time [TU] after a constant load was applied, over the initial one.
+
+        1 of an elastic body.
+        """
         return 1.0
 
     @classmethod
     def shortest_time(cls, scene: Scene) -> float | None:
-        """Return the shortest relaxation time of a scene [TU]; None where forces depend on the path alone."""
+        """Return the shortest relaxation time of a scene [TU].
+
+        None (the default) where forces depend on the path alone.
+        """
         return None
 
     @classmethod
     def series(cls, scene: Scene) -> tuple[tuple[float, float], ...]:
-        """Return the Prony series of the modulus: shares, and their relaxation times [TU]."""
+        """Return the Prony series of the modulus as pairs: share of the modulus (relative), relaxation time [TU].
+
+        Empty by default, without relaxation.
+        """
         return ()
 
     @classmethod
     def jumps(cls, scene: Scene) -> bool:
-        """Whether the force jumps with the velocity."""
+        """Return whether the force jumps where the velocity does, as that of dashpots; False by default."""
         return False
 
     def sticking(self, mass: float, velocity: float, time: float) -> tuple[str, str] | None:
-        """Return why a body sticks after an impact, and the remedy; None where it rebounds.
+        """Return (why a body sticks after an impact, the remedy) as texts; None where it rebounds, as by default.
 
-        `mass` [MU], impact `velocity` [LU/TU], `time` of the impact of the elastic body [TU].
+        `mass` of the body [MU], impact `velocity` [LU/TU], `time` [TU] that the impact of the elastic body lasts.
         """
         return None
 
     @classmethod
     def cohesive_load(cls, scene: Scene, edge: float, reach: float) -> tuple[float, Callable[[Array], Array]]:
-        """Return the force [FU] of the attraction beyond the contact edge, and the tension that it causes inside.
+        """Return the force [FU] ≤ 0 of the attraction beyond the contact edge, and the tension that it causes inside.
 
-        `edge`: contact radius [LU]; `reach`: radius up to which the attraction acts [LU]. The tension [FU/LU²] is a
-        function of the radius [LU].
+        The tension [FU/LU²], positive, is a function of radii [LU], (n,). By default both are 0.
+
+        Args:
+            scene: whose attraction it is.
+            edge: contact radius [LU].
+            reach: radius up to which the attraction acts [LU].
         """
         return 0.0, np.zeros_like
 
     def largest_length_change(self, displacement: float) -> float:
-        """Return the largest length change of a spring [LU] at a displacement [LU]."""
+        """Return the largest length change of a spring [LU] up to a displacement [LU].
+
+        By default the displacement itself.
+        """
         return displacement
 
     def untouched_radius(self, displacement: float) -> float | None:
         """Return the contact radius [LU] of a body at its first loading to a displacement [LU].
 
-        None where particles show it.
+        None, as by default, where the radius follows from the forces of the particles.
         """
         return None
 
     def contact_force(self, displacement: float) -> float:
-        """Return F(d) [FU], compression positive."""
+        """Return F [FU] at one displacement [LU], both positive in compression."""
         return float(self.contact_forces(np.asarray([displacement]))[0])
 
     def contact_forces(self, displacements: Array) -> Array:
-        """Return F(d) [FU] at displacements (m,) [LU], compression positive: ∫ f dx/s, at 401 positions each."""
+        """Return F(d), (m,) [FU], at displacements (m,) [LU], both positive in compression.
+
+        F = ∫ f dx/spacing over the width in which particles have a force, by the trapezoidal rule at 401 positions.
+        """
         half = self.half_widths(displacements, self.gap[-1])
         x = np.linspace(-half, half, 401)
         gap = self.rest + self.profile.height(x.ravel()).reshape(x.shape) - displacements
@@ -202,21 +236,27 @@ class Law(ABC):
         return np.asarray(np.trapezoid(per_particle, x, axis=0)) / self.spacing
 
     def energy(self, displacement: float, radius: float) -> float | None:
-        """Return the energy [FU·LU] of a contact of a radius [LU] at a displacement [LU], over that of bodies apart.
+        """Return the energy [FU·LU] of a contact of a radius [LU] at a displacement [LU], relative to separated bodies.
 
-        None where the law has no such energy.
+        None, as by default, where the law has no such energy.
         """
         return None
 
     @cached_property
     def half_width(self) -> Callable[[float, float], float]:
-        """Half-width [LU] within which the undeformed gap is below a limit, by displacement and that limit [LU]."""
+        """Function (displacement d [LU], limit [LU]) → half-width [LU] with an undeformed gap below the limit at d.
+
+        One spacing where the gap at the apex exceeds the limit; results are cached.
+        """
         return cache(lambda displacement, gap: float(self.half_widths(np.asarray([displacement]), gap)[0]))
 
     def half_widths(self, displacements: Array, gap: float) -> Array:
-        """Return the half-widths [LU] within which the undeformed gap is below `gap` [LU], at displacements (m,) [LU].
+        """Return the half-widths, (m,) [LU], with an undeformed gap below `gap` [LU] at displacements (m,) [LU].
 
-        Shape (m,); at most the half-width of the body.
+        At most the half-width of the body; one spacing where even the gap at the apex is not below `gap`.
+
+        Raises:
+            OverflowError: an unbounded body is too wide compared with its spacing.
         """
         # A bracket is cut 12 times at 33 positions: a step of a bisection takes as long, and 60 give all digits.
         rounds, cuts = 12, 33
@@ -236,14 +276,21 @@ class Law(ABC):
 
     @property
     def deepest_known(self) -> float:
-        """Displacement [LU] up to which F is known; infinite also where the contact covers the whole body."""
+        """Displacement [LU] up to which F is known.
+
+        Infinite by default, and where the contact covers the whole body.
+        """
         return math.inf
 
     def stopped(self, energy: float) -> float:
-        """Return the displacement [LU] at which ∫F dd is an energy [FU·LU]; infinite beyond `deepest_known`."""
+        """Return the displacement [LU] at which ∫₀ᵈ F dd is an energy [FU·LU].
+
+        Infinite where that is beyond `deepest_known`.
+        """
         deepest, last = self.spacing, self.deepest_known
 
         def stored(displacement: float) -> float:
+            """Return ∫₀ᵈ F dd [FU·LU] up to a displacement [LU]."""
             displacements = np.linspace(0.0, displacement, 200)
             return float(np.trapezoid(self.contact_forces(displacements), displacements))
 
@@ -257,21 +304,29 @@ class Law(ABC):
         return deepest * float(brentq(lambda share: stored(share * deepest) - energy, 0.0, 1.0))
 
     def radius_rate(self, displacement: float) -> float:
-        """Return the derivative da/dd of the contact radius at a displacement [LU]."""
+        """Return da/dd, dimensionless, of the contact radius at a displacement [LU], by a central difference.
+
+        The radius is here that of the largest tension under the undeformed profile, without attraction that of the
+        contact.
+        """
         edge, step = float(self.gap[int(self.force.argmin())]), DIFFERENCE * max(abs(displacement), self.spacing)
         ends = self.half_widths(np.asarray([displacement - step, displacement + step]), edge)
         return float(ends[1] - ends[0]) / (2.0 * step)
 
     def pull_off_force(self) -> float:
-        """Return the largest tension of the predictor [FU]; 0 without attraction."""
+        """Return the largest tension of the predictor [FU], positive; 0 without attraction."""
         return max(0.0, self._largest_tension[1])
 
     @cached_property
     def stiffness_under(self) -> Callable[[float], float]:
-        """Contact stiffness dF/dd [FU/LU], by the force [FU]; of a tension at SOFTEST_SHARE of its maximum at most."""
+        """Function of the force [FU], compression positive → contact stiffness dF/dd [FU/LU]; results are cached.
+
+        A tension counts as 0.998 of the force maximum at most, since the stiffness is 0 at the maximum.
+        """
         return cache(self._stiffness_under)
 
     def _stiffness_under(self, force: float) -> float:
+        """Return dF/dd [FU/LU] under a force [FU], compression positive, a tension as 0.998 of its maximum at most."""
         if force > 0.0:
             deepest = self.displacement_at(force)
             step = DIFFERENCE * (deepest - self._apart)
@@ -283,15 +338,21 @@ class Law(ABC):
 
     @cached_property
     def maxima_distance(self) -> Callable[[int], float]:
-        """Least distance [LU] of two maxima of the tension, by the number of particles in a chain; inf for one maximum.
+        """Function of the number of particles → least distance [LU] of two maxima of the tension.
 
-        Where particles separate one by one, F(d) summed over them has a maximum for each.
+        Infinite for one maximum. Where particles separate one by one, F(d) summed over them has a maximum for each.
+        Results are cached.
         """
         return cache(self._maxima_distance)
 
     @cached_property
     def displacement_at(self) -> Callable[[float], float]:
-        """Displacement [LU] at which F(d) reaches a force ≥ 0, by that force [FU], compression positive.
+        """Function of a force ≥ 0 [FU], compression positive → displacement [LU] at which F(d) reaches it.
+
+        Results are cached.
+
+        The search ends at some 10¹² spacings or distances r₀, whichever is larger, and gives this end for any larger
+        force.
 
         Raises:
             NotCarriedError: the particles coincide before F(d) reaches the force.
@@ -300,6 +361,12 @@ class Law(ABC):
         return cache(self._displacement_at)
 
     def _maxima_distance(self, particles: int) -> float:
+        """Return the least distance in d [LU] of two maxima of the tension of a chain.
+
+        Infinite for one maximum or none.
+
+        The tension must fall by 1e-4 of its maximum between two of them.
+        """
         least_fall = 1e-4  # of the tension between two maxima, over the largest one
         x: Array = self.spacing * (np.arange(particles, dtype=np.float64) - 0.5 * (particles - 1))
         zero = self.displacement_at(0.0)
@@ -314,9 +381,9 @@ class Law(ABC):
 
     @cached_property
     def snap(self) -> tuple[float, float]:
-        """Undeformed gap [LU] at the snap-out of a pair, and the tension [FU] lost there.
+        """Undeformed gap [LU] at which a joined pair snaps out, and the tension [FU] ≥ 0 that is lost there.
 
-        Where no pair snaps, the largest gap and 0.
+        Where no pair snaps, the gap at which forces end (`cutoff_gap`) and 0.
         """
         level = _level_cells(self.gap)
         if level.size == 0 or not self.snaps:
@@ -325,7 +392,7 @@ class Law(ABC):
 
     @property
     def joins(self) -> float:
-        """Undeformed gap [LU] below which an approaching pair has snapped in; the largest gap where none snaps."""
+        """Undeformed gap [LU] below which an approaching pair has snapped in; `cutoff_gap` where none snaps."""
         if self.outer is None:
             return self.cutoff_gap
         level = _level_cells(self.outer)
@@ -337,11 +404,12 @@ class Law(ABC):
         return float(self.gap[-1])
 
     def premature_detachment(self, move: float, force: float) -> float:
-        """Return the premature detachment [LU] of a pair under displacement increments `move` [LU].
+        """Return by how much of the gap [LU], ≥ 0, a joined pair separates too early in increments `move` [LU].
 
-        A move h puts a joined pair h further apart before it relaxes. That is beyond the unstable position next to it,
-        which is 2 √(2 e/|G″|) away at a gap e before the fold of G(r), up to e = h² |G″|/8. The residual of a
-        relaxation, a norm F of the forces [FU], adds to h: it alone detaches the pair at e = 20 · 2F/k.
+        0 where no pair snaps. A move h puts a joined pair h further apart before it relaxes. That is beyond the
+        unstable position next to it, which is 2 √(2 e/|G″|) away at a gap e before the fold of G(r), up to e = h²
+        |G″|/8. The residual `force` of a relaxation, a norm F of the forces [FU], adds to h: it alone detaches the pair
+        at e = 20 · 2F/k.
         """
         if self.bend == 0.0:
             return 0.0
@@ -351,13 +419,21 @@ class Law(ABC):
         return 0.125 * self.bend * (move + math.sqrt(8.0 * residual / self.bend)) ** 2
 
     def stuck_stiffness(self, displacement: float) -> float:
-        """Return the contact stiffness [FU/LU] of all pairs in contact at a displacement [LU], of one pair at least."""
+        """Return the stiffness [FU/LU] of all pairs in contact at a displacement [LU], as if none separated.
+
+        Of one at least.
+
+        Pairs are in contact up to their snap-out, or where none snaps up to the gap of the largest tension.
+        """
         separation = self.snap[0] if self.snaps else float(self.gap[self.force.argmin()])
         width = 2.0 * self.half_width(displacement, separation)
         return max(1.0, width / self.spacing) * self.stiffness
 
     def parted(self, share: float) -> float:
-        """Return the displacement [LU] beyond the force maximum at which the tension has fallen to this share of it."""
+        """Return the displacement [LU] beyond the force maximum at which the tension is below `share` of it.
+
+        `share`: relative, 0 … 1. Where the tension stays above that, the displacement at which the interaction begins.
+        """
         displacements, forces = self._tensions
         peak = int(forces.argmin())
         fallen = forces[:peak] > share * forces[peak]
@@ -365,7 +441,7 @@ class Law(ABC):
 
     @property
     def _apart(self) -> float:
-        """Displacement [LU] below which F = 0."""
+        """Displacement [LU] below which F = 0: r₀ less the gap at which forces end."""
         return self.rest - self.cutoff_gap
 
     @cached_property
@@ -375,7 +451,10 @@ class Law(ABC):
 
     @cached_property
     def _largest_tension(self) -> tuple[float, float]:
-        """Displacement [LU] and value [FU] of the largest tension, by a coarse scan and a finer one around it."""
+        """Displacement [LU] and value [FU] of the largest tension, positive, by a coarse scan and a finer one.
+
+        Without attraction the value is 0 or below.
+        """
         low, high = self._apart, self.rest
         for _ in range(2):
             displacements, step = np.linspace(low, high, 40, retstep=True)
@@ -386,11 +465,20 @@ class Law(ABC):
 
     @cached_property
     def _tensions(self) -> tuple[Array, Array]:
-        """Displacements [LU] from the onset of the interaction to F = 0, and forces [FU]; both (400,)."""
+        """Displacements [LU] from the onset of the interaction to the last F = 0, and F [FU] there, (400,) each.
+
+        F is negative in tension.
+        """
         displacements = np.linspace(self._apart, self.displacement_at(0.0), 400)
         return displacements, self.contact_forces(displacements)
 
     def _displacement_at(self, force: float) -> float:
+        """Return the displacement [LU] at which F(d) rises to a force ≥ 0 [FU], or the end of the search.
+
+        Raises:
+            NotCarriedError: the particles coincide before F(d) reaches the force.
+            OverflowError: the spacing is too small compared with the body.
+        """
         if self.spacing**2 == 0.0:
             raise OverflowError("the spacing is too small compared with the body")
         low = self._largest_tension[0]  # where the force begins to rise
@@ -413,19 +501,19 @@ class Law(ABC):
 
 
 def _level_cells(gap: Array, flatness: float = 1e-6) -> NDArray[np.intp]:
-    """Return the cells of a grid where a gap made monotone is level, since a pair snaps there.
+    """Return the rising indices of the cells in which a `gap` made monotone, (n,) [LU], is level: a pair snaps there.
 
-    `flatness`: rise of the gap in a cell over the mean rise, below which it counts as level.
+    `flatness`: rise of the gap in a cell over the mean rise (relative), below which it counts as level.
     """
     rises = np.diff(gap)
     return np.flatnonzero(rises < flatness * rises.mean())
 
 
 def stopped_at(scene: Scene, law: Law, softer: float = 1.0) -> float:
-    """Return the displacement [LU] at which a body that hits the plane is at rest: ∫F dd = ½ M v².
+    """Return the displacement [LU] at which a body that hits the plane is at rest: ∫F dd = ½ M v² · `softer`.
 
-    0 of an experiment without an impact; infinite beyond `Law.deepest_known`. F is that of the elastic body, divided by
-    `softer`.
+    0 of an experiment without an impact; infinite beyond `Law.deepest_known`. F is that of the elastic body; `softer`,
+    a factor, is how many times softer the actual one is.
     """
     if not isinstance(scene.experiment, Impact):
         return 0.0

@@ -38,7 +38,10 @@ APART = -1.0
 
 @dataclass(frozen=True, eq=False)
 class Maugis(Zoned):
-    """A contact whose attraction has a range. A position on its curve is an index, between two points a fraction.
+    """A contact whose attraction has a range, as a curve of states by rising a, or c before contact.
+
+    A position on the curve is the index of a point, between two points a fraction; −1 stands for bodies without a force
+    between them.
 
     Attributes:
         range: range h₀ of the attraction [LU].
@@ -59,17 +62,31 @@ class Maugis(Zoned):
 
     @classmethod
     def from_jkr(cls, jkr: Jkr, scene: Scene, wanted: float, load: float) -> Maugis:
-        """Return the contact with the scene's range, computed up to a displacement `wanted` [LU] and a load [FU]."""
+        """Return the contact with the scene's range, computed up to a displacement `wanted` [LU] and a load [FU].
+
+        `jkr`: the same contact without a range.
+
+        Raises:
+            SettingsError: the attraction would exceed the body, or its range is too short to be resolved.
+        """
         return _with_range(jkr, scene.the(Adhesion).range or 0.0, scene.bodies.profile, wanted, load)
 
     @classmethod
     def range_of(cls, scene: Scene, assumed: float) -> float:
-        """Return the range of the scene [LU], `assumed` where it has none."""
+        """Return the range h₀ of the scene's adhesion [LU], `assumed` [LU] where it gives none."""
         return scene.the(Adhesion).range or assumed
 
     @classmethod
     def cohesive_load(cls, scene: Scene, edge: float, reach: float) -> tuple[float, Callable[[Array], Array]]:
-        """Return −σ₀ π (c² − a²) [FU], and the function (2σ₀/π) arctan √((c² − a²)/(a² − r²)) of r [LU]."""
+        """Return −π σ₀ (c² − a²) [FU], the force of the attraction beyond the contact edge, and the tension inside.
+
+        The tension is a function (2σ₀/π) arctan √((c² − a²)/(a² − r²)) [FU/LU²] ≥ 0 of radii r ≤ a, (n,) [LU].
+
+        Args:
+            scene: whose adhesion it is.
+            edge: contact radius a [LU].
+            reach: radius c up to which the attraction acts [LU].
+        """
         adhesion, square = scene.the(Adhesion), (reach - edge) * (reach + edge)
         stress, root = adhesion.work / (adhesion.range or math.inf), math.sqrt(square)
         return (
@@ -78,7 +95,7 @@ class Maugis(Zoned):
         )
 
     def particles(self, x: Array, deepest: float) -> MaugisCells:
-        """Return the cells at positions x, (n,) [LU]."""
+        """Return the cells at positions x, (n,) [LU]; `deepest`: largest expected displacement [LU]."""
         return MaugisCells(self, x, deepest)
 
     @cached_property
@@ -88,7 +105,7 @@ class Maugis(Zoned):
 
     @cached_property
     def _nodes(self) -> Zone:
-        """Contacts at which the equations are solved, by rising a from 0 on, limit points among them."""
+        """Contacts at which the equations are solved, by rising a from 0 to `known`, limit points among them."""
         first = 1e-3 * self.known
         edge = np.concatenate([np.linspace(0.0, first, 40, endpoint=False), np.geomspace(first, self.known, 400)])
         edge = beside_kinks(edge, self.profile)
@@ -96,7 +113,10 @@ class Maugis(Zoned):
         return self.equations.states(edge, self.equations.widths(edge))
 
     def _folds(self, edge: Array) -> Array:
-        """Return the radii a [LU] at which d has an extremum, each between two neighbours of a grid (n,) [LU]."""
+        """Return the radii a, (k,) [LU], at which d has an extremum along a rising grid `edge`, (n,) [LU].
+
+        Empty without any.
+        """
         from scipy.optimize import elementwise
 
         d = self.equations.states(edge, self.equations.widths(edge)).displacement
@@ -113,7 +133,7 @@ class Maugis(Zoned):
 
     @cached_property
     def curve(self) -> Zone:
-        """All states from c = 0 on: explicit before contact, then by cubics between the solved contacts."""
+        """All states from c = 0 on: explicit before contact, a = 0, then by cubics between the solved contacts."""
         from scipy.interpolate import CubicSpline
 
         nodes = self._nodes
@@ -133,7 +153,12 @@ class Maugis(Zoned):
         return Zone(*map(np.concatenate, columns))
 
     def positions(self, displacements: Array, start: float = APART) -> Array:
-        """Return the positions on the curve, (m,), of a contact along displacements (m,) [LU] from a `start` on it."""
+        """Return the positions on the curve, (m,), of a contact that goes along displacements (m,) [LU].
+
+        It begins at the position `start`, by default apart, and is at −1 wherever it is apart. Where d turns along the
+        curve it jumps to the next position with the same d; it stays apart until d exceeds −h₀, where the attraction
+        begins.
+        """
         d = self.curve.displacement
         first = -math.inf if start == APART else float(np.interp(start, np.arange(d.size), d))
         path, positions = np.append(first, displacements), np.full(displacements.size + 1, start)
@@ -149,13 +174,19 @@ class Maugis(Zoned):
         return positions[1:]
 
     def states_at(self, positions: Array) -> Zone:
-        """Return the states at positions on the curve, (m,); of bodies apart all columns are 0, d included."""
+        """Return the states at positions on the curve, (m,), linear between points.
+
+        Of bodies apart all columns are 0, d too.
+        """
         number, held = np.arange(self.curve.edge.size, dtype=np.float64), positions != APART
         columns = vars(self.curve).values()
         return Zone(*(np.where(held, np.interp(positions, number, column), 0.0) for column in columns))
 
     def solved(self, displacements: Array, positions: Array) -> Zone:
-        """Return the states at displacements (m,) [LU] near positions (m,) on the curve, to all digits."""
+        """Return the states at displacements (m,) [LU] near `positions` on the curve, (m,), to all digits.
+
+        Of bodies apart a, c and F are 0. Where no solution is found the nearest point of the curve gives a or c.
+        """
         guess = self.states_at(positions)
         edge, width = np.zeros_like(displacements), np.zeros_like(displacements)
         touching, attracted = guess.edge > 0.0, (guess.edge == 0.0) & (positions != APART)
@@ -168,7 +199,10 @@ class Maugis(Zoned):
         return Zone(edge, np.hypot(edge, width), displacements, force)
 
     def _touching(self, displacements: Array, positions: Array) -> tuple[Array, Array]:
-        """Return a and s, (m,) [LU], of contacts at displacements (m,) [LU] near positions (m,) on the curve."""
+        """Return a and s = √(c² − a²), (m,) [LU], of contacts at displacements (m,) [LU].
+
+        `positions`: on the curve, (m,), near them. Where no solution is found, those of the solved contact next to it.
+        """
         from scipy.optimize import elementwise
 
         nodes = self._nodes
@@ -177,9 +211,11 @@ class Maugis(Zoned):
         low += (nodes.displacement[low + 1] < displacements) & (low < nodes.edge.size - 2)
 
         def width(edge: Array, d: Array) -> Array:
+            """Return s, (m,) [LU], at a and d, (m,) [LU], ≥ 0."""
             return np.asarray(np.maximum(self.profile.height(edge) - d, 0.0) / self.equations.ratio)
 
         def error(edge: Array, d: Array) -> Array:
+            """Return the gap at c less the range, (m,) [LU]."""
             return self.equations.gap_error(edge, width(edge, d), d)
 
         low_end, high_end = nodes.edge[low], nodes.edge[low + 1]
@@ -189,7 +225,10 @@ class Maugis(Zoned):
         return edge, width(edge, displacements)
 
     def _attracted(self, displacements: Array, positions: Array) -> tuple[Array, NDArray[np.bool_]]:
-        """Return c, (m,) [LU], of bodies that attract each other and do not touch, and whether it was found."""
+        """Return c, (m,) [LU], of bodies that attract each other and do not touch, and whether it was found, (m,).
+
+        At displacements (m,) [LU] near `positions` on the curve, (m,).
+        """
         from scipy.optimize import elementwise
 
         low = np.clip(positions.astype(np.intp), 0, BEFORE - 1)
@@ -200,7 +239,10 @@ class Maugis(Zoned):
         return np.asarray(root.x), np.asarray(root.success)
 
     def held_at(self, displacement: float) -> float:
-        """Return F [FU] at a displacement [LU] of a contact that is unloaded from the widest, to all digits."""
+        """Return F [FU], compression positive, at a displacement [LU] in unloading from the widest contact.
+
+        It is solved to all digits.
+        """
         position = np.interp(displacement, self.held.displacement, self._unloaded[0])
         return float(self.solved(np.asarray([displacement]), np.atleast_1d(position)).force[0])
 
@@ -213,9 +255,10 @@ class Maugis(Zoned):
 
     @cached_property
     def _unloaded(self) -> tuple[list[float], list[float]]:
-        """Rising positions on the curve of a contact that is unloaded from the widest, both ends of a jump, and jumps.
+        """Positions on the curve in unloading from the widest contact, and the displacements [LU] of jumps; both rise.
 
-        The latter are their displacements [LU], rising.
+        Both ends of a jump are among the positions. The first displacement is that at which the contact is lost, unless
+        the curve is passed down to c = 0.
         """
         d = self.curve.displacement
         passed = np.flatnonzero(d <= np.append(np.minimum.accumulate(d[::-1])[::-1][1:], np.inf)).tolist()
@@ -229,21 +272,27 @@ class Maugis(Zoned):
 
     @cached_property
     def held(self) -> Zone:
-        """States of a contact that is unloaded from the widest, by rising d."""
+        """States of a contact that is unloaded from the widest one, by rising d."""
         return self.states_at(np.asarray(self._unloaded[0]))
 
     @cached_property
     def _grid(self) -> tuple[Array, Array, Array, int]:
+        """Radii a [LU], d [LU] and F [FU] in unloading from the widest contact, by rising d, and 0, the index of least
+        d.
+        """
         return self.held.edge, self.held.displacement, self.held.force, 0
 
     @property
     def limits(self) -> tuple[float, ...]:
-        """Displacements [LU] at which a contact that is unloaded jumps, rising; at the first one it is lost."""
+        """Displacements [LU] at which a contact that is unloaded jumps, rising; empty where it never does."""
         return tuple(self._unloaded[1])
 
     @cached_property
     def critical_radius(self) -> float:
-        """Contact radius [LU] at the force maximum; 0 where that comes before contact."""
+        """Contact radius [LU] at the force maximum; 0 where that comes before contact.
+
+        Where the force maximum is at the end of the computed curve, the radius there.
+        """
         from scipy.optimize import elementwise
 
         nodes = self._nodes
@@ -252,30 +301,40 @@ class Maugis(Zoned):
             return float(nodes.edge[peak])
 
         def force(edge: Array) -> Array:
+            """Return F, (m,) [FU], in equilibrium at radii a, (m,) [LU]."""
             return self.equations.states(edge, self.equations.widths(edge)).force
 
         maximum = elementwise.find_minimum(force, tuple(nodes.edge[peak + i : peak + i + 1] for i in (-1, 0, 1)))
         return float(maximum.x[0])
 
     def half_widths(self, displacements: Array, gap: float) -> Array:
-        """Return c(d) of bodies in contact, (m,) [LU], at least a spacing; it is the same for any `gap`."""
+        """Return c(d) of bodies in contact, (m,) [LU], at displacements (m,) [LU], at least a spacing.
+
+        It is the same for any `gap`, which is not used.
+        """
         return np.maximum(self.spacing, self.reaches(displacements))
 
     def reaches(self, displacements: Array) -> Array:
-        """Return the radii c(d) of the attraction of the continuous body, (m,) [LU], at displacements (m,) [LU]."""
+        """Return the radii c(d) of the attraction, (m,) [LU], in unloading, at displacements (m,) [LU].
+
+        Beyond the computed curve those at its ends.
+        """
         return np.asarray(np.interp(displacements, self.held.displacement, self.held.reach))
 
     def require_one_edge(self) -> None:
         """Accept any profile: where the edge would jump, the curve has a limit point."""
 
     def energy(self, displacement: float, radius: float) -> float:
-        """Return the energy [FU·LU] of a contact that is unloaded from the widest, of a radius a [LU] at d [LU]."""
+        """Return the energy [FU·LU] of a contact in unloading, of a `radius` a [LU] at a displacement [LU].
+
+        0 below the displacement at which the contact is lost. For a = 0 the bodies attract each other without contact.
+        """
         width = (float(self.profile.height(np.asarray([radius]))[0]) - displacement) / self.equations.ratio
         c = math.hypot(radius, width) if radius > 0.0 else float(self.reaches(np.asarray([displacement]))[0])
         return 0.0 if displacement < self.held.displacement[0] else self.energy_of(radius, c, displacement)
 
     def energy_of(self, a: float, c: float, d: float) -> float:
-        """Return the energy [FU·LU] of a state, 0 of bodies apart.
+        """Return the energy [FU·LU] of a state with a, c and d [LU]; 0 of bodies apart, c = 0.
 
         E* ∫₀ᵃ (d−g)² dx − (4σ₀²/E*) ∫ₐᶜ (c²−x²) dx + 4σ₀ ∫ₐᶜ (g−d) √(c²−x²) dx − πc²W
         """
@@ -290,13 +349,16 @@ class Maugis(Zoned):
         return pressed - 4.0 * self.equations.stress**2 / self.modulus * disc + attraction - math.pi * c * c * self.work
 
     def energy_at(self, position: float) -> float:
-        """Return the energy [FU·LU] of the state at a position on the curve."""
+        """Return the energy [FU·LU] of the state at a position on the curve; 0 of bodies apart."""
         zone = self.states_at(np.asarray([position]))
         return self.energy_of(*(float(column[0]) for column in (zone.edge, zone.reach, zone.displacement)))
 
     @cached_property
     def snaps_in(self) -> list[float]:
-        """Displacements [LU] at which a contact that is loaded jumps, rising."""
+        """Displacements [LU] at which a contact that is loaded jumps, rising.
+
+        The begin of the attraction is not among them.
+        """
         d = self.curve.displacement
         passed = np.flatnonzero(d >= np.maximum.accumulate(d))
         return [float(d[a]) for a, b in pairwise(passed) if d[a + 1 : b].min(initial=np.inf) < d[a] - self._round_off]
@@ -308,7 +370,10 @@ class Maugis(Zoned):
         return falls
 
     def lost_between(self, before: float, after: float) -> float:
-        """Return the energy [FU·LU] that a jump between two positions on the curve dissipates, 0 without a jump."""
+        """Return the energy [FU·LU] that a jump between two positions on the curve dissipates; 0 where d is monotonic.
+
+        The jump begins at the first limit point from `before` on.
+        """
         low, high = sorted((math.ceil(max(before, 0.0)), math.ceil(max(after, 0.0))))
         if self._falls[high] == self._falls[low]:
             return 0.0
@@ -324,7 +389,10 @@ class Maugis(Zoned):
 
 
 def _between(column: Array, low: NDArray[np.intp] | int, values: Array) -> Array:
-    """Return the positions of values, (m,), in the cells of a column that begin at the indices `low`."""
+    """Return the positions, (m,), of `values`, (m,), in a `column` of the curve: index plus a fraction 0 … 1.
+
+    `low`: index of the point below each value; where the column does not rise from it to the next, the fraction is 0.
+    """
     rise = column[low + 1] - column[low]
     share = np.divide(values - column[low], rise, out=np.zeros_like(rise), where=rise > 0.0)
     return np.asarray(low + np.clip(share, 0.0, 1.0))
@@ -333,9 +401,16 @@ def _between(column: Array, low: NDArray[np.intp] | int, values: Array) -> Array
 def _with_range(jkr: Jkr, reach: float, surface: Profile, wanted: float, load: float) -> Maugis:
     """Return the law of an attraction of a range `reach` [LU], computed as far as an experiment needs.
 
+    Args:
+        jkr: the same contact without a range.
+        reach: range h₀ [LU].
+        surface: actual profile.
+        wanted: displacement that the curve must include [LU].
+        load: force that it must include [FU].
+
     Raises:
         SettingsError: the attraction would exceed the body, or its width beyond the contact, c − a = πE*h₀²/4W, is too
-            small to be resolved.
+        small to be resolved.
     """
     # Over the radius under fixed grips. Measured: at 1e-10 forces are off by 4e-7, and below that the curve is not
     # monotonic.
@@ -373,11 +448,18 @@ class MaugisCells(ZonedCells):
         return float(self.law.held.displacement[0])
 
     def held(self, displacements: Array) -> Array:
-        """Return F, (m,) [FU], of a contact that is unloaded, at displacements (m,) [LU]."""
+        """Return F, (m,) [FU], compression positive, of a contact that is unloaded, at displacements (m,) [LU].
+
+        0 below the displacement at which it is lost.
+        """
         return self.law.contact_forces(displacements)
 
     def displacement_at(self, force: float) -> float:
-        """Return the largest displacement [LU] that carries a force [FU], by four Newton steps from the curve."""
+        """Return the largest displacement [LU] that carries a force [FU], compression positive, by four Newton steps.
+
+        These start from the curve, and stay there where the force does not rise or the contact is about to be lost.
+        Where no displacement has the force, that of the force maximum.
+        """
         displacement, step = super().displacement_at(force), 1e-3 * self.law.range
         low, high = self.held(np.asarray([displacement - step, displacement + step])).tolist()
         for _ in range(4 if high > low and displacement - step > self.apart else 0):
@@ -386,13 +468,14 @@ class MaugisCells(ZonedCells):
 
     @property
     def limits(self) -> tuple[float, ...]:
-        """Displacements [LU] at which a contact that is unloaded jumps, rising."""
+        """Displacements [LU] at which a contact that is unloaded jumps, rising; empty where it never does."""
         return self.law.limits
 
     def unloading(self, start: float, end: float, count: int) -> Array:
-        """Return the displacements [LU] of load steps in unloading, at equal steps of the radius.
+        """Return the falling displacements, (k,) [LU], of load steps in unloading from `start` to `end` [LU].
 
-        A stiff contact is lost in a small part of the displacement. Beyond contact they are at equal steps of d.
+        The start is not among them. They are at `count` equal steps of the contact radius: a stiff contact is lost in a
+        small part of the displacement. Where the radius is 0 before `end`, half as many at equal steps of d follow.
         """
         touching = self.law.held.edge > 0.0
         a, d = self.law.held.edge[touching], self.law.held.displacement[touching]
@@ -401,7 +484,10 @@ class MaugisCells(ZonedCells):
         return np.append(steps[(steps < start) & (steps > end)], np.append(beyond, [] if beyond.size else [end]))
 
     def work(self, start: float, every: int) -> float:
-        """Return ∫ −F dd [FU·LU] in unloading from a displacement [LU], by the points of the curve and its kinks."""
+        """Return ∫ −F dd [FU·LU] in unloading from `start` [LU] to pull-off, positive where tension prevails.
+
+        By the trapezoidal rule over points of the curve and its jumps, one of `every` so many.
+        """
         d, force = self.law.held.displacement, self.law.held.force
         last = int(np.searchsorted(d, start))
         force = np.append(force[:last], np.interp(start, d, force))
@@ -428,15 +514,22 @@ class MaugisCells(ZonedCells):
 
     @property
     def jumps(self) -> tuple[float, ...]:
-        """Displacements [LU] at which the force jumps, in unloading and in loading, and where the attraction begins."""
+        """Displacements [LU] of jumps of the force in unloading and loading, and −h₀, where the attraction begins."""
         return (*self.limits, *self.law.snaps_in, -self.law.range)
 
     def energies(self, path: Path) -> tuple[float, float]:
-        """Return U(a, c, d) of Maugis, and its losses at jumps along the path [FU·LU]."""
+        """Return U(a, c, d) at the end of a path that begins apart, and the energy lost in jumps along it [FU·LU].
+
+        U is 0 of bodies apart.
+        """
         positions = self.law.positions(path.displacement).tolist()
         lost = sum(self.law.lost_between(*jump) for jump in pairwise([APART, *positions]))
         return self.law.energy_at(positions[-1]), lost
 
     def prescribed(self, path: Path) -> dict[str, Array]:
-        """Return displacements and edges of load steps, (m,) [LU], by the states along the curve and its jumps."""
+        """Return "displacement" d, "edge" a, "reach" c and "height" of load steps, (m,) [LU] each.
+
+        They follow the states along the curve and its jumps on a `path` that begins apart; the height is the mean of g
+        over the contact.
+        """
         return self._edges_of(self.law.solved(path.displacement, self.law.positions(path.displacement)))

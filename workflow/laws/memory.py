@@ -49,7 +49,10 @@ class Edges:
 
 
 def edges_of(profile: Profile, x: Array, spacing: float) -> Edges:
-    """Return the cells of particles at positions x, (n,) [LU], of a body, which ends with the last of its cells."""
+    """Return the cells of particles at positions x, (n,) [LU], one spacing [LU] wide; the body ends with its last cell.
+
+    Where the profile is level within a cell, both its heights are 1e-12 spacings, so that it touches as a whole.
+    """
     radius, half = np.abs(x), 0.5 * spacing
     inner, heights, outer = (
         profile.height(np.minimum(np.maximum(radius + part * half, 0.0), profile.reach)) for part in (-1.0, 0.0, 1.0)
@@ -65,6 +68,8 @@ Ahead = tuple[float, Array, Array, Array]
 
 class Memory:
     """The state of viscoelastic particles: surface displacements, and lengths of the springs in the arms.
+
+    Displacements d and surface displacements u are positive in compression.
 
     Attributes:
         displacement: d of the body [LU].
@@ -84,12 +89,13 @@ class Memory:
         self._known: tuple[float, Ahead] | None = None
 
     def _ahead(self, time: float) -> Ahead:
-        """Return the response of this state after a time [TU], kept until the body moves."""
+        """Return the response of this state after a time [TU], computed once until the body moves."""
         if self._known is None or self._known[0] != time:
             self._known = time, self._after(time)
         return self._known[1]
 
     def _after(self, time: float) -> Ahead:
+        """Return the response of this state after a time [TU]; with dashpots its decay and gain of arms are empty."""
         if self._retarded:
             no_arms = np.empty(0)
             return 1.0, self.outer * np.exp(-time / self._retarded), no_arms, no_arms
@@ -100,15 +106,23 @@ class Memory:
         return response, -past / response, decay, gain
 
     def pressed(self, displacement: float, time: float, velocity: float) -> tuple[Array, Array]:
-        """Return forces over stiffness and overlaps at the end of a load step, both (n,) [LU].
+        """Return (forces over the stiffness, overlaps) at the end of a load step, both (n,) [LU].
 
-        The step goes to a displacement [LU] in a time [TU] and ends with a velocity [LU/TU]. Overlaps of particles that
-        do not touch are below 0, so that they show the contact edge.
+        The step goes to a displacement [LU] in a time [TU] and ends with a velocity [LU/TU]; the state is not changed.
+        Forces are ≥ 0. Overlaps of particles that do not touch are below 0, so that they show the contact edge.
         """
         response, free, *_ = self._ahead(time)
         return self._forces(displacement, self._retarded * velocity, response, free)
 
     def _forces(self, displacement: float, drag: float, response: float, free: Array) -> tuple[Array, Array]:
+        """Return (forces over the stiffness ≥ 0, overlaps), both (n,) [LU], at a displacement [LU].
+
+        Args:
+            displacement: of the body [LU].
+            drag: retardation time × velocity of the body [LU]; 0 without dashpots.
+            response: stiffness of the load step, relative; not used with dashpots.
+            free: u of free surfaces, (n,) [LU].
+        """
         overlap = displacement - self._cells.heights
         if not self._retarded:
             return response * np.maximum(overlap - free, 0.0), overlap - free
@@ -118,15 +132,20 @@ class Memory:
         return part * (push + (1.0 - part) * rise), margin
 
     def _part(self, margin: Array) -> Array:
-        """Return the part φ of each cell that touches, at overlaps (…, n) [LU]."""
+        """Return the part φ of each cell that touches, (…, n) in 0 … 1, at overlaps (…, n) [LU]."""
         return np.clip((self._cells.rises + margin) / self._cells.widths, 0.0, 1.0)
 
     def under(self, load: float, before: float, counts: Array, time: float) -> tuple[float, float]:
-        """Return the displacement [LU] and velocity [LU/TU] after a time [TU] under a load of constant rate.
+        """Return (displacement [LU], velocity [LU/TU]) after a time [TU] in which the load changes at a constant rate.
 
-        `load`: final value ≥ 0 over the stiffness [LU]; `before`: initial value; `counts`: particles of each kind.
-        Dashpots are integrated in two implicit stages, of second order and stable for any step (R. Alexander, SIAM J.
-        Numer. Anal. 14 (1977) 1006).
+        Compression is positive; the state is not changed. Dashpots are integrated in two implicit stages, of second
+        order and stable for any step (R. Alexander, SIAM J. Numer. Anal. 14 (1977) 1006).
+
+        Args:
+            load: at the end, ≥ 0, over the stiffness of a particle [LU].
+            before: at the beginning, over the stiffness [LU]; used with dashpots only.
+            counts: number of particles of each cell, (n,).
+            time: until the end [TU].
         """
         if not self._retarded:
             displacement = self._carrying(load, counts, time, self.displacement, time)
@@ -141,13 +160,21 @@ class Memory:
     def _carrying(self, load: float, counts: Array, time: float, start: float, stage_time: float) -> float:
         """Return the displacement [LU] that carries a load [LU] after a time [TU], the largest one for a load of 0.
 
-        The velocity is that of a motion from `start` [LU] in `stage_time` [TU]. The force rises with the displacement,
-        as a parabola between any two displacements at which a cell begins or ends to touch.
+        The force rises with the displacement, as a parabola between any two displacements at which a cell begins or
+        ends to touch.
+
+        Args:
+            load: ≥ 0, over the stiffness of a particle [LU].
+            counts: number of particles of each cell, (n,).
+            time: until then, in which free surfaces recover [TU].
+            start: displacement from which the body moves [LU].
+            stage_time: in which it moves, at a constant velocity [TU].
         """
         response, free, *_ = self._ahead(time)
         rate, cells = self._retarded / stage_time, self._cells
 
         def excess(displacement: float) -> float:
+            """Return the sum of forces over the stiffness, less the load [LU]."""
             forces, _ = self._forces(displacement, rate * (displacement - start), response, free)
             return float(forces @ counts) - load
 
@@ -170,11 +197,19 @@ class Memory:
         return low + (high - low) * min(max(-2.0 * begin / (slope + root), 0.0), 1.0)
 
     def width(self, margin: Array, counts: Array) -> Array:
-        """Return how many cells touch at overlaps (…, n) [LU], with `counts` (n,) cells of each kind."""
+        """Return how many cells touch, (…), parts of cells included, at overlaps (…, n) [LU].
+
+        `counts`: number of particles of each cell, (n,).
+        """
         return np.asarray(self._part(margin) @ counts)
 
     def go(self, displacement: float, time: float, velocity: float) -> None:
-        """Move the body to a displacement [LU] in a time [TU], at a constant rate, with a final velocity [LU/TU]."""
+        """Move the body to a displacement [LU] in a time [TU], with a final velocity [LU/TU].
+
+        This changes the state in place.
+
+        Surfaces move at a constant rate within the step.
+        """
         _, free, decay, gain = self._ahead(time)
         overlap = displacement - self._cells.heights
         if self._retarded:
@@ -188,7 +223,11 @@ class Memory:
         self.displacement, self.surface, self._known = displacement, after, None
 
     def _recovered(self, displacement: float, time: float, velocity: float) -> Array:
-        """Return u, (n,) [LU], of surfaces that are free at the end of a step or separate within it."""
+        """Return u, (n,) [LU], of surfaces that are free at the end of a load step or separate within it.
+
+        The step takes a time [TU] and ends at a displacement [LU] with a velocity [LU/TU]; it is one of a body with
+        dashpots.
+        """
         kept = np.exp(-time / self._retarded)
         if velocity >= 0.0:
             return np.asarray(self.surface * kept)
@@ -197,9 +236,12 @@ class Memory:
         return np.asarray(np.where(self._touching, separated * since, self.surface * kept))
 
     def along(self, displacements: Array, times: Array, velocities: Array) -> tuple[Array, Array]:
-        """Return the energies stored after load steps, and dissipated in them, over the stiffness; both (n,) [LU²].
+        """Return (energies stored after load steps, energies dissipated in them), over the stiffness of a particle.
 
-        Arguments (m,) are those of `go`. An arm dissipates ∫ share s²/τ dt with s = α + (s₀ − α) e^(−t/τ), α = u′τ; a
+        (n,) [LU²].
+
+        Arguments (m,) are those of `go`, displacements [LU], durations [TU] and final velocities [LU/TU]; the state is
+        then that after the last one. An arm dissipates ∫ share s²/τ dt with s = α + (s₀ − α) e^(−t/τ), α = u′τ; a
         dashpot parallel to a spring T ∫ u′² dt: where a cell touches, at the velocity of the body, on a free surface
         the energy of its spring.
         """
@@ -230,4 +272,5 @@ class Memory:
 
     @property
     def _state(self) -> tuple[Array, ...]:
+        """The arrays of this state: surface, outer, whether cells touch, and each arm; (n,) each."""
         return self.surface, self.outer, self._touching, *self.arms

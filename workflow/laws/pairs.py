@@ -36,18 +36,24 @@ class Independent(Law):
 
     @classmethod
     def range_of(cls, scene: Scene, assumed: float) -> float:
-        """Return the range [LU] of Lennard-Jones surfaces with the same force-free distance as the interaction."""
+        """Return the range [LU] of Lennard-Jones surfaces with the same force-free distance as the interaction.
+
+        0 on a rigid plane and without attraction; `assumed` is not used.
+        """
         law = interaction_law(scene)
         return law.force_free_distance() / LENNARD_JONES_STRESS if law and law.attraction else 0.0
 
     @classmethod
     def of(cls, scene: Scene, profile: Profile) -> Self:
-        """Return the law of one-sided springs under a profile."""
+        """Return the law of one-sided springs on a rigid plane, with spacing and stiffness of a scene.
+
+        `profile`: shape of the upper body.
+        """
         law: Self = on_plane(cls, profile, scene.bodies.spacing, scene.bulk_stiffness)
         return law
 
     def particles(self, x: Array, deepest: float) -> Particles:
-        """Return the springs at positions x, (n,) [LU]."""
+        """Return the springs at positions x, (n,) [LU]; `deepest`: largest expected displacement [LU]."""
         return Springs(self, x, deepest)
 
 
@@ -57,7 +63,9 @@ class Springs(Particles):
 
     @cached_property
     def heights(self) -> tuple[Array, NDArray[np.intp]]:
-        """Undeformed gaps at displacement 0 [LU], without repetition, and the index of each particle's gap, (n,)."""
+        """Undeformed gaps at displacement 0, (k,) [LU], rising and different, and the index of each particle's gap,
+        (n,).
+        """
         gaps = self.law.rest + self.shape.height(np.abs(self.x))
         heights, indices = np.unique(gaps, return_inverse=True)
         return heights, indices
@@ -68,13 +76,16 @@ class Springs(Particles):
         return self.law.rest - self.law.cutoff_gap
 
     def held(self, displacements: Array) -> Array:
-        """Return F [FU] at displacements (m,) [LU], all pairs on the branch of joined ones."""
+        """Return F, (m,) [FU], compression positive, at displacements (m,) [LU], all pairs on the joined branch."""
         heights, indices = self.heights
         forces = self._forces(heights - displacements[:, None], np.ones(heights.size, dtype=bool))
         return np.asarray(forces @ np.bincount(indices))
 
     def carried(self, columns: Mapping[str, Array]) -> Followed:
-        """Return the forces of load steps; a pair that has snapped in stays joined up to its snap-out."""
+        """Return the forces of load steps at the column "displacement", (m,) [LU], on a path that begins apart.
+
+        A pair that has snapped in stays joined up to its snap-out; this is decided where the loading turns.
+        """
         (heights, indices), displacements = self.heights, columns["displacement"]
         counts = np.bincount(indices)
         joined = np.zeros(heights.size, dtype=bool)
@@ -86,18 +97,25 @@ class Springs(Particles):
             joined = (joined | (last < self.law.joins)) & (last < self.law.snap[0])
 
         def force(state: int) -> Array:
+            """Return the force of each particle, (n,) [FU], in the state of index `state`."""
             return np.asarray(self._forces(heights - displacements[state], memory[state])[indices])
 
         return Followed(self.x, total, force)
 
     def energies(self, path: Path) -> tuple[float, float]:
-        """Return the elastic energy ½ k Σ u² [FU·LU] at the end of a path, and 0: none is dissipated."""
+        """Return the elastic energy ½ k Σ u² [FU·LU] at the end of a path, and 0: none is dissipated.
+
+        It is that of one-sided springs on a rigid plane; an interaction of pairs is not included.
+        """
         heights, indices = self.heights
         pressed = np.maximum(path.displacement[-1] - heights, 0.0)
         return 0.5 * self.law.stiffness * float(pressed**2 @ np.bincount(indices)), 0.0
 
     def _forces(self, gaps: Array, joined: NDArray[np.bool_]) -> Array:
-        """Return the forces [FU] of pairs at undeformed gaps (…, n) [LU], by whether each has snapped in, (n,)."""
+        """Return the forces, (…, n) [FU], compression positive, of pairs at undeformed gaps, (…, n) [LU].
+
+        `joined`: whether each pair has snapped in, (n,); without effect where none snaps.
+        """
         law = self.law
         inner = np.interp(gaps, law.gap, law.force, right=0.0)
         if not law.snaps or joined.all():
@@ -107,7 +125,7 @@ class Springs(Particles):
 
 
 def interaction_law(scene: Scene) -> DoubleExponential | None:
-    """Return the pair interaction of a scene, or None on a rigid plane."""
+    """Return the interaction of a pair of opposite particles of a scene, without its cutoff; None on a rigid plane."""
     if scene.interaction is None:
         return None
     terms = scene.interaction
@@ -116,7 +134,14 @@ def interaction_law(scene: Scene) -> DoubleExponential | None:
 
 
 def row_force(law: DoubleExponential, r: Array, spacing: float, cutoff: float) -> Array:
-    """Return the force [FU] of a straight chain on the opposite particle, (n,), at distances r, (n,) [LU]."""
+    """Return the force of a straight chain on a particle opposite to one of its own, (n,) [FU], repulsion positive.
+
+    Args:
+        law: interaction of a pair.
+        r: distances of the particle from the chain, (n,) [LU].
+        spacing: of the chain [LU].
+        cutoff: distance [LU] beyond which a pair has no force.
+    """
     offsets = spacing * np.arange(int(cutoff / spacing) + 1)
     distance = np.hypot(r[:, None], offsets[None, :])
     forces = np.where(distance <= cutoff, law.force(distance), 0.0) * r[:, None] / distance
@@ -144,8 +169,8 @@ def of_pairs(
         stiffness: of one spring [FU/LU].
         cutoff: distance [LU] at which the interaction ends.
         rest: distance of the apexes at displacement 0 [LU].
-        points: distances up to the cutoff in the grid of gaps and forces.
-        chains: how many chains have springs.
+        points: number of distances up to the cutoff in the grid of gaps and forces.
+        chains: how many chains have springs, 1 or 2.
         row: spacing [LU] of the opposite chain where it differs.
     """
     r, force = _force_table(law, row or spacing, cutoff, points)
@@ -162,7 +187,10 @@ def of_pairs(
 
 @lru_cache(maxsize=16)  # a law is mostly that of several bodies
 def _force_table(law: DoubleExponential, spacing: float, cutoff: float, points: int) -> tuple[Array, Array]:
-    """Return distances [LU] up to the cutoff, and the `row_force` [FU] there; both (points,)."""
+    """Return distances [LU] up to the cutoff, and the `row_force` [FU] there, repulsion positive; both (points,).
+
+    `spacing`: of the opposite chain [LU].
+    """
     r = np.linspace(cutoff / points, cutoff, points)
     force = row_force(law, r, spacing, cutoff)
     r.flags.writeable = force.flags.writeable = False
@@ -171,15 +199,24 @@ def _force_table(law: DoubleExponential, spacing: float, cutoff: float, points: 
 
 @lru_cache(maxsize=16)  # as of_pairs
 def on_plane(kind: type[T], profile: Profile, spacing: float, stiffness: float, *parameters: Any) -> T:
-    """Return the law of one chain on a rigid plane: one-sided springs of a `stiffness` [FU/LU].
+    """Return the law of one chain on a rigid plane: one-sided springs of a `stiffness` [FU/LU] each.
 
-    `kind`: class of the law; `parameters`: the fields that it adds to those of `Law`, in their order.
+    Args:
+        kind: class of the law.
+        profile: shape of the upper body.
+        spacing: of the particles [LU].
+        stiffness: of one spring [FU/LU].
+        parameters: the fields that the class adds to those of `Law`, in their order.
     """
     return kind(*springs(spacing, stiffness), profile, spacing, stiffness, False, 0.0, None, *parameters)
 
 
 def springs(spacing: float, stiffness: float) -> tuple[Array, Array, float]:
-    """Return gaps [LU] and forces [FU] of a spring on a rigid plane, and the distance [LU] of apexes that touch, 0."""
+    """Return (gaps [LU], forces [FU], 0): the force of a one-sided spring on a rigid plane over its undeformed gap.
+
+    Gaps (61,) rise from −10⁶ spacings to 0, in geometric progression; a force is −`stiffness` [FU/LU] times the gap, ≥
+    0. The third is the distance [LU] of the apexes at displacement 0.
+    """
     deepest = 1e6 * spacing
     # Straight lines between gaps in geometric progression keep the digits of an overlap, however small.
     gap = np.append(-np.geomspace(deepest, 1e-16 * deepest, 60), 0.0)

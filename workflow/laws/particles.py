@@ -62,7 +62,7 @@ class Particles(ABC):
 
     @property
     def shares_edges(self) -> bool:
-        """Whether the cell at a contact edge carries the load of its part inside the contact.
+        """Whether the cell at a contact edge carries the load of its part inside the contact; False by default.
 
         Then sums over particles converge steadily. Whole particles touch or do not, and their error goes up and down
         with the spacing.
@@ -70,10 +70,12 @@ class Particles(ABC):
         return False
 
     def lattices(self, is_pointed: bool) -> tuple[list[Particles], list[Particles]]:
-        """Return these particles at other positions between spacings, and on finer spacings, on which errors converge.
+        """Return the particles of the same body on other lattices: (moved, on finer spacings).
 
-        The error of a body that `is_pointed`, as a cone, does not depend on the position of its apex: the spacing
-        varies in its place.
+        The finer ones have a half and a quarter of the spacing; there are none where cells do not share their load at
+        an edge. Where there are none, the moved ones are shifted by each of `phases` against the apex; a body with
+        kinks is shifted by four phases in any case. A body with kinks, and one that `is_pointed`, as a cone, whose
+        error does not depend on the position of its apex, is among the moved ones with 0.93 and 0.86 of the spacing.
         """
         kinks, finer = self.law.profile.kinks, (0.5, 0.25) if self.shares_edges else ()
         phases = MORE_PHASES if kinks else () if finer else self.phases
@@ -83,20 +85,23 @@ class Particles(ABC):
         return moved, [self.resized(factor) for factor in finer]
 
     def prescribed(self, path: Path) -> dict[str, Array]:
-        """Return the columns, (m,) each, that prescribe the load steps of a path to a deck; the path begins apart."""
+        """Return the columns of load steps, (m,) each by name, that prescribe a path to a deck; the path begins apart.
+
+        By default {"displacement": d [LU]}.
+        """
         return {"displacement": path.displacement}
 
     @abstractmethod
     def carried(self, columns: Mapping[str, Array]) -> Followed:
-        """Return the forces in load steps with such `prescribed` columns."""
+        """Return the forces on the particles in load steps that have the columns of `prescribed`, (m,) each."""
 
     def follow(self, path: Path) -> Followed:
-        """Return the forces along a path that begins apart."""
+        """Return the forces on the particles in all states of a path that begins apart."""
         return self.carried(self.prescribed(path))
 
     @abstractmethod
     def held(self, displacements: Array) -> Array:
-        """Return F [FU] at displacements (m,) [LU] of a contact that is unloaded from a larger one, (m,)."""
+        """Return F, (m,) [FU], compression positive, of a contact in unloading, at displacements (m,) [LU]."""
 
     @property
     @abstractmethod
@@ -104,43 +109,55 @@ class Particles(ABC):
         """Displacement [LU] below which a contact that is unloaded has no force."""
 
     def energies(self, path: Path) -> tuple[float, float] | None:
-        """Return the energy stored at the end of a path on a rigid plane, and that dissipated along it [FU·LU].
+        """Return (energy stored at the end of a path on a rigid plane, energy dissipated along it), both [FU·LU].
 
-        Computed independently of the forces, which it checks; None where the law has no expression for them.
+        Computed independently of the forces, which it checks; None, as by default, where the law has no expression for
+        them.
         """
         return None
 
     def checked(self, path: Path, finer: int) -> Path:
         """Return the path along which the work of a run is compared with `energies`: dense equilibria from apart on.
 
-        `finer`: how many times as many. Where forces depend on time, the path of the load steps themselves.
+        `finer`: factor on the number of states. Where forces depend on time a law returns the `path` itself.
         """
         return equilibria(path, self.apart, self.jumps, self.law.spacing, finer)
 
     def refined(self, history: History) -> History:
-        """Return a history with further moments on both sides of the jumps of the force."""
+        """Return a history with further moments on both sides of displacements at which the force jumps.
+
+        Unchanged where the force is prescribed or never jumps.
+        """
         return history if history.by_force or not self.jumps else history.refined_at(self.jumps)
 
     def moments(self, deepest: float, velocity: float, count: int) -> Array:
-        """Return the times [TU] of load steps of a pull-off from a displacement [LU] at a velocity [LU/TU]."""
+        """Return the times, (count,) [TU] from 0 on, of load steps of a pull-off.
+
+        It goes from the displacement `deepest` [LU] at a `velocity` [LU/TU]. By default the times are at equal
+        intervals up to the displacement `apart`.
+        """
         return np.linspace(0.0, (deepest - self.apart) / velocity, count)
 
     def displacements_under(self, times: Array, forces: Array) -> tuple[Array, Array | None]:
-        """Return the displacements (m,) [LU] under forces (m,) [FU] ≥ 0 at times (m,) [TU], and the velocities.
+        """Return (displacements (m,) [LU], velocities) under forces, (m,) [FU] ≥ 0, at times, (m,) [TU].
 
-        Velocities (m,) [LU/TU] are those of `Path`; None where displacements are straight between the states.
+        Velocities (m,) [LU/TU] are those of `Path`; None, as by default, where displacements are straight between the
+        states. The default does not depend on the times, and has the displacement 0 for a force of 0.
         """
         depths = {force: self.displacement_at(force) if force > 0.0 else 0.0 for force in np.unique(forces).tolist()}
         return np.asarray([depths[force] for force in forces.tolist()]), None
 
     def force_in_time(self) -> Callable[[float, float, float], float]:
-        """Return the force [FU] on a body that has just touched, as a function to be called state by state.
+        """Return a function of the force F [FU], compression positive, on a body that has just touched.
 
-        Its arguments are the next displacement [LU], the time until then [TU] and the velocity there [LU/TU].
+        It is called state by state with (next displacement [LU], time until then [TU], velocity there [LU/TU]), and
+        remembers the state. By default F depends on the displacement alone: that in unloading, and 0 from pull-off to
+        the next touch.
         """
         is_lost = False
 
         def force(displacement: float, time: float, velocity: float) -> float:
+            """Return F [FU] at a displacement [LU]; the rest is not used."""
             nonlocal is_lost
             is_lost = displacement < self.apart or (is_lost and displacement < 0.0)
             return 0.0 if is_lost else float(self.held(np.asarray([displacement]))[0])
@@ -149,53 +166,62 @@ class Particles(ABC):
 
     @property
     def parted(self) -> float | None:
-        """Displacement [LU] at which a contact that is unloaded is lost; None where that depends on the history."""
+        """Displacement [LU] at which a contact that is unloaded is lost; None where forces depend on time."""
         return None if self.law.in_time else self.apart
 
     @property
     def limits(self) -> tuple[float, ...]:
-        """Limit points [LU], at which the force of a contact that is unloaded jumps; empty where it falls to 0."""
+        """Limit points [LU], rising, at which the force of a contact that is unloaded jumps.
+
+        Empty, as by default, without any.
+        """
         return ()
 
     @property
     def jumps(self) -> tuple[float, ...]:
-        """Displacements [LU] at which the force jumps, in loading or unloading."""
+        """Displacements [LU] at which the force jumps, in loading or unloading; by default the limit points."""
         return self.limits
 
     @property
     def critical_displacement(self) -> float | None:
-        """Displacement [LU] of the force maximum of a contact that is unloaded; None where the law does not give it."""
+        """Displacement [LU] of the force maximum in unloading; None, as by default, where the law does not give it."""
         return None
 
     @property
     def critical_radius(self) -> float | None:
-        """Contact radius [LU] at the force maximum; None where the law does not give it."""
+        """Contact radius [LU] at the force maximum; None, as by default, where the law does not give it."""
         return None
 
     def unloading(self, start: float, end: float, count: int) -> Array:
-        """Return the displacements [LU] of load steps in unloading from `start` to `end` [LU], without the first one.
+        """Return the displacements, (count,) [LU], of load steps in unloading from `start` to `end` [LU].
 
-        They are closest near the end, a limit point, where the force rises as a root.
+        The start is not among them. They are closest near the end, a limit point, where the force rises as a root.
         """
         return end + (start - end) * np.linspace(1.0, 0.0, count + 1)[1:] ** 2
 
     def work(self, start: float, every: int) -> float | None:
-        """Return ∫ −F dd [FU·LU] in unloading from a displacement [LU], with one point of `every` so many of the curve.
+        """Return ∫ −F dd [FU·LU] in unloading from `start` [LU] to pull-off, positive where tension prevails.
 
-        None where the law has no curve.
+        One point of `every` so many of the law's curve is used; None, as by default, where the law has no curve.
         """
         return None
 
     def radii(self, displacements: Array) -> Array | None:
-        """Return the contact radii (m,) [LU] in unloading; None where they follow from the particles' forces."""
+        """Return the contact radii, (m,) [LU], in unloading at displacements (m,) [LU].
+
+        None, as by default, where they follow from the particles' forces.
+        """
         return None
 
     def shifted(self, phase: float) -> Particles:
-        """Return the particles of the same body with its apex `phase` spacings from a particle."""
+        """Return the particles of the same body with its apex `phase` spacings (0 … 1) from a particle."""
         return replace(self, x=positions_within(self._reach, self.law.spacing, phase))
 
     def resized(self, factor: float) -> Particles:
-        """Return the particles of the same body at `factor` times the spacing."""
+        """Return the particles of the same body at `factor` times the spacing, with stiffness and force scaled alike.
+
+        The apex is midway between two particles where the number of particles was even, else at one.
+        """
         law = self.law
         law = replace(law, spacing=factor * law.spacing, stiffness=factor * law.stiffness, force=factor * law.force)
         phase = 0.5 if self.x.size % 2 == 0 else 0.0
@@ -203,12 +229,14 @@ class Particles(ABC):
 
     @property
     def _reach(self) -> float:
+        """Half-width [LU] of the chain, to the end of the last cell."""
         return float(self.x[-1]) + 0.5 * self.law.spacing
 
     def displacement_at(self, force: float) -> float:
-        """Return the largest displacement [LU] at which a force [FU] is carried; of the force maximum if none is.
+        """Return the largest displacement [LU] at which a force [FU], compression positive, is carried in unloading.
 
-        The search goes to a tenth beyond the expected displacement and a spacing.
+        Of a tension that is never carried, the displacement of the force maximum. The search ends a tenth beyond the
+        largest expected displacement and spacing; for a force that is larger there, this end is returned.
         """
         low, high = self.apart, self.deepest + 0.1 * (abs(self.deepest) + self.law.spacing)
         rounds, cuts = 5, 24
@@ -231,10 +259,16 @@ class Particles(ABC):
         return self._crossing(force, displacements[first : first + 2], forces[first : first + 2])
 
     def _crossing(self, force: float, bracket: Array, forces: Array, rounds: int = 40) -> float:
-        """Return the displacement [LU] at which a force [FU] is carried, within a bracket [LU] of less and more force.
+        """Return the displacement [LU] at which a force [FU] is carried, within a bracket of less and more force.
 
         Each round evaluates the secant's displacement and others on both sides of it, which bracket the force more
-        closely if the curve is straight there.
+        closely if the curve is straight there. A force outside those of the bracket gives its nearer end.
+
+        Args:
+            force: that is searched for [FU].
+            bracket: two rising displacements [LU].
+            forces: at these [FU].
+            rounds: most of them.
         """
         sides = np.asarray([-0.5, -0.1, -0.01, -1e-4, 0.0, 1e-4, 0.01, 0.1, 0.5])  # from the secant, over the bracket
         straight = 1e-13 * float(np.abs(forces).max())  # round-off of the difference of the forces

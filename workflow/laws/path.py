@@ -42,7 +42,7 @@ class History:
     Attributes:
         phases: name of the phase of each moment.
         time: times, rising [TU].
-        values: displacements [LU], or forces [FU] where `by_force`.
+        values: displacements [LU], or forces [FU] where `by_force`; compression positive.
         by_force: whether the force is prescribed.
         marks: names under which the last states of phases are reported.
     """
@@ -54,11 +54,14 @@ class History:
     marks: Mapping[str, str]
 
     def denser(self, times: int) -> History:
-        """Return this history with so many moments for each of its own."""
+        """Return this history with `times` as many intervals, of equal length within each of its own."""
         return self.resampled(np.linspace(0.0, len(self.phases) - 1.0, (len(self.phases) - 1) * times + 1))
 
     def resampled(self, moments: Array) -> History:
-        """Return this history at rising moments, in numbers of its own: 1.5 is midway between the second and third."""
+        """Return this history at other rising `moments`, (k,), given in its own numbers.
+
+        1.5 is midway between its second and third moment; it belongs to the phase of the third.
+        """
         known = np.arange(len(self.phases))
         time, values = (np.interp(moments, known, column) for column in (self.time, self.values))
         return replace(
@@ -68,7 +71,7 @@ class History:
     def refined_at(self, displacements: Sequence[float], aside: float = 1e-6) -> History:
         """Return this history with a moment on each side of displacements [LU] that it passes, where a force jumps.
 
-        `aside`: how far before and after, over the load step.
+        `aside`: how far before and after, over the load step (relative). One at which it begins does not count.
         """
         moments = [np.arange(float(len(self.phases)))]
         for displacement in displacements:
@@ -79,7 +82,7 @@ class History:
         return self.resampled(np.unique(np.concatenate(moments)))
 
     def path(self, model: Particles) -> Path:
-        """Return the path of the body, under prescribed forces by the particles of a model."""
+        """Return the path of the body: the displacements, or under prescribed forces those by the particles `model`."""
         displacement, velocity = self.values, None
         if self.by_force:
             displacement, velocity = model.displacements_under(self.time, self.values)
@@ -87,7 +90,7 @@ class History:
 
 
 def path_of(displacement: Array) -> Path:
-    """Return a path of equilibria at displacements (m,) [LU]."""
+    """Return a path of equilibria at displacements (m,) [LU], without tangential displacement, all at time 0."""
     zeros = np.zeros_like(displacement)
     return Path(displacement, zeros, zeros)
 
@@ -98,9 +101,9 @@ class Followed:
 
     Attributes:
         x: positions of the particles [LU], (n,).
-        total: sum of their forces, (m,) [FU].
-        force: function of the number of a displacement: the force of each particle there, (n,) [FU].
-        shear: function of that number: tangential forces (n,) [FU]; None where no tangential path is prescribed.
+        total: sum of their normal forces, (m,) [FU], compression positive.
+        force: function of the index of a displacement: the normal force of each particle there, (n,) [FU].
+        shear: function of that index: tangential forces (n,) [FU]; None where no tangential path is prescribed.
         zone: edge data of a `ZonedProfile` for each state, (m,); None where the particles' forces show the edge.
         round_off: of the force of one particle, beyond that of its position, (m,) [FU].
     """
@@ -114,7 +117,10 @@ class Followed:
 
 
 def legs(displacements: Array) -> list[slice]:
-    """Return the monotonic parts of a path of displacements, as slices."""
+    """Return the monotonic parts of a path of displacements, (m,) [LU], as slices in order, none for an empty path.
+
+    A displacement at which the direction turns belongs to the part before; equal ones in succession are no turn.
+    """
     directions = np.sign(np.diff(displacements))
     moves = np.flatnonzero(directions)
     turns = moves[1:][directions[moves[1:]] != directions[moves[:-1]]] + 1
@@ -123,14 +129,18 @@ def legs(displacements: Array) -> list[slice]:
 
 
 def equilibria(path: Path, apart: float, jumps: Sequence[float], spacing: float, finer: int) -> Path:
-    """Return equilibria along a path from apart on, with as many states as the work along it needs.
+    """Return a path of equilibria from apart on, with as many states as an integral of the work along it needs.
+
+    It goes through the ends of all monotonic parts of `path`, and has states close to each jump. Where there are
+    tangential displacements it has 32 states, times `finer`, for each step that changes d, and `finer` for each other
+    one.
 
     Args:
         path: of a run.
         apart: displacement [LU] below which the force is 0.
         jumps: displacements [LU] at which the force jumps.
         spacing: of the particles [LU].
-        finer: so many times as many.
+        finer: factor on the number of states.
     """
     start = min(0.0, apart) - ROUND_OFF * spacing  # apart
     displacements = np.append(start, np.maximum(path.displacement, start))

@@ -18,7 +18,7 @@ class RadiusRule(ABC):
 
     Attributes:
         bodies: bodies of the scene.
-        share: pressure over the largest one that counts as 0.
+        share: pressure over the largest one that counts as 0 (relative).
         ends_with_chain: whether the end of the chain may cut the contact.
         jump: line load [FU/LU] just inside the edge; None where the particles show it.
     """
@@ -30,25 +30,29 @@ class RadiusRule(ABC):
 
     @abstractmethod
     def of(self, profile: Profile) -> ContactRadius | None:
-        """Return the contact radius; None where the bodies do not touch."""
+        """Return the contact radius [LU] with its uncertainty and edges; None where the bodies do not touch."""
 
     def or_spot(self, profile: Profile) -> ContactRadius:
-        """Return the contact radius; 0 where no particle is in tension, as where the pairs at the apex just touch.
+        """Return the contact radius [LU] with its uncertainty; 0 ± 1.5 spacings where `of` gives None.
 
-        The force maximum is then nearer than the second particle, 1.5 spacings from an apex between two at most.
+        So the pairs at an apex that just touch have a radius, too: the force maximum is nearer than the second
+        particle, 1.5 spacings from an apex between two at most.
         """
         return self.of(profile) or ContactRadius(0.0, 1.5 * self.bodies.spacing, 0.0, 0.0, reaches_end=False)
 
     def is_cut(self, profile: Profile) -> bool:
-        """Return whether the contact edge, its last loaded particle, is the last particle of the chain."""
+        """Return whether the contact reaches an end of the chain, where the first or last pressure is not 0."""
         return bool(max(abs(profile.pressure[0]), abs(profile.pressure[-1])) > 0.0)
 
     def load(self, profile: Profile, radius: ContactRadius) -> Array:
-        """Return the line load [FU/LU] at each of the particles, (n,)."""
+        """Return the line load at each particle, (n,) [FU/LU], compression positive.
+
+        By default it is the force of the particle over the spacing.
+        """
         return profile.pressure
 
     def lengths(self, profile: Profile) -> Mapping[str, float]:
-        """Return further lengths [LU] of a state, by the names of results."""
+        """Return further lengths [LU] of a state, by the names of results; by default none."""
         return {}
 
 
@@ -56,21 +60,33 @@ class Compressed(RadiusRule):
     """Contact up to the last particle that is pressed."""
 
     def of(self, profile: Profile) -> ContactRadius | None:
-        """Return the radius of the compressed particles (`compressive_radius`); None without any."""
+        """Return the radius [LU] at which the pressure falls to 0 (`compressive_radius`).
+
+        None without a compressed particle.
+
+        Raises:
+            ValueError: a particle carries tension, or there are fewer than 3.
+        """
         return compressive_radius(profile, self.share) if profile.pressure.max() > 0.0 else None
 
 
 class Held(RadiusRule):
-    """Contact up to an edge within a cell, whose particle has a share of its force."""
+    """Contact up to an edge within a cell, whose particle carries the part of the load inside the edge."""
 
     jump = None
 
     def of(self, profile: Profile) -> ContactRadius | None:
-        """Return the radius of cells and shares of cells in contact (`held_radius`); None without any force."""
+        """Return the radius [LU] of the loaded cells, that at the edge in part (`held_radius`).
+
+        None where all forces are 0.
+        """
         return held_radius(profile) if profile.pressure.any() else None
 
     def load(self, profile: Profile, radius: ContactRadius) -> Array:
-        """Return the line load [FU/LU] of the particles, (n,), of a cell in part over this part (`whole_cells`)."""
+        """Return the line load, (n,) [FU/LU], compression positive.
+
+        Where a cell at an edge is loaded in part, over this part.
+        """
         return whole_cells(profile, radius)
 
 
@@ -78,7 +94,11 @@ class Given(RadiusRule):
     """Contact up to the edge that the law computes for each state; where it has none, as the pressure shows it."""
 
     def of(self, profile: Profile) -> ContactRadius | None:
-        """Return the radius that the law gives, 0 of bodies that attract each other and do not touch."""
+        """Return the contact radius [LU] that the law gives for a state, 0 of bodies that attract and do not touch.
+
+        Of a profile without such an edge, the radius of the largest tension, or without tension that at which the
+        pressure falls to 0; None where all pressures are 0.
+        """
         if not profile.pressure.any():
             return None
         if not isinstance(profile, ZonedProfile):
@@ -87,7 +107,7 @@ class Given(RadiusRule):
         return ContactRadius(profile.edge, profile.doubt, -profile.edge, profile.edge, reaches_end=False)
 
     def is_cut(self, profile: Profile) -> bool:
-        """Return whether the attraction reaches the end of the chain."""
+        """Return whether contact or attraction reaches the end of the chain: the last force is not 0."""
         return bool(profile.pressure[-1] != 0.0)
 
 
@@ -95,7 +115,10 @@ class WithRange(Given):
     """Contact with an attraction beyond its edge, both as the law computes them for each state."""
 
     def lengths(self, profile: Profile) -> Mapping[str, float]:
-        """Return the radius c [LU] up to which the attraction acts, as `cohesive_radius`."""
+        """Return {"cohesive_radius": radius c [LU] up to which the attraction acts}.
+
+        Empty where the law gives no edge.
+        """
         return {"cohesive_radius": profile.reach} if isinstance(profile, ZonedProfile) else {}
 
 
@@ -103,11 +126,14 @@ class InTension(RadiusRule):
     """Contact up to the largest tension around it."""
 
     def of(self, profile: Profile) -> ContactRadius | None:
-        """Return the radius of the largest tension (`tensile_radius`); None without any tension."""
+        """Return the radius [LU] of the largest tension on both sides (`tensile_radius`); None without any tension."""
         return tensile_radius(profile) if profile.pressure.min() < 0.0 else None
 
     def is_cut(self, profile: Profile) -> bool:
-        """Return whether the largest tension, or more than half the largest pressure, is at an end of the chain."""
+        """Return whether the largest tension, or more than half the largest pressure, is at an end of the chain.
+
+        Pressures are compared by their magnitude.
+        """
         pressure = profile.pressure
         largest = float(pressure.min())
         return end_pressure_share(profile) > 0.5 or (largest < 0.0 and largest in (pressure[0], pressure[-1]))
@@ -121,7 +147,10 @@ class ToTheEdge(RadiusRule):
     clings: ClassVar[bool] = False
 
     def of(self, profile: Profile) -> ContactRadius | None:
-        """Return the half-width of the body; None where it does not touch."""
+        """Return the half-width of the body [LU], uncertainty 0, where any particle has a force; else None.
+
+        A body that `clings` touches also where a particle is on the plane without a force.
+        """
         touches = profile.pressure.any() or (self.clings and (profile.z_upper <= 0.0).any())
         edge = self.bodies.reach
         return ContactRadius(edge, 0.0, -edge, edge, reaches_end=False) if touches else None

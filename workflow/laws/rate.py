@@ -26,12 +26,12 @@ Array = NDArray[np.float64]
 class Receding(Zoned):
     """The JKR contact with an edge that recedes at a finite speed and advances at once.
 
-        G = E* (g(a) − d)²/(2πa),    −da/dt = v₀ (G/W − 1)^(1/n)  where G > W,    F = 2E* ∫₀ᵃ (d − g) dx
+    G = E* (g(a) − d)²/(2πa),    −da/dt = v₀ (G/W − 1)^(1/n)  where G > W,    F = 2E* ∫₀ᵃ (d − g) dx
 
     Source: D. Maugis, M. Barquins, J. Phys. D 11 (1978) 1989.
 
     Attributes:
-        rate: v₀ and n of the receding edge.
+        rate: velocity v₀ [LU/TU] and exponent n of the receding edge.
     """
 
     in_time = True
@@ -46,7 +46,13 @@ class Receding(Zoned):
 
     @classmethod
     def from_jkr(cls, jkr: Jkr, scene: Scene, wanted: float, load: float) -> Receding:
-        """Return the contact with the scene's rate; raise SettingsError for a pull so slow that it is JKR's."""
+        """Return the contact with the scene's rate.
+
+        The curve goes as far as that of `jkr`, `wanted` and `load` are not used.
+
+        Raises:
+            SettingsError: the experiment is so slow that the contact is JKR's, G/W − 1 < 1e-8.
+        """
         rate = scene.the(Adhesion).rate
         assert rate
         speed = getattr(scene.experiment, "velocity", None) or rate.velocity
@@ -60,16 +66,19 @@ class Receding(Zoned):
         return cls(**parameters, surface=scene.bodies.profile, rate=rate)
 
     def particles(self, x: Array, deepest: float) -> RecedingCells:
-        """Return the cells at positions x, (n,) [LU]."""
+        """Return the cells at positions x, (n,) [LU]; `deepest`: largest expected displacement [LU]."""
         return RecedingCells(self, x, deepest)
 
     @cached_property
     def equations(self) -> Dugdale:
-        """Equations of the contact without an attraction beyond the edge."""
+        """Equations of the contact edge, F and line load without an attraction beyond the edge."""
         return Dugdale(self.profile, self.surface, self.modulus, 0.0, self.known, self.known)
 
     def radii(self, displacements: Array) -> Array:
-        """Return a(d) in equilibrium, (m,) [LU], solved between the points of the curve: forces depend on it."""
+        """Return a(d) in equilibrium, (m,) [LU], at displacements (m,) [LU], solved between the points of the curve.
+
+        Where no solution is found, by linear interpolation in the curve.
+        """
         from scipy.optimize import elementwise
 
         x, h, _, least = self._grid
@@ -77,19 +86,31 @@ class Receding(Zoned):
         ends = x[cell - 1], x[cell]
 
         def error(edge: Array, d: Array) -> Array:
+            """Return h(a) − d, (m,) [LU]; 0 in equilibrium."""
             return np.asarray(self.profile.height(edge) - elongation(edge, self.modulus, self.work) - d)
 
         root = elementwise.find_root(error, ends, args=(displacements,))
         return np.where(root.success, root.x, super().radii(displacements))
 
     def _edge_velocity(self, edge: float, displacement: float) -> float:
-        """Return the edge velocity da/dt ≤ 0 [LU/TU] at a and d [LU]."""
+        """Return the edge velocity da/dt ≤ 0 [LU/TU] at a contact radius `edge` and a displacement [LU].
+
+        0 where G ≤ W.
+        """
         opened = float(self.profile.height(np.asarray([edge]))[0]) - displacement
         excess = self.modulus * opened * opened / (2.0 * math.pi * edge * self.work) - 1.0
         return -self.rate.velocity * excess ** (1.0 / self.rate.exponent) if excess > 0.0 and opened > 0.0 else 0.0
 
     def _receding(self, edge: float, displacement_at: Callable[[float], float], times: Array) -> Array:
-        """Return a, (m,) [LU], of a receding edge at times (m,) [TU], from `edge` at the first; 0 once it is lost."""
+        """Return contact radii a, (m,) [LU], of a receding edge at times (m,) [TU]; 0 once the contact is lost.
+
+        It is lost at 1e-3 of the radius under fixed grips.
+
+        Args:
+            edge: contact radius at the first time [LU].
+            displacement_at: function of the time [TU]: the displacement [LU].
+            times: rising [TU].
+        """
         from scipy.integrate import solve_ivp
 
         lost = 1e-3  # radius over that under fixed grips
@@ -98,6 +119,7 @@ class Receding(Zoned):
         def change(time: float, log: Array) -> list[float]:
             # A lost edge is slowed down by a high power, since an end of the motion might not be detected; a trial step
             # may go far beyond.
+            """Return the rate of ln a [1/TU] at a time [TU], by ln a."""
             radius = max(math.exp(float(log[0])), lost * least)
             return [self._edge_velocity(radius, displacement_at(time)) / radius / (1.0 + (0.5 * least / radius) ** 12)]
 
@@ -106,7 +128,11 @@ class Receding(Zoned):
         return np.where(np.maximum.accumulate(radii <= least), 0.0, radii)
 
     def edges(self, times: Array, displacements: Array) -> Array:
-        """Return a, (m,) [LU], at times (m,) [TU] along displacements (m,) [LU], linear between them, from apart on."""
+        """Return contact radii a, (m,) [LU], at times (m,) [TU] along displacements (m,) [LU] of a path from apart on.
+
+        Displacements are linear in between. 0 before the first touch and after pull-off; an edge that advances is in
+        equilibrium.
+        """
         radii, edge, turns = np.zeros_like(times), 0.0, np.flatnonzero(np.diff(np.sign(np.diff(displacements)))) + 1
         for first, last in pairwise([0, *turns.tolist(), times.size - 1]):
             leg = slice(first, last + 1)
@@ -123,9 +149,15 @@ class Receding(Zoned):
         return radii
 
     def pull_off_times(self, start: float, velocity: float, count: int) -> Array:
-        """Return times [TU] of a pull from equilibrium: `count` equal steps of edge and of body each, and separation.
+        """Return rising times [TU] from 0 on of a pull from equilibrium at a constant velocity, up to separation.
 
-        `start`: displacement [LU]; `velocity` [LU/TU].
+        They are at `count` equal steps of the contact radius, at as many of the time, and the first one without
+        contact.
+
+        Args:
+            start: displacement [LU].
+            velocity: of the pull [LU/TU], > 0.
+            count: see above.
         """
         edge, least = float(self.radii(np.asarray([start]))[0]), self.fixed_grips[1]
         end = (start - least) / velocity
@@ -154,23 +186,32 @@ class RecedingCells(ZonedCells):
         return self.law.fixed_grips[1]
 
     def held(self, displacements: Array) -> Array:
-        """Return F, (m,) [FU], in equilibrium at displacements (m,) [LU]."""
+        """Return F, (m,) [FU], compression positive, in equilibrium at displacements (m,) [LU].
+
+        0 below the displacement of pull-off under fixed grips.
+        """
         edge = self.law.radii(displacements)
         forces = self.law.equations.forces(edge, np.zeros_like(edge), displacements)
         return np.where(displacements >= self.apart, forces, 0.0)
 
     def zone(self, path: Path) -> Zone:
-        """Return the edge and F of each state of a path."""
+        """Return contact radius, displacement and F of each state of a path that begins apart.
+
+        The attraction ends at the edge.
+        """
         edge = self.law.edges(path.time, path.displacement)
         no_width = np.zeros_like(edge)
         return Zone(edge, edge, path.displacement, self.law.equations.forces(edge, no_width, path.displacement))
 
     def checked(self, path: Path, finer: int) -> Path:
-        """Return the path itself: its load steps have their times."""
+        """Return the path itself, since its load steps have their times; `finer` is not used."""
         return path
 
     def energies(self, path: Path) -> tuple[float, float]:
-        """Return U(d, a) of JKR, and the losses [FU·LU]: ∫ (G − W) 2πa da at a receding edge, and the jumps of U."""
+        """Return (U(d, a) of JKR at the end of a path that begins apart, energy lost along it), both [FU·LU].
+
+        Losses are ∫ (G − W) 2πa da at a receding edge, and the jumps of U at touch and pull-off.
+        """
         law, zone = self.law, self.zone(path)
         a, d = zone.edge, zone.displacement
         opened = law.profile.height(a) - d
@@ -182,11 +223,18 @@ class RecedingCells(ZonedCells):
         return energies[-1], lost + sum(energies[jump] - energies[jump + 1] for jump in jumps.tolist())
 
     def moments(self, deepest: float, velocity: float, count: int) -> Array:
-        """Return the times [TU] of load steps of a pull-off, at equal steps of the edge and of the body."""
+        """Return the times [TU] from 0 on of load steps of a pull-off from `deepest` [LU] at a `velocity` [LU/TU].
+
+        They are at `count` equal steps of the contact radius and as many of the time, without repetition, up to
+        separation.
+        """
         return self.law.pull_off_times(deepest, velocity, count)
 
     def refined(self, history: History) -> History:
-        """Return a history with further moments, at equal steps of an edge that recedes."""
+        """Return a history with further moments at the touch and at equal steps of an edge that recedes.
+
+        `history`: of displacements. A step of the edge is 0.01 of the largest contact radius.
+        """
         looks = 20  # edges computed from one moment to the next
         edge_step = 0.01  # over the largest radius
         history = history.refined_at([0.0])  # the bodies touch at once
@@ -199,5 +247,8 @@ class RecedingCells(ZonedCells):
         return history.resampled(np.union1d(np.arange(float(len(history.phases))), more))
 
     def prescribed(self, path: Path) -> dict[str, Array]:
-        """Return displacements and edges of load steps, (m,) [LU]."""
+        """Return "displacement" d, "edge" a, "reach" and "height" of load steps, (m,) [LU] each.
+
+        The attraction ends at the edge, so that the reach is a; the height is the mean of g over the contact.
+        """
         return self._edges_of(self.zone(path))

@@ -47,13 +47,16 @@ class Relaxing(Independent):
 
     @classmethod
     def of(cls, scene: Scene, profile: Profile) -> Self:
-        """Return the law of springs with the material of a scene."""
+        """Return the law of one-sided springs on a rigid plane under a profile, with the material of a scene."""
         law: Self = on_plane(cls, profile, scene.bodies.spacing, scene.bulk_stiffness, scene.the(Viscoelasticity))
         return law
 
     @classmethod
     def series(cls, scene: Scene) -> tuple[tuple[float, float], ...]:
-        """Return the Prony series of a scene: shares, and their relaxation times [TU]."""
+        """Return the Prony series of a scene as pairs: share of the modulus (relative), relaxation time [TU].
+
+        Empty of a body with dashpots.
+        """
         return tuple((term.share, term.time) for term in scene.the(Viscoelasticity).terms or ())
 
     @classmethod
@@ -67,13 +70,14 @@ class Relaxing(Independent):
         return scene.the(Viscoelasticity).resists_jumps
 
     def untouched_radius(self, displacement: float) -> float:
-        """Return the contact radius [LU] of the undeformed profile at a displacement [LU]."""
+        """Return the contact radius [LU] of the undeformed profile at a displacement [LU], as in a first loading."""
         return self.half_width(displacement, self.rest)
 
     def creep(self, time: float) -> float:
-        """Return the displacement a time [TU] after a load over the instantaneous one, in 200 steps of one spring.
+        """Return the displacement of a spring a time [TU] after a constant load was applied, over the initial one.
 
-        1 of dashpots, which have no instantaneous displacement.
+        It is computed in 200 steps; 1 for a time of 0 or less, and of dashpots, which have no instantaneous
+        displacement.
         """
         if self.material.retardation_time or time <= 0.0:
             return 1.0
@@ -86,10 +90,16 @@ class Relaxing(Independent):
         return spring.displacement
 
     def sticking(self, mass: float, velocity: float, time: float) -> tuple[str, str] | None:
-        """Return why a body sticks after an impact, and the remedy; None where it rebounds.
+        """Return (why a body sticks after an impact, the remedy) as texts; None where it rebounds.
 
-        Dashpots, T dF/dd, stop a body where F = M v/T, and it then creeps out at the velocity d/T. A material that
-        flows, so that twice the time is twice the creep, has no energy left for a rebound.
+        Dashpots, T dF/dd, stop a body where F = M v/T, and it then creeps out at the velocity d/T: it sticks below 1e-5
+        of the impact velocity. A material that flows, so that twice the time is twice the creep, has no energy left for
+        a rebound.
+
+        Args:
+            mass: M of the body [MU].
+            velocity: v of impact [LU/TU].
+            time: that the impact of the elastic body lasts [TU].
         """
         least_restitution = 1e-5  # with less a body creeps out for too long to be followed
         most_creep = 1.96  # in twice the time: a fluid has 2; measured, a sphere with 1.95 rebounds
@@ -101,11 +111,15 @@ class Relaxing(Independent):
         return ("flows", "longer times of terms") if flows else None
 
     def particles(self, x: Array, deepest: float) -> RelaxingSprings:
-        """Return the viscoelastic springs at positions x, (n,) [LU]."""
+        """Return the viscoelastic springs at positions x, (n,) [LU]; `deepest`: largest expected displacement [LU]."""
         return RelaxingSprings(self, x, deepest)
 
     def columns(self, body: Profile, x: Array) -> Mapping[str, tuple[int, Array]]:
-        """Return w and r of cells (`memory`) at positions x, (n,) [LU], with their powers of a length, for dashpots."""
+        """Return {"width": (1, w), "rise": (1, r)}, (n,) [LU]: heights over which the cells of particles touch.
+
+        At positions x, (n,) [LU], of a `body` as the deck has it; r is the part of w on the side of the axis, 1 the
+        power of a length. Empty without dashpots.
+        """
         if not self.material.retardation_time:
             return {}
         edges = edges_of(body, x, self.spacing)
@@ -128,22 +142,28 @@ class RelaxingSprings(Particles):
 
     @cached_property
     def _cells(self) -> tuple[Edges, NDArray[np.intp], Array]:
-        """Cells without repetition by rising height, the index of each particle's cell, and particles per cell."""
+        """Cells by rising height without repetition, the index of each particle's cell, (n,), and their counts."""
         columns = vars(edges_of(self.shape, self.x, self.law.spacing)).values()
         cells, indices = np.unique(np.stack([*columns]), axis=1, return_inverse=True)
         return Edges(*cells), indices, np.bincount(indices).astype(np.float64)
 
     def held(self, displacements: Array) -> Array:
-        """Return the instantaneous force F, (m,) [FU], of an untouched body at displacements (m,) [LU]."""
+        """Return the instantaneous force F, (m,) [FU], compression positive, of an untouched body.
+
+        `displacements`: (m,) [LU].
+        """
         cells, _, counts = self._cells
         return np.asarray(self.law.stiffness * (np.maximum(displacements[:, None] - cells.heights, 0.0) @ counts))
 
     def durations(self, times: Array) -> Array:
-        """Return the durations of load steps, (m,) [TU], that end at times (m,) [TU]; the first is instantaneous."""
+        """Return the durations of load steps, (m,) [TU], that end at `times`, (m,) [TU].
+
+        The first is instantaneous: 1e-6 of the shortest relaxation time.
+        """
         return np.diff(times, prepend=times[0] - SUDDEN * self.law.material.shortest_time)
 
     def displacements_under(self, times: Array, forces: Array) -> tuple[Array, Array]:
-        """Return displacements and velocities (m,) [LU, LU/TU] under forces (m,) [FU] ≥ 0 at times (m,) [TU]."""
+        """Return (displacements [LU], velocities [LU/TU]), (m,) each, under forces (m,) [FU] ≥ 0 at times (m,) [TU]."""
         cells, _, counts = self._cells
         memory, before, states = Memory(self.law.material, cells), 0.0, []
         for force, time in zip((forces / self.law.stiffness).tolist(), self.durations(times).tolist(), strict=True):
@@ -155,14 +175,16 @@ class RelaxingSprings(Particles):
         return np.asarray(displacements), np.asarray(velocities)
 
     def force_in_time(self) -> Callable[[float, float, float], float]:
-        """Return the force [FU] on a body that has just touched, as a function to be called state by state.
+        """Return a function of the force F [FU] ≥ 0, compression positive, on a body that has just touched.
 
-        Its arguments are the next displacement [LU], the time until then [TU] and the velocity there [LU/TU].
+        It is called state by state with (next displacement [LU], time until then [TU], velocity there [LU/TU]), and
+        remembers the state.
         """
         cells, _, counts = self._cells
         memory = Memory(self.law.material, cells)
 
         def force(displacement: float, time: float, velocity: float) -> float:
+            """Return F [FU] after a load step, and move the body."""
             pressed, _ = memory.pressed(displacement, time, velocity)
             memory.go(displacement, time, velocity)
             return self.law.stiffness * float(pressed @ counts)
@@ -170,14 +192,14 @@ class RelaxingSprings(Particles):
         return force
 
     def prescribed(self, path: Path) -> dict[str, Array]:
-        """Return the displacements, durations and final velocities of load steps, (m,) [LU, TU, LU/TU]."""
+        """Return "displacement" [LU], "duration" [TU] and final "velocity" [LU/TU] of load steps, (m,) each."""
         spent, velocity = self.durations(path.time), path.velocity
         if velocity is None:
             velocity = np.diff(path.displacement, prepend=0.0) / spent
         return {"displacement": path.displacement, "duration": spent, "velocity": velocity}
 
     def carried(self, columns: Mapping[str, Array]) -> Followed:
-        """Return the forces of load steps and their contact edges, each step in its duration."""
+        """Return the forces of load steps and their contact edges, by the columns of `prescribed`."""
         cells, indices, counts = self._cells
         memory, spacing = Memory(self.law.material, cells), self.law.spacing
         displacements, spent, velocities = (columns[name] for name in ("displacement", "duration", "velocity"))
@@ -197,17 +219,28 @@ class RelaxingSprings(Particles):
         return Followed(self.x, forces @ counts, lambda state: forces[state][indices], zone=zone)
 
     def checked(self, path: Path, finer: int) -> Path:
-        """Return the path itself: its load steps have their times."""
+        """Return the path itself, since its load steps have their times; `finer` is not used."""
         return path
 
     def energies(self, path: Path) -> tuple[float, float]:
-        """Return the energy of springs and arms, of separated particles too, and the loss in dashpots [FU·LU]."""
+        """Return (energy of springs and arms at the end of a path, energy dissipated along it), both [FU·LU].
+
+        Energy is dissipated in dashpots; that of particles that have separated is included in both.
+        """
         cells, _, counts = self._cells
         stored, lost = Memory(self.law.material, cells).along(*self.prescribed(path).values())
         return self.law.stiffness * float(stored @ counts), self.law.stiffness * float(lost @ counts)
 
     def _jumps(self, edge: Array, displacement: Array, velocity: Array) -> Array:
-        """Return the line load just inside the edge, (m,) [FU/LU], that of dashpots where the edge does not recede."""
+        """Return the line load just inside the edge, (m,) [FU/LU] ≥ 0: that of dashpots.
+
+        0 without dashpots, without contact, and where the edge recedes.
+
+        Args:
+            edge: contact radius, (m,) [LU].
+            displacement: of the body, (m,) [LU].
+            velocity: of the body, (m,) [LU/TU].
+        """
         retarded, law = self.law.material.retardation_time or 0.0, self.law
         push = displacement - law.profile.height(edge) + retarded * velocity
         resolved = push > 1e-6 * np.abs(displacement)  # less is round-off of the edge
@@ -215,7 +248,13 @@ class RelaxingSprings(Particles):
         return np.where(grows, law.stiffness / law.spacing * push, 0.0)
 
     def _layers(self, edge: Array, spent: Array, velocity: Array) -> Array:
-        """Return the line load of arms, (m,) [FU/LU], in a layer a′ τ < spacing at a growing edge."""
+        """Return the line load of arms, (m,) [FU/LU] ≥ 0, in a layer a′ τ < spacing at a growing edge; 0 at another.
+
+        Args:
+            edge: contact radius a, (m,) [LU].
+            spent: durations of the load steps, (m,) [TU].
+            velocity: of the body, (m,) [LU/TU].
+        """
         stiffness, spacing = self.law.stiffness, self.law.spacing
         grown = np.maximum(np.diff(edge, prepend=0.0), 0.0) / spent / spacing
         arms = (term.share * term.time * np.exp(-term.time * grown) for term in self.law.material.terms or ())
@@ -223,12 +262,15 @@ class RelaxingSprings(Particles):
 
     @cached_property
     def _outline(self) -> tuple[Array, Array]:
-        """Heights of the body [LU], rising, and their positions [LU], 20 for each particle."""
+        """Heights of the body [LU], rising, and their positions [LU] from 0 to the last particle.
+
+        20 for each particle.
+        """
         x = np.linspace(0.0, float(np.abs(self.x).max()), 20 * self.x.size)
         return np.asarray(self.law.profile.height(x), dtype=np.float64), x
 
     def _positions(self, heights: Array) -> Array:
-        """Return the positions of heights on the body, (m,) [LU], by one secant step from linear interpolation."""
+        """Return the positions ≥ 0, (m,) [LU], of heights on the body, (m,) [LU]: linear, and one secant step."""
         known, x = self._outline
         guess, shape = np.interp(heights, known, x), self.law.profile
         cell = np.clip(np.searchsorted(known, heights), 1, x.size - 1)
@@ -237,7 +279,9 @@ class RelaxingSprings(Particles):
         return np.clip(guess + width * missed, x[cell - 1], x[cell])
 
     def _edges(self, margin: Array) -> tuple[Array, Array]:
-        """Return a, (m,) [LU], of states with overlaps (m, n) [LU], and its error [LU].
+        """Return (contact radii a, their errors), both (m,) [LU], of states with overlaps `margin`, (m, n) [LU].
+
+        0 without contact.
 
         The overlap falls to 0 at a, linearly over the height. At a growing contact it has a kink at a, so that the next
         two free particles show it; at a shrinking one the last particle and the next are nearer. Another particle in
@@ -249,6 +293,7 @@ class RelaxingSprings(Particles):
         states, after = np.arange(last.size), np.minimum(last + 1, end)
 
         def crossing(first: NDArray[np.intp], second: NDArray[np.intp]) -> Array:
+            """Return the position, (m,) [LU], at which the overlap is 0 on a line through two particles."""
             inner, outer = margin[states, first], margin[states, second]
             share = np.divide(inner, inner - outer, out=np.zeros_like(inner), where=inner > outer)
             height = heights[first] + share * (heights[second] - heights[first])
@@ -263,7 +308,10 @@ class RelaxingSprings(Particles):
 
 
 def _returned(edge: Array) -> NDArray[np.bool_]:
-    """Return in which states, (m,), an edge has receded and grown again, but not yet to its largest radius."""
+    """Return in which states, (m,), an edge grows again and is not yet at its largest value.
+
+    `edge`: contact radius, (m,) [LU].
+    """
     returned, most, least = np.zeros(edge.size, dtype=bool), 0.0, 0.0
     for i, radius in enumerate(edge.tolist()):
         if radius >= most * (1.0 - ROUND_OFF):

@@ -17,7 +17,10 @@ Array = NDArray[np.float64]
 
 
 def positions_within(reach: float, spacing: float, phase: float) -> Array:
-    """Return all x = (i + φ) s [LU] with |x| ≤ reach, rising: i an integer, φ the `phase`, s the `spacing` [LU]."""
+    """Return all x = (i + φ) s, (n,) [LU], with |x| ≤ reach [LU], rising; empty where none is within.
+
+    i are integers, φ is the `phase`, relative to the `spacing` s [LU].
+    """
     first, last = math.ceil(-reach / spacing - phase), math.floor(reach / spacing - phase)
     return np.asarray(spacing * (np.arange(first, last + 1) + phase), dtype=np.float64)
 
@@ -26,15 +29,15 @@ class Profile(Protocol):
     """The undeformed shape of the upper body."""
 
     def height(self, x: Array) -> Array:
-        """Return the height [LU] at positions x [LU]."""
+        """Return the height above the apex, (…) [LU], at positions x of any shape, (…) [LU]."""
 
     @property
     def reach(self) -> float:
-        """Half-width [LU] of the body."""
+        """Half-width [LU] of the body; infinite for an unbounded one."""
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Positions [LU] at which its slope jumps."""
+        """Positions > 0 [LU], rising, at which the slope of the profile jumps; empty without any."""
 
     def __hash__(self) -> int:
         """Return one hash for equal bodies, which share their law."""
@@ -42,9 +45,14 @@ class Profile(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Tabulated:
-    """A profile given by its `heights` [LU] at ascending `positions` [LU] from 0, linear between them.
+    """A profile given by its heights at positions, linear between them.
 
     It replaces a measured profile, whose transform takes long: a predictor evaluates it thousands of times.
+
+    Attributes:
+        positions: rising, from 0 on, (n,) [LU].
+        heights: at these positions, (n,) [LU].
+        kinks: positions at which the slope jumps [LU].
     """
 
     positions: Array
@@ -52,12 +60,12 @@ class Tabulated:
     kinks: tuple[float, ...] = ()
 
     def height(self, x: Array) -> Array:
-        """Return the height [LU] at positions x [LU], the last one beyond the table."""
+        """Return heights (…) [LU] at positions x, (…) [LU], by |x|: linear in the table, and its last one beyond it."""
         return np.interp(np.abs(x), self.positions, self.heights)
 
     @property
     def reach(self) -> float:
-        """Half-width [LU] of the body."""
+        """Half-width [LU] of the body: the last position of the table."""
         return float(self.positions[-1])
 
 
@@ -67,6 +75,10 @@ class Splined(Tabulated):
 
     @cached_property
     def _curve(self) -> Any:
+        """Height [LU] over x ≥ 0 [LU] through the table, a piecewise cubic `PPoly`.
+
+        A kink within three positions of an end of the table is smoothed.
+        """
         from scipy.interpolate import CubicSpline, PPoly
 
         end = self.positions.size - 1
@@ -76,25 +88,36 @@ class Splined(Tabulated):
         return PPoly(np.concatenate(cubics, axis=1), self.positions)
 
     def height(self, x: Array) -> Array:
-        """Return the height [LU] at positions x [LU], the last one beyond the table."""
+        """Return heights (…) [LU] at positions x, (…) [LU], by |x|: cubic in the table, and its last one beyond it."""
         return np.asarray(self._curve(np.minimum(np.abs(x), self.reach)))
 
 
 def tabulated(profile: Profile, spacing: float, kind: type[Tabulated] = Tabulated) -> Tabulated:
-    """Return the table of a profile, which must be finite, at 1000 positions in geometric progression.
+    """Return the table of a profile, which must be finite, at 1000 positions and more at its kinks.
 
-    Linear interpolation then has an error of 1e-4 of the height of a parabola, for a reach of 0.1 to 1e10 spacings
-    [LU]; closer to the apex than 0.01 spacings the profile is a line.
+    The positions are in geometric progression. Linear interpolation then has an error of 1e-4 of the height of a
+    parabola, for a half-width of 0.1 to 1e10 spacings; closer to the apex than 0.01 spacings the profile is a line.
+
+    Args:
+        profile: whose heights are tabulated.
+        spacing: of the particles [LU].
+        kind: class of the table.
     """
     x = beside_kinks(np.concatenate([[0.0], np.geomspace(0.01 * spacing, profile.reach, 1000)]), profile)
     return kind(x, profile.height(x), profile.kinks)
 
 
 def beside_kinks(positions: Array, profile: Profile, points: int = 60, most_kinks: int = 100) -> Array:
-    """Return rising positions [LU] with more of them on both sides of a profile's kinks, where g rises as a root.
+    """Return rising positions (n,) [LU] with more of them on both sides of a profile's kinks, where g rises as a root.
 
-    `points`: how many on each side, in geometric progression from 1e-9 to a tenth of the kink's position; `most_kinks`:
-    at how many kinks.
+    None is added beyond the last position.
+
+    Args:
+        positions: rising [LU].
+        profile: whose kinks they are.
+        points: number of positions on each side of a kink, from 1e-9 to a tenth of its position, in geometric
+            progression.
+        most_kinks: number of kinks, the first ones, that get them.
     """
     end = float(positions[-1])
     distances = np.append(0.0, np.geomspace(ROUND_OFF, 0.1, points))

@@ -27,8 +27,8 @@ class Cells:
     """The cell of each particle on one side of the axis; arrays (n,).
 
     Attributes:
-        inner, outer: ends of the cell [LU].
-        below, above: G at its ends [LU²].
+        inner, outer: distances of the ends of the cell from the axis [LU].
+        below, above: G = ∫₀ˣ g dx, the integral of the transformed profile, at these ends [LU²].
         sides: 2 for a particle on the axis, which has a cell on each side; else 1.
     """
 
@@ -54,15 +54,18 @@ class Zoned(Jkr):
     @property
     @abstractmethod
     def equations(self) -> Dugdale:
-        """Equations of the contact and of its line load."""
+        """Equations of the contact edge, of F and of the line load."""
 
     def columns(self, body: Profile, x: Array) -> Mapping[str, tuple[int, Array]]:
-        """Return the fields of `Cells` at positions x, (n,) [LU], with their powers of a length."""
+        """Return the fields of `Cells` at positions x, (n,) [LU], by name: (p, values (n,) in [LUᵖ]).
+
+        `body` is not used.
+        """
         zones, powers = self.zones(x), {"inner": 1, "outer": 1, "below": 2, "above": 2, "sides": 0}
         return {name: (power, getattr(zones, name)) for name, power in powers.items()}
 
     def zones(self, x: Array) -> Cells:
-        """Return the cells of particles at positions x, (n,) [LU]."""
+        """Return the cells of particles at positions x, (n,) [LU]: half a spacing to both sides of each."""
         radius, half = np.abs(x), 0.5 * self.spacing
         inner, outer = np.maximum(radius - half, 0.0), radius + half
         sides = np.where(radius < 0.25 * self.spacing, 2.0, 1.0)
@@ -71,7 +74,13 @@ class Zoned(Jkr):
         return Cells(inner, outer, below, above, sides)
 
     def loads(self, cells: Cells, zone: Zone, state: int) -> Array:
-        """Return ∫ q dx over each cell, (n,) [FU], in the state of this number."""
+        """Return the force ∫ q dx of each cell, (n,) [FU], compression positive, in the state of index `state`.
+
+        Args:
+            cells: of the particles.
+            zone: edges and displacements of all states.
+            state: index of one of them.
+        """
         a, c, d = (float(column[state]) for column in (zone.edge, zone.reach, zone.displacement))
         end = np.minimum(cells.outer, a)
         area = np.where(cells.outer < a, cells.above, self.equations.area(np.asarray([a]))[0])
@@ -83,7 +92,7 @@ class Zoned(Jkr):
 
 
 def _half_disc(x: Array, radius: float) -> Array:
-    """Return ∫₀ˣ √(c² − x²) dx [LU²] at positions x, (n,) [LU], for a radius c [LU]."""
+    """Return ∫₀ˣ √(c² − x²) dx, (n,) [LU²], at positions 0 ≤ x ≤ c, (n,) [LU], for a `radius` c [LU]."""
     root = np.sqrt((radius - x) * (radius + x))
     return np.asarray(0.5 * (x * root + radius**2 * np.arctan2(x, root)))
 
@@ -96,13 +105,20 @@ class ZonedCells(Particles):
     shares_edges = True
 
     def _edges_of(self, zone: Zone) -> dict[str, Array]:
-        """Return the columns of load steps, (m,) [LU]: d, a, c and the mean of g(x) over the contact."""
+        """Return the columns of states, (m,) [LU]: "displacement" d, "edge" a, "reach" c and "height".
+
+        The height is the mean of the transformed profile g over the contact, 0 where a = 0.
+        """
         area = self.law.equations.area(zone.edge)
         height = np.divide(area, zone.edge, out=np.zeros_like(area), where=zone.edge > 0.0)
         return {"displacement": zone.displacement, "edge": zone.edge, "reach": zone.reach, "height": height}
 
     def carried(self, columns: Mapping[str, Array]) -> Followed:
-        """Return the forces of load steps; the line load jumps at an edge beyond which there is no attraction."""
+        """Return the forces of load steps by their columns "displacement", "edge" and "reach", (m,) [LU].
+
+        With them come a, c and the jump of the line load [FU/LU] at the edge, which is 0 where an attraction acts
+        beyond it.
+        """
         law, equations, cells = self.law, self.law.equations, self.law.zones(self.x)
         d, edge, reach = (columns[name] for name in ("displacement", "edge", "reach"))
         zone = Zone(edge, reach, d, equations.forces(edge, np.sqrt((reach - edge) * (reach + edge)), d))

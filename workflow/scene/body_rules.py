@@ -29,7 +29,11 @@ from contact1d.workflow.scene.tables import (
 
 
 def punch(d: Draft) -> Rows:
-    """Yield the rules of a flat punch, whose edge is half a spacing beyond its last particle."""
+    """Yield the rules of a flat punch, whose edge is half a spacing beyond its last particle.
+
+    A rule is (dotted key, whether it is broken, what is wrong, suggested fix). None of another profile, and where
+    radius or spacing are not known or automatic.
+    """
     radius, spacing = d["bodies.profile.radius"], d["bodies.spacing"]
     if d.profile != "flat_punch" or radius is None or spacing in (None, "auto"):
         return
@@ -48,7 +52,11 @@ def punch(d: Draft) -> Rows:
 
 
 def counter_body(d: Draft) -> Rows:
-    """Yield the rules of the curved lower body of a parabola."""
+    """Yield the rules of the curved lower body of a parabola: its radius, and the reduction.
+
+    A rule is (dotted key, whether it is broken, what is wrong, suggested fix). None where one of the two radii is not
+    given.
+    """
     key = "bodies.profile.counter_radius"
     radius, counter = d["bodies.profile.radius"], d[key]
     if None in (radius, counter):
@@ -63,7 +71,11 @@ def counter_body(d: Draft) -> Rows:
 
 
 def reduction(d: Draft) -> Rows:
-    """Yield the rule that excludes the paper's reduction for a body for which it was not derived."""
+    """Yield the rule that excludes the paper's reduction for a body for which it was not derived.
+
+    A rule is (dotted key, whether it is broken, what is wrong, suggested fix). None of a parabola, a circle or an
+    unknown profile.
+    """
     profile = d["bodies.profile"]
     if profile is None or profile["kind"] in SPHERES:
         return
@@ -77,7 +89,11 @@ def reduction(d: Draft) -> Rows:
 
 
 def periodic_lengths(d: Draft) -> Rows:
-    """Yield the rules of springs and lengths of two periodic chains, which have a common period."""
+    """Yield the rules of springs and lengths of two periodic chains, which have a common period.
+
+    A rule is (dotted key, whether it is broken, what is wrong, suggested fix). None of other bodies; none of lengths
+    where numbers of particles or spacings are unknown or automatic, or the upper body has one particle.
+    """
     if not d["bodies.periodic"]:
         return
     normal, tangential = d["bodies.bulk_stiffness"], d["bodies.bulk_stiffness_tangential"]

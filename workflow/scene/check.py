@@ -21,7 +21,10 @@ from contact1d.workflow.scene.tables import Tables
 
 
 def mend_words(scene: Place) -> None:
-    """Report and correct every misspelt or unknown word; replace names and lists by the tables that they stand for."""
+    """Report and correct every misspelt or unknown word of a scene, in place.
+
+    Names of tables and lists of values are replaced by the tables that they stand for.
+    """
     for place in chain((scene,), scene):
         _mend_word(place)
         value, table = place.value, place.allowed.table
@@ -32,7 +35,10 @@ def mend_words(scene: Place) -> None:
 
 
 def _mend_keys(place: Place, value: dict[str, Any]) -> None:
-    """Report and correct the misspelt or unknown keys of a table, and its kind."""
+    """Report and correct the misspelt or unknown keys of a table `value`, and its kind, in place.
+
+    Unknown keys are removed.
+    """
     if place.allowed.kinds:
         for similar in [key for key in value if "kind" not in value and nearest(key, ["kind"])][:1]:
             _mend_key(place, ["kind"], similar)
@@ -47,6 +53,7 @@ def _mend_keys(place: Place, value: dict[str, Any]) -> None:
 
 
 def _mend_word(place: Place) -> None:
+    """Report and correct a misspelt word, in place; replace the name of a table by the table. Other values remain."""
     value, allowed = place.value, place.allowed
     names = allowed.table.by_name if allowed.table else {}
     meant = nearest(value, (*allowed.words, *names)) if isinstance(value, str) and value not in allowed.words else None
@@ -57,13 +64,16 @@ def _mend_word(place: Place) -> None:
 
 
 def _names(place: Place) -> str:
-    """Return the names that a table may have, for a message; no text without any."""
+    """Return " names: …", the names that a table may have, for a message; "" where it has none."""
     table = place.allowed.table
     return f" names: {', '.join(table.by_name)}" if table and table.by_name else ""
 
 
 def _mend_key(place: Place, known: Collection[str], key: str) -> None:
-    """Report an unknown key of a table, and remove it or move its value to the key that was meant."""
+    """Report an unknown key of a table, and remove it or move its value to the `known` key that was meant.
+
+    A value that this key already has is kept.
+    """
     value, table, begin = place.value.pop(key), place.allowed.table_for(place.value), ""
     method = table.only_method if key == "method" and table and issubclass(table, Kind) else None
     if meant := nearest(key, known):
@@ -77,7 +87,7 @@ def _mend_key(place: Place, known: Collection[str], key: str) -> None:
 
 
 def _homes(key: str) -> list[str]:
-    """Return the tables of a scene that have the key `key`, as they are written in a file."""
+    """Return the tables of a scene that have the key `key`, as they are written in a file; empty without any."""
     return [
         f"[{path}]" + (f' of kind = "{kind}"' if kind else "") if path else "the lines above the first table"
         for path, kind, table in tables_in(Tables)
@@ -86,7 +96,7 @@ def _homes(key: str) -> list[str]:
 
 
 def report_faults(scene: Place, error: ValidationError) -> None:
-    """Report each error of pydantic's once, and not at places that are already marked as not sound."""
+    """Report each error of a validation by pydantic once, except at keys whose values already have a reported error."""
     faults = [(_place(scene, details), details) for details in error.errors(include_url=False)]
     # a value that may be of several types has an error for each type: errors inside come first, a wrong type last
     faults.sort(key=lambda fault: (-len(fault[0].keys), fault[1]["type"].endswith("_type")))
@@ -96,7 +106,10 @@ def report_faults(scene: Place, error: ValidationError) -> None:
 
 
 def _place(scene: Place, details: ErrorDetails) -> Place:
-    """Return the place of an error of pydantic's, whose location has names of types as well."""
+    """Return the innermost key of the scene to which an error of pydantic's belongs.
+
+    The location that pydantic gives has names of types as well, which are skipped.
+    """
     place = scene
     for step in (*details["loc"], "kind" if details["type"].startswith("union_tag") else ""):
         place = place.inside.get(step, place)
@@ -104,7 +117,10 @@ def _place(scene: Place, details: ErrorDetails) -> Place:
 
 
 def _report(place: Place, details: ErrorDetails) -> None:
-    """Report an error of pydantic's at a place in the terms of the scene file."""
+    """Report an error of pydantic's at a key in the terms of the scene file: what is allowed, and the suggested fix.
+
+    The key is then marked as wrong.
+    """
     kind, must, hint = details["type"], f"must be {statement(place.allowed)}", _hint(place)
     if place.absent:
         must, hint = "missing", must
@@ -122,7 +138,7 @@ def _report(place: Place, details: ErrorDetails) -> None:
 
 
 def _hint(place: Place) -> str:
-    """Return the suggested fix for a value of the wrong type; no text where none is known."""
+    """Return the suggested fix for a value of the wrong type; "" where none is known."""
     given, allowed, text = place.value, place.allowed, text_of(place.allowed)
     if isinstance(given, str) and allowed.type in (int, float):
         if any(map(str.isdigit, given)):

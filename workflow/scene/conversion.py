@@ -25,9 +25,10 @@ UNIT_KEYS = {"LU": "length_unit", "FU": "force_unit", "MU": "mass_unit"}
 
 
 def convert(scene: Place) -> bool:
-    """Replace the texts with units of a scene by numbers, and return whether it has any.
+    """Replace the texts with units of a scene by numbers in LU, FU, MU and TU, in place.
 
-    Errors in them are reported. Their places, and those whose numbers are then unknown, are marked as not sound.
+    Return whether the scene has such texts, right or wrong. Errors in them are reported. Their keys, and those whose
+    numbers are then unknown, are marked as wrong.
     """
     texts = [place for place in numbers_in(scene) if place.is_text and place.sound]
     read = {place: value for place in texts if (value := _si_value(place)) is not None}
@@ -45,7 +46,10 @@ def convert(scene: Place) -> bool:
 
 
 def _si_value(place: Place) -> Fraction | None:
-    """Return the quantity of a text in SI, a temperature as k_B T; None, and reported, where it is none."""
+    """Return the quantity of a text in its unit of SI, a temperature as k_B T [J].
+
+    None, and reported, where it is none.
+    """
     try:
         value, dimension = si_value(place.value, *place.unit.texts)
     except UnitTextError as error:
@@ -55,7 +59,10 @@ def _si_value(place: Place) -> Fraction | None:
 
 
 def _put_number(place: Place, value: Fraction) -> None:
-    """Replace a text by its number, and keep the text as the source."""
+    """Replace a text by its number in the scene, and keep the text as the source.
+
+    A number that is too large is reported.
+    """
     text = copy(place)
     try:
         place.put(float(value))
@@ -65,7 +72,10 @@ def _put_number(place: Place, value: Fraction) -> None:
 
 
 def _scales(scene: Place, texts: list[Place]) -> dict[str, Fraction] | None:
-    """Return the sizes in SI of LU, FU and MU that `texts` need. None, and reported, where they are unknown."""
+    """Return the sizes of those of LU [m], FU [N] and MU [kg] that `texts` need; None, and reported, where unknown.
+
+    An absent [material] is added to the scene.
+    """
     material = scene.inside["material"]
     if material.absent:
         material.put({})
@@ -80,9 +90,10 @@ def _scales(scene: Place, texts: list[Place]) -> dict[str, Fraction] | None:
 
 
 def _chosen_scales(draft: Draft, texts: list[Place]) -> dict[str, Fraction] | None:
-    """Return the sizes in SI of units that `texts` need; those that the scene leaves open are put into it.
+    """Return the sizes of those of LU [m], FU [N] and MU [kg] that `texts` need.
 
-    None, and reported, where plain numbers are mixed with units.
+    Those that the scene leaves open are 1 and are put into it. None where plain numbers are mixed with units, which is
+    reported, or where a given size is no positive number.
     """
     given, elastic = draft.scene.find("bodies.bulk_stiffness"), draft.holds("elastic")
     stiffness = given if given and given.value != "auto" and elastic else None  # FU follows from it and the moduli
@@ -105,7 +116,10 @@ def _chosen_scales(draft: Draft, texts: list[Place]) -> dict[str, Fraction] | No
 
 
 def _plain_numbers(draft: Draft, bases: Collection[str]) -> list[Place]:
-    """Return the numbers without a unit that are in units made of these bases, except a mass that has no effect."""
+    """Return the numbers without a unit that are in units made of `bases` (LU, FU, MU).
+
+    A mass that has no effect is not among them.
+    """
     in_time = draft.experiment.only_method == "dynamic" or draft.facts["in_time"]
     without = "" if in_time and not draft.experiment.is_massless else "bodies.mass"
     numbers = (place for place in numbers_in(draft.scene) if place.is_number and place.path != without)
@@ -113,7 +127,14 @@ def _plain_numbers(draft: Draft, bases: Collection[str]) -> list[Place]:
 
 
 def _report_mixed(plain: list[Place], text: Place, chosen: Collection[str], elastic: bool) -> None:
-    """Report plain numbers beside numbers with a unit where the units of the model are unknown."""
+    """Report plain numbers beside a number with a unit, where the sizes of LU, FU or MU are unknown.
+
+    Args:
+        plain: the numbers without a unit; the message is at the first.
+        text: one with a unit, which it names.
+        chosen: of LU, FU and MU those that the scene does not give.
+        elastic: whether the scene has elastic moduli.
+    """
     first = plain[0]
     unknown = {base for place in plain for base in place.unit.bases} | (set() if elastic else {"LU", "FU"})
     bases = [base for base in UNIT_KEYS if base in unknown and base in chosen]
@@ -133,12 +154,15 @@ def _report_mixed(plain: list[Place], text: Place, chosen: Collection[str], elas
 
 
 def is_positive(place: Place) -> bool:
-    """Return whether a place has a finite number greater than 0."""
+    """Return whether a key has a finite number greater than 0."""
     return place.is_number and 0.0 < place.value <= sys.float_info.max
 
 
 def size(unit: str, scales: Mapping[str, Fraction]) -> Fraction:
-    """Return the size of a unit of the model in SI, exactly where it is a fraction."""
+    """Return the size of a model `unit`, such as "FU/LU", in its unit of SI, exactly where it is a fraction.
+
+    `scales`: sizes of LU [m], FU [N] and MU [kg]. An irrational size, as that of a time, is the nearest float.
+    """
     square = math.prod((scales[base] ** int(2 * power) for base, power in SI[unit].powers.items()), start=Fraction(1))
     root = Fraction(math.isqrt(square.numerator), math.isqrt(square.denominator))
     return root if root**2 == square else Fraction(math.sqrt(square))

@@ -48,7 +48,10 @@ KNOWN = "*"
 
 @cache
 def _read(conditions: str) -> list[list[tuple[str, str | None, bool]]]:
-    """Return the alternatives of each condition: name, required value or None, and whether it must hold."""
+    """Return for each condition, separated by blanks, its alternatives: (name, required value, whether it must hold).
+
+    The value is None where the name alone is asked for.
+    """
     alternatives = []
     for words in conditions.split():
         parts = [(word, *word.removeprefix("!").partition("=")) for word in words.split("|")]
@@ -89,29 +92,40 @@ class Draft:
             self.facts[name] = self.holds(conditions)
 
     def _first(self, effects: Sequence[str], text: str, dynamic: str) -> str:
-        """Return the first of these effects that the scene has, else a dynamic method, in words; else no text."""
+        """Return `text` with the name of the first of these effects that the scene has.
+
+        Else `dynamic`, where the scene names the dynamic method, else "".
+        """
         named = (text.format(name) for name in effects if name in self)
         return next(named, dynamic if self["experiment.method"] == "dynamic" else "")
 
     def __contains__(self, path: str) -> bool:
-        """Return whether the scene has a value at `path`."""
+        """Return whether the scene has a value, right or wrong, at the dotted key `path`."""
         place = self.scene.find(path)
         return place is not None and not place.absent
 
     def __getitem__(self, path: str) -> Any:
-        """Return the value at `path` or its default; None where it is unknown or there is no such table."""
+        """Return the value at the dotted key `path`, or its default.
+
+        None where it is wrong, or there is no such key.
+        """
         place = self.scene.find(path)
         return place.value if place and place.sound else None
 
     def holds(self, conditions: str) -> bool:
         """Return whether all `conditions`, between blanks, hold; of alternatives, between bars, at least one.
 
-        A condition is one of the `facts`, a path that has a value, or a path with "=" and the value, or a value in the
-        list, that it must have. With "!" before it, it must not hold.
+        A condition is one of the `facts`, a dotted key that has a value, or a key with "=" and the value that it must
+        have, or that its list must contain; "=*" stands for any value that is right. With "!" before it, it must not
+        hold.
         """
         return all(any(self._is(*condition) for condition in alternatives) for alternatives in _read(conditions))
 
     def _is(self, name: str, text: str | None, wanted: bool) -> bool:
+        """Return whether a condition on the key or fact `name` is as `wanted`.
+
+        `text`: required value, None without one.
+        """
         if text is not None:
             known, value = self[name], VALUES.get(text, text)
             is_true = known is not None and (
@@ -122,7 +136,10 @@ class Draft:
         return is_true == wanted
 
     def written(self, path: str, number: float) -> float | str:
-        """Return a number for `path` to `DIGITS` digits, in the unit of the text that it replaces."""
+        """Return a `number` in model units as it would stand at the dotted key `path`, to six digits.
+
+        It is a text in the unit of the text that it replaces, "2 mm", else a number.
+        """
         place = self.scene.find(path)
         text = place.source.value if place and place.source and place.value else None
         if not isinstance(text, str):  # a number, or in Python a pair of it and its uncertainty
@@ -136,5 +153,8 @@ Rule = Row | Callable[[Draft], Rows]
 
 
 def limit(value: float, of: float) -> str:
-    """Return the limit of a value that is beyond it, as text with digits that show the difference."""
+    """Return the number `of`, the limit that `value` exceeds, as text with six digits or more.
+
+    It has as many digits as show the difference.
+    """
     return apart(value, of, DIGITS)[1]

@@ -74,15 +74,18 @@ class Effect(Table):
 
     @property
     def added_stiffness(self) -> float:
-        """Largest stiffness [FU/LU] that the effect adds to a particle: a time step follows it."""
+        """Largest stiffness [FU/LU] that the effect adds to a particle, which limits the timestep; 0 by default."""
         return 0.0
 
     def bond_drag(self, stiffness: float) -> float:
-        """Return the drag [FU·TU/LU] parallel to a bulk spring of this stiffness [FU/LU]: a time step follows it."""
+        """Return the drag [FU·TU/LU] parallel to a bulk spring of this stiffness [FU/LU], which limits the timestep.
+
+        Always 0.
+        """
         return 0.0
 
     def largest_phase(self, tolerance: float) -> float:
-        """Return the largest ω·Δt with which the effect is exact to a relative tolerance."""
+        """Return the largest ω·Δt [rad] with which the effect is exact to a relative tolerance; infinite by default."""
         return math.inf
 
 
@@ -213,17 +216,17 @@ class Viscoelasticity(Effect):
 
     @property
     def lasting(self) -> float:
-        """Share of the instantaneous modulus that does not relax; 1 for a Kelvin-Voigt body."""
+        """Share of the instantaneous modulus that does not relax, 0 … 1; 1 of a Kelvin-Voigt body."""
         return max(0.0, 1.0 - math.fsum(term.share for term in self.terms or ()))
 
     @property
     def resists_jumps(self) -> bool:
-        """Whether a jump of the displacement takes a force without bound, so that no stiffness belongs to it."""
+        """Whether a jump of the displacement takes an unbounded force: of a body with a retardation time."""
         return self.retardation_time is not None
 
     @property
     def shortest_time(self) -> float:
-        """The shortest relaxation time, or the retardation time [TU]."""
+        """The retardation time [TU], or without one the shortest relaxation time of the Prony series."""
         return self.retardation_time or min(term.time for term in self.terms or ())
 
 
@@ -252,12 +255,20 @@ class Noise(Effect):
     """seed of the random forces"""
 
     def largest_phase(self, tolerance: float) -> float:
-        """Return the largest ω·Δt with which ⟨u²⟩ is exact to a relative tolerance."""
+        """Return the largest ω·Δt [rad] with which ⟨u²⟩ is exact to a relative tolerance.
+
+        U is a particle's displacement.
+        """
         bias = 0.4  # relative error of ⟨u²⟩ over (ω Δt)² with fix langevin and fix nve, measured at ω Δt = 0.1: 0.4 %
         return math.sqrt(tolerance / bias)
 
 
 def _free_directions(free: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the directions sorted, ("x", "z") or ("z",).
+
+    Raises:
+        PydanticCustomError: one is given twice, or "z" is missing.
+    """
     if len(set(free)) < len(free):
         raise PydanticCustomError("scene", "must name each direction once")
     if "z" not in free:

@@ -86,7 +86,10 @@ class Path(Kind):
     method: AnyMethod = None
 
     def places(self) -> list[float]:
-        """Return the displacements [LU] in the order in which they are visited, the turning point of a span once."""
+        """Return the displacements [LU], compression positive, in the order in which they are visited.
+
+        The turning point of a span is there once.
+        """
         return _values(self.displacements)
 
 
@@ -161,12 +164,12 @@ class Slide(Kind):
     """legs [velocity, distance] of the driven end in place of one distance"""
 
     def legs(self, velocity: float) -> tuple[Leg, ...]:
-        """Return the legs of the path; `velocity` [LU/TU] is that of the cantilever."""
+        """Return the legs of the driven end: the given path, or one of the given distance at `velocity` [LU/TU]."""
         return self.path or (Leg(velocity=velocity, distance=self.distance or 0.0),)
 
     @property
     def excursion(self) -> float:
-        """Largest displacement [LU] of the driven end to one side."""
+        """Largest displacement [LU] ≥ 0 of the driven end to one side of its start."""
         ends = accumulate(leg.distance * ((leg.velocity > 0.0) - (leg.velocity < 0.0)) for leg in self.path or ())
         return max([self.distance or 0.0, *map(abs, ends)])
 
@@ -211,24 +214,30 @@ class Tangential(Kind):
 
     @property
     def compression(self) -> float | None:
-        """The largest normal force [FU]; None where displacements are given."""
+        """The largest normal force [FU], compression positive; None where displacements are given."""
         return max(_for_each(self.normal_force, 1), default=None)
 
     def places(self) -> list[float]:
-        """Return the normal displacements [LU] of the load steps, none where forces are given."""
+        """Return the normal displacement [LU], compression positive, of each load step.
+
+        Empty where forces are given.
+        """
         return _for_each(self.normal_displacement, len(self.along()))
 
     def along(self) -> list[float]:
-        """Return the displacements along x [LU] of the load steps."""
+        """Return the displacement along x [LU] of each load step."""
         return _values(self.cycles or self.displacements or ())
 
     def normal_forces(self) -> list[float]:
-        """Return the normal forces [FU] of the load steps, none where displacements are given."""
+        """Return the normal force [FU], compression positive, of each load step.
+
+        Empty where displacements are given.
+        """
         return _for_each(self.normal_force, len(self.along()))
 
     @property
     def excursion(self) -> float:
-        """Largest magnitude [LU] of the tangential displacements."""
+        """Largest magnitude [LU] of the tangential displacements, ≥ 0."""
         return max(map(abs, self.along()))
 
 
@@ -255,7 +264,7 @@ class Hold(Kind):
         return self.duration
 
     def places(self) -> list[float]:
-        """Return the displacement [LU] that is held, none where a force is."""
+        """Return the one displacement [LU] that is held, compression positive; empty where a force is held."""
         return [] if self.displacement is None else [self.displacement]
 
 
@@ -310,7 +319,7 @@ class History(Kind):
 
     @property
     def times(self) -> list[float]:
-        """Times [TU] of the points of the history."""
+        """Times [TU] of the points of the history, of displacements or of forces."""
         return [point.time for point in self.displacement or self.force or ()]
 
     @property
@@ -320,11 +329,11 @@ class History(Kind):
 
     @property
     def compression(self) -> float | None:
-        """The largest force [FU]; None where displacements are given."""
+        """The largest force [FU], compression positive; None where displacements are given."""
         return max((point.force for point in self.force or ()), default=None)
 
     def places(self) -> list[float]:
-        """Return the displacements [LU] of the points, none where forces are given."""
+        """Return the displacements [LU] of the points, compression positive; empty where forces are given."""
         return [point.displacement for point in self.displacement or ()]
 
 

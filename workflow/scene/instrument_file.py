@@ -16,7 +16,7 @@ class ProfileFileError(ValueError):
 
 
 def read_line(path: Path) -> tuple[list[float], list[float], str]:
-    """Return positions and heights of the line along x through the highest point, and their unit, "1 µm".
+    """Return (positions, heights, their unit, such as "1 µm") of the line along x through the highest point of a scan.
 
     An instrument's heights grow out of the sample, those of a profile away from the plane: their sign is changed.
 

@@ -44,12 +44,16 @@ class Span(Table):
 
     @model_validator(mode="after")
     def _ends_differ(self) -> Self:
+        """Return this span; raise PydanticCustomError where both ends are equal."""
         if self.from_ == self.to:
             raise PydanticCustomError("scene", '"from" and "to" must differ')
         return self
 
     def values(self) -> list[float]:
-        """Return the displacements [LU] in order: steps + 1 forward, then `steps` back; the turning point once."""
+        """Return the displacements [LU] in order: steps + 1 forward, then `steps` back, unless the return is left out.
+
+        The turning point is there once.
+        """
         n = self.steps
         between = [(self.from_ * (n - i) + self.to * i) / n for i in range(1, n)]
         forward = [self.from_, *between, self.to]
@@ -82,7 +86,7 @@ def _values(listed: Sequence[float] | Span | Cycles) -> list[float]:
 
 
 def _for_each(given: tuple[float, ...] | float | None, count: int) -> list[float]:
-    """Return a value for each of `count` points, from a list or one number for all; none where nothing is given."""
+    """Return a value for each of `count` points, by a list as it is, or by one number for all; empty for None."""
     return [] if given is None else list(given) if isinstance(given, tuple) else [given] * count
 
 
@@ -118,35 +122,44 @@ class Kind(Table):
 
     @property
     def given_method(self) -> Method | None:
-        """The method that the scene names, or the only one; None: it follows from the effects."""
+        """The only possible method, else the one that the scene names; None where it follows from the effects."""
         return self.only_method or getattr(self, "method", None)
 
     @property
     def is_retracted(self) -> bool:
-        """Whether the plate is retracted through a spring along z, at a given velocity."""
+        """Whether the plate is retracted along z at a given velocity; False by default."""
         return False
 
     @property
     def retraction_stiffness(self) -> float:
-        """Stiffness [FU/LU] of a spring that retracts the plate along z; 0 where none is given."""
+        """Stiffness [FU/LU] of the spring that retracts the plate along z; 0, as by default, where none is given."""
         return 0.0
 
     @property
     def lasts(self) -> float | None:
-        """Duration [TU] of a motion that the scene prescribes; None where the motion ends at rest or with a drive."""
+        """Duration [TU] of the motion that the scene prescribes.
+
+        None, as by default, where the motion ends in equilibrium or with the drive.
+        """
         return None
 
     @property
     def compression(self) -> float | None:
-        """Largest force [FU] that presses the bodies together; None where displacements are prescribed."""
+        """Normal force [FU] that presses the bodies together, 0 for a tensile one.
+
+        None where displacements are prescribed.
+        """
         force = getattr(self, self.load_key or "", None)
         return None if force is None else max(force, 0.0)
 
     def places(self) -> list[float]:
-        """Return the prescribed displacements [LU] in order, none where a force is prescribed."""
+        """Return the prescribed displacements [LU] in order, compression positive.
+
+        Empty, as by default, without any.
+        """
         return []
 
     @property
     def excursion(self) -> float:
-        """Largest tangential displacement [LU] of the bodies against each other; 0 without one."""
+        """Largest tangential displacement [LU] ≥ 0 of the bodies against each other; 0, as by default, without one."""
         return 0.0

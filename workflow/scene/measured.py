@@ -35,12 +35,15 @@ AS_A_SCAN = (
 
 
 def is_scan(profile: Mapping[str, Any], keys: Mapping[str, Any] = SCAN_KEYS) -> bool:
-    """Return whether a profile's points are those of a scan: one of these keys says how they are read."""
+    """Return whether a profile's points are those of a scan: one of the `keys` differs from its default there.
+
+    `keys`: by default those that centre, level, smooth or fit the points.
+    """
     return any(profile.get(key, default) not in (default, "none") for key, default in keys.items())
 
 
 def fault_of(r: tuple[float, ...], z: tuple[float, ...]) -> str | None:
-    """Return why the points (r, z) are no profile, with the suggested fix; None if they are one."""
+    """Return why radii r and heights z [LU] are no profile, with the suggested fix; None if they are one."""
     if len(r) != len(z):
         return f"must have as many radii as heights, not {len(r)} and {len(z)}"
     steps = [after - before for before, after in pairwise(r)]
@@ -105,6 +108,7 @@ class Measured(Shape):
 
     @model_validator(mode="after")
     def _is_a_profile(self) -> Self:
+        """Return this profile; raise PydanticCustomError where its points are none."""
         along = self.r if self.x is None else self.x
         if along is None or self.z is None:
             raise PydanticCustomError("scene", "needs a file, or the lists r and z")
@@ -114,7 +118,10 @@ class Measured(Shape):
         return self
 
     def _fault(self, along: tuple[float, ...], z: tuple[float, ...]) -> str | None:
-        """Return why the points are no profile; None if they are one."""
+        """Return why positions `along` and heights z [LU] are no profile, with the suggested fix.
+
+        None if they are one.
+        """
         if not self.is_scan:
             return fault_of(along, z) if self.x is None else f"positions x need to be read as a scan: {AS_A_SCAN}"
         if self.smooth not in (None, "none") and self.fit != "none":
@@ -149,7 +156,7 @@ class Measured(Shape):
         return _take(along or (), self.z or (), centre, self.level, length, None if self.fit == "none" else self.fit)
 
     def _from_the_axis(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Return radii and heights of the points, of a scan the mean of its sides."""
+        """Return (radii, heights) [LU] of the points, of a scan the mean of its sides."""
         taken = self.taken
         if taken is None:
             return self.r or (), self.z or ()
@@ -158,7 +165,7 @@ class Measured(Shape):
 
     @property
     def body(self) -> Shape:
-        """The body through the points, or with the fitted curve."""
+        """The body through the points, or the fitted curve of a scan that is smoothed or fitted."""
         from contact1d.workflow.scene.points import Points, curve_of  # it loads scipy as well
 
         if self.is_curve and (taken := self.taken):
@@ -167,11 +174,11 @@ class Measured(Shape):
         return Points.model_construct(r=r, z=z)
 
     def height(self, x: Array) -> Array:
-        """Return the height [LU] of the measured body."""
+        """Return the height [LU] of the measured body above its apex at positions x [LU]; same shape."""
         return self.body.height(x)
 
     def transformed(self, x: Array) -> Array:
-        """Return the transformed height [LU] of the measured body."""
+        """Return the height g(x) [LU] of the measured body after the MDR transform at positions x [LU]; same shape."""
         return self.body.transformed(x)
 
     @property
@@ -181,12 +188,15 @@ class Measured(Shape):
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Radii [LU] at which the slope of the measured body jumps."""
+        """Radii [LU] at which the slope of the measured body jumps; empty without any."""
         return self.body.kinks
 
     @property
     def alternatives(self) -> tuple[Shape, ...]:
-        """Other bodies through the points; of a curve with a given distance of its knots the curve with half of it."""
+        """Other bodies through the same points.
+
+        Of a curve with a given distance of its knots it is the curve with half of it, of another curve there is none.
+        """
         if not self.is_curve:
             return self.body.alternatives
         finer = {"smooth": 0.5 * self.smooth} if isinstance(self.smooth, float | int) else {}
@@ -194,12 +204,12 @@ class Measured(Shape):
 
     @property
     def coarser(self) -> tuple[Shape, ...]:
-        """Bodies through fewer points; a curve has none."""
+        """Bodies through fewer of the points; empty of a curve."""
         return self.body.coarser
 
     @property
     def deviations(self) -> tuple[tuple[Shape, Shape], ...]:
-        """Pairs of curves that differ by the uncertainty due to noise of the scan."""
+        """Pairs of curves that differ by the uncertainty due to noise of the scan; empty where the points are kept."""
         from contact1d.workflow.scene.points import curve_of
 
         if not self.is_curve or (taken := self.taken) is None:
@@ -209,7 +219,13 @@ class Measured(Shape):
 
 @lru_cache(maxsize=8)
 def _take(along: tuple[float, ...], z: tuple[float, ...], *settings: Any) -> Taken:
-    """Return the curve that is fitted to a scan; kept, since each height needs it."""
+    """Return the curve that is fitted to a scan of positions `along` and heights z [LU].
+
+    Cached, since each height needs it.
+
+    `settings`: centre [LU] or None for a search, whether a tilt is removed, distance of knots [LU] or None, and the
+    name of a shape or None.
+    """
     import numpy as np
 
     from contact1d.analysis.scan import take

@@ -28,16 +28,19 @@ class Piecewise(Shape):
 
     @abstractmethod
     def _curve(self) -> Any:
-        """Return the `scipy.interpolate.PPoly` of the body, from the axis to its end."""
+        """Return the height [LU] over r [LU] as a `scipy.interpolate.PPoly`, from the axis to the body's end."""
 
     def height(self, x: Array) -> Array:
-        """Return the height z(|x|) − z(0) [LU] of the curve, constant beyond its end."""
+        """Return the height z(|x|) − z(0) [LU] at positions x [LU], constant beyond the body's end; same shape."""
         return np.asarray(self._curve()(np.minimum(np.abs(x), self.reach)))
 
     def transformed(self, x: Array) -> Array:
-        """Return g [LU], which is exact: the slope is a parabola p₀ + p₁ r + p₂ r² between two points.
+        """Return the height g(x) [LU] after the MDR transform at positions x [LU], constant beyond the body's end.
 
-        ∫ (p₀ + p₁ r + p₂ r²)/√(x² − r²) dr = (p₀ + p₂ x²/2) arcsin(r/x) − (p₁ + p₂ r/2) √(x² − r²).
+        Same shape.
+
+        It is exact: the slope is a parabola p₀ + p₁ r + p₂ r² between two points, and ∫ (p₀ + p₁ r + p₂ r²)/√(x² − r²)
+        dr = (p₀ + p₂ x²/2) arcsin(r/x) − (p₁ + p₂ r/2) √(x² − r²).
         """
         radii, p_0, p_1, p_2 = _slope_polynomials(self._curve())
         flat = np.minimum(np.abs(np.ravel(x)), self.reach)
@@ -55,7 +58,7 @@ class Piecewise(Shape):
 
 
 class Points(Piecewise):
-    """A body that is known at points (r, z), from r = 0 on.
+    """A body that is known at points (r, z) [LU], from r = 0 on.
 
     Between them it is a monotone cubic: no overshoot, a paraboloid met exactly, and a continuous slope but at points
     where that jumps, as at the edge of a land.
@@ -73,7 +76,7 @@ class Points(Piecewise):
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Radii [LU] at which the points show that the slope jumps."""
+        """Radii [LU], rising, at which the points show that the slope jumps; empty without any."""
         x, _, corners = _with_corners(self.r, self.z, self.sharp)
         return tuple(x[corners].tolist())
 
@@ -95,12 +98,13 @@ class Points(Piecewise):
 
     @property
     def coarser(self) -> tuple[Shape, ...]:
-        """Bodies through every second point, or through the other points."""
+        """Bodies through every second point, and through the other points; without those of fewer than four points."""
         r, z = self.r, self.z
         fewer = [((r[0], *r[first:-1:2], r[-1]), (z[0], *z[first:-1:2], z[-1])) for first in (1, 2)]
         return tuple(Points.model_construct(r=r, z=z) for r, z in fewer if len(r) >= FEWEST_POINTS)
 
     def _curve(self) -> Any:
+        """Return the height [LU] over r [LU], a `PPoly`: monotone cubics through the points."""
         return _spline(self.r, self.z)
 
 
@@ -108,6 +112,7 @@ class Chords(Points):
     """A measured profile that is straight between its points, where these show no smooth curve."""
 
     def _curve(self) -> Any:
+        """Return the height [LU] over r [LU], a `PPoly`: chords where the points show no smooth curve."""
         return _rough_curve(self.r, self.z, False)
 
 
@@ -121,14 +126,15 @@ class Corners(Points):
     """Ratio of the curvatures at the four points around a cell beyond which they show no smooth curve."""
 
     def _curve(self) -> Any:
+        """Return the height [LU] over r [LU], a `PPoly`: chords up to corners where the points show no smooth curve."""
         return _rough_curve(self.r, self.z, True)
 
 
 def _chord_slopes(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Array, Array, Array]:
-    """Return radii, heights above the apex, slopes of the chords, and the changes of these per length.
+    """Return (radii [LU], heights above the apex [LU], slopes of the chords, changes of these per length [1/LU]).
 
     The body is even in x: the chords begin at the point on the other side of the axis, (n,), and their changes on the
-    axis, (n − 1,).
+    axis, (n − 1,). Radii and heights are (n,).
     """
     x, y = np.asarray(r), np.asarray(z) - z[0]
     slope = np.diff(y, prepend=y[1]) / np.diff(x, prepend=-x[1])
@@ -139,7 +145,7 @@ def _chord_slopes(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Ar
 def _with_corners(
     r: tuple[float, ...], z: tuple[float, ...], sharpness: float = Points.sharp
 ) -> tuple[Array, Array, Any]:
-    """Return radii and heights, with a point at each jump of the slope between two points, and the indices of jumps.
+    """Return (radii, heights) [LU] of the points, with one at each jump of the slope, and the indices of jumps.
 
     The slope jumps between two points whose curvatures are in sum `sharpness` times those of their neighbours: where
     the parabolas through the points of either side meet, or at a point where these do not meet between two.
@@ -169,7 +175,10 @@ def _with_corners(
 
 
 def _with_chord_corners(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Array]:
-    """Return radii and heights of the points, with a point in each cell in which the chords of both sides meet."""
+    """Return radii and heights [LU] of the points, with one in each cell in which the chords of both sides meet.
+
+    None is added beside a point at which the slope jumps.
+    """
     x, y, slope, _ = _chord_slopes(r, z)
     before, after, start, end = slope[1:-2], slope[3:], slice(1, -2), slice(2, -1)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -186,9 +195,9 @@ def _with_chord_corners(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Arr
 
 
 def _smallest_digit(z: tuple[float, ...]) -> float:
-    """Return the power of ten of which all heights are whole multiples; 0 where it is below ten digits of the largest.
+    """Return the power of ten [LU] of which all heights [LU] are whole multiples, within 1e-4.
 
-    A multiple counts as whole within 1e-4.
+    0 where it would be ten digits or more below the largest height.
     """
     heights = np.asarray(z)
     first = math.ceil(math.log10(np.abs(heights).max()))
@@ -204,6 +213,7 @@ def _rough_curve(r: tuple[float, ...], z: tuple[float, ...], corners: bool) -> A
     """Return the height above the apex [LU] over r [LU], a `PPoly`: monotone cubics, and chords in rough cells.
 
     Rough cells show no smooth curve (`_is_rough`). With `corners` the chords of both sides go on up to where they meet.
+    It is NaN beyond the last point.
     """
     spline = _spline(r, z)
     x, y = _with_chord_corners(r, z) if corners else (np.asarray(r), np.asarray(z) - z[0])
@@ -217,9 +227,9 @@ def _rough_curve(r: tuple[float, ...], z: tuple[float, ...], corners: bool) -> A
 
 
 def _is_rough(r: tuple[float, ...], z: tuple[float, ...]) -> NDArray[np.bool_]:
-    """Return whether each cell is within two cells of one that shows no smooth curve, (n − 1,).
+    """Return whether each cell between two points is within two cells of one that shows no smooth curve, (n − 1,).
 
-    That is one around which curvatures differ in sign, or by more than `Corners.sharp`.
+    That is one around which curvatures differ in sign, or by more than `Corners.sharp`. r, z: of the points [LU].
     """
     x, _, slope, bend = _chord_slopes(r, z)
     bend = np.concatenate([bend[1:2], bend, bend[-1:], bend[-1:]])  # of the points from −1 to n
@@ -232,9 +242,10 @@ def _is_rough(r: tuple[float, ...], z: tuple[float, ...]) -> NDArray[np.bool_]:
 
 @lru_cache(maxsize=8)
 def _spline(r: tuple[float, ...], z: tuple[float, ...]) -> Any:
-    """Return monotone cubics through the points, z(0) = 0; kept, since a search for a chain's length repeats the call.
+    """Return monotone cubics through the points, z(0) = 0, as a `PPoly`: height [LU] over r [LU].
 
-    Where the slope jumps, the cubics of each side have their own slope.
+    It is NaN beyond the last point. Where the slope jumps, the cubics of each side have their own slope. Cached, since
+    a search for a chain's length repeats the call.
     """
     least = 2  # points of a curve in addition to the one at which its slope jumps
     x, y, corners = _with_corners(r, z)
@@ -266,14 +277,19 @@ def _cubic_coefficients(x: Array, y: Array) -> Array:
 
 
 def _slope_polynomials(curve: Any) -> tuple[Array, Array, Array, Array]:
-    """Return radii, shape (n,), and p₀, p₁, p₂ of the slope p₀ + p₁ r + p₂ r² between them, each of shape (n − 1,)."""
+    """Return radii, (n,) [LU], and p₀, p₁, p₂ of the slope p₀ + p₁ r + p₂ r² between them, (n − 1,) each."""
     square, linear, constant = curve.derivative().c
     start = curve.x[:-1]
     return curve.x, constant - linear * start + square * start**2, linear - 2.0 * square * start, square
 
 
 class Smoothed(Piecewise):
-    """A body whose slope is linear between knots: a smooth curve that is fitted to a scan."""
+    """A body whose slope is linear between knots: a smooth curve that is fitted to a scan.
+
+    Attributes:
+        knots: radii from 0 on [LU].
+        slopes: dz/dr at the knots.
+    """
 
     knots: tuple[float, ...]
     slopes: tuple[float, ...]
@@ -285,10 +301,10 @@ class Smoothed(Piecewise):
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Middles [LU] of the intervals in which the slope rises `Points.sharp` times as fast as on average: jumps.
+        """Middles [LU] of the intervals between knots in which the slope jumps: it rises eight times as fast as usual.
 
-        What is infinite at a kink is then no number that depends on the distance of the knots. In the first interval,
-        at the apex, the slope may rise by any amount.
+        Usual is its mean over the body. What is infinite at a kink is then no number that depends on the distance of
+        the knots. In the first interval, at the apex, the slope may rise by any amount. Empty without any.
         """
         cells = zip(pairwise(self.knots), pairwise(self.slopes), strict=True)
         steep = Points.sharp * max(self.slopes) / self.reach
@@ -296,12 +312,16 @@ class Smoothed(Piecewise):
         return tuple(middle for middle in middles if middle > self.knots[1])
 
     def _curve(self) -> Any:
+        """Return the height [LU] over r [LU], a `PPoly`: parabolas between knots."""
         return _quadratics(self.knots, self.slopes)
 
 
 @lru_cache(maxsize=64)
 def _quadratics(knots: tuple[float, ...], slopes: tuple[float, ...]) -> Any:
-    """Return the curve of these slopes as a `PPoly`, 0 on the axis."""
+    """Return the height [LU] over r [LU], 0 on the axis, as a `PPoly`, by its slopes at knots [LU].
+
+    NaN beyond the last knot.
+    """
     x, slope = np.asarray(knots), np.asarray(slopes)
     return PPoly(
         np.stack([0.0 * x[1:], np.diff(slope) / np.diff(x), slope[:-1]]), x, extrapolate=False
@@ -309,33 +329,47 @@ def _quadratics(knots: tuple[float, ...], slopes: tuple[float, ...]) -> Any:
 
 
 class Fitted(Shape):
-    """A named shape out to the end of the scan that it was fitted to."""
+    """A named shape out to the end of the scan that it was fitted to.
+
+    Attributes:
+        inner: the shape.
+        end: radius at which the scan ends [LU].
+    """
 
     slow = True
     inner: Shape
     end: float
 
     def height(self, x: Array) -> Array:
-        """Return the height [LU] of the fitted shape, constant beyond the end of the scan."""
+        """Return the height [LU] of the fitted shape at positions x [LU], constant beyond the end of the scan.
+
+        Same shape.
+        """
         return self.inner.height(np.minimum(np.abs(x), self.end))
 
     def transformed(self, x: Array) -> Array:
-        """Return the transformed height [LU] of the fitted shape, constant beyond the end of the scan."""
+        """Return the MDR height g(x) [LU] of the fitted shape at positions x [LU], constant beyond the scan's end.
+
+        Same shape.
+        """
         return self.inner.transformed(np.minimum(np.abs(x), self.end))
 
     @property
     def reach(self) -> float:
-        """The radius [LU] at which the scan or the shape ends."""
+        """The radius [LU] at which the scan or the shape ends, the smaller one."""
         return min(self.end, self.inner.reach)
 
     @property
     def curvature_radius(self) -> float | None:
-        """The radius of curvature [LU] of the fitted shape at its apex."""
+        """The radius of curvature [LU] of the fitted shape at its apex; None where it has none."""
         return self.inner.curvature_radius
 
 
 def curve_of(taken: Taken, parameters: Array) -> Shape:
-    """Return the body that is fitted to a scan, with these parameters of its curve."""
+    """Return the body that is fitted to a scan, with these `parameters` (`Taken.parameters`) of its curve.
+
+    It is a smooth curve by its slopes at the knots, or a parabola, circle or power up to the end of the scan.
+    """
     first, *more = parameters.tolist()
     if taken.shape == "smooth":
         return Smoothed.model_construct(knots=tuple(taken.knots.tolist()), slopes=(0.0, first, *more))

@@ -32,7 +32,7 @@ class Problem:
     ways: tuple[Mapping[str, object], ...] = field(default=(), compare=False)
 
     def __str__(self) -> str:
-        """One line: `path = given: message; hint`."""
+        """Return the problem as one line: `path = given: message; hint`, without the parts that it lacks."""
         given = "" if self.given is None else f" = {self.given}"
         hint = f"; {self.hint}" if self.hint else ""
         path = _cut(self.path, 1000)  # a key of a scene has any length
@@ -43,13 +43,16 @@ class SceneError(Contact1dError):
     """A scene cannot be used; `problems` has every mistake found, in the order of the scene's tables."""
 
     def __init__(self, problems: Iterable[Problem]) -> None:
-        """Hold `problems`; as the only argument, so that the error survives pickling between processes."""
+        """Store `problems`; as the only argument, so that the error survives pickling between processes."""
         self.problems = tuple(problems)
         super().__init__(self.problems)
 
     @property
     def changes(self) -> tuple[SceneEdit, ...]:
-        """Each fix of the first problem, with the first fix of every other problem; none where a problem has none."""
+        """Each fix of the first problem, with the first fix of every other problem.
+
+        Empty where any problem has none.
+        """
         if not all(problem.ways for problem in self.problems):
             return ()
         first, *rest = self.problems
@@ -57,7 +60,7 @@ class SceneError(Contact1dError):
         return tuple(SceneEdit({**values, **common}) for values in first.ways)
 
     def __str__(self) -> str:
-        """The first problems, one on each line, and how many more there are."""
+        """Return the first 20 problems, one on each line, and how many more there are."""
         more = len(self.problems) - MOST_PROBLEMS
         return "\n".join([*map(str, self.problems[:MOST_PROBLEMS]), *[f"and {more} more"][: max(more, 0)]])
 
@@ -82,7 +85,7 @@ def as_toml(value: object) -> str:
 
 
 def shown(value: object) -> str:
-    """Return `value` as TOML, shortened to at most `SHOWN_LENGTH` characters, for messages."""
+    """Return `value` as TOML, shortened to at most 60 characters, for messages; "…" for one that cannot be written."""
     try:
         text = as_toml(value)
     except (ValueError, RecursionError):  # an integer of thousands of digits; nesting without end
@@ -91,6 +94,7 @@ def shown(value: object) -> str:
 
 
 def _cut(text: str, most: int) -> str:
+    """Return a text, shortened to `most` characters, the last of which is then "…"."""
     return text if len(text) <= most else text[: most - 1] + "…"
 
 
@@ -100,7 +104,10 @@ def as_key(key: str) -> str:
 
 
 def tables_as_toml(tables: Mapping[str, Any]) -> str:
-    """Return the `tables` of a scene as a TOML file: one [table] each, nested ones inline."""
+    """Return the `tables` of a scene as the text of a TOML file: one [table] each, nested ones inline.
+
+    Keys above the first table, such as the title, come first.
+    """
     inside = {f"[{name}]\n": table for name, table in tables.items() if isinstance(table, dict)}
     above = {key: value for key, value in tables.items() if not isinstance(value, dict)}
     return "\n".join(
@@ -123,7 +130,10 @@ def keys_in(path: str) -> list[str | int]:
 
 
 def nearest(word: str, allowed: Iterable[str]) -> str | None:
-    """Return the word out of `allowed` that a person who wrote `word` most likely meant, or None."""
+    """Return the word out of `allowed` that a person who wrote `word` most likely meant; None where none is similar.
+
+    It is the only one that begins with `word`, of three letters at least, else the most similar spelling.
+    """
     known, meant = list(allowed), plain(word)
     starting = [name for name in known if len(meant) > 2 and name.startswith(meant)]
     if len(starting) == 1 or len(meant) > SHOWN_LENGTH:
@@ -132,18 +142,23 @@ def nearest(word: str, allowed: Iterable[str]) -> str | None:
 
 
 def suggestion(word: str, known: Collection[str], label: str = "allowed here") -> str:
-    """Return what to write in place of an unknown `word`: the word that was meant, and all that are `known`."""
+    """Return what to write in place of an unknown `word`: 'did you mean "…"? allowed here: …'.
+
+    All that are `known` are listed; without a similar word the question is left out. `label`: the words before the
+    list.
+    """
     meant = nearest(word, known)
     begin = f'did you mean "{meant}"? ' if meant else ""
     return f"{begin}{label}: {', '.join(known) or 'no keys'}"
 
 
 def plain(word: str) -> str:
-    """Return `word` as keys are written: lower case, "_" in place of "-" and spaces."""
+    """Return `word` as keys are written: lower case, "_" in place of "-" and blanks, none around it."""
     return word.strip().lower().replace("-", "_").replace(" ", "_")
 
 
 def _escaped(character: str) -> str:
+    """Return a character as a text in TOML has it: escaped where it is a quote, a backslash or not printable."""
     if character in '"\\':
         return "\\" + character
     if character.isprintable():

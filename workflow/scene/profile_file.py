@@ -41,9 +41,10 @@ Row = tuple[int, list[str]]
 
 
 def take_points(scene: Place, folder: Path) -> dict[str, list[float]]:
-    """Return the points of the file in `folder` that the profile of a scene names; none without one, or if reported.
+    """Return the lists r and z, or x and z, of the file in `folder` that the profile of a scene names.
 
-    The scale of the file is a quantity of the scene like any other: where none is given, it is the unit of the numbers.
+    They are in one unit, which is put into the scene as the profile's `scale` where none is given: 1 LU without units
+    in the file. Empty where the profile names no file, or has lists of its own, and where an error was reported.
     """
     profile, file, scale, units = (scene.find(f"bodies.profile{key}") for key in ("", ".file", ".scale", ".units"))
     if not profile or not file or not scale or not units or not isinstance(file.value, str):
@@ -80,7 +81,13 @@ def take_points(scene: Place, folder: Path) -> dict[str, list[float]]:
 
 
 def _unit_and_ratio(units: object) -> tuple[str, float]:
-    """Return the unit of positions, "1 µm", and that of heights over it, negative with a minus. Raises ValueError."""
+    """Return the unit of positions, "1 µm", and the ratio of that of heights to it, negative with a minus.
+
+    `units`: two texts, such as ["µm", "-nm"].
+
+    Raises:
+        ValueError: they are not the units of two lengths.
+    """
     try:
         along, up = map(str, units)  # type: ignore[call-overload]
         size = si_value(f"1 {up.lstrip('-−')}", MODEL)[0] / si_value(f"1 {along}", MODEL)[0]
@@ -90,13 +97,16 @@ def _unit_and_ratio(units: object) -> tuple[str, float]:
 
 
 def _are_equal(first: tuple[str, float], second: tuple[str, float]) -> bool:
-    """Return whether two pairs of a unit of positions and the ratio of that of heights to it are equal."""
+    """Return whether two pairs are equal: a unit of positions, and the ratio of that of heights to it, within 1e-12."""
     sizes = {si_value(unit, MODEL)[0] for unit, _ in (first, second)}
     return len(sizes) == 1 and math.isclose(first[1], second[1], rel_tol=1e-12)
 
 
 def put_points(scene: Place, lists: dict[str, list[float]]) -> None:
-    """Replace the file of a profile by its points, once its scale is a number."""
+    """Replace the file of a profile by its points, in the scene: `lists` times its scale [LU].
+
+    Nothing is done without points or where the profile has an error; points that are too large are reported.
+    """
     profile = scene.find("bodies.profile")
     if not lists or not profile or not profile.sound:
         return
@@ -111,17 +121,18 @@ def put_points(scene: Place, lists: dict[str, list[float]]) -> None:
 
 
 def read_profile(path: Path, scan: bool) -> tuple[dict[str, list[float]], str | None, float]:
-    """Return the lists r and z of a measured profile, from the axis out; the unit of r, "1 µm"; and that of z over it.
+    """Return (lists r and z of a measured profile from the axis out, unit of r, ratio of the unit of z to it).
 
-    Without units the second is None, LU. Messages name lines and never quote them: a path in a scene may point at any
-    file. Lines that begin with #, empty lines and lines before the table are skipped. Columns of other names are
-    ignored. Points may begin at the edge; those from −x to x are folded into the mean of both sides. Of a `scan` all
-    points are kept, in their order, as x and z.
+    The unit is a text, "1 µm"; without units it is None, which stands for LU, and the ratio 1. Messages name lines and
+    never quote them: a path in a scene may point at any file. Lines that begin with #, empty lines and lines before the
+    table are skipped. Columns of other names are ignored. Points may begin at the edge; those from −x to x are folded
+    into the mean of both sides. Of a `scan`, and of an instrument's file, all points are kept, in their order, as x and
+    z.
 
     Raises:
-        UnreadableError: if there is no such file, or it is no text.
-        ProfileFileError: if it has more lines than `rows_in` allows, a cell is empty or no number, a line has one
-            column, there are fewer than FEWEST_POINTS points, names are not known, or the two sides differ.
+        UnreadableError: there is no such file, or it is no text.
+        ProfileFileError: it has more lines than `rows_in` allows, a cell is empty or no number, a line has one column,
+        there are fewer than four points, names are not known, or the two sides differ.
     """
     if path.suffix.lower() in ENDINGS:
         x, z, unit = read_line(path)
@@ -136,7 +147,11 @@ def read_profile(path: Path, scan: bool) -> tuple[dict[str, list[float]], str | 
 
 
 def _from_the_axis(r: list[float], z: list[float]) -> dict[str, list[float]]:
-    """Return radii and heights, (n,), of points that are one side of a profile, or both."""
+    """Return {"r": radii, "z": heights}, from the axis out, of points that are one side of a profile, or both.
+
+    Raises:
+        ProfileFileError: the columns seem to be swapped, both sides differ, or there are fewer than four points.
+    """
     if _rising(r[::-1]):
         r, z = r[::-1], z[::-1]
     if not _rising(r) and (_rising(z) or _rising(z[::-1])):
@@ -151,11 +166,16 @@ def _from_the_axis(r: list[float], z: list[float]) -> dict[str, list[float]]:
 
 
 def rows_in(lines: list[str], most: int = 100_000) -> list[Row]:
-    """Return the lines that have content, each with its number, as cells with decimal points.
+    """Return (number, cells) of each line of a file that has content, with decimal points in place of commas.
+
+    Lines that begin with # are left out, and a first line "sep=;".
 
     Args:
         lines: of the file.
         most: lines that are allowed; a scene with as many points takes ten seconds to run.
+
+    Raises:
+        ProfileFileError: there are more lines.
     """
     if len(lines) > most:
         raise ProfileFileError(f"has {len(lines)} lines, at most {most} are allowed; use fewer points")
@@ -169,7 +189,10 @@ def rows_in(lines: list[str], most: int = 100_000) -> list[Row]:
 
 
 def _cells(line: str) -> list[str]:
-    """Return the cells of a line; a comma between blanks may be a decimal comma."""
+    """Return the cells of a line, separated by semicolon, tab, comma or blanks, the first of these that it has.
+
+    A comma between blanks may be a decimal comma.
+    """
     separator = next((character for character in ";\t," if character in line), None)
     if separator == "," and len(words := line.split()) > 1 and all(map(COMMA.fullmatch, words)):
         return words
@@ -177,7 +200,7 @@ def _cells(line: str) -> list[str]:
 
 
 def _without_preamble(rows: list[Row]) -> None:
-    """Remove the rows before the names of the columns, or before the numbers of a table without names.
+    """Remove, in place, the rows before the names of the columns, or before the numbers of a table without names.
 
     A line before the numbers with as many cells as these counts as their names, whether these are known or not.
     """
@@ -189,15 +212,19 @@ def _without_preamble(rows: list[Row]) -> None:
 
 
 def _words(names: list[str]) -> list[str]:
-    """Return the names of the columns in lower case, without their units."""
+    """Return the names of the columns in lower case, without their units; "" for what is no name."""
     matches = [NAME.match(name.strip('" ')) for name in names]
     return [match[1].lower() if match else "" for match in matches]
 
 
 def _header(rows: list[Row]) -> tuple[Sequence[int], str | None, float]:
-    """Return the columns of radius and height, the unit of radii, and that of heights over it, where there are units.
+    """Return ((column of radii, column of heights), unit of radii as "1 µm", unit of heights over it).
 
-    The lines of names and units, and all lines before them, are removed from the rows.
+    Columns are indices. Without units the second is None and the third 1. The lines of names and units, and all lines
+    before them, are removed from `rows`.
+
+    Raises:
+        ProfileFileError: names or units are not known, or only one of the two columns has a unit.
     """
     _without_preamble(rows)
     line, names = rows[0] if rows else (0, ["0"])
@@ -229,7 +256,13 @@ def _header(rows: list[Row]) -> tuple[Sequence[int], str | None, float]:
 
 
 def units_of(names: list[str], below: list[str], columns: Sequence[int]) -> tuple[list[str], bool]:
-    """Return the units of columns by their names, "" without one, or else by the cells below; whether by these."""
+    """Return (units of `columns`, whether the cells below the names have them); "" for a column without a unit.
+
+    Args:
+        names: of all columns, with units or without.
+        below: cells of the next line, which counts as that of units where it has no digits and the names no units.
+        columns: indices of the columns.
+    """
     units = [match[2].strip() if (match := NAME.match(names[column].strip('" '))) else "" for column in columns]
     words = len(below) == len(names) and all(cell and not any(map(str.isdigit, cell)) for cell in below)
     if any(units) or not words:
@@ -238,7 +271,16 @@ def units_of(names: list[str], below: list[str], columns: Sequence[int]) -> tupl
 
 
 def require_names(line: int, cells: list[str], names: list[str]) -> None:
-    """Refuse more whole numbers than names above them: decimal commas between commas that separate columns."""
+    """Refuse more whole numbers than names above them: decimal commas between commas that separate columns.
+
+    Args:
+        line: number of the line, for the message.
+        cells: of this line.
+        names: of the columns.
+
+    Raises:
+        ProfileFileError: with both counts.
+    """
     count = sum(bool(cell) for cell in cells)
     if count > len(names) and all(re.fullmatch(r"[+-]?\d*", cell) for cell in cells):
         raise ProfileFileError(
@@ -248,7 +290,13 @@ def require_names(line: int, cells: list[str], names: list[str]) -> None:
 
 
 def _column_of(line: int, words: list[str], allowed: tuple[str, ...]) -> int:
-    """Return the index of the only column with an allowed name. Raises ProfileFileError."""
+    """Return the index of the only column with an allowed name.
+
+    `line`: number of the line, for messages; `words`: names of the columns in lower case.
+
+    Raises:
+        ProfileFileError: no column or several have such a name.
+    """
     matches = [i for i, word in enumerate(words) if word in allowed]
     if len(matches) == 1:
         return matches[0]
@@ -259,11 +307,16 @@ def _column_of(line: int, words: list[str], allowed: tuple[str, ...]) -> int:
 
 
 def _rising(values: list[float]) -> bool:
+    """Return whether each value exceeds the one before it."""
     return all(after > before for before, after in pairwise(values))
 
 
 def _folded(x: list[float], z: list[float]) -> tuple[list[float], list[float]]:
-    """Return the mean of both sides of a profile from −x to x. Raises ProfileFileError where they differ."""
+    """Return (radii from 0 on, heights): the mean of both sides of a profile with rising positions x from −x to x.
+
+    Raises:
+        ProfileFileError: positions differ by more than 0.001 of a step, or heights by more than 5 % of the profile's.
+    """
     positions, heights = (list(zip(values, values[::-1], strict=True))[len(x) // 2 :] for values in (x, z))
     difference, height, problem = max(abs(right - left) for right, left in heights), max(z) - min(z), ""
     mean_step = (x[-1] - x[0]) / (len(x) - 1)
@@ -280,7 +333,13 @@ def _folded(x: list[float], z: list[float]) -> tuple[list[float], list[float]]:
 
 
 def _radius_and_height(line: str, cells: list[str], columns: Sequence[int]) -> list[float]:
-    """Return radius and height of a line, which messages name. Raises ProfileFileError."""
+    """Return [radius, height] out of the cells of a line by the indices of both columns.
+
+    `line`: its name in messages, "line 3".
+
+    Raises:
+        ProfileFileError: the line has too few cells, or one is empty or no finite number.
+    """
     if len(cells) <= max(columns):
         count = "has one column" if len(cells) == 1 else f"has {len(cells)} columns"
         raise ProfileFileError(f"{line}: {count}; r and z are needed")
@@ -297,6 +356,7 @@ def _radius_and_height(line: str, cells: list[str], columns: Sequence[int]) -> l
 
 
 def _number(cell: str) -> float | None:
+    """Return the number that a cell has, in quotes or without; None where it is none."""
     try:
         return float(cell.strip().strip('"'))
     except ValueError:

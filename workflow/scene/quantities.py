@@ -38,12 +38,15 @@ class Unit:
 
     @property
     def texts(self) -> tuple[str, ...]:
-        """The dimensions that a text may have, each by a unit; messages name the first."""
+        """The dimensions that a text with a unit may have, each by a unit; messages name the first."""
         return self.text or (self.name,)
 
     @property
     def bases(self) -> frozenset[str]:
-        """Those of LU, FU and MU that determine its size in SI; none for a unit of SI."""
+        """Those of LU, FU and MU that determine its size in SI.
+
+        Empty for a unit of SI and for a number without dimension.
+        """
         return frozenset(SI[self.name].powers) if self.name in SI else frozenset()
 
 
@@ -153,27 +156,33 @@ class Allowed:
 
     @cached_property
     def table(self) -> type[Table] | None:
-        """The table that the value must be; None if several or none are allowed."""
+        """The table that the value must be; None if several or none are allowed, and for a list."""
         return None if self.items else self.tables.get("")
 
     @property
     def kinds(self) -> Mapping[str, type[Table]]:
-        """The tables of a union by their `kind`."""
+        """The tables by their `kind`, where the value is one of several.
+
+        Empty where it is one without a kind, or no table.
+        """
         return {} if "" in self.tables else self.tables
 
     @cached_property
     def unit(self) -> Unit | None:
-        """The unit of a number, or of the items of a list of numbers."""
+        """The unit of a number, or of the items of a list of numbers; None where there is none."""
         units = (mark for mark in self.marks if isinstance(mark, Unit))
         return next(units, self.items.unit if self.items else None)
 
     @cached_property
     def quantity(self) -> Unit | None:
-        """The unit of a number that may have a dimension; None for counts."""
+        """The unit of a number with decimals, "1" without a dimension; None for counts, lists and what is no number."""
         return self.unit if self.type is float else None
 
     def table_for(self, value: Mapping[str, Any]) -> type[Table] | None:
-        """Return the table that `value` is meant to be, by its kind where several are allowed."""
+        """Return the table that `value` is meant to be, by its kind where several are allowed.
+
+        None where that is unknown.
+        """
         alone = len(self.tables) == 1
         return next((table for kind, table in self.tables.items() if alone or kind == value.get("kind")), None)
 
@@ -190,7 +199,7 @@ class Key:
 
 @cache
 def keys_of(table: type[Table]) -> dict[str, Key]:
-    """Return every key allowed in `table`, as written in TOML, in order; cached, since a scene needs some tens."""
+    """Return every key allowed in `table`, by its name in TOML, in order; cached, since a scene needs some tens."""
     keys = {}
     for name, given in table.model_fields.items():
         allowed, text = allowed_by(given.annotation, (*given.metadata,)), " ".join(str(given.description).split())
@@ -199,7 +208,10 @@ def keys_of(table: type[Table]) -> dict[str, Key]:
 
 
 def allowed_by(annotation: Any, marks: tuple[Any, ...] = ()) -> Allowed:
-    """Return the values that a type allows, without None, which is the type of an absent key."""
+    """Return the values that a type allows, without None, which is the type of an absent key.
+
+    `annotation`: type of a field; `marks`: metadata of it in addition to its own.
+    """
     origin, arguments = get_origin(annotation), get_args(annotation)
     if origin is Annotated:
         return allowed_by(arguments[0], (*arguments[1:], *marks))
@@ -247,7 +259,10 @@ class Place:
         self.problems = self.above.problems if self.above else []
 
     def __iter__(self) -> Iterator[Place]:
-        """Yield all places inside, a table before its content, which may be corrected meanwhile; also absent keys."""
+        """Yield all keys and items inside, a table before its content, which may be corrected meanwhile.
+
+        Also absent keys.
+        """
         for place in self.inside.values():
             yield place
             if place.inside:
@@ -255,7 +270,10 @@ class Place:
 
     @property
     def inside(self) -> dict[Any, Place]:
-        """The places of its keys or items; only that of the kind in a table whose kind is unknown."""
+        """The places of its keys or items by name or index; empty for a plain value.
+
+        Of a table whose kind is unknown only that of its kind.
+        """
         if self._inside is None:
             value, allowed = self.value, self.allowed
             self._inside = {}
@@ -273,32 +291,32 @@ class Place:
 
     @property
     def kind(self) -> Place:
-        """The place of the key that selects a table out of several."""
+        """The place of the key "kind", which selects a table out of several."""
         return Place(
             self.value.get("kind"), Allowed(words=(*self.allowed.kinds,)), "kind", self, "kind" not in self.value
         )
 
     @property
     def keys(self) -> Keys:
-        """The keys from the top of the scene down to it."""
+        """The keys from the top of the scene down to it; empty for the whole scene."""
         return (*self.above.keys, self.key) if self.above else ()
 
     def find(self, path: str) -> Place | None:
-        """Return the place at a dotted path from here; None if there is no such key."""
+        """Return the place at a dotted path of keys from here; None if there is no such key."""
         place: Place | None = self
         for key in path.split("."):
             place = place.inside.get(key) if place else None
         return place
 
     def put(self, value: object) -> None:
-        """Put a value at this place in the scene."""
+        """Put a value at this place in the scene, and in the table or list that contains it."""
         assert self.above is not None
         self.above.value[self.key] = self.value = value
         self.absent, self._inside = False, None
 
     @property
     def unit(self) -> Unit:
-        """The unit of a number."""
+        """The unit of a number; an AssertionError where no number with decimals is allowed."""
         unit = self.allowed.quantity
         assert unit is not None
         return unit
@@ -317,44 +335,58 @@ class Place:
 
     @property
     def path(self) -> str:
-        """The dotted path of the place as written in the scene."""
+        """The dotted path of the place as written in the scene, "bodies.profile.radius".
+
+        Of its source where it has one.
+        """
         return path_of((self.source or self).keys)
 
     @property
     def given(self) -> str | None:
-        """The value as written, or a default number, as TOML; None if there is neither."""
+        """The value as written, or a default number, as TOML; None for any other absent key."""
         return None if self.absent and not self.is_number else shown((self.source or self).value)
 
     def report(self, message: str, hint: str = "") -> None:
-        """Add a problem of this place to those of the scene."""
+        """Add a problem of this place to those of the scene: what is wrong, and as `hint` the suggested fix."""
         self.problems.append(Problem(self.path, message, self.given, hint))
 
     def doubt(self) -> None:
-        """Mark this place, and all that contain it, as not sound, so that no other check depends on its value."""
+        """Mark this place, and all that contain it, as not sound, so that no further check depends on its value."""
         self.sound = False
         if self.above:
             self.above.doubt()
 
     def fault(self, message: str, hint: str = "") -> None:
-        """Mark this place as not sound, and report a problem of it."""
+        """Mark this place, and all that contain it, as not sound, and report a problem of it.
+
+        `message`: what is wrong; `hint`: suggested fix.
+        """
         self.doubt()
         self.report(message, hint)
 
 
 def places(table: type[Table], data: Mapping[str, Any]) -> Iterator[Place]:
-    """Return the places of all numbers in `data`, a table of this type with the keys of a scene file."""
+    """Yield the place (key, value and unit) of each number in `data`, a table of this type with the keys of a scene
+    file.
+    """
     return numbers_in(Place(data, allowed_by(table)))
 
 
 def numbers_in(whole: Place) -> Iterator[Place]:
-    """Yield every place of a number, or of a value in place of one; an absent key where a number is its default."""
+    """Yield every place of a number with decimals, or of a value in place of one, inside `whole`.
+
+    Absent keys are among them where a number is their default; counts and lists are not, items of lists are.
+    """
     for place in whole:
         if place.allowed.quantity and not place.inside and (isinstance(place.value, float) or not place.absent):
             yield place
 
 
 def tables_in(table: type[Table], path: str = "", kind: str = "") -> Iterator[tuple[str, str, type[Table]]]:
-    """Yield every table inside `table`, itself first, and each kind of a union: dotted path, kind and type."""
+    """Yield (dotted path, kind, type) of every table inside `table`, itself first, and of each kind of a union.
+
+    The kind is "" of a table without one; `path`, `kind`: of `table` itself.
+    """
     yield path, kind, table
     for name, key in keys_of(table).items():
         for inner_kind, inner in key.allowed.tables.items():

@@ -58,32 +58,38 @@ HINTS = {
 
 
 class Scene(Tables):
-    """A whole scene, whose tables fit together: `read_scene` and `read_scene` make it."""
+    """A whole scene, whose tables fit together: `read_scene` makes it."""
 
     model_config = ConfigDict(defer_build=False)  # with all its tables, once
     _shares: dict[str, float] = PrivateAttr(default_factory=dict)
 
     @property
     def shares(self) -> Mapping[str, float]:
-        """The 95 % half-width over the value of each number that has ±, by dotted key."""
+        """The 95 % half-width over the value (relative) of each number that has ±, by dotted key; empty without any."""
         return self._shares
 
     @property
     def tables(self) -> dict[str, Any]:
-        """The tables of the scene file, with defaults and ±, which read back as an equal scene."""
+        """The tables of the scene file by name, with defaults and ±, which read back as an equal scene."""
         return with_shares(self.model_dump(mode="json", by_alias=True, exclude_none=True), self._shares)
 
     @property
     def given(self) -> dict[str, Any]:
-        """The tables of the scene file, with ±, without values that follow from other keys, which may then change."""
+        """The tables of the scene file by name, with ±, without values that follow from other keys.
+
+        Such values may then change with these keys.
+        """
         return with_shares(plain_data(self), self._shares)
 
     def __str__(self) -> str:
-        """Return the scene as a TOML file."""
+        """Return the scene as the text of a TOML file, with defaults."""
         return tables_as_toml(self.tables)
 
     def moved(self, key: str, factor: float) -> Scene:
-        """Return the scene with the number at a dotted key times a factor; a punch keeps its number of particles."""
+        """Return the scene with the number at a dotted key times a factor, unchecked.
+
+        A flat punch keeps its number of particles: given spacing and stiffness change with its radius.
+        """
         bodies = self.bodies
         scene: Scene = moved(self, keys_in(key), factor)
         if key == "bodies.profile.radius" and bodies.profile.has_edge and bodies.given_spacing != "auto":
@@ -117,7 +123,7 @@ class Scene(Tables):
         return _checked(plain_data(data), problems, FilePath())
 
     def with_profile(self, profile: Shape) -> Scene:
-        """Return the scene with another body, which is not checked."""
+        """Return the scene with another shape of the upper body, which is not checked."""
         return self.model_copy(update={"bodies": self.bodies.model_copy(update={"profile": profile})})
 
 
@@ -156,7 +162,11 @@ def read_scene(
 
 
 def read_tables(source: str | PathLike[str]) -> dict[str, Any]:
-    """Return the tables of a TOML file, by its path, or of TOML text, unchecked. Raises SceneError with one problem."""
+    """Return the tables of a TOML file, by its path, or of TOML text (with a line break or "="), unchecked.
+
+    Raises:
+        SceneError: with one problem: no such file, or no TOML.
+    """
     if not isinstance(source, str | PathLike):
         given = type(source).__name__
         raise SceneError([Problem("scene", f"must be a path, TOML text, tables or a Scene, not {given}")])
@@ -169,11 +179,21 @@ def read_tables(source: str | PathLike[str]) -> dict[str, Any]:
 
 
 def _is_text(source: object) -> bool:
+    """Return whether a source is TOML text and no path: a `str` with a line break or "=" in it."""
     return isinstance(source, str) and ("\n" in source or "=" in source)
 
 
 def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -> Scene:
-    """Return the scene of `plain`, which is corrected in place; `problems` are those that are known already."""
+    """Return the scene of the tables `plain`, which is corrected in place.
+
+    Args:
+        plain: tables by name.
+        problems: those that are known already.
+        folder: where the file of a profile is looked for.
+
+    Raises:
+        SceneError: with every problem at once.
+    """
     tables = Place(plain, WHOLE)
     mend_words(tables)
     points = take_points(tables, folder)
@@ -201,7 +221,10 @@ def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -
 
 
 def _at_ends(scene: Scene) -> Iterator[Problem]:
-    """Yield the problems of a scene with a number of a list at an end of its ±: falling times, or shares above 1."""
+    """Yield the problems of a scene with a number of a list at an end of its ±: falling times, or shares above 1.
+
+    The first of each end, with the key of the number.
+    """
     for path, share in scene.shares.items():
         for factor in (1.0 - share, 1.0 + share) if "[" in path else ():
             end = Place(plain_data(scene.moved(path, factor)), WHOLE)
@@ -211,7 +234,10 @@ def _at_ends(scene: Scene) -> Iterator[Problem]:
 
 
 def _in_si(tables: Place, has_texts: bool) -> list[Problem]:
-    """Return the problems of a scene, with SI in place of LU, FU and MU where its numbers are written in SI."""
+    """Return the problems of a scene, with SI in place of LU, FU and MU where its numbers are written in SI.
+
+    `has_texts`: whether any number is. The problems remain as they are where the sizes of the units are unknown.
+    """
     draft = Draft(tables)
     length, force, mass = (draft[f"material.{key}"] for key in UNIT_KEYS.values())
     if not (length and force and (has_texts or length == force == 1.0)):
@@ -226,7 +252,7 @@ def _in_si(tables: Place, has_texts: bool) -> list[Problem]:
 
 
 def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> list[Problem]:
-    """Set each of `overrides` in `data`, in order, and return the problems of those that are invalid.
+    """Set each of `overrides`, "table.key=value", in `data`, in place, and return the problems of invalid ones.
 
     A value is read as TOML, or as bare text where it is not TOML; absent tables are added.
     """
@@ -248,9 +274,15 @@ def set_values(
     where: str = "",
     form: str = "write table.key, for example experiment.method",
 ) -> list[Problem]:
-    """Set the value of each dotted key in `data`; None removes the key. Return the problems, with their origin `where`.
+    """Set the value of each dotted key in `data`, in place, and return the problems of keys that cannot be set.
 
-    `form`: the suggested fix for a path that is not a path of keys.
+    None is set as well, and such a key counts as absent. Absent tables are added.
+
+    Args:
+        data: tables by name.
+        values: by dotted key.
+        where: origin of the values in messages; "": the key.
+        form: the suggested fix for a path that is not a path of keys.
     """
     problems = []
     for path, value in values.items():
@@ -269,7 +301,10 @@ def set_values(
 
 
 def remove_effects(data: dict[str, Any], names: Iterable[str]) -> list[Problem]:
-    """Remove from `data` the table of each effect in `names`; return the problems of those that cannot be removed."""
+    """Remove from `data`, in place, the table of each effect in `names`.
+
+    Return the problems of those that are not there.
+    """
     problems = []
     for name in dict.fromkeys(names):
         present = [effect for effect in EFFECTS if effect in data]
@@ -285,6 +320,7 @@ def remove_effects(data: dict[str, Any], names: Iterable[str]) -> list[Problem]:
 
 
 def _toml_value(text: str) -> Any:
+    """Return the value that a text means in TOML; the text itself where it is no value."""
     try:
         values = tomllib.loads(f"value = {text}")
     except (ValueError, RecursionError):
@@ -298,7 +334,15 @@ def _listed(words: Iterable[str]) -> list[str]:
 
 
 def plain_data(value: Any, levels: int = DEEPEST) -> Any:
-    """Return a copy of `value` in dicts and lists, without keys that are None. Raises SceneError below `levels`."""
+    """Return a copy of `value` in dicts, lists and plain values, without keys that are None.
+
+    Numpy's arrays become lists.
+
+    Of a scene without a reduction that its file does not give. `levels`: most levels of tables and lists.
+
+    Raises:
+        SceneError: there are more levels.
+    """
     if not levels:
         raise SceneError([Problem("scene", TOO_DEEP)])
     if isinstance(value, Table):
@@ -314,13 +358,17 @@ def plain_data(value: Any, levels: int = DEEPEST) -> Any:
 
 
 def _rank(problem: Problem) -> int:
-    """Return the position of a problem in a report: the tables in the order of a scene, then unknown ones."""
+    """Return the position of a problem in a report, from 0: the tables in the order of a scene, then unknown ones."""
     order, table = list(Scene.model_fields), keys_in(problem.path)[0]
     return order.index(table) if table in order else len(order)
 
 
 def _tables(text: str, path: str) -> dict[str, Any]:
-    """Return TOML text as a dict; `path` is its origin. Raises SceneError with one problem."""
+    """Return TOML text as a dict; `path` is its origin, for messages.
+
+    Raises:
+        SceneError: with one problem: the text is no TOML, or nested too deep.
+    """
     try:
         if not LONG_KEY.search(text):
             return dict(plain_data(tomllib.loads(text)))
@@ -332,7 +380,13 @@ def _tables(text: str, path: str) -> dict[str, Any]:
 
 
 def _syntax_problem(path: str, text: str, reason: str) -> Problem:
-    """Return an error in the TOML itself, with the line and its text."""
+    """Return an error in the TOML itself as a problem, with the line, its text and the suggested fix.
+
+    Args:
+        path: of the file.
+        text: its content.
+        reason: message of tomllib.
+    """
     begin = next((begin for begin in MEANING if reason.startswith(begin)), "")
     message = MEANING.get(begin, reason)
     match = re.search(r"\(at line (\d+), column (\d+)\)$", reason)

@@ -10,7 +10,9 @@ from contact1d.workflow.scene.read import Scene
 
 
 def less_compression(scene: Scene, carried: float | None = None) -> Iterator[SceneEdit]:
-    """Yield an edit with a smaller compressive force of the experiment; none where it gives no force.
+    """Yield an edit of the scene with a smaller compressive force of the experiment.
+
+    None where it gives no single force.
 
     Args:
         scene: with the experiment.
@@ -25,7 +27,7 @@ def less_compression(scene: Scene, carried: float | None = None) -> Iterator[Sce
 
 
 def against_passing(scene: Scene) -> Iterator[SceneEdit]:
-    """Yield edits against bodies that penetrate each other.
+    """Yield edits of the scene against bodies that penetrate each other, as far as they apply to it.
 
     These are a tenth of the temperature, no lateral motion unless it is examined, and a smaller load.
     """
@@ -38,7 +40,10 @@ def against_passing(scene: Scene) -> Iterator[SceneEdit]:
 
 
 def longer_chain(scene: Scene) -> Iterator[SceneEdit]:
-    """Yield edits against a contact that reaches the end of its chain: more particles, or a smaller load."""
+    """Yield edits of the scene against a contact that reaches the end of its chain.
+
+    They are more particles, where their number is given, and a smaller load.
+    """
     bodies = scene.bodies
     if bodies.upper_particles is not None and not bodies.periodic:
         yield SceneEdit({"bodies.upper_particles": 2 * bodies.upper_particles, "bodies.particles": "auto"})

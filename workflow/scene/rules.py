@@ -44,6 +44,7 @@ from contact1d.workflow.scene.tables import (
 
 
 def _interaction(d: Draft) -> Rows:
+    """Yield the rules of range and amplitude of an attraction, and of the cutoff; none where one of them is unknown."""
     attraction, repulsion = "interaction.attraction", "interaction.repulsion"
     A, a, B, b = (d[f"{term}.{key}"] for term in (repulsion, attraction) for key in ("amplitude", "range"))
     if None in (A, a, B, b):
@@ -68,7 +69,7 @@ def _interaction(d: Draft) -> Rows:
 
 
 def _tension(d: Draft) -> Rows:
-    """Yield the rule that a force that is not compressive needs attraction between the bodies."""
+    """Yield the rules that a force ≤ 0, which is not compressive, needs attraction between the bodies."""
     force = d[f"experiment.{d.experiment.load_key}"]
     adheres = "adhesion" in d and "adhesion" not in d.experiment.excludes
     broken = force is not None and force <= 0.0 and not adheres and "interaction.attraction" not in d
@@ -81,6 +82,7 @@ def _tension(d: Draft) -> Rows:
 
 
 def _normal_loads(d: Draft) -> Rows:
+    """Yield the rules of the normal forces or displacements of a tangential path, and of the points of its cycles."""
     given = [key for key in ("experiment.normal_force", "experiment.normal_displacement") if key in d]
     points = d["experiment.cycles.points"] or 0
     fewer = 4 * max(1, points // 4)
@@ -100,6 +102,7 @@ def _normal_loads(d: Draft) -> Rows:
 
 
 def _shares(d: Draft) -> Rows:
+    """Yield the rule that the shares of a Prony series add up to 1 at most."""
     total = math.fsum(term["share"] for term in d["viscoelasticity.terms"] or [])
     yield ("viscoelasticity.terms", total > 1.0 + WHOLE_NUMBER_ERROR,
            f"the shares of the instantaneous modulus must add up to 1 at most, not {apart(total, 1.0, DIGITS)[0]}",
@@ -128,6 +131,7 @@ def _history(d: Draft) -> Rows:
 
 
 def _needed(name: str, by: str) -> Row:
+    """Return the rule, broken, of an effect `name` that is missing; `by`: what needs it, in words."""
     return name, True, f"missing, needed by {by}", f"add {EFFECT_TABLES[name].how}"
 
 
@@ -143,7 +147,10 @@ def _excluded(d: Draft) -> Rows:
 
 
 def _methods(d: Draft) -> Rows:
-    """Yield the rules of effects that an experiment and its method need; a quasi-static one has none in time."""
+    """Yield the rules of effects that an experiment and its method need; a quasi-static one has none in time.
+
+    None where the experiment or its method is unknown.
+    """
     kind, experiment, given = d.kind, d.experiment, d["experiment.method"]
     if kind is None or (given is None and "experiment.method" in d):
         return
@@ -265,7 +272,10 @@ ABOUT_ABSENT = {"miss": True, "not ": False, "only": False}
 
 
 def check_fit(scene: Place) -> None:
-    """Report every violation of a rule across the tables of a scene, unless it depends on values that are not sound."""
+    """Report every violation of a rule across the tables of a scene, in its problems.
+
+    A rule that depends on a value with an error of its own is left out.
+    """
     draft = Draft(scene)
     for rule in RULES:
         for row in rule(draft) if callable(rule) else [rule]:
@@ -273,7 +283,16 @@ def check_fit(scene: Place) -> None:
 
 
 def _check(draft: Draft, keys: str, broken: object, message: str, fix: str, *edits: Mapping[str, float]) -> None:
-    """Report a rule that is broken, at each of its keys that the scene may have."""
+    """Report a rule that is broken, at each of its keys that the scene may have.
+
+    Args:
+        draft: the scene.
+        keys: dotted keys, between blanks.
+        broken: conditions in words (`Draft.holds`), or whether the rule is broken.
+        message: what is wrong.
+        fix: suggested fix, with {} for each number of `edits`.
+        edits: changes by dotted key, each of which makes the scene valid.
+    """
     if not (draft.holds(broken) if isinstance(broken, str) else broken):
         return
     if isinstance(broken, str):

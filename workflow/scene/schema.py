@@ -31,7 +31,7 @@ Node = dict[str, Any]
 
 
 def statement(allowed: Allowed) -> str:
-    """Return the allowed values as text that follows "must be": "a number greater than 0 (LU), or "auto""."""
+    """Return the allowed values as text that follows "must be": 'a number greater than 0 (LU), or "auto"'."""
     parts = []
     if allowed.type:
         unit = allowed.unit
@@ -52,7 +52,7 @@ def statement(allowed: Allowed) -> str:
 
 
 def text_of(allowed: Allowed) -> str:
-    """Return an example of a text with a unit in place of a number, "10 mm"; no text where it has no unit."""
+    """Return an example of a text with a unit in place of a number, "10 mm"; "" where the value has no unit."""
     unit = allowed.quantity or (allowed.items and allowed.items.quantity)
     return example(unit.texts[0]) if unit and unit.name != "1" else ""
 
@@ -70,7 +70,7 @@ def meaning(table: type[Table], name: str) -> str:
 
 
 def scene_schema() -> Node:
-    """Return the JSON schema of a scene file."""
+    """Return the JSON schema of a scene file, as a dict."""
     named = {"title": "contact1d scene", "description": "A scene of contact1d."}
     return {"$schema": DIALECT} | _table(Tables) | named
 
@@ -81,7 +81,7 @@ def schema_text() -> str:
 
 
 def _nodes(allowed: Allowed) -> Node:
-    """Return the schema of the values that a key allows."""
+    """Return the JSON schema of the values that a key allows, as a dict."""
     nodes = [_table(table) for table in allowed.tables.values()]
     if allowed.items:
         nodes.insert(0, {"type": "array", "items": _nodes(allowed.items)} | _bounds(allowed, LENGTHS))
@@ -95,10 +95,15 @@ def _nodes(allowed: Allowed) -> Node:
 
 
 def _bounds(allowed: Allowed, names: Mapping[Any, str]) -> Node:
+    """Return the bounds of a value by the names of the JSON schema; empty without any.
+
+    `names`: these names by the type of the mark that gives a bound.
+    """
     return {names[type(mark)]: next(iter(astuple(mark))) for mark in allowed.marks if type(mark) in names}
 
 
 def _table(table: type[Table]) -> Node:
+    """Return the JSON schema of a table, as a dict; also of its name or list of values where it may be one."""
     keys, properties = keys_of(table), {}
     for name, key in keys.items():
         properties[name] = _nodes(key.allowed) | {"description": meaning(table, name)}
@@ -118,11 +123,13 @@ def _table(table: type[Table]) -> Node:
 
 
 def _either(words: tuple[str, ...]) -> str:
+    """Return words as a text, '"a", "b" or "c"'."""
     *first, last = (as_toml(word) for word in words)
     return f"{', '.join(first)} or {last}" if first else last
 
 
 def _range(allowed: Allowed) -> str:
+    """Return the range of a number as text with a blank before it, " from 0 to 1"; "" without any."""
     bounds = _bounds(allowed, RANGES)
     if {"minimum", "maximum"} <= bounds.keys():
         return f" from {bounds['minimum']:.10g} to {bounds['maximum']:.10g}"

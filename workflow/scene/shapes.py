@@ -57,42 +57,48 @@ class Shape(Table):
 
     @property
     def reach(self) -> float:
-        """Half-width [LU] within which there is a body at all."""
+        """Half-width [LU] within which there is a body at all; infinite by default."""
         return math.inf
 
     @property
     def curvature_radius(self) -> float | None:
-        """Radius of curvature R at the apex [LU], None where there is none."""
+        """Radius of curvature R at the apex [LU]; None, as by default, where there is none."""
         return None
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Radii [LU] off the axis at which the slope jumps: a pressure there has no bound, and g′ is not finite."""
+        """Radii [LU] off the axis at which the slope jumps: a pressure there has no bound, and g′ is not finite.
+
+        Empty, as by default, without any.
+        """
         return ()
 
     @property
     def alternatives(self) -> tuple[Shape, ...]:
-        """Other bodies that agree with all that is known of this one; a formula has none."""
+        """Other bodies that agree with all that is known of this one; empty, as by default, for a formula."""
         return ()
 
     @property
     def coarser(self) -> tuple[Shape, ...]:
-        """Bodies through fewer points, in place of an alternative that is no contact."""
+        """Bodies through fewer points, in place of an alternative that is no contact; empty by default."""
         return ()
 
     @property
     def deviations(self) -> tuple[tuple[Shape, Shape], ...]:
-        """Pairs of bodies: half of the difference of each is an independent uncertainty at 95 %; a formula has none."""
+        """Pairs of bodies: half of the difference of a result between the two is its uncertainty at 95 %.
+
+        Uncertainties of different pairs are independent. Empty, as by default, for a formula.
+        """
         return ()
 
     @property
     def taken(self) -> Taken | None:
-        """The curve that is fitted to a scan, with its parameters; None for a shape that is given."""
+        """The curve that is fitted to a scan, with its parameters; None, as by default, for a shape that is given."""
         return None
 
     @property
     def steepest(self) -> Self:
-        """The steeper of the two bodies, whose slope and size limit the theory: this one on a plane."""
+        """The steeper of the two bodies, whose slope and size limit the theory; by default this one, on a plane."""
         return self
 
 
@@ -109,21 +115,24 @@ class Parabola(Shape):
     """
 
     def height(self, x: Array) -> Array:
-        """Return the height z = x²/2R [LU], of two curved bodies their gap."""
+        """Return the height z = x²/2R [LU] at positions x [LU], of two curved bodies their gap; same shape."""
         return x**2 / (2 * self.curvature_radius)
 
     def transformed(self, x: Array) -> Array:
-        """Return the transformed height g = x²/R [LU]."""
+        """Return the transformed height g = x²/R [LU] at positions x [LU]; same shape."""
         return x**2 / self.curvature_radius
 
     @property
     def curvature_radius(self) -> float:
-        """The effective radius R [LU] of both bodies: R₁/(1 + R₁/R₂)."""
+        """The effective radius R [LU] of both bodies: R₁/(1 + R₁/R₂), on a plane R₁."""
         return self.radius / (1.0 + self.radius / (self.counter_radius or math.inf))
 
     @property
     def steepest(self) -> Self:
-        """The body with the smaller radius: the gap of a ball in a cup is flat where the ball itself is steep."""
+        """The body with the smaller radius on a plane.
+
+        The gap of a ball in a cup is flat where the ball itself is steep.
+        """
         radius = min(self.radius, abs(self.counter_radius or math.inf))
         return self.model_copy(update={"radius": radius, "counter_radius": None})
 
@@ -137,11 +146,17 @@ class Circle(Shape):
     """radius R"""
 
     def height(self, x: Array) -> Array:
-        """Return the height z = R − √(R² − x²) [LU], calculated without the difference of large numbers."""
+        """Return the height z = R − √(R² − x²) [LU] at positions |x| ≤ R [LU]; same shape.
+
+        It is calculated without a difference of large numbers.
+        """
         return x**2 / (self.radius + ((self.radius - x) * (self.radius + x)) ** 0.5)
 
     def transformed(self, x: Array) -> Array:
-        """Return the transformed height g = x artanh(x/R) [LU], which grows without bound towards the edge."""
+        """Return the transformed height g = x artanh(x/R) [LU] at positions x [LU]; same shape.
+
+        It grows without bound towards the edge; beyond (1 − 1e-12) R the factor artanh remains constant.
+        """
         import numpy as np
 
         last = 1.0 - 1e-12  # share of the radius up to which g is finite
@@ -170,11 +185,14 @@ class Ellipsoid(Shape):
     """half axis b along the load"""
 
     def height(self, x: Array) -> Array:
-        """Return the height z = b − b √(1 − x²/c²) [LU], that of a sphere of radius c times b/c."""
+        """Return the height z = b − b √(1 − x²/c²) [LU] at positions |x| ≤ c [LU]; same shape.
+
+        It is b/c times that of a sphere of radius c.
+        """
         return self.half_axis / self.radius * self._sphere.height(x)
 
     def transformed(self, x: Array) -> Array:
-        """Return the transformed height g = (b/c) x artanh(x/c) [LU]."""
+        """Return the transformed height g = (b/c) x artanh(x/c) [LU] at positions x [LU]; same shape."""
         return self.half_axis / self.radius * self._sphere.transformed(x)
 
     @property
@@ -194,7 +212,11 @@ class Ellipsoid(Shape):
 
 
 def _half_angle(text: object) -> object:
-    """Return the text unchanged if it is a half angle. Raises PydanticCustomError."""
+    """Return the text unchanged if it is a half angle between 0° and 90°, "80°" or "1.4 rad".
+
+    Raises:
+        PydanticCustomError: it is none, or has an uncertainty.
+    """
     problem = 'must be text with a unit, greater than 0° and less than 90°, from the axis to the flank: write "80°"'
     try:
         if isinstance(text, str) and "±" in text:
@@ -222,15 +244,15 @@ class Cone(Shape):
 
     @property
     def rise(self) -> float:
-        """The slope s of the flank, given or the cotangent of the half angle."""
+        """The slope s of the flank, dimensionless: given, or the cotangent of the half angle."""
         return self.slope or 1.0 / math.tan(si_value(self.half_angle or "", "rad")[0])
 
     def height(self, x: Array) -> Array:
-        """Return the height z = s |x| [LU]."""
+        """Return the height z = s |x| [LU] at positions x [LU]; same shape."""
         return self.rise * abs(x)
 
     def transformed(self, x: Array) -> Array:
-        """Return the transformed height g = (π/2) s |x| [LU]."""
+        """Return the transformed height g = (π/2) s |x| [LU] at positions x [LU]; same shape."""
         return 0.5 * math.pi * self.rise * abs(x)
 
 
@@ -240,11 +262,11 @@ class Level(Shape):
     has_edge = True
 
     def height(self, x: Array) -> Array:
-        """Return the height 0 [LU] at all positions."""
+        """Return the height 0 [LU] at all positions x; same shape."""
         return 0.0 * abs(x)
 
     def transformed(self, x: Array) -> Array:
-        """Return the transformed height 0 [LU] at all positions."""
+        """Return the transformed height 0 [LU] at all positions x; same shape."""
         return 0.0 * abs(x)
 
 
@@ -265,7 +287,7 @@ class FlatPunch(Level):
 
     @property
     def reach(self) -> float:
-        """The radius [LU] of the punch."""
+        """The radius [LU] of the punch, beyond which there is no body."""
         return self.radius
 
 
@@ -282,11 +304,11 @@ class Power(Shape):
     """height h at that radius"""
 
     def height(self, x: Array) -> Array:
-        """Return the height z = h (|x|/a)ⁿ [LU]."""
+        """Return the height z = h (|x|/a)ⁿ [LU] at positions x [LU]; same shape."""
         return self.height_there * abs(x / self.radius) ** self.exponent
 
     def transformed(self, x: Array) -> Array:
-        """Return the transformed height g = κ_n z [LU]."""
+        """Return the transformed height g = κ_n z [LU] at positions x [LU]; same shape."""
         from contact1d.analysis.theory.indenters import galin_factor  # it loads numpy, which a scene can do without
 
         return galin_factor(self.exponent) * self.height(x)

@@ -100,7 +100,15 @@ class UnitTextError(ValueError):
 
 @dataclass(frozen=True)
 class Unit:
-    """A unit as read: its text, size in base units of SI, dimension, zero in SI, and whether it measures angles."""
+    """A unit as read.
+
+    Attributes:
+        text: as written.
+        factor: its size in base units of SI.
+        dimension: powers of base dimensions by pint's names.
+        zero: its zero in base units of SI: 273.15 (K) of °C, else 0.
+        angular: whether it measures angles.
+    """
 
     text: str
     factor: Fraction
@@ -109,7 +117,10 @@ class Unit:
     angular: bool = False
 
     def measures(self, unit: str) -> bool:
-        """Return whether this unit has the dimension of a unit of SI; an angle is no number."""
+        """Return whether this unit has the dimension of `unit`, a unit of SI.
+
+        An angle is no number without dimension.
+        """
         return self.dimension == _dimension(unit) and self.angular == (unit == "rad")
 
 
@@ -129,17 +140,25 @@ def in_words(unit: str) -> str:
 
 
 def example(unit: str) -> str:
-    """Return an example of a quantity in `unit` as text: "10 mm"."""
+    """Return an example of a quantity in `unit` (of SI or of the model) as text: "10 mm".
+
+    Raises:
+        KeyError: no example is known of this dimension.
+    """
     return EXAMPLES[in_si(unit)]
 
 
 def in_si(unit: str) -> str:
-    """Return the unit of SI with the dimension of `unit`: N·s/m for FU·TU/LU."""
+    """Return the unit of SI with the dimension of the model's `unit`: N·s/m for FU·TU/LU; a unit of SI unchanged."""
     return SI[unit].si if unit in SI else unit
 
 
 def split(text: str) -> tuple[str, str]:
-    """Return number and unit of "10 mm", each as text. Raises UnitTextError where there is no number or no unit."""
+    """Return number and unit of "10 mm", each as text.
+
+    Raises:
+        UnitTextError: there is no number or no unit, or the text has more than 60 characters.
+    """
     plain = text.strip().replace("−", "-")
     match = NUMBER.match(plain)
     if match is None or len(plain) > LONGEST:
@@ -152,11 +171,14 @@ def split(text: str) -> tuple[str, str]:
 
 
 def quantity(text: str, largest: float = 1e300) -> tuple[Fraction, Unit]:
-    """Return the exact value in SI of a text such as "10 mm", and its unit. Raises UnitTextError: "has no unit".
+    """Return the exact value of a text such as "10 mm" in base units of SI, and its unit.
 
     Args:
         text: of the quantity.
         largest: magnitude of its number; the products with units and other numbers of a scene are then mostly finite.
+
+    Raises:
+        UnitTextError: "has no unit", or another sentence without a subject; also for a number beyond `largest`.
     """
     number, given = split(text)
     unit, size = _unit(given), float(number)
@@ -168,7 +190,7 @@ def quantity(text: str, largest: float = 1e300) -> tuple[Fraction, Unit]:
 
 
 def si_value(text: str, unit: str, *also: str) -> tuple[Fraction, str]:
-    """Return the quantity `text` in SI, and the unit out of `unit` and `also` with its dimension.
+    """Return (value of the text in SI, the one out of `unit` and `also` that has its dimension).
 
     Args:
         text: such as "10 mm".
@@ -176,7 +198,7 @@ def si_value(text: str, unit: str, *also: str) -> tuple[Fraction, str]:
         also: further dimensions that are allowed, as units of SI.
 
     Raises:
-        UnitTextError: with a sentence that begins "must be …".
+        UnitTextError: with a sentence that begins "must be …": the text is no quantity, or one of another dimension.
     """
     try:
         value, given = quantity(text)
@@ -194,9 +216,13 @@ def si_value(text: str, unit: str, *also: str) -> tuple[Fraction, str]:
 
 
 def si_base(text: str) -> tuple[float, str]:
-    """Return the number of a text in the unit of SI of its dimension, and that unit: 0.01 and m of "10 mm".
+    """Return the number of a text in the unit of SI of its dimension, and that unit: 0.01 and "m" of "10 mm".
 
-    Of N/m and J/m², which have one dimension, it is the one in the text; an angle keeps its unit. Raises UnitTextError.
+    Of N/m and J/m², which have one dimension, it is the one in the text. An angle, and a dimension that is not known
+    here, keep their unit.
+
+    Raises:
+        UnitTextError: the text is no quantity.
     """
     value, unit = quantity(text)
     names = [name for name in DIMENSIONS if unit.measures(name)]
@@ -206,12 +232,19 @@ def si_base(text: str) -> tuple[float, str]:
 
 
 def _quoted(text: str) -> str:
+    """Return a text for a message: at most 60 characters, "?" for each that is not printable.
+
+    "an empty text" for none.
+    """
     short = text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
     return "".join(c if c.isprintable() else "?" for c in short).strip() or "an empty text"
 
 
 def _other_unit(text: str, unit: str) -> str:
-    """Return the question whether another unit was meant, 10 GPa for 10 gpa; no text where no other is likely."""
+    """Return the question whether another unit was meant, "; did you mean 10 GPa?" for "10 gpa".
+
+    "" where none is likely.
+    """
     try:
         number, given = split(text)
     except UnitTextError:
@@ -232,6 +265,7 @@ def _registry() -> Any:
 
 
 def _dimension(unit: str) -> Mapping[str, Any]:
+    """Return the dimension of a unit of SI, powers by pint's names; empty for "1" and "rad"."""
     return {} if unit in ("1", "rad") else _unit(unit).dimension
 
 
@@ -244,7 +278,11 @@ def _for_pint(unit: str) -> str:
 
 @cache
 def _unit(text: str) -> Unit:
-    """Return the unit of a text. Raises UnitTextError."""
+    """Return the unit of a text; cached.
+
+    Raises:
+        UnitTextError: there is no such unit.
+    """
     return _si_unit(text) or _pint_unit(text)
 
 
@@ -264,7 +302,11 @@ def _si_unit(text: str) -> Unit | None:
 
 
 def _pint_unit(text: str) -> Unit:
-    """Return a unit with symbols that pint alone knows. Raises UnitTextError."""
+    """Return a unit with symbols that pint alone knows.
+
+    Raises:
+        UnitTextError: the unit is unknown, cannot be read, or is a relative scale other than °C or °F alone.
+    """
     unit = re.sub("°(?![CF])", "deg", text)  # pint's parser knows the sign, and its names don't
     names = [part for part in re.split(r"[\s·*×/()]+", POWER.sub("", unit)) if part]
     unknown = [name for name in names if not NAME.fullmatch(name) or not _is_known(name)]
@@ -288,6 +330,7 @@ def _pint_unit(text: str) -> Unit:
 
 
 def _is_known(name: str) -> bool:
+    """Return whether pint knows the name of a unit."""
     from pint import PintError
 
     try:

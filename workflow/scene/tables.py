@@ -129,38 +129,52 @@ class Material(Table):
 
     @property
     def elastic(self) -> dict[str, Elastic]:
-        """The given bodies that are not rigid, and so have a compliance, by name."""
+        """The given bodies that are not rigid, and so have a compliance, by "upper" and "lower".
+
+        Empty where E* is given.
+        """
         bodies = {"upper": self.upper, "lower": self.lower}
         return {name: body for name, body in bodies.items() if isinstance(body, Elastic)}
 
     def effective_modulus(self) -> float:
-        """Return the contact modulus E* [Pa], given or of both bodies."""
+        """Return the contact modulus E* [Pa], given or of both bodies.
+
+        Of a rigid one and the other that of the other alone.
+        """
         return self.contact_modulus or 1.0 / sum(body.compliance for body in self.elastic.values())
 
     def tangential_share(self) -> float:
-        """Return G*/E*, or 1 if only E* is known, so that bulk springs are equally stiff in both directions."""
+        """Return the tangential over the normal contact modulus, G*/E*, dimensionless.
+
+        1 if only E* is known, so that bulk springs are equally stiff in both directions.
+        """
         bodies = self.elastic.values()
         tangential = sum(body.tangential_compliance for body in bodies)
         return sum(body.compliance for body in bodies) / tangential if bodies else 1.0
 
     def layer_stiffness(self, reduction: Reduction) -> float:
-        """Return the stiffness per length [Pa] of the layer of both chains, E* or by the paper's reduction E*/2."""
+        """Return the stiffness per length [Pa] of the layer of both chains.
+
+        It is E* with the MDR, E*/2 by the paper's reduction.
+        """
         return (0.5 if reduction == "geike_popov" else 1.0) * self.effective_modulus()
 
 
 def default_reduction(has_material: bool, lower: str, profile: str) -> Reduction:
-    """Return the reduction of a scene that names none: the paper's for its own plane model alone."""
+    """Return the reduction of a scene that names none: "geike_popov", the paper's, for its own plane model alone.
+
+    That is a parabola on a lower body other than a rigid plane, without a material; "mdr" for all others.
+    """
     return "mdr" if has_material or lower == "rigid_plane" or profile != "parabola" else "geike_popov"
 
 
 def wider_than_body(profile: Mapping[str, Any]) -> float | None:
     """Return the half-width of the paper's image over the contact radius of the body on a plane under the same force.
 
+    (2κ_n)^{1/(n+1)} for z ∝ xⁿ, dimensionless; None where there is no closed form.
+
     Args:
         profile: with the keys of a scene file. Of a circle or an ellipsoid the factor is that of its parabola.
-
-    Returns:
-        (2κ_n)^{1/(n+1)}; None where there is no closed form.
     """
     exponents = {"cone": 1.0, "parabola": 2.0, "circle": 2.0, "ellipsoid": 2.0, "power": profile.get("exponent")}
     n = exponents.get(profile["kind"])
@@ -208,12 +222,18 @@ class Bodies(Table):
     """
 
     def height(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the height [LU] of the upper chain above its apex at the positions `x` [LU], by its reduction."""
+        """Return the height [LU] of the upper chain above its apex at the positions `x` [LU]; same shape.
+
+        It is transformed where the reduction is the MDR.
+        """
         return self.profile.transformed(x) if self.reduction == "mdr" else self.profile.height(x)
 
     @property
     def reach(self) -> float:
-        """Half-width [LU] within which the profile is a body at all; of a flat body half of its chain."""
+        """Half-width [LU] within which the profile is a body at all; infinite of an unbounded one.
+
+        Of a flat body half of its chain, infinite where its number of particles is automatic.
+        """
         if isinstance(self.profile, Flat):
             count = self.upper_particles or self.particles
             return 0.5 * float(count) * self.own_spacing if count != "auto" else math.inf
@@ -221,12 +241,12 @@ class Bodies(Table):
 
     @property
     def own_count(self) -> int | None:
-        """Particles of the upper chain of a body with an edge, which is as wide as its chain; None for other bodies."""
+        """Particles of the upper chain of a body with an edge, as many as fit into it; None for other bodies."""
         return round(2.0 * self.reach / self.own_spacing) if self.profile.has_edge else None
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Radii [LU] off the axis at which the slope of the profile jumps."""
+        """Radii [LU] off the axis at which the slope of the profile jumps; empty without any."""
         return self.profile.kinks
 
     @property
@@ -242,7 +262,10 @@ class Bodies(Table):
 
     @property
     def plane_radius(self) -> float | None:
-        """Radius R₁ [LU] of the plane parabola x²/2R₁ that represents R: R, or with the MDR R/2; else None."""
+        """Radius R₁ [LU] of the plane parabola x²/2R₁ that represents a parabola of radius R: R, or with the MDR R/2.
+
+        None for other profiles.
+        """
         profile = self.profile
         return PARABOLA_SHARE[self.reduction] * profile.curvature_radius if isinstance(profile, Parabola) else None
 
@@ -265,6 +288,11 @@ class Output(Table):
 
 
 def _one_line(title: str) -> str:
+    """Return the title, unchanged, if it is one line.
+
+    Raises:
+        PydanticCustomError: it is empty, or has a line break or another unprintable character.
+    """
     if not title.strip() or not title.isprintable():
         raise PydanticCustomError("scene", "must be one line of text, not empty")
     return title
@@ -308,7 +336,7 @@ class Tables(Table):
 
     @model_validator(mode="after")
     def _choose_reduction(self) -> Self:
-        """The scene whose bodies have a reduction, which counts as not given where it is by default (`Scene.with_`)."""
+        """Return the scene with a reduction of its bodies, which counts as not given where it is by default."""
         bodies = self.bodies
         if bodies.reduction is not None:
             return self
@@ -318,7 +346,7 @@ class Tables(Table):
         return self.model_copy(update={"bodies": resolved})
 
     def __repr__(self) -> str:
-        """One line: title, profile, effects and experiment; `print` shows the whole scene."""
+        """Return one line: title, profile, effects and experiment; `print` shows the whole scene."""
         effects = f", {', '.join(self.effects)}" if self.effects else ""
         return f"<Scene {self.title!r}: {self.bodies.profile.kind}{effects}; {self.experiment.kind}>"
 
@@ -339,21 +367,24 @@ class Tables(Table):
 
     @property
     def keeps_springs(self) -> bool:
-        """Whether the line load inside a contact is that of linear springs, regardless of its edge."""
+        """Whether all effects keep the line load inside a contact as that of linear springs, regardless of its edge."""
         return all(effect.keeps_springs for effect in self.present)
 
     def the(self, kind: type[E]) -> E:
-        """Return the effect of this kind, which a rule or the experiment needs."""
+        """Return the effect of this class, which a rule or the experiment needs.
+
+        StopIteration where the scene has none.
+        """
         return next(effect for effect in self.present if isinstance(effect, kind))
 
     @property
     def temperature(self) -> float:
-        """k_BT [FU·LU]; 0 without noise."""
+        """Temperature as k_BT [FU·LU]; 0 without noise."""
         return self.noise.temperature if self.noise else 0.0
 
     @property
     def work_of_adhesion(self) -> float:
-        """W on a rigid plane [FU/LU]; 0 without adhesion."""
+        """Work of adhesion W on a rigid plane [FU/LU]; 0 without adhesion."""
         return self.adhesion.work if self.adhesion else 0.0
 
     @property
@@ -373,7 +404,10 @@ class Tables(Table):
 
     @property
     def tangential_stiffness(self) -> float:
-        """Stiffness [FU/LU] of each particle to its bulk along x: given, else G*/E* times the normal stiffness."""
+        """Stiffness [FU/LU] of each particle to its bulk along x: given, else G*/E* times the normal stiffness.
+
+        Equal to the normal stiffness where E and ν are not known.
+        """
         given = self.bodies.bulk_stiffness_tangential
         if given is not None:
             return given
@@ -396,7 +430,10 @@ class Tables(Table):
 
     @property
     def method(self) -> Method:
-        """The given method, else "dynamic" with a plate, damping or noise, else "quasistatic"."""
+        """The experiment's only method or the given one, else "dynamic" or "quasistatic" by the effects.
+
+        "dynamic" with a plate, damping, noise or a cantilever.
+        """
         return self.experiment.given_method or default_method(self.effects)
 
 
@@ -413,5 +450,8 @@ TIMED = tuple(name for name, kind in EFFECT_TABLES.items() if kind.timed)
 
 
 def default_method(effects: tuple[str, ...]) -> Method:
-    """Return the method of a scene that names none and has these `effects`; a slide is always dynamic."""
+    """Return the method of a scene that names none and has these `effects`.
+
+    "dynamic" with a plate, damping, noise or a cantilever, else "quasistatic".
+    """
     return "dynamic" if set(TIMED) & set(effects) else "quasistatic"

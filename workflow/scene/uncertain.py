@@ -28,9 +28,10 @@ EXACT = (
 
 
 def take_shares(scene: Place) -> dict[str, float]:
-    """Return the 95 % half-width of each number with ± over its value, by dotted key; the scene keeps the value.
+    """Return the 95 % half-width of each number with ± over its value (relative), by dotted key.
 
-    In Python a number may be a pair of value and half-width, each a text or a number. Errors are reported.
+    The scene keeps the value alone, in place. In Python a number may be a pair of value and half-width, each a text or
+    a number. Errors are reported.
     """
     shares = {}
     for place in numbers_in(scene):
@@ -53,7 +54,7 @@ def take_shares(scene: Place) -> dict[str, float]:
 
 
 def _parts(value: object) -> tuple[Any, Any] | None:
-    """Return value and half-width of a text or a pair; None for anything else."""
+    """Return (value, half-width) as written in a text with ± or a list of two; None for anything else."""
     if isinstance(value, str) and len(parts := SIGN.split(value)) == 2 and parts[0]:
         if match := TOGETHER.fullmatch(value.strip()):
             parts = [f"{part}{match[2]}" for part in SIGN.split(match[1])]
@@ -62,7 +63,16 @@ def _parts(value: object) -> tuple[Any, Any] | None:
 
 
 def _read(place: Place, value: Any, spread: Any) -> tuple[Any, Fraction]:
-    """Return the value as a scene has it, and the half-width over it. Raises UnitTextError."""
+    """Return (value as a scene has it, half-width over its magnitude), the latter 0 for a value of 0.
+
+    Args:
+        place: key of the number.
+        value: as written.
+        spread: half-width as written, with a unit, "%" or neither.
+
+    Raises:
+        UnitTextError: one of them is no number, or the units do not fit.
+    """
     number, half, text, units = _plain(value), _plain(spread), str(spread).strip(), place.unit.texts
     if not any(map(str.isdigit, text)):
         raise UnitTextError('must have a number behind ±, as in "10 ± 0.1 mm" or "10 mm ± 1 %"')
@@ -84,7 +94,7 @@ def _read(place: Place, value: Any, spread: Any) -> tuple[Any, Fraction]:
 
 
 def _plain(value: Any) -> Fraction | None:
-    """Return a number, or that of a text without a unit, as a fraction; None for anything else."""
+    """Return a finite number, or that of a text without a unit, as a fraction; None for anything else."""
     if isinstance(value, int | float) and not isinstance(value, bool):
         return Fraction(repr(value)) if value - value == 0 else None
     plain = str(value).strip().replace("−", "-")
@@ -92,7 +102,10 @@ def _plain(value: Any) -> Fraction | None:
 
 
 def with_shares(tables: dict[str, Any], shares: Mapping[str, float]) -> dict[str, Any]:
-    """Add ± to the numbers at these keys, as `take_shares` reads it, and return the tables, changed in place."""
+    """Add ± to the numbers at these dotted keys, as `take_shares` reads it, and return the tables, changed in place.
+
+    `shares`: half-widths over the values (relative). Keys that the tables do not have are left out.
+    """
     for path, share in shares.items():
         *above, key = keys_in(path)
         table: Any = tables
@@ -104,7 +117,7 @@ def with_shares(tables: dict[str, Any], shares: Mapping[str, float]) -> dict[str
 
 
 def moved(part: Any, keys: Sequence[Any], factor: float) -> Any:
-    """Return a table, list of tables or number with the number at these keys times a factor."""
+    """Return a copy of a table, list of tables or number with the number at these keys times a factor."""
     if not keys:
         return factor * part
     first, *rest = keys
