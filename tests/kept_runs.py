@@ -9,7 +9,7 @@ import gzip
 import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -114,7 +114,8 @@ def _run(name: str, entry: dict[str, Any]) -> Run:
 
 def in_model_units(run: Run) -> Run:
     """A run whose tables are in units of the model already, as `Run.model`."""
-    return run.model
+    vars(run).update(results=replace(run, tables={}).model.results, model=run)
+    return run
 
 
 @cache

@@ -120,6 +120,7 @@ def test_help_loads_nothing_heavy() -> None:
         ("contact1d ", {command.callback.__name__ for command in app.registered_commands if command.callback}),
         ("contact1d run ", {"plane.toml", "scenes/"}),
         ("contact1d cost sc", {"scenes/cone.toml", "scenes/more/"}),
+        ("contact1d deck plane.toml", {"plane.toml"}),
         ("contact1d run nowhere/b", set()),
         ("contact1d run ball.toml --without n", {"neighbours", "noise"}),
         ("contact1d new ball --kind p", {"pull_off", "path"}),
