@@ -110,7 +110,7 @@ MENDED = {
     "swapped columns": ("r,z\n9,-3\n4,-2\n0,0\n4,2\n9,3\n", "the columns may be swapped; name them r and z",
                         "z,x\n9,-3\n4,-2\n1,-1\n0,0\n1,1\n4,2\n9,3\n"),
     "one unit": (f"r [µm],z\n{GOOD}", "only one of radius and height has a unit", f"r [µm],z [nm]\n{GOOD}"),
-    "sides that differ": ("-2,8\n-1,2\n0,0\n1,1\n2,4\n", "these differ by 50% of its height", GOOD),
+    "sides that differ": ("-2,108\n-1,102\n0,100\n1,101\n2,104\n", "these differ by 50% of its height", GOOD),
     "an apex off the middle": ("-1,4\n0,1\n1,0\n2,1\n3,4\n", "and their positions differ; shift it", GOOD),
 }  # fmt: skip
 """Files that are no profile: text, sentence, the text that the sentence asks for."""
