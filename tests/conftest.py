@@ -1,20 +1,15 @@
-"""Fixtures that several test files share: small scenes, and LAMMPS sessions in a folder of the test's own."""
+"""Fixtures that several test files share: small scenes, and a limit of time for every test."""
 
 from __future__ import annotations
 
 import signal
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack
 from typing import Any
 
 import pytest
 from hypothesis import settings
 
 from contact1d import Scene, read_scene
-from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.deck.system import write_system
-from contact1d.workflow.engine.session import Engine, Session
-from contact1d.workflow.model.settings import settings_for
 from tests.approx import relative
 from tests.limits import LIMIT, SLOW_LIMIT, time_limit
 from tests.records import record_slow_tests
@@ -64,7 +59,6 @@ def ctrl_c() -> Iterator[None]:
 
 
 MakeScene = Callable[..., Scene]
-OpenDeck = Callable[[Scene], tuple[Deck, Session]]
 
 
 @pytest.fixture
@@ -86,19 +80,3 @@ def plane() -> MakeScene:
         return read_scene(PLANE | {"experiment": {"kind": "load", "force": 0.5} | experiment})
 
     return make
-
-
-@pytest.fixture
-def open_deck(tmp_path_factory: pytest.TempPathFactory) -> Iterator[OpenDeck]:
-    """`deck, session = open_deck(scene)`: what the deck reads is written and its head run, in a folder of its own."""
-    with ExitStack() as stack:
-
-        def opened(scene: Scene) -> tuple[Deck, Session]:
-            folder = tmp_path_factory.mktemp("deck")
-            deck = Deck(scene, settings_for(scene))
-            write_system(deck, folder)
-            session = stack.enter_context(Engine.session(folder))
-            session.execute(deck.head, phase="setting up")
-            return deck, session
-
-        yield opened
