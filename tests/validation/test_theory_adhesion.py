@@ -128,6 +128,10 @@ def test_lambda_of_tabor() -> None:
 @pytest.mark.parametrize(
     ("tabor", "load", "theory"),
     [
+        (1e-3, -1.99, Theory.RIGID),
+        (1e-3, -2.01, Theory.APART),
+        (0.0177, 0.0, Theory.RIGID),  # 5 % of the range are Hertz's compression under 2πWR at μ = 0.01779
+        (0.0179, 0.0, Theory.DMT),
         (0.08, 39.0, Theory.DMT),
         (0.08, 41.0, Theory.HERTZ),
         (1.0, -1.57, Theory.MAUGIS),
