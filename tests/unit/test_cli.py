@@ -170,6 +170,15 @@ def test_a_file_that_finds_no_place_is_told_with_exit_code_3(arguments: tuple[st
     assert ("files are kept in out" in done.stderr) == (arguments[0] == "deck")
     assert not Path("out.toml").exists()
     assert "Traceback" not in done.stderr
+    assert process(*arguments).returncode == 0, "once there is room the same command works"
+
+
+def test_a_run_whose_output_nobody_reads_any_more_draws_its_figures() -> None:
+    with subprocess.Popen([*PROGRAM, "run", "plane.toml"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as begun:
+        assert begun.stdout is not None
+        begun.stdout.close()  # as `| head` does
+    assert begun.returncode == 0
+    assert Path("runs/plane/pressure.png").exists()
 
 
 def test_numbers_are_printed_though_no_figure_can_be_drawn(monkeypatch: pytest.MonkeyPatch) -> None:

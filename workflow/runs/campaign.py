@@ -202,7 +202,7 @@ def prepare(folder: Path, kind: str = "run", marks: Collection[str] = ("in.lammp
     """
     if folder.exists() and not folder.is_dir():
         raise FolderError(f"{folder} is a file; a {kind} needs a folder")
-    names = {path.name for path in folder.iterdir()} if folder.is_dir() else set()
+    names = {path.name.removesuffix(PART) for path in folder.iterdir()} if folder.is_dir() else set()
     if names - {LOCK} and names.isdisjoint(marks):
         raise FolderError(f"{folder} has files that do not belong to a {kind}; choose another folder")
     try:
