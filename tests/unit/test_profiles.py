@@ -218,9 +218,9 @@ def test_heights_with_few_digits_may_have_their_apex_half_a_digit_lower(digits: 
 NUMBERS = [0.0, 1.0, 2.0, 3.0]
 NO_TABLE = [
     (NUMBERS, [0, 1, 2, 3, 4], "must have as many radii as heights, not 4 and 5"),
-    ([*NUMBERS, 13.01], [0, 1, 2, 3, 4], "has a gap from r = 3 to 13.01: the median step is 1, and the largest gap"),
-    ([1e-9, 1, 2, 3], NUMBERS, "must begin at the radius 0, not 1e-09: the transform needs the slope"),
-    ([0, 1, 2, 2, 3], [0, 1, 2, 3, 4], "radii must increase; 2 follows 2"),
+    ([*NUMBERS, 13.01], [0, 1, 2, 3, 4], "has a gap from r = 3 LU to 13.01 LU: the median step is 1 LU"),
+    ([1e-9, 1, 2, 3], NUMBERS, "must begin at the radius 0, not 1e-09 LU: the transform needs the slope"),
+    ([0, 1, 2, 2, 3], [0, 1, 2, 3, 4], "radii must increase; 2 LU follows 2 LU"),
     (NUMBERS, [0, 1, -0.5, 3], "its apex at r = 0; at r = 2 LU the height is lower by 0.5 LU"),
     (NUMBERS, [3, 2, 1, 0], "decrease from the axis"),
     (NUMBERS, [2, 2, 2, 2], 'is flat: write kind = "flat_punch"'),
