@@ -153,7 +153,7 @@ def test_the_shear_after_a_turn_is_that_of_the_way_out_less_twice_a_smaller_one(
             [[], [15.0], [10.0], [10.0, 19.0], [10.0, 14.0], [9.0], [9.0], [9.0, 12.0]],
         ),
         ([9e-6, 4e-6, 7e-6, 4e-6, 4e-6], [9e-6] * 5, [[], [4e-6], [4e-6, 7e-6], [4e-6], [4e-6]]),
-        ([0.0, 0.0, 5.0, 5.0], [3.0, 6.0, 8.0, 5.0], [[], [], [5.0], []]),
+        ([0.0, 4.0, 5.0, 5.0], [3.0, 6.0, 8.0, 5.0], [[], [3.0, 4.0], [3.0, 4.0, 5.0], [3.0, 4.0]]),
     ],
 )  # fmt: skip
 def test_kinks_stay_where_the_zone_that_sticks_grows_and_go_where_it_comes_back(

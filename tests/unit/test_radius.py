@@ -257,6 +257,15 @@ def test_a_dip_is_known_the_better_the_more_samples_it_has(width: float, known: 
     assert abs(place.position - (far + spacing * 30.3)) <= place.uncertainty <= known * spacing
 
 
+@pytest.mark.parametrize("beside", [(0.95, 0.1), (0.1, 0.95)])
+def test_a_dip_of_one_sample_may_lie_anywhere_up_to_both_of_its_neighbours(beside: tuple[float, float]) -> None:
+    every, y = np.arange(21), np.full(21, 1.0)
+    y[9:12] = beside[0], 0.0, beside[1]
+    place = position_of_minimum(1.0 * every, y, every)
+    assert place.position - place.uncertainty <= 9.0 + 1e-9
+    assert 11.0 - 1e-9 <= place.position + place.uncertainty <= place.position + 2.0
+
+
 def test_two_samples_that_tie_leave_no_doubt_of_their_own() -> None:
     every = np.arange(24)
     place = position_of_minimum(1.0 * every, -1.0 / np.cosh(0.2 * (every - 11.5)), every)
