@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from validation.hard.plane_bodies import kinked_body, sampled
+from validation.hard.surfaces import kinked_body, sampled
 from validation.references.axisymmetric import Body, Contact, Slipping, lost_on_path, with_rest_radius
 from validation.references.mindlin import mindlin_force, mindlin_loop_area, mindlin_stick_radius
 

@@ -8,8 +8,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from validation.hard.any_law_lists import EXAMPLE, JUMPING, RELAXED, WAY, of_rings
-from validation.hard.relaxing_draws import crept, marked, of_lines
+from validation.hard.expected_in_time import crept, marked, of_lines
+from validation.hard.relaxing import EXAMPLE, JUMPING, RELAXED, WAY, of_rings
 from validation.references.dashpots import Pressed
 from validation.references.impact import Adhesive
 from validation.references.line_load import lines

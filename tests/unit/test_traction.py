@@ -15,8 +15,7 @@ import pytest
 
 from contact1d import Run, run
 from tests.scenes import chains
-from validation.hard.kinks import on_plane
-from validation.hard.plane_bodies import kinked_body, sampled
+from validation.hard.surfaces import Surface, kinked_body
 from validation.references.axisymmetric import Contact, with_rest_radius
 
 R, FORCE = 1000.0, 40.0
@@ -61,7 +60,8 @@ def of_a_table(kind: str, inside: float, adheres: bool, folder: Path) -> tuple[R
     a = contact.pressed_radius(0.0, RIM) if adheres else 1.7 * RIM
     load = {"kind": "load", "force": contact.force(a)}
     pull_off = {"kind": "pull_off", "preload": -2.0 * contact.force(contact.critical(RIM)) if adheres else 0.0}
-    scene = on_plane(sampled(body, RIM / inside, 6.0 * RIM, None), RIM / 61.0, TOLERANCE, contact.work)
+    scene = Surface({}, body, RIM).sampled(RIM / inside, 6.0 * RIM).tables(RIM / 61.0, TOLERANCE)
+    scene |= {"adhesion": {"work_of_adhesion": contact.work}} if adheres else {}
     found = run(scene | {"title": kind, "experiment": pull_off if adheres else load}, folder, False)
     return found, {"central_pressure": contact.central_pressure(a), "peak_pressure": contact.peak_pressure(a)}
 
@@ -103,9 +103,9 @@ def test_a_rim_beside_a_point_holds_as_much_as_the_body(share: float, tmp_path: 
     """A worn tip, flat to b and a cone beyond, parts at F_A = √(8πE*Wb³)."""
     points, work = 44.0, 5e-4
     body = kinked_body("land_cone", RIM, SLOPE, np.random.default_rng(11))
-    table = sampled(body, RIM / (points + share), 6.0 * RIM, None)
-    pull_off = {"title": "worn tip", "experiment": {"kind": "pull_off", "preload": 1.0}}
-    found = run(on_plane(table, RIM / 9.3, TOLERANCE, work) | pull_off, tmp_path / "run", False).results
+    scene = Surface({}, body, RIM).sampled(RIM / (points + share), 6.0 * RIM).tables(RIM / 9.3, TOLERANCE)
+    scene |= {"adhesion": {"work_of_adhesion": work}, "experiment": {"kind": "pull_off", "preload": 1.0}}
+    found = run(scene | {"title": "worn tip"}, tmp_path / "run", False).results
     exact = math.sqrt(8.0 * math.pi * work * RIM**3)
     assert found["adhesion_force"].value == pytest.approx(exact, rel=1e-6)
     assert found["critical_radius"].value == pytest.approx(RIM, rel=1e-6)

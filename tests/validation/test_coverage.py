@@ -1,7 +1,7 @@
 """Claim: uncertainties cover the errors of the numbers, and are no wider than they have to be.
 
-Random contacts on the plane and their closed forms by quadrature (`validation.hard.plane_scenes`), and coarse paths of
-JKR's contact, whose steps miss much of the largest tension. Each uncertainty ÷ 3 would leave some of these errors out.
+Random contacts on the plane are the class `random_plane` of `validation.hard`; here are coarse paths of JKR's contact,
+whose steps miss much of the largest tension. Each uncertainty ÷ 3 would leave some of these errors out.
 """
 
 from __future__ import annotations
