@@ -9,17 +9,21 @@ import numpy as np
 import pytest
 
 from validation.hard.expected_in_time import crept, marked, of_lines
-from validation.hard.relaxing import EXAMPLE, JUMPING, RELAXED, WAY, of_rings
+from validation.hard.relaxing import EXAMPLE, WAYS
 from validation.references.dashpots import Pressed
 from validation.references.impact import Adhesive
 from validation.references.line_load import lines
 from validation.references.receding_edge import Receding, path
 from validation.references.recovering import Prony, Retarded
-from validation.references.relaxing import Indentation, KelvinVoigt, Legs, Material, Power, integral, sphere
+from validation.references.relaxing import Flat, Indentation, KelvinVoigt, Legs, Material, Power, integral, sphere
 from validation.references.rings import Rings
 
 RING, LINE = 5e-4, 2e-5
 """Relative errors of rings and of lines."""
+RINGS, STEPS, BEYOND, NEAR = 500, 150, 1.25, 0.8
+"""Rings under 1.25 of the largest contact, steps of a leg, part of the radius beyond which they are not compared."""
+RELAXED, JUMPING = 1e-3, 1e-2
+"""Relative errors of the pressures of rings; where q jumps at the edge inside of a ring."""
 SOLID = Material(((0.6, 1.0),))
 GROWING = Legs(((0.0, 0.0), (0.1, 0.01), (3.0, 0.01)))
 
@@ -52,13 +56,48 @@ def test_pressure_under_the_apex_of_a_dashpot():
     assert line.pressure(0.0) == pytest.approx(2.0 / math.pi * (0.1 + 0.3 * 0.05), rel=LINE)
 
 
+def of_rings(body, law, d):
+    """p(r) of the states that have a name between rings, as wide as no other near the edge of a punch; nan beside it
+    and the axis."""
+    if isinstance(body, Flat):
+        edges, heights = body.end * np.sin(np.linspace(0.0, 0.5 * math.pi, RINGS + 1)), lambda r: 0.0 * r
+    else:
+        edges = BEYOND * body.radius(max(d.values)) * np.linspace(0.0, 1.0, RINGS + 1)
+        heights = lambda r: body.factor * r**body.exponent  # noqa: E731
+    relaxing = {"terms": law.terms} if isinstance(law, Material) else {"retardation": law.time}
+    rings, found = Rings(edges, heights, **relaxing), {}
+    names = {t: name for name, t in marked(d).items()}
+    for before, after in pairwise(d.times):
+        rings.follow(d, np.linspace(before, after, STEPS + 1).tolist())
+        if after in names and rings.force > 0.0:
+            found[names[after]] = between(rings.r, rings.pressure, rings.radius)
+    return found
+
+
+def between(r, p, edge):
+    inside = r < edge
+
+    def pressure(at):
+        if at > 1.01 * edge:
+            return 0.0
+        return math.nan if at < r[12] or at > NEAR * edge else float(np.interp(at**2, r[inside] ** 2, p[inside]))
+
+    return pressure
+
+
 @pytest.mark.parametrize(
-    ("body", "law"), [(Power(1.0, 0.05), Material(((0.5, 0.05), (0.3, 0.5), (0.1, 5.0)))), (sphere(50.0), 0.2)]
+    ("body", "law"),
+    [
+        (Flat(10.0), Material(((0.6, 0.5),))),
+        (Power(1.0, 0.05), Material(((0.5, 0.05), (0.3, 0.5), (0.1, 5.0)))),
+        (sphere(50.0), 0.2),
+    ],
 )
 def test_lines_are_rings(body, law):
     """Growing, held, receding, held, and touched again."""
     made = KelvinVoigt(body, law) if isinstance(law, float) else law
-    d = Legs(tuple((t, body.depth(10.0) * y) for t, y in WAY.points))
+    depth = 0.5 if isinstance(body, Flat) else body.depth(10.0)
+    d = Legs(tuple((t, depth * y) for t, y in WAYS["touched again"].points))
     of_springs, rings = of_lines(body, made, d, d)[1], of_rings(body, made, d)
     assert rings.keys() == of_springs.keys()
     compared = 0

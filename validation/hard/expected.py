@@ -172,23 +172,25 @@ def _marks_of(contact: Contact, guess: float, points: list[float], first: bool) 
     top = turn
     while top > 0 and points[top] < points[top - 1]:
         top -= 1
-    high, low = points[top], points[turn]
-    if not (high > 0.0 or (first and top == 0)):
+    if not (points[top] > 0.0 or (first and top == 0)):
         return {}
-    punch, found = math.isfinite(contact.body.end), marks(contact, guess)
-    limit = contact.displacement(contact.fixed_grips(guess))
-    peak = limit if punch else contact.displacement(found["critical_radius"])
-    rest = 0.0 if punch else contact.displacement(found["zero_load_radius"])
+    limit, found = contact.displacement(contact.fixed_grips(guess)), marks(contact, guess)
+    if math.isfinite(contact.body.end):
+        ends = {"adhesion_force": limit, "critical_radius": limit, "zero_load_radius": 0.0}
+        return {} if points[turn] <= limit else _passed(found, ends, points[turn], points[top], limit)
+    peak, rest = (contact.displacement(found[name]) for name in ("critical_radius", "zero_load_radius"))
+    passed = {"adhesion_force": peak, "critical_radius": peak, "zero_load_radius": rest, "adhesion_energy": rest}
+    return _passed(found | {"fixed_grips_displacement": limit}, passed, points[turn], points[top], limit)
+
+
+def _passed(found: Numbers, places: Numbers, low: float, high: float, limit: float) -> Numbers:
+    """Those of the marks whose displacements an unloading passes; the work of separation needs both its ends."""
+    gone = {name for name, d in places.items() if not low < d < high}
     if low > limit:
-        found.pop("work_of_separation")
-        if punch or low >= peak or high <= peak:
-            found.pop("adhesion_force"), found.pop("critical_radius")
-        if low >= rest or high <= rest:
-            found.pop("zero_load_radius"), found.pop("adhesion_energy", None)
-        return found
-    if punch or high <= max(peak, rest):
-        return {}
-    return found | {"fixed_grips_displacement": limit}
+        gone |= {"work_of_separation", "fixed_grips_displacement"}
+    if "zero_load_radius" in gone:
+        gone.add("work_of_separation")
+    return {name: value for name, value in found.items() if name not in gone}
 
 
 def _tangential(contact: Contact, surface: Surface, experiment: Scene, friction: float, ratio: float) -> Numbers:
@@ -264,12 +266,8 @@ def _along(contact: Cohesive, ends: tuple[float, float], closed: bool) -> Number
     if not (closed or outwards):
         return exact
     found = cohesive_marks(contact)
-    if not parts:
-        found.pop("work_of_separation")
-    if not parts or contact.energy(last) == 0.0:  # a force that falls to 0 steadily
+    if contact.energy(last) == 0.0:  # a force that falls to 0 steadily
         found.pop("fixed_grips_displacement")
-    passed = {"adhesion_force": contact.critical, "critical_radius": contact.critical, "zero_load_radius": contact.free}
-    for name, at in passed.items():
-        if not low < at.displacement < high:
-            found.pop(name)
-    return exact | found
+    critical, rest = contact.critical.displacement, contact.free.displacement
+    passed = {"adhesion_force": critical, "critical_radius": critical, "zero_load_radius": rest}
+    return exact | _passed(found, passed, low, high, last.displacement)

@@ -54,8 +54,6 @@ IN_TIME = RandomClass(
 )  # fmt: skip
 PUNCHES = RandomClass("punches", 20261127, 0, 0, {"Prony, one maximum": 1.0, "Prony, sawtooth": 1.0}, ("flat_punch",))
 CLASSES = (PLANE, COHESIVE, RELAXING, IMPACTS, IN_TIME, PUNCHES)
-CLOSE = 0.1
-"""Error over the uncertainty of a number that may be too wide."""
 
 
 def conducted(bench: Bench, of: RandomClass) -> Judge:
@@ -94,18 +92,14 @@ def any_cases(seed: int, count: int, names: Iterable[str]) -> Iterable[Case]:
 
 
 def summary(found: Judge) -> str:
-    """The rows of the scenes, and by law, experiment and name how many are outside, unnamed, wide, and the worst."""
+    """The rows of the scenes; by law, experiment and name how many are outside or unnamed, and the worst of them."""
     said = [f"{row.verdict} {row.name}: {row.value:.4g}" for row in found.rows("random scenes", SOURCE, OUTSIDE)]
-    wide = [n for n in found.numbers if n.wide > 1.0 and n.over < CLOSE]
-    for title, every in (("OUTSIDE", found.outside), ("UNNAMED", found.unnamed), ("WIDE", wide)):
+    for title, every in (("OUTSIDE", found.outside), ("UNNAMED", found.unnamed)):
         counts = Counter((n.group, n.name) for n in every)
-        worst = {(n.group, n.name): n for n in sorted(every, key=lambda n: (n.far, n.wide))}
-        said += [f"{title} {counts[which]}×, {n.scene} [{n.words}] {n.name}: {n.value:.9g} ± {n.uncertainty:.2g}, "
-                 f"right {n.reference:.9g}; {n.over:.3g} u, {n.far:.3g} tol, ± {n.wide:.3g} tol"
-                 for which, n in worst.items()]  # fmt: skip
-    for title, lists in (("MISSING WITHOUT A WORD", found.silent), ("missing", found.absent)):
-        said += [f"{title} {name}: {len(some)}, {some[:3]}" for name, some in lists.items()]
-    said += [f"REFUSED {name} {why[:300]}" for name, why in found.refused.items()]
+        worst = {(n.group, n.name): n for n in sorted(every, key=lambda n: n.far)}
+        said += [f"{title} {counts[which]}×, worst: {n}" for which, n in worst.items()]
+    for title, lists in (("MISSING", found.silent), ("missing, named", found.absent), ("REFUSED", found.refused)):
+        said += [f"{title} {name}: {why}" for name, why in lists.items()]
     return "\n".join([*said, f"without an oracle: {dict(found.unjudged)}"])
 
 

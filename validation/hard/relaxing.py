@@ -2,7 +2,7 @@
 
 Peaks, curves and the end of contact of a triangle and a trapezoid are held against Lee, Radok and Ting, those of a
 sawtooth, whose surface recovers and is touched again, against springs with events in their own time, creep against the
-compliance, pressures against rings in three dimensions, and random histories against all of them.
+compliance, pressures against line loads, and random histories against all of them.
 """
 
 from __future__ import annotations
@@ -10,21 +10,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 
 from validation.hard.draws import history, terms_of
 from validation.hard.expected import looked_up
-from validation.hard.expected_in_time import ALONG, Law, marked
-from validation.hard.judge import Case, Expected, Function, judged
+from validation.hard.expected_in_time import ALONG, Law
+from validation.hard.judge import Case, judged
 from validation.hard.random_plane import RELAXING as RANDOM
 from validation.hard.random_plane import TING, random_rows
 from validation.hard.surfaces import power
 from validation.hard.units import Scene, Units
-from validation.references.interaction import Floats
-from validation.references.relaxing import Flat, Indentation, KelvinVoigt, Legs, Material, Power, sphere
-from validation.references.rings import Rings
+from validation.references.relaxing import Flat, Indentation, KelvinVoigt, Legs, Material, Power
 from validation.row import Row, at_least
 from validation.study import Bench, Findings, Refused, Study
 
@@ -50,6 +47,9 @@ WAYS = {
     "triangle": TRIANGLE,
     "trapezoid": Legs(((0.0, 0.0), (1.0, DEPTH), (2.0, DEPTH), (3.0, 0.0))),
     "sawtooth": Legs(((0.0, 0.0), (1.0, 1.0), (1.5, 0.0), (2.5, 0.9), (3.0, 0.3), (4.0, 0.3), (5.0, -1.0))),
+    "touched again": Legs(
+        ((0.0, 0.0), (0.1, 1.0), (1.0, 1.0), (1.2, 0.85), (1.3, 0.85), (1.7, -0.3), (2.1, -0.3), (2.6, 0.8))
+    ),
 }
 FORCES = {
     "force held": Legs(((0.0, 0.0), (1.0, 1.0), (3.0, 1.0))),
@@ -59,14 +59,9 @@ HELD = Legs(((0.0, 0.0), (1.0, DEPTH), (2.0, DEPTH), (3.0, 0.5 * DEPTH)))
 EXAMPLE = Legs(((0.0, 0.0), (0.3, 10.0), (1.0, 10.0), (2.0, 3.0)))
 """A force on dashpots that once gave a peak_force of 2.6e36."""
 FREE = Units(length=1e-6, stress=1e6, time=1e-3, texts=True, automatic=True)
-SOURCES = {"sawtooth": "springs with events in their own time", "force": "the creep compliance",
-           "punch": "E(t) and C(t)", "Kelvin": "the closed form", "pressures": "rings in three dimensions"}  # fmt: skip
-WAY = Legs(((0.0, 0.0), (0.1, 1.0), (1.0, 1.0), (1.2, 0.85), (1.3, 0.85), (1.7, -0.3), (2.1, -0.3), (2.6, 0.8)))
-"""Growing, held, receding, held, parted, touched again: displacement [over the largest]."""
-RINGS, RING_STEPS, BEYOND, NEAR = 500, 150, 1.25, 0.8
-"""Rings under 1.25 of the largest contact, steps of a leg, part of the radius beyond which they are not compared."""
-RELAXED, JUMPING = 1e-3, 1e-2
-"""Relative errors of their pressures; where q jumps at the edge inside of a ring."""
+EVENTS = "springs with events in their own time"
+SOURCES = {"sawtooth": EVENTS, "touched": EVENTS, "force": "the creep compliance",
+           "punch": "E(t) and C(t)", "Kelvin": "the closed form"}  # fmt: skip
 
 
 def bodies() -> dict[str, Power]:
@@ -110,53 +105,6 @@ def cases(full: bool) -> Iterator[Case]:
             )
     dashpots = KelvinVoigt(Power(4.0, 1e-8), 1.0)
     yield case("example", "Kelvin and Voigt, force given", "example", dashpots.body, dashpots, history(EXAMPLE, True))
-    yield from pressures((20.0, 60.0) if full else (20.0,))
-
-
-def pressures(every: tuple[float, ...]) -> Iterator[Case]:
-    """p(r) of sphere, cone and punch on one term, three terms, dashpots, beside rings; particles in the radius."""
-    solids: dict[str, Power | Flat] = {"sphere": sphere(50.0), "cone": Power(1.0, 0.05), "punch": Flat(10.0)}
-    laws = {"one term": Material(((0.6, 0.5),)), "three terms": Material(((0.5, 0.05), (0.3, 0.5), (0.1, 5.0)))}
-    for b, body in solids.items():
-        depth = 0.5 if isinstance(body, Flat) else body.depth(10.0)
-        d = Legs(tuple((t, depth * y) for t, y in WAY.points))
-        dashpots: dict[str, Law] = {} if isinstance(body, Flat) else {"dashpots": KelvinVoigt(body, 0.2)}
-        for m, law in (laws | dashpots).items():
-            exact = of_rings(body, law, d)
-            for per in every:
-                scene = power(body, 10.0).tables(10.0 / per) | {"viscoelasticity": terms_of(law)} | history(d)
-                error = RELAXED if isinstance(law, Material) else JUMPING
-                yield Case(f"rings_{b}_{m}_{per:g}", "pressures", f"{b}, {m}, a/{per:g}", scene,
-                           Expected(pressures=exact, pressure_error=error))  # fmt: skip
-
-
-def of_rings(body: Power | Flat, law: Law, d: Legs) -> dict[str, Function]:
-    """p(r) of the states that have a name; a ring is as wide as no other near the edge of a punch."""
-    if isinstance(body, Flat):
-        edges, heights = body.end * np.sin(np.linspace(0.0, 0.5 * math.pi, RINGS + 1)), lambda r: 0.0 * r
-    else:
-        edges = BEYOND * body.radius(max(d.values)) * np.linspace(0.0, 1.0, RINGS + 1)
-        heights = lambda r: body.factor * r**body.exponent  # noqa: E731
-    relaxing = {"terms": law.terms} if isinstance(law, Material) else {"retardation": law.time}
-    rings, found = Rings(edges, heights, **relaxing), {}
-    names = {t: name for name, t in marked(d).items()}
-    for before, after in pairwise(d.times):
-        rings.follow(d, np.linspace(before, after, RING_STEPS + 1).tolist())
-        if after in names and rings.force > 0.0:
-            found[names[after]] = _between(rings.r, rings.pressure, rings.radius)
-    return found
-
-
-def _between(r: Floats, p: Floats, edge: float) -> Function:
-    """Between rings; nan near the edge and the axis."""
-    inside = r < edge
-
-    def pressure(at: float) -> float:
-        if at > 1.01 * edge:
-            return 0.0
-        return math.nan if at < r[12] or at > NEAR * edge else float(np.interp(at**2, r[inside] ** 2, p[inside]))
-
-    return pressure
 
 
 def measure(bench: Bench) -> Findings:
