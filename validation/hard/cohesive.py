@@ -17,10 +17,10 @@ import numpy as np
 
 from validation.doors import Run
 from validation.hard.draws import cohesive
-from validation.hard.kinks import LAND, SLOPE, worn_tip
+from validation.hard.kinks import LAND, SLOPE, WORN_TIP
 from validation.hard.random_plane import COHESIVE as RANDOM
 from validation.hard.random_plane import random_rows
-from validation.hard.surfaces import Surface, surface, worn
+from validation.hard.surfaces import Surface, pieces, surface
 from validation.hard.units import Scene
 from validation.references.dugdale import Cohesive
 from validation.references.dugdale_elements import Elements
@@ -106,11 +106,12 @@ def _paraboloid(bench: Bench, mu: float) -> list[Row]:
 def shapes() -> dict[str, tuple[Surface, Callable[[Floats], Floats]]]:
     """A cone, a power of 4, and flattened tips as tables, with a parabola or a cone beyond the land; their heights."""
     end, rise = LAND / SLOPE, 0.25 * SLOPE * LAND
-    ball, tip = (Surface({}, body, 1.4 * LAND).sampled(PITCH, REACH) for body in (worn(LAND, end), worn_tip()))
+    ball = pieces((0.0, 0.0, 0.0), (LAND, SLOPE, SLOPE / LAND))
+    worn, tip = (Surface({}, body, 1.4 * LAND).sampled(PITCH, REACH) for body in (ball, WORN_TIP))
     return {
         "cone": (surface(LAND, "cone", slope=SLOPE), lambda r: SLOPE * r),
         "power 4": (surface(LAND, "power", exponent=4.0, radius=LAND, height=rise), lambda r: rise * (r / LAND) ** 4),
-        "land, then parabola": (ball, lambda r: np.maximum(0.0, 0.5 * (r**2 - LAND**2) / end)),
+        "land, then parabola": (worn, lambda r: np.maximum(0.0, 0.5 * (r**2 - LAND**2) / end)),
         "land, then cone": (tip, lambda r: np.maximum(0.0, SLOPE * (r - LAND))),
     }
 

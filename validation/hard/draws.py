@@ -32,7 +32,7 @@ DIGITS = (None, None, 9, 7)
 """Of the heights in a table; None: all of them."""
 POINTS, MOST_POINTS = (5.0, 60.0), 3000
 """Points of a table from the axis to the kink."""
-TABOR = (0.01, 100.0)
+TABOR, STEPS = (0.01, 100.0), (1.0, 150.0)
 Random = np.random.Generator
 
 
@@ -123,7 +123,7 @@ class Scales:
 def _elastic(rng: Random, solid: Surface) -> Scales:
     contact, a = Contact(solid.body), solid.radius
     d = a * decades(rng, -4.0, -2.0) if solid.punch else contact.displacement(a)
-    return Scales(contact.force_at(a, d), -0.5 * d, 0.0, lambda force: deepest(contact, {"force": force}, a)[1], {},
+    return Scales(contact.force_at(a, d), -0.5 * d, 0.3 * d, lambda force: deepest(contact, {"force": force}, a)[1], {},
                   adhesive=False)  # fmt: skip
 
 
@@ -178,9 +178,8 @@ def _widest(solid: Surface, scene: Scene) -> float:
 
 def _load(rng: Random, one: Scales) -> Scene:
     """From 0.01 to 100 times the unit."""
-    return one.tables | {
-        "experiment": {"kind": "load", "force": one.unit * decades(rng, -2.0, 2.0 if one.adhesive else 0.5)}
-    }
+    force = one.unit * decades(rng, -2.0, 2.0 if one.adhesive else 0.5)
+    return one.tables | {"experiment": {"kind": "load", "force": force}}
 
 
 def _tension(rng: Random, one: Scales) -> Scene:
@@ -203,12 +202,8 @@ def _path(rng: Random, one: Scales) -> Scene:
     if deep - apart < 1e-3 * abs(one.limit):
         raise ValueError("no way")
     ends = (apart, deep) if rng.random() < 0.6 else (deep, apart)
-    way = {
-        "from": ends[0],
-        "to": ends[1],
-        "steps": round(between(rng, (1.0, 60.0))),
-        "return": bool(rng.random() < 0.7),
-    }
+    steps, closed = round(between(rng, STEPS)), bool(rng.random() < 0.7)
+    way = {"from": ends[0], "to": ends[1], "steps": steps, "return": closed}
     start = str(rng.choice(["approach", "approach", "contact"])) if one.adhesive else "approach"
     ranged = "range" in one.tables.get("adhesion", {})
     return one.tables | {"experiment": {"kind": "path", "displacements": way} | ({} if ranged else {"start": start})}

@@ -14,10 +14,12 @@ from validation.hard.expected import looked_up
 from validation.hard.judge import Case, Number, absolute, judged
 from validation.hard.random_plane import IMPACTS as RANDOM
 from validation.hard.random_plane import random_rows
+from validation.hard.relaxing import MATERIALS
 from validation.hard.surfaces import Surface, power
 from validation.hard.units import Scene
 from validation.references.impact import Adhesive, elastic
-from validation.references.relaxing import KelvinVoigt, Legs, Material, Power, sphere
+from validation.references.receding_edge import Receding
+from validation.references.relaxing import KelvinVoigt, Legs, Power, sphere
 from validation.row import Row
 from validation.study import Bench, Findings, Study
 
@@ -29,11 +31,6 @@ TENSION = 1e-3
 """What a pull-off force at a velocity may be off, relative; a force along a history over the largest tension."""
 RETARDED = (0.1, 0.3, 1.0)
 """Retardation times [TU] (guide: e = 0.8327, 0.6091, 0.2808)."""
-MATERIALS = {
-    "standard solid": Material(((0.5, 1.0),)),
-    "Maxwell": Material(((1.0, 1.0),)),
-    "three arms": Material(((0.3, 0.2), (0.3, 1.0), (0.2, 10.0))),
-}
 WORK, WORK_OF_IMPACTS = 1e-2, 1e-3
 """W of the edge and of impacts [FU/LU], with which 10 v_s does not cover the body."""
 TIMES = (0.9, 1.1, 1.5, 3.0, 10.0)
@@ -92,8 +89,8 @@ def _edges(name: str, solid: Surface, body: Power) -> Iterator[Case]:
                   "experiment": {"kind": "pull_off", "preload": PRELOAD, "velocity": velocity}}  # fmt: skip
         yield looked_up(f"edge_{words}", "pull-off at a velocity", words, solid, scene)
         contact = Adhesive(body, WORK_OF_IMPACTS)
-        deepest = body.depth(2.5 * contact.touch)
-        way = 20.0 * (deepest - contact.displacement(contact.grips)) * (1.0 + velocity ** RATE["exponent"])
+        edge, deepest = Receding(contact, RATE["velocity"], RATE["exponent"]), body.depth(2.5 * contact.touch)
+        way = 1.5 * float(edge.drawn(edge.at(deepest), velocity).t[-1])  # half as far again as where they part
         legs = Legs(((0.0, -deepest), (2.0, deepest), (2.0 + way / velocity, deepest - way)))
         scene = solid.tables(contact.touch / PARTICLES) | history(legs)
         scene |= {"adhesion": {"work_of_adhesion": WORK_OF_IMPACTS, "rate": RATE}}

@@ -257,7 +257,9 @@ class Judge:
         wrong = [n.label for n in self.numbers if math.isinf(n.reference)]
         wrong += [f"{name}: {scene}" for name, scenes in self.silent.items() for scene in scenes]
         counted = {
-            "numbers beyond the tolerance that no warning names": [n.label for n in self.unnamed if n in real],
+            "numbers beyond the tolerance that no warning names": [
+                n.label for n in self.unnamed if math.isfinite(n.reference)
+            ],
             "numbers without a bound that are reported, or missing without a word": wrong,
         }
         first = max(real, key=lambda n: n.over, default=None)

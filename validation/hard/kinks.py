@@ -14,7 +14,7 @@ import numpy as np
 
 from validation.hard.expected import looked_up, marks
 from validation.hard.judge import Case, judged, rows_of
-from validation.hard.surfaces import KINKED, Surface, kinked_body, surface, worn
+from validation.hard.surfaces import KINKED, Surface, kinked_body, pieces, surface
 from validation.hard.units import Scene, Units
 from validation.references.axisymmetric import Body, Contact, with_rest_radius
 from validation.study import Bench, Findings, Study
@@ -41,9 +41,8 @@ ROUNDINGS = (None, 6, 5)
 """Digits of the largest height in a table of a paraboloid."""
 
 
-def worn_tip() -> Body:
-    """Flat to LAND, then a cone."""
-    return Body(lambda r: SLOPE if r >= LAND else 0.0, lambda _: 0.0, (LAND,), (SLOPE,))
+WORN_TIP = pieces((0.0, 0.0, 0.0), (LAND, SLOPE, 0.0))
+"""Flat to LAND, then a cone."""
 
 
 def pressed(body: Body, a: float) -> Scene:
@@ -59,7 +58,7 @@ def pulled(contact: Contact, preload: float = 0.0) -> Scene:
 
 def kinks(full: bool) -> Iterator[Case]:
     """Loads and pull-offs of the worn tip, at several distances of points and particles; then of other bodies."""
-    body = worn_tip()
+    body = WORN_TIP
     for count in FULL_COUNTS if full else COUNTS:
         tip, points = Surface({}, body, LAND).sampled(REACH / (count - 1), REACH), f"worn tip of {count} points"
         kinds = {"load": (f"tip_load_{count}", pressed(body, 1.7 * LAND))}
@@ -82,7 +81,7 @@ def kinks(full: bool) -> Iterator[Case]:
 
 def tables(full: bool) -> Iterator[Case]:
     """Worn balls in SI at several distances of the points, and paraboloids with few digits."""
-    ball = Surface({}, worn(WORN, BALL), WORN)
+    ball = Surface({}, pieces((0.0, 0.0, 0.0), (WORN, WORN / BALL, 1.0 / BALL)), WORN)
     for pitch in FULL_PITCHES if full else PITCHES:
         solid = ball.sampled(pitch, 3.0 * WORN)
         for newtons in LOADS:

@@ -17,7 +17,7 @@ import numpy as np
 from scipy.signal import lfilter
 
 from validation.doors import Quantity, modelled, read_scene
-from validation.hard.surfaces import surface, worn
+from validation.hard.surfaces import pieces
 from validation.hard.units import Scene
 from validation.references.axisymmetric import Contact
 from validation.row import Row, at_most
@@ -93,7 +93,7 @@ class Case:
             rest = (4.5 * math.pi * WORK * (RADIUS * UNIT) ** 2 / MODULUS) ** (1.0 / 3.0)
             return {"adhesion_force": tension, "zero_load_radius": rest}
         land, end = self.land * UNIT, RADIUS * UNIT
-        contact = Contact(worn(land, end) if land else surface(land, "parabola", radius=end).body, MODULUS)
+        contact = Contact(pieces((0.0, 0.0, 0.0), (land, land / end, 1.0 / end)), MODULUS)
         a = contact.pressed_radius(LOAD, (0.75 * LOAD * end / MODULUS) ** (1.0 / 3.0))
         return {"displacement": contact.displacement(a), "contact_radius": a}
 

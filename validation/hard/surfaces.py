@@ -6,6 +6,7 @@ A kink is a jump up of the slope, or of the curvature, at a radius b. A table ha
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -115,27 +116,36 @@ def smooth(kind: str, radius: float, slope: float, rng: np.random.Generator) -> 
     return surface(radius, kind, radius=end)
 
 
+def pieces(*parts: tuple[float, float, float]) -> Body:
+    """A body whose slope is straight in pieces: where each begins [LU], the slope there, and its bend [1/LU]."""
+    starts = [start for start, _, _ in parts]
+
+    def part(r: float) -> tuple[float, float, float]:
+        return parts[max(0, bisect_right(starts, r) - 1)]
+
+    def slope(r: float, of: tuple[float, float, float]) -> float:
+        return of[1] + of[2] * (r - of[0])
+
+    jumps = tuple(after[1] - slope(after[0], before) for before, after in pairwise(parts))
+    return Body(lambda r: slope(r, part(r)), lambda r: part(r)[2], tuple(starts[1:]), jumps)
+
+
 def kinked_body(kind: str, b: float, slope: float, rng: np.random.Generator) -> Body:
     """A body whose slope or curvature jumps up at a radius b [LU], with about that slope beyond it."""
-    end = b / slope
+    bend, flat = slope / b, (0.0, 0.0, 0.0)
     match kind:
-        case "land_cone" | "two_slopes":
-            first = 0.0 if kind == "land_cone" else slope * float(rng.uniform(0.1, 0.8))
-            return Body(lambda r: slope if r >= b else first, lambda _: 0.0, (b,), (slope - first,))
-        case "worn_ball" | "two_radii":
-            blunt = math.inf if kind == "worn_ball" else end * float(rng.uniform(1.5, 8.0))
-            return Body(lambda r: r / end if r >= b else r / blunt, lambda r: 1.0 / end if r >= b else 1.0 / blunt,
-                        (b,), (b / end - b / blunt,))  # fmt: skip
+        case "land_cone":
+            return pieces(flat, (b, slope, 0.0))
+        case "worn_ball":
+            return pieces(flat, (b, slope, bend))
+        case "two_slopes":
+            return pieces((0.0, slope * float(rng.uniform(0.1, 0.8)), 0.0), (b, slope, 0.0))
+        case "two_radii":
+            return pieces((0.0, 0.0, bend / float(rng.uniform(1.5, 8.0))), (b, slope, bend))
         case "rounded_punch":
-            return Body(lambda r: max(0.0, r - b) / end, lambda r: float(r >= b) / end, (b,), (0.0,))
+            return pieces(flat, (b, 0.0, bend))
     further, low = b * float(rng.uniform(1.3, 2.0)), slope * float(rng.uniform(0.2, 0.6))
-    return Body(lambda r: slope if r >= further else low if r >= b else 0.0, lambda _: 0.0, (b, further),
-                (low, slope - low))  # fmt: skip
-
-
-def worn(land: float, end: float) -> Body:
-    """A ball of the radius `end` that is flat to `land`."""
-    return Body(lambda r: r / end if r >= land else 0.0, lambda r: float(r >= land) / end, (land,), (land / end,))
+    return pieces(flat, (b, low, 0.0), (further, slope, 0.0))
 
 
 def sampled(body: Body, pitch: float, reach: float, digits: int | None = None) -> Scene:
