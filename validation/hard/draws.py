@@ -246,8 +246,11 @@ def terms_of(law: Material | KelvinVoigt) -> Scene:
     return {"terms": [{"share": share, "time": time} for share, time in law.terms]}
 
 
-def _law(rng: Random, solid: Surface, law: str, duration: float) -> Scene:
-    """The tables of a law whose times are as long as an experiment, or up to 1e20 times as long."""
+def _law(rng: Random, solid: Surface, law: str, duration: float, fluid: float = 0.2) -> Scene:
+    """The tables of a law whose times are as long as an experiment, or up to 1e20 times as long.
+
+    `fluid`: share of the materials that relax to nothing.
+    """
     radius = solid.radius
     if law in ("JKR", "rate"):
         a, body = radius * float(rng.uniform(0.3, 1.2)), power_of(solid)
@@ -259,8 +262,8 @@ def _law(rng: Random, solid: Surface, law: str, duration: float) -> Scene:
     if law == "elastic":
         return {}
     arms, far = int(rng.integers(1, 4)), law == "far Prony"
-    fluid = rng.random() < 0.2 and not far
-    shares = rng.dirichlet(np.ones(arms)) * (1.0 if fluid else float(rng.uniform(0.05, 0.98)))
+    flows = rng.random() < fluid and not far
+    shares = rng.dirichlet(np.ones(arms)) * (1.0 if flows else float(rng.uniform(0.05, 0.98)))
     times = duration * np.sort(10.0 ** rng.uniform(-1.5, 20.0 if far else 1.5, arms))
     return {"viscoelasticity": terms_of(Material(tuple(zip(shares.tolist(), times.tolist(), strict=True))))}
 
@@ -323,7 +326,7 @@ def _impact(rng: Random, solid: Surface, law: str) -> Scene:
     velocity = float((body.depth(solid.radius) / impact.deepest(body, 1.0, mass, 1.0)) ** (1.0 + 0.5 / body.exponent))
     lasts = impact.elastic(body, 1.0, mass, velocity).contact_time
     experiment = {"kind": "impact", "velocity": velocity}
-    return {"plate": {"mass": mass}, "experiment": experiment} | _law(rng, solid, law, lasts)
+    return {"plate": {"mass": mass}, "experiment": experiment} | _law(rng, solid, law, lasts, fluid=0.0)
 
 
 def _drawn_off(rng: Random, solid: Surface, law: str) -> Scene:

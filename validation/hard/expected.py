@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -52,7 +53,7 @@ def expected(surface: Surface, scene: Scene) -> Expected:
     if kind == "tangential":
         bodies = scene["bodies"]
         ratio = bodies["bulk_stiffness_tangential"] / bodies["bulk_stiffness"]
-        return _split(_tangential(adherent, surface, experiment, scene["friction"]["coefficient"], ratio))
+        return _tangential(adherent, surface, experiment, scene["friction"]["coefficient"], ratio)
     if kind == "pull_off":
         return _split(marks(adherent, surface.radius) | _without_load(adherent, surface) | {
             "preload": experiment["preload"]})  # fmt: skip
@@ -193,7 +194,7 @@ def _passed(found: Numbers, places: Numbers, low: float, high: float, limit: flo
     return {name: value for name, value in found.items() if name not in gone}
 
 
-def _tangential(contact: Contact, surface: Surface, experiment: Scene, friction: float, ratio: float) -> Numbers:
+def _tangential(contact: Contact, surface: Surface, experiment: Scene, friction: float, ratio: float) -> Expected:
     """Out, back by Masing's rule, and cycles."""
     a, d = deepest(contact, experiment, surface.radius)
     slipping = Slipping(contact, a, friction, ratio)
@@ -202,16 +203,18 @@ def _tangential(contact: Contact, surface: Surface, experiment: Scene, friction:
     if "cycles" in experiment:
         u, count = experiment["cycles"]["amplitude"], experiment["cycles"]["number"]
         loss = slipping.loss(u)
-        return found | {"tangential_force": slipping.force(u), "stick_radius": slipping.stick(u),
-                        "dissipated_energy": (1.0 + 4.0 * count) * loss,
-                        "dissipated_energy_per_cycle": 4.0 * loss}  # fmt: skip
+        return _split(found | {
+            "tangential_force": slipping.force(u), "stick_radius": slipping.stick(u),
+            "dissipated_energy": (1.0 + 4.0 * count) * loss, "dissipated_energy_per_cycle": 4.0 * loss,
+        })  # fmt: skip
     way = points_of(experiment["displacements"])
     most, half = max(way), 0.5 * (max(way) - way[-1])
-    return found | {
+    found |= {
         "tangential_force": slipping.force(most) - 2.0 * slipping.force(half),
         "stick_radius": slipping.stick(half or most),
         "dissipated_energy": slipping.loss(most) + (2.0 * slipping.loss(half) if half else 0.0),
     }
+    return replace(_split(found), largest={"tangential_force": slipping.force(most)})
 
 
 def _cohesive(contact: Cohesive, surface: Surface, experiment: Scene) -> Numbers:
