@@ -187,8 +187,9 @@ class Judge:
                          named or any(w in run.warnings for w in self.of_all))  # fmt: skip
         for column, curve in exact.curves.items():
             places, values, radii = (np.asarray(run.curve[one]) for one in (curve.of, column, "contact_radius"))
-            off = np.abs(values - curve.values(places))[radii >= curve.narrowest] / curve.scale
-            self.along[column][scene] = float(np.nanmax(off)) if off.size else math.nan
+            right = curve.values(places)
+            off = np.abs(values - right)[(radii >= curve.narrowest) & ~np.isnan(right)] / curve.scale
+            self.along[column][scene] = float(off.max()) if off.size else math.nan
 
     def _number(
         self, case: Case, name: str, value: float, uncertainty: float, reference: float, named: bool = True
