@@ -13,8 +13,7 @@ import numpy as np
 import pytest
 
 from contact1d import Run, run
-from validation.hard.kinks import on_plane
-from validation.hard.plane_bodies import kinked_body, sampled
+from validation.hard.surfaces import Surface, kinked_body
 from validation.references.axisymmetric import Contact, with_rest_radius
 
 R, FORCE, FLAT = 1000.0, 40.0, 10.0
@@ -29,7 +28,7 @@ SHARP: dict[str, dict[str, Any]] = {
 
 @pytest.mark.parametrize("name", SHARP)
 def test_a_pressure_without_bound_has_no_largest_one(name: str) -> None:
-    tables = on_plane(SHARP[name], 1.0, 1e-3) | {"title": name, "experiment": {"kind": "load", "force": FORCE}}
+    tables = Surface(SHARP[name], None, R).tables(1.0) | {"title": name, "experiment": {"kind": "load", "force": FORCE}}
     assert "peak_pressure" not in run(tables).results
 
 
@@ -46,7 +45,8 @@ def of_a_table(kind: str, inside: float, adheres: bool) -> tuple[Run, dict[str, 
     a = contact.pressed_radius(0.0, RIM) if adheres else 1.7 * RIM
     load = {"kind": "load", "force": contact.force(a)}
     pull_off = {"kind": "pull_off", "preload": -2.0 * contact.force(contact.critical(RIM)) if adheres else 0.0}
-    scene = on_plane(sampled(body, RIM / inside, 6.0 * RIM, None), RIM / 61.0, TOLERANCE, contact.work)
+    scene = Surface({}, body, RIM).sampled(RIM / inside, 6.0 * RIM).tables(RIM / 61.0, TOLERANCE)
+    scene |= {"adhesion": {"work_of_adhesion": contact.work}} if adheres else {}
     found = run(scene | {"title": kind, "experiment": pull_off if adheres else load})
     return found, {"central_pressure": contact.central_pressure(a), "peak_pressure": contact.peak_pressure(a)}
 
@@ -84,9 +84,9 @@ def test_a_rim_beside_a_point_holds_as_much_as_the_body() -> None:
     """A worn tip, flat to b and a cone beyond, parts at F_A = √(8πE*Wb³)."""
     points, share, work = 44.0, 0.95, 5e-4
     body = kinked_body("land_cone", RIM, SLOPE, np.random.default_rng(11))
-    table = sampled(body, RIM / (points + share), 6.0 * RIM, None)
-    pull_off = {"title": "worn tip", "experiment": {"kind": "pull_off", "preload": 1.0}}
-    found = run(on_plane(table, RIM / 9.3, TOLERANCE, work) | pull_off).results
+    scene = Surface({}, body, RIM).sampled(RIM / (points + share), 6.0 * RIM).tables(RIM / 9.3, TOLERANCE)
+    scene |= {"adhesion": {"work_of_adhesion": work}, "experiment": {"kind": "pull_off", "preload": 1.0}}
+    found = run(scene | {"title": "worn tip"}).results
     exact = math.sqrt(8.0 * math.pi * work * RIM**3)
     assert found["adhesion_force"].value == pytest.approx(exact, rel=1e-6)
     assert found["critical_radius"].value == pytest.approx(RIM, rel=1e-6)

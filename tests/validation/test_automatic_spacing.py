@@ -13,7 +13,7 @@ import numpy as np
 
 from contact1d import read_scene, run
 from contact1d.analysis.theory.indenters import PowerLaw
-from validation.hard.claims import Tally
+from validation.hard.judge import Case, Expected, Judge
 from validation.paper.tangential import stiffness_ratio
 
 SCENES, SEED = 24, 20
@@ -64,12 +64,11 @@ def drawn(rng: np.random.Generator, kind: str) -> tuple[dict[str, Any], dict[str
 
 
 def test_an_automatic_spacing_keeps_the_tolerance(tmp_path: Path) -> None:
-    rng, tally = np.random.default_rng(SEED), Tally()
+    rng, judge = np.random.default_rng(SEED), Judge()
     for number in range(SCENES):
         kind = KINDS[number % len(KINDS)]
         scene, exact = drawn(rng, kind)
         found = run(read_scene(scene), tmp_path / str(number), figures=False)
-        tally.add(str(number), kind, found, exact, ROUND_OFF)
-    assert not [error for error in tally.errors if error.over_tolerance > 1.0 and not error.told]
-    assert not [error for error in tally.errors if error.over_claim > 1.0]
-    assert sum(error.told for error in tally.errors) <= TOLD * len(tally.errors)
+        judge.add(Case(str(number), kind, kind, scene, Expected(exact, ROUND_OFF)), found)
+    assert not [*judge.silent, *judge.unnamed, *judge.outside]
+    assert sum(n.named for n in judge.numbers) <= TOLD * len(judge.numbers)

@@ -1,6 +1,7 @@
 """What programs of this kind get wrong: classes of hard cases, each against bounds that are not the program's own."""
 
 from validation.hard import (
+    buckling,
     coarse_paths,
     cohesive,
     extremes,
@@ -16,27 +17,24 @@ from validation.hard import (
     loops,
     modes,
     motion,
+    pairs,
     plane_adhesive,
-    pressed,
     random_plane,
     random_scenes,
     relaxing,
     scans,
     settling,
-    sharp,
-    similarity,
     slides,
-    stiffness,
     thermal,
     transient,
 )
 from validation.study import Study
 
+_STIFFNESS, _SHARP, _SIMILARITY, _CORE = pairs.CLASSES
 STUDIES: tuple[Study, ...] = (
-    stiffness.STIFFNESS, sharp.SHARP, random_scenes.RANDOM, loads.LOADS, settling.SETTLING, loops.LOOPS,
-    friction.FRICTION, similarity.SIMILARITY, forces.FORCES, motion.MOTION, modes.EQUIPARTITION, *thermal.CLASSES,
-    extremes.EXTREMES, *pressed.CLASSES, plane_adhesive.ADHESIVE, slides.SLIDES, faults.FAULTS, fuzz.FUZZ,
+    _STIFFNESS, _SHARP, random_scenes.RANDOM, loads.LOADS, settling.SETTLING, loops.LOOPS,
+    friction.FRICTION, _SIMILARITY, forces.FORCES, motion.MOTION, modes.EQUIPARTITION, *thermal.CLASSES,
+    extremes.EXTREMES, _CORE, buckling.BUCKLING, plane_adhesive.PLANE_ADHESIVE, slides.SLIDES, faults.FAULTS, fuzz.FUZZ,
     random_plane.RANDOM_PLANE, *kinks.CLASSES, scans.SCANS, coarse_paths.COARSE_PATHS, lateral.LATERAL,
-    transient.TRANSIENT, cohesive.COHESIVE, fits.FITS, relaxing.RELAXING,
-    impacts.IMPACTS,
+    transient.TRANSIENT, cohesive.COHESIVE, fits.FITS, relaxing.RELAXING, impacts.IMPACTS,
 )  # fmt: skip

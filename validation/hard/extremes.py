@@ -6,17 +6,16 @@ motion stretches; and a rigid plane carries F = k Σ max(0, d − h_i).
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
 
-from validation.hard.cases import TENSION, PairCase, shaped
-from validation.row import Row, at_most, so
-from validation.study import Bench, Findings, Refused, Study, claim_row, found
+from validation.hard.cases import PAIRS, TENSION, PairCase, shaped
+from validation.hard.judge import Case, Expected, judged
+from validation.hard.units import Scene
+from validation.row import Row, so
+from validation.study import Bench, Findings, Refused, Study, claim_row
 
 RADII = (1.0, 1e3, 1e6, 1e9)
 REFUSED_COUNTS = (1, 2)
@@ -31,31 +30,28 @@ WIDTH = 10.3
 RATIO, PUNCH = 0.3, 10
 
 
+def on_plane(full: bool) -> Iterator[Case]:
+    """F of a displacement, by the radius and by the number of particles."""
+    shapes: dict[str, tuple[Scene, int, float]] = {
+        f"R = {R:g} LU": ({"kind": "parabola", "radius": R}, 61, WIDTH**2 / R) for R in RADII
+    }
+    for count in FULL_COUNTS if full else COUNTS:
+        shapes[f"N = {count}"] = {"kind": "flat_punch", "radius": 0.5 * count}, count, 0.1
+    for words, (profile, count, d) in shapes.items():
+        x = np.arange(count) - 0.5 * (count - 1)
+        heights = x**2 / profile["radius"] if profile["kind"] == "parabola" else 0.0 * x
+        force = 0.5 * float(np.sum(np.maximum(0.0, d - heights)))
+        bodies = {"particles": count, "spacing": 1.0, "profile": profile, "bulk_stiffness": 0.5, "lower": "rigid_plane"}
+        scene = {"bodies": bodies, "experiment": {"kind": "path", "displacements": [d]}}
+        yield Case(words, words, words, scene, Expected({"largest_force": force}))
+
+
 def measure(bench: Bench) -> Findings:
     """One row for each extreme; a refusal before anything runs is an answer where the row says so."""
-    places = np.arange(-30.0, 31.0)
-    on_plane = []
-    for radius in RADII:
-        d = WIDTH**2 / radius
-        exact = 0.5 * float(np.sum(np.maximum(0.0, d - places**2 / radius)))
-        words, profile = f"R = {radius:g} LU", {"kind": "parabola", "radius": radius}
-        on_plane.append((f"radius_{radius:g}", words, profile, 61, d, exact, "Σ k (d − x²/R)"))
-    for count in FULL_COUNTS if bench.full else COUNTS:
-        punch = {"kind": "flat_punch", "radius": 0.5 * count}
-        on_plane.append((f"count_{count}", f"N = {count}", punch, count, 0.1, 0.5 * 0.1 * count, "N k d"))
-    limit = "round-off, and the minimiser's share of the tolerance"
-    rows = [
-        at_most(f"force on a plane off, {words}", _off(bench, name, profile, count, d, exact), PLANE, source, limit)
-        for name, words, profile, count, d, exact, source in on_plane
-    ]
-    springs = [row for kind in ("neighbour", "tangential") for row in _springs(bench, kind)]
-    return Findings([*rows, _too_few(bench), *_masses(bench), *springs])
-
-
-def _off(bench: Bench, name: str, profile: dict[str, Any], count: int, d: float, exact: float) -> float:
-    bodies = {"particles": count, "spacing": 1.0, "profile": profile, "bulk_stiffness": 0.5, "lower": "rigid_plane"}
-    run = bench.run(name, {"bodies": bodies, "experiment": {"kind": "path", "displacements": [d]}})
-    return math.nan if isinstance(run, Refused) else abs(found(run, "largest_force").value / exact - 1.0)
+    source = "Σ k (d − x²/R), N k d"
+    rows = [judge.near(f"on a plane, {words}", "largest_force", PLANE, source)
+            for words, judge in judged(bench, on_plane(bench.full)).items()]  # fmt: skip
+    return Findings([*rows, _too_few(bench), *_masses(bench), *_springs(bench)])
 
 
 def _too_few(bench: Bench) -> Row:
@@ -63,47 +59,40 @@ def _too_few(bench: Bench) -> Row:
     wrong = False
     for count in REFUSED_COUNTS:
         case = PairCase("few", RATIO, {"kind": "flat_punch", "radius": 0.5 * count}, count, TENSION)
-        found = bench.run(f"few_{count}", case.scene())
-        wrong |= not (isinstance(found, Refused) and found.before and "bodies.particles" in found.words)
+        run = bench.run(f"few_{count}", case.scene())
+        wrong |= not (isinstance(run, Refused) and run.before and "bodies.particles" in run.words)
     name = f"scenes of N in {REFUSED_COUNTS} that run, or end without naming bodies.particles"
     return so(name, wrong, "three particles make the least width")
 
 
 def _masses(bench: Bench) -> Iterator[Row]:
     """d of a punch under a load, by the mass of the plate; a refusal beforehand is an answer."""
-    case = PairCase("masses", RATIO, shaped("flat_punch", PUNCH, 0.0), PUNCH, 0.0, 1e-3, dynamic=True)
+    case = PairCase("masses", RATIO, shaped("flat_punch", PUNCH, 0.0), PUNCH, dynamic=True)
     load = 0.5 * PUNCH * TENSION
-    exact = case.exact().deepest(load)
+    tables = case.scene() | {"experiment": {"kind": "load", "force": load}}
     for mass in FULL_MASSES if bench.full else MASSES:
-        run = bench.run(
-            f"mass_{mass:g}", case.scene() | {"plate": {"mass": mass}, "experiment": {"kind": "load", "force": load}}
-        )
+        run = bench.run(f"mass_{mass:g}", tables | {"plate": {"mass": mass}})
         words = f"d under a load off over its claim, plate of {mass:g} particle masses"
-        row = claim_row(words, run, "displacement", exact, "independent pairs")
+        row = claim_row(words, run, "displacement", case.pairs.deepest(load), PAIRS)
         yield replace(row, value=0.0) if isinstance(run, Refused) and run.before else row
 
 
-def _springs(bench: Bench, kind: str) -> Iterator[Row]:
+def _springs(bench: Bench) -> Iterator[Row]:
     """F_A of a punch with neighbour springs; d of it under a tension with another stiffness along x."""
     case = PairCase("springs", RATIO, shaped("flat_punch", PUNCH, 0.0), PUNCH, TENSION)
-    load, pairs = -0.5 * PUNCH * TENSION, case.exact()
-    tables: dict[str, Any]
-    place = float(brentq(lambda d: float(pairs.loading(d)) - load, pairs.adhesion(0.0)[1], 0.05, xtol=1e-15))
+    scene, load = case.scene(), -0.5 * PUNCH * TENSION
+    held = {"horizontal": {}, "experiment": {"kind": "load", "method": "quasistatic", "force": load}}
     for factor in FULL_STIFFNESSES if bench.full else STIFFNESSES:
-        scene = case.scene()
-        if kind == "neighbour":
-            tables, name, exact = (
-                {"neighbours": {"stiffness": factor * case.stiffness}},
-                "adhesion_force",
-                PUNCH * TENSION,
-            )
-        else:
-            bodies = scene["bodies"] | {"bulk_stiffness_tangential": factor * case.stiffness}
-            experiment = {"kind": "load", "method": "quasistatic", "force": load}
-            tables = {"bodies": bodies, "horizontal": {}, "experiment": experiment}
-            name, exact = "displacement", place
-        words = f"{name} of a punch off over its claim, {kind} springs of {factor:g} k"
-        yield claim_row(words, bench.run(f"{kind}_{factor:g}", scene | tables), name, exact, "N times one pair")
+        k = factor * case.stiffness
+        bodies = {"bodies": scene["bodies"] | {"bulk_stiffness_tangential": k}}
+        kinds = {
+            "neighbour": ({"neighbours": {"stiffness": k}}, "adhesion_force", PUNCH * TENSION),
+            "tangential": (held | bodies, "displacement", case.unloaded(load, 0.05)),
+        }
+        for kind, (tables, name, exact) in kinds.items():
+            words = f"{name} of a punch off over its claim, {kind} springs of {factor:g} k"
+            run = bench.run(f"{kind}_{factor:g}", scene | tables)
+            yield claim_row(words, run, name, exact, "N times one pair")
 
 
 EXTREMES = Study(

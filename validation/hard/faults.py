@@ -9,17 +9,17 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 from validation.doors import read_scene
 from validation.hard.cases import PAPER_LAW
 from validation.row import so
 from validation.study import Bench, Findings, Study
 
-NAME = "faults"
 COMMAND = (sys.executable, "-m", "contact1d", "run")
 MOST = 1800.0
 """Wall time of one command [s]."""
-CODES, RESULTS = (0, 2, 3), "results.json"
+CODES, RESULTS, TORN = (0, 2, 3), "results.json", "torn"
 SCENE = {
     "title": "pull-off that is disturbed",
     "bodies": {
@@ -45,29 +45,18 @@ def measure(bench: Bench) -> Findings:
     sizes = {path.name: path.stat().st_size for path in sorted(whole.iterdir()) if path.is_file()}
     moments = [(phases.index(line) + 1, "", f'at "{line.split(":")[0]}"') for line in dict.fromkeys(phases)]
     moments += [(0, name, f"when {name} appears") for name in (sizes if bench.full else [RESULTS])]
-    checks = [
-        so(f"killed {words}: a torn results.json, or another F_A when it is run again in that folder",
-            _killed(scene, bench.folder / f"killed_{index}_{name}", index, name, undisturbed),
-            "the same scene undisturbed, to the last digit")
-        for index, name, words in moments
-    ]  # fmt: skip
+    same = "the same scene undisturbed, to the last digit"
+    rows = [so(f"killed {words}: a torn results.json, or another F_A when it is run again in that folder",
+               _killed(scene, bench.folder / f"killed_{index}_{name}", index, name, undisturbed), same)
+            for index, name, words in moments]  # fmt: skip
     for name, size in sizes.items():
-        most = max(0, size - 1)
-        run = bench.folder / f"full_{most}"
-        code, words = _end(_start(scene, run, most))
+        run = bench.folder / f"full_{max(0, size - 1)}"
+        code, words = _end(_start(scene, run, max(0, size - 1)))
         bad = code not in CODES or "Traceback" in words or (code == 0 and _force(run) != undisturbed)
-        checks.append(
-            so(f"disk full at the last byte of {name}: a traceback, another exit code than 0, 2, 3, another F_A",
-                bad, f"exit 0, 2 or 3 and no traceback; it is {code}")
-        )  # fmt: skip
-    checks.append(
-        so(
-            "second run in a folder at work that is not refused with exit 2",
-            _second(scene, bench),
-            "one run for each folder",
-        )
-    )
-    return Findings(checks)
+        what = f"disk full at the last byte of {name}: a traceback, another exit code than 0, 2, 3, another F_A"
+        rows.append(so(what, bad, f"exit 0, 2 or 3 and no traceback; it is {code}"))
+    refused = "second run in a folder at work that is not refused with exit 2"
+    return Findings([*rows, so(refused, _second(scene, bench), "one run for each folder")])
 
 
 def _killed(scene: Path, run: Path, lines: int, file: str, undisturbed: float | None) -> bool:
@@ -81,7 +70,7 @@ def _killed(scene: Path, run: Path, lines: int, file: str, undisturbed: float | 
         time.sleep(0.001)
     process.kill()
     process.communicate()
-    torn = _torn(run)
+    torn = _document(run) == TORN
     code, _ = _end(_start(scene, run))
     return torn or code != 0 or _force(run) != undisturbed
 
@@ -117,21 +106,20 @@ def _end(process: subprocess.Popen[str]) -> tuple[int, str]:
     return process.returncode, said + complained
 
 
-def _force(run: Path) -> float | None:
+def _document(run: Path) -> Any:
+    """What results.json holds: none where there is no such file, "torn" where it is no JSON."""
     try:
-        return float(json.loads((run / RESULTS).read_text(encoding="utf-8"))["adhesion_force"]["value"])
-    except (OSError, ValueError, KeyError):
-        return None
-
-
-def _torn(run: Path) -> bool:
-    try:
-        json.loads((run / RESULTS).read_text(encoding="utf-8"))
+        return json.loads((run / RESULTS).read_text(encoding="utf-8"))
     except FileNotFoundError:
-        return False
+        return None
     except ValueError:
-        return True
-    return False
+        return TORN
+
+
+def _force(run: Path) -> float | None:
+    document = _document(run)
+    number = document.get("adhesion_force") if isinstance(document, dict) else None
+    return float(number["value"]) if number else None
 
 
 def _second(scene: Path, bench: Bench) -> bool:
@@ -148,7 +136,7 @@ def _second(scene: Path, bench: Bench) -> bool:
 
 
 FAULTS = Study(
-    NAME,
+    "faults",
     "Killed, disk full, two runs in one folder",
     "An interrupted run must not leave a result, or a folder that affects the next run.",
     measure,

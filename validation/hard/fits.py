@@ -21,7 +21,6 @@ from validation.references.force_curves import Sphere, measured, noise
 from validation.row import Row, at_least, at_most
 from validation.study import Bench, Findings, Study
 
-NAME = "fits"
 MODULUS, WORK, RADIUS, POINT = 2e6, 0.05, 5e-6, 3e-7
 """E* [Pa], W [J/m²], R [m], contact point [m]."""
 POINTS, NOISE, MEMORY = 1000, 0.01, 20.0
@@ -183,7 +182,7 @@ def _choices(bench: Bench) -> Iterator[Row]:
 
 
 FITS = Study(
-    NAME,
+    "fits",
     "Fits of force curves",
     "Do the intervals that a fit states cover the true modulus and work of adhesion, and does it choose the right "
     "contact model?",

@@ -12,7 +12,6 @@ from validation.references.interaction import Floats
 from validation.row import at_most
 from validation.study import Bench, Findings, Study
 
-NAME = "forces"
 STEP = 1e-4
 """h of the differences [LU]: h²/range² = 6e-7 of a force."""
 ALLOWED, EXACT = 1e-4, 1e-6
@@ -118,7 +117,7 @@ def _forces(contact: Contact) -> tuple[Floats, Floats, tuple[float, float]]:
 
 
 FORCES = Study(
-    NAME,
+    "forces",
     "Forces of a whole deck",
     "Fragments that are correct alone may be wrong together: a wrong bond type, an excluded pair, a wrong anchor. "
     "The force on every particle of a complete deck is the gradient of its energy.",

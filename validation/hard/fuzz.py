@@ -20,7 +20,6 @@ from validation.doors import RunError, SceneError, SettingsError, read_scene, wr
 from validation.row import at_most
 from validation.study import Bench, Findings, LateError, Study, at_most_seconds
 
-NAME = "fuzz"
 QUICK, FULL = 2_000, 20_000
 EVERY = 100
 """One in so many of the decks is run."""
@@ -168,7 +167,7 @@ def _become(path: Path, folder: Path, go_on: bool) -> tuple[str, str]:
 
 
 FUZZ = Study(
-    NAME,
+    "fuzz",
     "Random edits of scenes",
     "Unexpected combinations of keys and values.",
     measure,

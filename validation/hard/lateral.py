@@ -18,7 +18,7 @@ from validation.references.solver import ChainSolver
 from validation.row import Row, at_most, so
 from validation.study import Bench, Findings, Refused, Study, said
 
-NAME, WARNING = "lateral", "buckling"
+WARNING = "buckling"
 LAW = (0.0916, 0.451, 0.0675, 0.597)
 """A, a, B, b [FU·LU, LU] of the interaction."""
 PARTICLES, RADIUS, SPACING, FIRST, LAST = 7, 1.72, 2.0, -2.498, 0.6825
@@ -93,7 +93,7 @@ def _followed(stiffness: float, along: float | None, steps: int) -> tuple[float,
 
 
 LATERAL = Study(
-    NAME,
+    "lateral",
     "Aligned chains that jump along x on a path",
     "A chain that loses its stability along x between two load steps ends in a state that depends on the steps. Does "
     "a run say so, and only then?",

@@ -37,28 +37,16 @@ def measure_modes(bench: Bench) -> Findings:
     sigmas = np.abs(ratio - 1.0) / error
     off = float(np.sum(((ratio - 1.0) / error) ** 2))
     source, limit = "equipartition: κ_q ⟨q²⟩ = kT", f"statistics: {samples} samples"
-    checks = [
-        at_most(
-            f"variance of a mode off over its standard error, worst of {PARTICLES}",
-            float(sigmas.max()),
-            SIGMAS,
-            source,
-            limit,
-        ),
-        at_most(f"χ² of the variances of all {PARTICLES} modes", off, chi_square_bound(PARTICLES), source, limit),
-    ]
+    name = f"variance of a mode off over its standard error, worst of {PARTICLES}"
+    squared = f"χ² of the variances of all {PARTICLES} modes"
+    rows = [at_most(name, float(sigmas.max()), SIGMAS, source, limit),
+            at_most(squared, off, chi_square_bound(PARTICLES), source, limit)]  # fmt: skip
     for words, speeds in (("no drag of its own", velocity), ('damping = "auto"', dragged)):
         kinetic, spread = block_mean(speeds[:, None] ** 2 * PLATE_MASS / TEMPERATURE)
-        checks.append(
-            Row(
-                f"M ⟨V²⟩/kT of the plate, {words}",
-                float(kinetic[0]),
-                Reference(1.0, "equipartition: M ⟨V²⟩ = kT"),
-                claim(limit + ", 4 standard errors"),
-                uncertainty=SIGMAS * float(spread[0]),
-            )
-        )
-    return Findings(checks)
+        exact = Reference(1.0, "equipartition: M ⟨V²⟩ = kT")
+        rows.append(Row(f"M ⟨V²⟩/kT of the plate, {words}", float(kinetic[0]), exact,
+                        claim(f"{limit}, 4 standard errors"), uncertainty=SIGMAS * float(spread[0])))  # fmt: skip
+    return Findings(rows)
 
 
 def _sampled(folder: Path, samples: int, drag: float | str) -> tuple[Floats, Floats]:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigh
+from scipy.linalg import eigvals_banded
 
 from validation.doors import EngineError, Session, contact_of, read_scene, settings_for
 from validation.hard.cases import BODIES, PAPER_LAW, PAPER_NUMBERS
@@ -23,7 +23,6 @@ from validation.references.solver import ChainSolver
 from validation.row import Reference, Row, absolute, at_most, so
 from validation.study import Bench, Findings, Study
 
-NAME = "motion"
 SHARES = (0.1, 0.5, 0.9, 0.99, 0.999)
 BEYOND = 1.01
 STEPS = 1000
@@ -43,34 +42,20 @@ LOADED: dict[str, Any] = {"plate": {}, "experiment": {"kind": "load", "force": 1
 
 def measure(bench: Bench) -> Findings:
     """Oscillators, energy, and the program's own time step against the stiffest motion of the independent solver."""
-    checks = [_oscillator(bench.folder, share) for share in SHARES]
-    checks += _beyond(bench.folder)
     swings, drift = _energies(bench)
     fitted = float(np.polyfit(np.log(TIME_STEPS), np.log(swings), 1)[0])
-    count = 10**6 if bench.full else 10**5
-    checks.append(
-        Row(
-            "order of the swing of the energy in Δt, no damping",
-            fitted,
-            Reference(2.0, "velocity Verlet"),
-            absolute(ORDER, "next order"),
-        )
-    )
-    checks.append(
-        at_most(
-            f"drift of the energy over its swing, {count:g} steps without damping",
-            drift,
-            1.0,
-            "velocity Verlet is symplectic: no drift",
-            "sampling of the swing",
-        )
-    )
-    checks += [_time_step(tables, words) for words, tables in (("", {}), (", neighbours 100 k", _stiff(83.0)))]
-    return Findings(checks)
+    source, verlet = "velocity Verlet is symplectic: no drift", Reference(2.0, "velocity Verlet")
+    words = f"drift of the energy over its swing, {_many(bench):g} steps without damping"
+    return Findings([
+        *(_oscillator(bench.folder, share) for share in SHARES), *_beyond(bench.folder),
+        Row("order of the swing of the energy in Δt, no damping", fitted, verlet, absolute(ORDER, "next order")),
+        at_most(words, drift, 1.0, source, "sampling of the swing"),
+        *(_time_step(k, words) for k, words in ((0.0, ""), (83.0, ", neighbours 100 k"))),
+    ])  # fmt: skip
 
 
-def _stiff(stiffness: float) -> dict[str, Any]:
-    return {"neighbours": {"stiffness": stiffness}}
+def _many(bench: Bench) -> int:
+    return 10**6 if bench.full else 10**5
 
 
 def _swung(session: Session) -> NDArray[np.float64]:
@@ -139,8 +124,7 @@ def _energies(bench: Bench) -> tuple[list[float], float]:
     for step in TIME_STEPS:
         energy = _energy(bench.folder / f"energy_{step:g}", step, round(160.0 / step), LOOKS)
         swings.append(float(np.std(energy)))
-    many = 10**6 if bench.full else 10**5
-    energy = _energy(bench.folder / "energy_long", TIME_STEPS[1], many, 10 * LOOKS)
+    energy = _energy(bench.folder / "energy_long", TIME_STEPS[1], _many(bench), 10 * LOOKS)
     tenth = energy.size // 10
     return swings, abs(float(np.mean(energy[-tenth:]) - np.mean(energy[:tenth]))) / float(np.std(energy[:tenth]))
 
@@ -161,36 +145,24 @@ def _energy(folder: Path, step: float, steps: int, looks: int) -> Any:
     return np.array(energy)
 
 
-def _time_step(more: dict[str, Any], words: str) -> Row:
+def _time_step(neighbours: float, words: str) -> Row:
     """ωΔt/2 of the time step that the program chooses, ω from the solver's Hessian under the load."""
-    tables = TIMED | LOADED | more
-    step = settings_for(read_scene({"title": "time step"} | tables)).motion.time_step
-    law = PairInteraction.of(*PAPER_NUMBERS)
-    neighbours = more.get("neighbours", {"stiffness": 0.0})["stiffness"]
-    model = ChainModel(12, 0.83, law, radius=40.0, neighbour_stiffness=neighbours)
+    more = {"neighbours": {"stiffness": neighbours}} if neighbours else {}
+    step = settings_for(read_scene({"title": "time step"} | TIMED | LOADED | more)).motion.time_step
+    model = ChainModel(12, 0.83, PairInteraction.of(*PAPER_NUMBERS), radius=40.0, neighbour_stiffness=neighbours)
     solver = ChainSolver(model)
     state, d = solver.equilibrium(0.0), 0.0
     while state.force < LOADED["experiment"]["force"] and d < 1.0:
         d += 0.01
         state = solver.equilibrium(d, state)
-    surface = EnergySurface(model)
-    band = surface.hessian(np.stack([state.lower[:, 1], state.upper[:, 1]], axis=1).ravel(), d)
-    dense = np.zeros((surface.dofs, surface.dofs))
-    for offset in range(band.shape[0]):
-        rows = np.arange(surface.dofs - offset)
-        dense[rows + offset, rows] = dense[rows, rows + offset] = band[offset, : rows.size]
-    omega = math.sqrt(float(eigh(dense, eigvals_only=True)[-1]))
-    return at_most(
-        f"ωΔt/2 of the chosen time step under load{words}",
-        0.5 * omega * step,
-        1.0,
-        "largest eigenvalue of the solver's Hessian",
-        evidence="independent solver",
-    )
+    band = EnergySurface(model).hessian(np.stack([state.lower[:, 1], state.upper[:, 1]], axis=1).ravel(), d)
+    omega = math.sqrt(float(eigvals_banded(band, lower=True)[-1]))
+    return at_most(f"ωΔt/2 of the chosen time step under load{words}", 0.5 * omega * step, 1.0,
+                   "largest eigenvalue of the solver's Hessian", evidence="independent solver")  # fmt: skip
 
 
 MOTION = Study(
-    NAME,
+    "motion",
     "Time steps from 0.1 to 1.01 of Verlet's limit, and energy without damping",
     "A time step that is too long heats the particles, just below the limit by a small amount; a damping that "
     "remains active, or a force that is not the gradient of an energy, makes the energy drift.",

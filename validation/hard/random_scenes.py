@@ -4,13 +4,14 @@ by the independent solver."""
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from random import Random
 from typing import Any
 
 import numpy as np
 
 from validation.doors import IN_TIME, Run, law_table, read_scene, settings_for
-from validation.hard.claims import Tally
+from validation.hard.judge import OF_ALL, REFUSED, Case, Expected, Judge
 from validation.references.interaction import Exponential, PairInteraction
 from validation.references.model import ChainModel
 from validation.references.pull_off import pull_off
@@ -18,7 +19,6 @@ from validation.references.solver import ChainSolver, State
 from validation.references.tension_radius import band_limited_radius
 from validation.study import Bench, Findings, Refused, Study
 
-NAME = "random"
 QUICK, FULL = 10, 200
 SEED = 20071
 SOLVER = 2e-6
@@ -34,20 +34,15 @@ APART = 12.0
 
 
 def measure(bench: Bench) -> Findings:
-    """Three rows: claims, tolerances, refusals."""
-    random, tally = Random(SEED), Tally()
+    """Rows of all of them; chains of the reference that buckle through each other are a scene that nothing carries."""
+    random, judge = Random(SEED), Judge(OF_ALL)
     for number in range(FULL if bench.full else QUICK):
-        scene = varied(random_scene(random), random)
-        method = scene["experiment"].get("method", "quasistatic")
-        group = f"{scene['experiment']['kind']} {'in time' if method == 'dynamic' else 'at rest'}"
-        name = f"random_{number}"
+        scene, name = varied(random_scene(random), random), f"random_{number}"
+        group = f"{scene['experiment']['kind']} {scene['experiment'].get('method', 'quasistatic')}"
         run = bench.run(name, scene)
-        try:
-            tally.add(name, group, run, _exact(scene, run), SOLVER)
-        except RuntimeError:  # the reference's own chains buckle through each other: a scene that nothing carries
-            continue
-    checks = tally.checks(NAME, "the independent solver")
-    return Findings(checks, tally.drawn())
+        with suppress(RuntimeError):
+            judge.add(Case(name, group, group, scene, Expected(_exact(scene, run), SOLVER)), run)
+    return Findings(judge.rows("random scenes", "the independent solver", REFUSED))
 
 
 def varied(scene: dict[str, Any], random: Random) -> dict[str, Any]:
@@ -197,7 +192,7 @@ def _exact(scene: dict[str, Any], run: Run | Refused) -> dict[str, float]:
 
 
 RANDOM = Study(
-    NAME,
+    "random",
     "Random scenes",
     "Is every result of two hundred random scenes within its uncertainty?",
     measure,

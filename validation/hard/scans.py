@@ -17,11 +17,12 @@ import numpy as np
 from scipy.signal import lfilter
 
 from validation.doors import Quantity, modelled, read_scene
-from validation.references.axisymmetric import Body, Contact
+from validation.hard.surfaces import pieces
+from validation.hard.units import Scene
+from validation.references.axisymmetric import Contact
 from validation.row import Row, at_most
 from validation.study import Bench, Findings, Refused, Study
 
-NAME = "scans"
 SEEDS, FULL_SEEDS, FIRST_SEED = 10, 50, 20261125
 """How many noises, and the first of them: none that the method was made with."""
 OUTSIDE, WIDEST = 0.12, 5.0
@@ -60,11 +61,11 @@ class Case:
     noise: float
     memory: float
     tilt: float
-    keys: dict[str, Any]
+    keys: Scene
     adheres: bool = False
     spacing: float = 1.0
 
-    def scene(self, seed: int) -> dict[str, Any]:
+    def scene(self, seed: int) -> Scene:
         """Its scene with the noise of this seed."""
         x = np.arange(self.ends[0], self.ends[1] + 0.5 * self.pitch, self.pitch)
         height = np.maximum(x**2 - self.land**2, 0.0) / (2.0 * RADIUS)
@@ -73,11 +74,10 @@ class Case:
         bodies = {"particles": "auto", "spacing": self.spacing * UNIT, "reduction": "mdr", "lower": "rigid_plane",
                   "profile": profile}  # fmt: skip
         material = {"contact_modulus": MODULUS, "length_unit": 1.0, "force_unit": 1.0}
-        tables: dict[str, Any] = {"title": self.words, "bodies": bodies, "material": material}
-        if not self.adheres:
-            return tables | {"experiment": {"kind": "load", "force": LOAD}}
-        pull = {"kind": "pull_off", "preload": PRELOAD}
-        return tables | {"adhesion": {"work_of_adhesion": WORK}, "experiment": pull}
+        tables: Scene = {"title": self.words, "bodies": bodies, "material": material}
+        load, pull = {"kind": "load", "force": LOAD}, {"kind": "pull_off", "preload": PRELOAD}
+        held = {"adhesion": {"work_of_adhesion": WORK}, "experiment": pull}
+        return tables | (held if self.adheres else {"experiment": load})
 
     def _drawn(self, seed: int, count: int) -> Array:
         white = np.random.default_rng((seed, round(self.memory))).standard_normal(count + 1000)
@@ -93,9 +93,7 @@ class Case:
             rest = (4.5 * math.pi * WORK * (RADIUS * UNIT) ** 2 / MODULUS) ** (1.0 / 3.0)
             return {"adhesion_force": tension, "zero_load_radius": rest}
         land, end = self.land * UNIT, RADIUS * UNIT
-        kinks = ((land,), (land / end,)) if land else ((), ())
-        body = Body(lambda r: r / end if r >= land else 0.0, lambda r: float(r >= land) / end, *kinks)
-        contact = Contact(body, MODULUS)
+        contact = Contact(pieces((0.0, 0.0, 0.0), (land, land / end, 1.0 / end)), MODULUS)
         a = contact.pressed_radius(LOAD, (0.75 * LOAD * end / MODULUS) ** (1.0 / 3.0))
         return {"displacement": contact.displacement(a), "contact_radius": a}
 
@@ -103,7 +101,7 @@ class Case:
 def cases(full: bool) -> Iterator[Case]:
     """The parabola by its fit and by a smooth curve; the worn ball from one side and from both."""
     both, centred = (-400.0, 400.0), {"centre": "auto"}
-    ways: dict[str, dict[str, Any]] = {"fit": {"fit": "parabola"}, "smooth": {"smooth": "auto"}}
+    ways: dict[str, Scene] = {"fit": {"fit": "parabola"}, "smooth": {"smooth": "auto"}}
     for name, how in ways.items():
         for noise in (0.1, 1.0, 3.0) if full else (1.0,):
             for memory in (0.0, 5.0):
@@ -147,7 +145,7 @@ def judged(case: Case, name: str, found: list[Quantity], exact: float) -> list[R
 
 
 SCANS = Study(
-    NAME,
+    "scans",
     "Noisy scans of known bodies",
     "A scan has an offset, a tilt and noise. Are radii and forces of what is taken of it within their uncertainties, "
     "and are these no wider than the noise asks for?",

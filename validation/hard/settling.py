@@ -22,7 +22,6 @@ from validation.references.interaction import Floats
 from validation.row import Reference, Row, at_most, relative
 from validation.study import Bench, Findings, Study
 
-NAME = "settling"
 RATIO, PARTICLES, TOLERANCE = 0.5, 41, 1e-5
 SHARES, FULL_SHARES = (1e-2, 1e-3, 1e-4), (1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5)
 """|1 − W/F_A|"""
@@ -132,7 +131,7 @@ def _moved(pairs: FoldedPairs, places: Floats) -> Floats:
 
 
 SETTLING = Study(
-    NAME,
+    "settling",
     "Relaxation times just below and just above F_A",
     "Close to F_A a contact creeps: loads just below and just above it are alike for a time that scales with the "
     "inverse square root of the distance from F_A, and a run that stops too early confuses the two.",

@@ -6,7 +6,7 @@ Each trace and mean is held against an integrator in numpy, one particle on a ro
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,6 @@ from validation.slides import integrated, mean_friction
 from validation.study import Bench, Findings, Refused, Study, over_claim, said
 from validation.study import found as result
 
-NAME = "slides"
 TRACE = 1e-3
 """Of the peak: the tolerance of the scenes; further legs have the inertia of the first one's drag."""
 CLOSED = 5e-3
@@ -72,13 +71,15 @@ def flat(below: int, above: int, **tables: Any) -> dict[str, Any]:
 
 def _with(base: dict[str, dict[str, Any]], tables: dict[str, Any]) -> dict[str, Any]:
     own = base | {"interaction": law_table(*LAW), "horizontal": {}, "accuracy": {"tolerance": 1e-3}}
-    return {name: own.get(name, {}) | tables.get(name, {}) for name in {**own, **tables}}
+    found = {name: own.get(name, {}) | tables.get(name, {}) for name in {**own, **tables}}
+    if "path" in found["experiment"]:
+        del found["experiment"]["distance"]
+    return found
 
 
-PATH = {"kind": "slide", "normal_force": 1.0}
 CASES: dict[str, dict[str, Any]] = {
-    "drive reversed": curved(experiment={"distance": None, "path": [[DRIVE, 3.0], [-DRIVE, 6.0]]}),
-    "drive at rest": curved(experiment={"distance": None, "path": [[DRIVE, 2.0], [0.0, 1.0]]}),
+    "drive reversed": curved(experiment={"path": [[DRIVE, 3.0], [-DRIVE, 6.0]]}),
+    "drive at rest": curved(experiment={"path": [[DRIVE, 2.0], [0.0, 1.0]]}),
     "faster than the particles follow": curved(
         bodies={"particles": 64}, cantilever={"velocity": 0.5, "stiffness": 4.0}, experiment={"distance": 12.0}
     ),
@@ -90,79 +91,81 @@ CASES: dict[str, dict[str, Any]] = {
         13, 8, bodies={"bulk_stiffness_tangential": 0.03}, cantilever={"stiffness": 8.0}, accuracy={"tolerance": 1e-4}
     ),
 }  # fmt: skip
-SMOOTH, ONE, ALONE = "cantilever stiffer than the contact", "one particle", "particles that slip one by one"
-FAST, BACK, REST = "faster than the particles follow", "drive reversed", "drive at rest"
-STICKY = ("no load", "a pull")
+BACK, REST = "drive reversed", "drive at rest"
+Wrong = Callable[[Run], bool]
+
+
+def _slips(run: Run) -> float:
+    return result(run, "slips").value
+
+
+def _backwards(run: Run) -> bool:
+    friction = run.friction["friction"]
+    half = friction.size // 3
+    return not friction[half // 2 : half].mean() > 0.0 > friction[2 * half :].mean()
+
+
+def _gives_work(run: Run) -> bool:
+    return not float(np.trapezoid(run.friction["cantilever_force"], run.friction["drive"])) > 0.0
+
+
+def _slippery(run: Run) -> bool:
+    return not result(run, "mean_friction").value > 0.0
+
+
+WRONG: dict[str, dict[str, Wrong]] = {
+    BACK: {
+        "friction of the wrong sign there or back": _backwards,
+        "loop of the cantilever that gives work": _gives_work,
+    },
+    REST: {"a mean friction of a drive at rest that is not that of the leg before": lambda run: _slips(run) < 0.0},
+    "faster than the particles follow": {
+        "a drive past 2π v/s = √(k/m) that is not warned about": lambda run: "fast" not in run.warnings
+    },
+    "cantilever stiffer than the contact": {"slips of a plate that follows its drive": lambda run: _slips(run) > 0.0},
+    "no load": {"no friction where adhesion holds, no load": _slippery},
+    "a pull": {"no friction where adhesion holds, a pull": _slippery},
+    "particles that slip one by one": {
+        "slips of the plate where its particles slip in turn": lambda run: _slips(run) > 0.0
+    },
+}
+"""What a case is there for, and must not be."""
 
 
 def measure(bench: Bench) -> Findings:
     """Three rows of each slide, what is special of each, and two that end nowhere."""
-    checks: list[Row] = []
+    rows: list[Row] = []
     for name, tables in CASES.items():
-        scene = read_scene({"title": name} | _clean(tables))
-        found = bench.run(name.replace(" ", "_"), _clean(tables))
-        if isinstance(found, Refused):
-            checks.append(at_most(f"trace, {name}", math.nan, 0.0, SOURCE, said("–", found)))
+        scene = read_scene({"title": name} | tables)
+        run = bench.run(name.replace(" ", "_"), tables)
+        if isinstance(run, Refused):
+            rows.append(at_most(f"trace, {name}", math.nan, 0.0, SOURCE, said("–", run)))
             continue
-        trace = integrated(scene, settings_for(scene))
-        checks += [*_rows(name, found, trace), *_special(name, found, trace)]
-    return Findings([*checks, *_ends(bench)])
+        rows += _rows(name, run, integrated(scene, settings_for(scene)))
+        rows += [so(words, wrong(run)) for words, wrong in WRONG.get(name, {}).items()]
+    return Findings([*rows, *_ends(bench)])
 
 
-def _clean(tables: dict[str, Any]) -> dict[str, Any]:
-    experiment = {key: value for key, value in tables["experiment"].items() if value is not None}
-    return tables | {"experiment": experiment}
-
-
-def _rows(name: str, found: Run, trace: Trace) -> Iterator[Row]:
+def _rows(name: str, run: Run, trace: Trace) -> Iterator[Row]:
     peak = float(np.abs(trace.friction).max())
-    off = float(np.abs(found.friction["friction"] - trace.friction).max()) / peak
+    off = float(np.abs(run.friction["friction"] - trace.friction).max()) / peak
     yield at_most(f"trace off over the peak, {name}", off, TRACE, SOURCE, "table of the law", "independent solver")
-    work, lost, stored = (
-        result(found, f"{n}").value for n in ("cantilever_work", "dissipated_energy", "stored_energy")
-    )
-    largest = max(map(abs, (work, lost, stored)))
-    yield at_most(
-        f"energy that is lost over the largest, {name}",
-        abs(work - lost - stored) / largest,
-        CLOSED,
-        "the first law",
-        "samples of the drag",
-    )
-    if name not in (BACK, REST):
-        velocity = found.scene.cantilever.velocity if found.scene.cantilever else math.nan
-        mean = mean_friction(trace, 1.0 / velocity)
-        over = over_claim(found, "mean_friction", mean)
-        yield at_most(f"mean friction off over its claim, {name}", over, 1.0, SOURCE, "run-in", "independent solver")
-
-
-def _special(name: str, found: Run, trace: Trace) -> Iterator[Row]:
-    """What a case is there for; 0 where it is so."""
-    friction, slips = found.friction["friction"], result(found, "slips").value
-    if name == BACK:
-        half = friction.size // 3
-        wrong = not (friction[half // 2 : half].mean() > 0.0 > friction[2 * half :].mean())
-        yield so("friction of the wrong sign there or back", wrong)
-        drive = found.friction["drive"]
-        loop = float(np.trapezoid(found.friction["cantilever_force"], drive))
-        yield so("loop of the cantilever that gives work", not loop > 0.0)
+    work, lost, stored = (result(run, key).value for key in ("cantilever_work", "dissipated_energy", "stored_energy"))
+    gone = abs(work - lost - stored) / max(map(abs, (work, lost, stored)))
+    yield at_most(f"energy that is lost over the largest, {name}", gone, CLOSED, "the first law", "samples of the drag")
     if name == REST:
-        balance = abs(friction[-1] - found.friction["cantilever_force"][-1]) / float(np.abs(friction).max())
-        own = abs(trace.friction[-1] - trace.cantilever_force[-1]) / float(np.abs(trace.friction).max())
+        sums = (abs(one["friction"][-1] - one["cantilever_force"][-1]) / float(np.abs(one["friction"]).max())
+                for one in (run.friction, vars(trace)))  # fmt: skip
+        balance, own = sums
         yield at_most("force left at rest over the peak, beside the integrator's", balance, own + TRACE, SOURCE)
-        yield so("a mean friction of a drive at rest that is not that of the leg before", slips < 0.0)
-    if name == FAST:
-        yield so("a drive past 2π v/s = √(k/m) that is not warned about", "fast" not in found.warnings)
-    if name == SMOOTH:
-        yield so("slips of a plate that follows its drive", slips > 0.0)
-    if name in STICKY:
-        yield so(f"no friction where adhesion holds, {name}", not result(found, "mean_friction").value > 0.0)
-    if name == ONE:
+    elif name != BACK:
+        assert run.scene.cantilever is not None
+        over = over_claim(run, "mean_friction", mean_friction(trace, 1.0 / run.scene.cantilever.velocity))
+        yield at_most(f"mean friction off over its claim, {name}", over, 1.0, SOURCE, "run-in", "independent solver")
+    if name == "one particle":
         exact = corrugation(LAW, 1.0, LOAD).largest_force
-        off = abs(result(found, "static_friction").value / exact - 1.0)
+        off = abs(result(run, "static_friction").value / exact - 1.0)
         yield at_most("static friction of one particle off", off, STATIC, "max of U′ of its corrugation", "slip")
-    if name == ALONE:
-        yield so("slips of the plate where its particles slip in turn", slips > 0.0)
 
 
 def _ends(bench: Bench) -> Iterator[Row]:
@@ -189,7 +192,7 @@ def _ends(bench: Bench) -> Iterator[Row]:
 
 
 SLIDES = Study(
-    NAME,
+    "slides",
     "Slides back, at rest, too fast, smooth, unloaded, one by one, off the end",
     "A drive that reverses or stops, several slips in one load step, an integrator that lags by half a step, or a "
     "plate that leaves its chain gives a smooth trace and a wrong friction.",

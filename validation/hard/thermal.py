@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -20,13 +21,13 @@ from validation.references.thermal_chain import displacement_under
 from validation.row import Reference, Row, at_most, claim
 from validation.study import Bench, Findings, Refused, Study, claim_row, found, over_claim, said
 
-THERMAL, SEEDS = "boltzmann", "seeds"
 FORGOTTEN = 60
 """First rows of a thermal load, on the way to equilibrium."""
 BODIES = {"particles": 41, "spacing": 4.0, "profile": {"kind": "parabola", "radius": 1000.0}, "bulk_stiffness": 0.83}
 """Pull_off.toml's bodies, four times as far apart so that particles feel their opposite only."""
 LOAD = 0.25
 TEMPERATURES = (1e-4, 1e-3, 3e-3)
+LIMIT = f"statistics: {SIGMAS:g} of the run's standard errors"
 WIDE_BODIES: dict[str, Any] = BODIES | {"particles": 200, "spacing": 1.0}
 WIDE_LOAD, WIDE_NEAR, WIDE_WIDTH = 1.0, 0.255, 0.1
 """The load [FU], and the interval of displacements of its average [LU]: ten standard deviations."""
@@ -55,7 +56,7 @@ def measure_boltzmann(bench: Bench) -> Findings:
     rest = FoldedPairs(LAW_HERE, 0.83, HEIGHTS).deepest(LOAD)
     still = bench.run("rest", thermal_scene(0.0, 0))
     rows = [claim_row("d at kT = 0 off over its claim", still, "displacement", rest, "independent pairs")]
-    source, limit = "Boltzmann's integral over distances and plate", "statistics: 4 of the run's standard errors"
+    source, limit = "Boltzmann's integral over distances and plate", LIMIT
     for kT in TEMPERATURES:
         exact, swing = BoltzmannPairs(LAW_HERE, 0.83, HEIGHTS, kT).displacement(LOAD, NEAR, WIDTH[kT])
         run = bench.run(f"noise_{kT:g}", thermal_scene(kT, 3))
@@ -73,25 +74,21 @@ def measure_boltzmann(bench: Bench) -> Findings:
     return Findings([*rows, *_shipped(bench)])
 
 
-def _shipped(bench: Bench) -> list[Row]:
+def _shipped(bench: Bench) -> Iterator[Row]:
     """⟨d⟩ of pull_off.toml's bodies without neighbours, held along x, under 1 FU: all pairs, to first order in kT."""
     model = ChainModel(WIDE_BODIES["particles"], WIDE_BODIES["bulk_stiffness"], LAW_HERE, radius=1000.0)
     places = np.linspace(WIDE_NEAR - WIDE_WIDTH, WIDE_NEAR + WIDE_WIDTH, 27)
     rest = float(brentq(lambda d: ChainSolver(model).equilibrium(d).force - WIDE_LOAD, *places[[0, -1]], xtol=1e-9))
-    checks = []
-    for temperature in FULL_WIDE_TEMPERATURES if bench.full else WIDE_TEMPERATURES:
-        scene = thermal_scene(temperature, 3, WIDE_TOLERANCE if bench.full else 5e-3)
+    for kT in FULL_WIDE_TEMPERATURES if bench.full else WIDE_TEMPERATURES:
+        scene = thermal_scene(kT, 3, WIDE_TOLERANCE if bench.full else 5e-3)
         scene |= {"bodies": WIDE_BODIES, "experiment": {"kind": "load", "force": WIDE_LOAD}}
-        run = bench.run(f"wide_{temperature:g}", scene)
-        if temperature:
-            exact, source = displacement_under(model, WIDE_LOAD, temperature, places)[0], "all pairs, first order in kT"
-        else:
-            exact, source = rest, "Newton's method on all pairs"
-        over = over_claim(run, "displacement", exact)
-        name = f"d of pull_off.toml's bodies without neighbours under 1 FU at kT = {temperature:g}, off over its claim"
-        limit = f"statistics: {SIGMAS:g} of the run's standard errors" if temperature else "what the run claims"
-        checks.append(at_most(name, over, SIGMAS if temperature else 1.0, source, said(limit, run)))
-    return checks
+        run = bench.run(f"wide_{kT:g}", scene)
+        exact, source, bound, limit = (
+            (displacement_under(model, WIDE_LOAD, kT, places)[0], "all pairs, first order in kT", SIGMAS, LIMIT)
+            if kT else (rest, "Newton's method on all pairs", 1.0, "what the run claims")
+        )  # fmt: skip
+        name = f"d of pull_off.toml's bodies without neighbours under 1 FU at kT = {kT:g}, off over its claim"
+        yield at_most(name, over_claim(run, "displacement", exact), bound, source, said(limit, run))
 
 
 def _swing_row(run: Run, temperature: float, swing: float) -> Row:
@@ -112,44 +109,30 @@ def measure_seeds(bench: Bench) -> Findings:
     """(d − exact)/claim of each seed: its χ² neither too large nor too small."""
     count, temperature = (24, 1e-4) if bench.full else (6, 1e-4)
     exact, _ = BoltzmannPairs(LAW_HERE, 0.83, HEIGHTS, temperature).displacement(LOAD, NEAR, WIDTH[temperature])
-    sigmas, silent = [], 0
-    for seed in range(1, count + 1):
-        run = bench.run(f"seed_{seed}", thermal_scene(temperature, seed, 5e-3))
-        if isinstance(run, Run):
-            sigmas.append((found(run, "displacement").value - exact) / found(run, "displacement").uncertainty)
-            silent += abs(sigmas[-1]) > SIGMAS and not run.warnings
+    runs = [bench.run(f"seed_{seed}", thermal_scene(temperature, seed, 5e-3)) for seed in range(1, count + 1)]
+    means = [found(run, "displacement") for run in runs if isinstance(run, Run)]
+    sigmas = [(d.value - exact) / d.uncertainty for d in means]
     square = float(np.sum(np.square(sigmas))) if len(sigmas) == count else math.nan
     source, limit = "Boltzmann's integral; χ² of as many independent seeds", "statistics"
-    checks = [
-        at_most(f"χ² of {count} seeds by their claims: not too large", square, chi_square_bound(count), source, limit),
-        at_most(
-            f"least χ² that chance allows over χ² of {count} seeds: claims not too wide",
-            float(chi2.ppf(CHANCE, count)) / square,
-            1.0,
-            source,
-            limit,
-        ),
-        at_most(
-            f"mean of {count} seeds off, in standard errors of it",
-            abs(float(np.mean(sigmas))) * math.sqrt(count),
-            SIGMAS,
-            source,
-            limit,
-        ),
-    ]
-    return Findings(checks)
+    words, mean = f"of {count} seeds", abs(float(np.mean(sigmas))) * math.sqrt(count)
+    least = float(chi2.ppf(CHANCE, count)) / square
+    return Findings([
+        at_most(f"χ² {words} by their claims: not too large", square, chi_square_bound(count), source, limit),
+        at_most(f"least χ² that chance allows over χ² {words}: claims not too wide", least, 1.0, source, limit),
+        at_most(f"mean {words} off, in standard errors of it", mean, SIGMAS, source, limit),
+    ])  # fmt: skip
 
 
 CLASSES = (
     Study(
-        THERMAL,
+        "boltzmann",
         "Thermal averages against Boltzmann's integral",
         "A thermal result may be correct at zero temperature and wrong in its thermal part, which has a row of its"
         " own.",
         measure_boltzmann,
     ),
     Study(
-        SEEDS,
+        "seeds",
         "Scatter over seeds against the uncertainty",
         "Is a standard error neither too small nor too large?",
         measure_seeds,

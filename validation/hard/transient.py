@@ -11,15 +11,15 @@ by scipy. Particles are so light that what they take along is within SLACK of th
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Any
 
 from scipy.integrate import solve_ivp
 
-from validation.hard.kinks import Judged
-from validation.row import Row
+from validation.hard.judge import Case, Expected, judged, rows_of
+from validation.hard.surfaces import surface
 from validation.study import Bench, Findings, Study
 
-NAME = "transient"
 RADIUS, SPACING, FORCE = 1000.0, 0.5, 40.0
 """R [LU], s [LU], P [FU]; E* = 1 FU/LU²."""
 PARTICLES, MASS, DRAG = 200, 1e-3, 1e-4
@@ -28,42 +28,28 @@ PLATE, DAMPING = 142.0, 60.0
 """M [MU], c [FU·TU/LU]: a third of the critical drag, so that the plate overshoots."""
 TIMES, FULL_TIMES = (2.0, 5.0), (1.0, 2.0, 5.0, 8.0, 20.0, 60.0)
 """[TU]; a period is about 10."""
-TOLERANCE = 1e-2
 SLACK = 2.0 * PARTICLES * MASS / PLATE
 """Relative error of the reduced motion: what particles take along when they touch, and swing with."""
-SOURCE = "the motion of plate and free particles, by scipy"
 
 
-def measure(bench: Bench) -> Findings:
-    """At several times of one transient, each a run of its own."""
-    rows: list[Row] = []
-    for time in FULL_TIMES if bench.full else TIMES:
-        d, _ = motion(time)
-        judged = Judged(f"held for {time:g} TU", SOURCE)
+def cases(full: bool) -> Iterator[Case]:
+    """Several times of one transient, each a run of its own."""
+    for time in FULL_TIMES if full else TIMES:
+        d = displacement(time)
         exact = {
             "displacement": d,
             "force": 4.0 / 3.0 * math.sqrt(RADIUS) * max(d, 0.0) ** 1.5,
             "contact_radius": math.sqrt(RADIUS * max(d, 0.0)),
         }
-        judged.add("sphere", bench.run(f"held_{time:g}", _scene(time)), exact, SLACK)
-        rows += judged.rows()
-    return Findings(rows)
+        scene = surface(RADIUS, "parabola", radius=RADIUS).tables(SPACING, 1e-2)
+        scene["bodies"] |= {"particles": PARTICLES, "mass": MASS}
+        scene |= {"damping": {"coefficient": DRAG}, "plate": {"mass": PLATE, "damping": DAMPING},
+                  "experiment": {"kind": "hold", "force": FORCE, "duration": time}}  # fmt: skip
+        yield Case(f"held_{time:g}", f"held for {time:g} TU", "sphere", scene, Expected(exact, SLACK))
 
 
-def _scene(time: float) -> dict[str, Any]:
-    bodies = {"particles": PARTICLES, "spacing": SPACING, "bulk_stiffness": SPACING, "reduction": "mdr", "mass": MASS,
-              "lower": "rigid_plane", "profile": {"kind": "parabola", "radius": RADIUS}}  # fmt: skip
-    return {
-        "bodies": bodies,
-        "damping": {"coefficient": DRAG},
-        "plate": {"mass": PLATE, "damping": DAMPING},
-        "accuracy": {"tolerance": TOLERANCE},
-        "experiment": {"kind": "hold", "force": FORCE, "duration": time},
-    }
-
-
-def motion(time: float) -> tuple[float, float]:
-    """Displacement [LU] and velocity [LU/TU] at that time, from touch at rest."""
+def displacement(time: float) -> float:
+    """d [LU] at that time, from touch at rest."""
 
     def change(_: float, state: Any) -> list[float]:
         d, v = state
@@ -72,12 +58,16 @@ def motion(time: float) -> tuple[float, float]:
         carried = 4.0 / 3.0 * math.sqrt(RADIUS) * max(d, 0.0) ** 1.5
         return [v, (FORCE - carried - (DAMPING + free * DRAG) * v) / (PLATE + free * MASS)]
 
-    found = solve_ivp(change, (0.0, time), [0.0, 0.0], rtol=1e-10, atol=1e-12)
-    return float(found.y[0, -1]), float(found.y[1, -1])
+    return float(solve_ivp(change, (0.0, time), [0.0, 0.0], rtol=1e-10, atol=1e-12).y[0, -1])
+
+
+def measure(bench: Bench) -> Findings:
+    """Rows of each time."""
+    return Findings(rows_of(judged(bench, cases(bench.full)), "the motion of plate and free particles, by scipy"))
 
 
 TRANSIENT = Study(
-    NAME,
+    "transient",
     "A force held while the plate moves",
     "While a contact is on its way to equilibrium, the error of equilibrium says nothing. Are displacement, force and "
     "radius within their uncertainties at every time, or not reported?",

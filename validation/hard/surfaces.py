@@ -1,0 +1,170 @@
+"""Bodies on a plane: a scene's profile beside the body that it is; tables of bodies whose slope or curvature jumps.
+
+A kink is a jump up of the slope, or of the curvature, at a radius b. A table has the heights at even distances.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from validation.hard.units import Scene
+from validation.references.axisymmetric import Body
+from validation.references.relaxing import Flat, Power
+
+SMOOTH = ("parabola", "cone", "power", "circle", "flat_punch", "ellipsoid")
+KINKED = ("land_cone", "worn_ball", "two_slopes", "two_radii", "rounded_punch", "steps")
+ROUND = ("parabola", "circle", "ellipsoid")
+"""Those with a curvature at the apex."""
+WIDEST = 0.5
+"""a/R of spheres, up to which they are searched."""
+
+
+@dataclass(frozen=True)
+class Surface:
+    """A profile [LU], its slope and bend, and a radius that its contacts have about [LU]."""
+
+    profile: Scene
+    body: Body
+    radius: float
+
+    @property
+    def punch(self) -> bool:
+        """Whether there is a flank."""
+        return math.isfinite(self.body.end)
+
+    @property
+    def power(self) -> Power | Flat:
+        """z = c rⁿ of a parabola, a cone, a power; or a flat punch. Raises ValueError."""
+        table = self.profile
+        match table["kind"]:
+            case "parabola":
+                return Power(2.0, 0.5 / table["radius"])
+            case "cone":
+                return Power(1.0, table["slope"])
+            case "power":
+                return Power(table["exponent"], table["height"] / table["radius"] ** table["exponent"])
+            case "flat_punch":
+                return Flat(table["radius"])
+        raise ValueError(f"{table['kind']} is no power of r")
+
+    def sampled(self, pitch: float, reach: float, digits: int | None = None) -> Surface:
+        """The table of its heights at every `pitch` up to `reach` [LU], with so many digits of the largest height."""
+        return replace(self, profile=sampled(self.body, pitch, reach, digits))
+
+    def tables(self, spacing: float, tolerance: float = 1e-3) -> Scene:
+        """[bodies] and [accuracy] of a scene of model units, E* = 1 FU/LU²."""
+        bodies = {"particles": "auto", "spacing": spacing, "bulk_stiffness": spacing, "reduction": "mdr",
+                  "lower": "rigid_plane", "profile": self.profile}  # fmt: skip
+        return {"bodies": bodies, "accuracy": {"tolerance": tolerance}}
+
+
+def surface(radius: float, kind: str, /, **numbers: float) -> Surface:
+    """The profile of that kind and its body."""
+    return Surface({"kind": kind} | numbers, _body(kind, **numbers), radius)
+
+
+def power(one: Power | Flat, radius: float) -> Surface:
+    """The profile of a power of r, or of a punch."""
+    if isinstance(one, Flat):
+        return surface(radius, "flat_punch", radius=one.end)
+    n = one.exponent
+    if n == 2.0:
+        return surface(radius, "parabola", radius=0.5 / one.factor)
+    if n == 1.0:
+        return surface(radius, "cone", slope=one.factor)
+    return surface(radius, "power", exponent=n, radius=radius, height=one.factor * radius**n)
+
+
+def _body(kind: str, radius: float = 0.0, slope: float = 0.0, height: float = 0.0, exponent: float = 2.0) -> Body:
+    match kind:
+        case "cone":
+            return Body(lambda _: slope, lambda _: 0.0)
+        case "flat_punch":
+            return Body(lambda _: 0.0, lambda _: 0.0, end=radius)
+        case "circle" | "ellipsoid":
+            ratio = height / radius if height else 1.0
+            return Body(
+                lambda r: ratio * r / math.sqrt((radius - r) * (radius + r)),
+                lambda r: ratio * radius * radius / ((radius - r) * (radius + r)) ** 1.5,
+                limit=WIDEST * radius,
+            )
+    n, c = (exponent, height / radius**exponent) if height else (2.0, 0.5 / radius)
+    return Body(
+        lambda r: n * c * r ** (n - 1.0),
+        lambda r: n * (n - 1.0) * c * r ** (n - 2.0) if r > 0.0 or n >= 2.0 else 0.0,
+    )
+
+
+def smooth(kind: str, radius: float, slope: float, rng: np.random.Generator) -> Surface:
+    """A profile with about that slope at a radius [LU]."""
+    end, n = radius / slope, float(rng.uniform(1.05, 4.0))
+    match kind:
+        case "cone":
+            return surface(radius, kind, slope=slope)
+        case "flat_punch":
+            return surface(radius, kind, radius=radius)
+        case "ellipsoid":
+            return surface(radius, kind, radius=end, height=end * float(10.0 ** rng.uniform(-0.5, 0.5)))
+        case "power" | "cubic":
+            n = n if kind == "power" else 3.0
+            return surface(radius, "power", exponent=n, radius=radius, height=slope * radius / n)
+    return surface(radius, kind, radius=end)
+
+
+def pieces(*parts: tuple[float, float, float]) -> Body:
+    """A body whose slope is straight in pieces: where each begins [LU], the slope there, and its bend [1/LU]."""
+    starts = [start for start, _, _ in parts]
+
+    def part(r: float) -> tuple[float, float, float]:
+        return parts[max(0, bisect_right(starts, r) - 1)]
+
+    def slope(r: float, of: tuple[float, float, float]) -> float:
+        return of[1] + of[2] * (r - of[0])
+
+    jumps = tuple(after[1] - slope(after[0], before) for before, after in pairwise(parts))
+    return Body(lambda r: slope(r, part(r)), lambda r: part(r)[2], tuple(starts[1:]), jumps)
+
+
+def kinked_body(kind: str, b: float, slope: float, rng: np.random.Generator) -> Body:
+    """A body whose slope or curvature jumps up at a radius b [LU], with about that slope beyond it."""
+    bend, flat = slope / b, (0.0, 0.0, 0.0)
+    match kind:
+        case "land_cone":
+            return pieces(flat, (b, slope, 0.0))
+        case "worn_ball":
+            return pieces(flat, (b, slope, bend))
+        case "two_slopes":
+            return pieces((0.0, slope * float(rng.uniform(0.1, 0.8)), 0.0), (b, slope, 0.0))
+        case "two_radii":
+            return pieces((0.0, 0.0, bend / float(rng.uniform(1.5, 8.0))), (b, slope, bend))
+        case "rounded_punch":
+            return pieces(flat, (b, 0.0, bend))
+    further, low = b * float(rng.uniform(1.3, 2.0)), slope * float(rng.uniform(0.2, 0.6))
+    return pieces(flat, (b, low, 0.0), (further, slope, 0.0))
+
+
+def sampled(body: Body, pitch: float, reach: float, digits: int | None = None) -> Scene:
+    """The table of a body's heights, as of `Surface.sampled`."""
+    radii = [pitch * i for i in range(math.ceil(reach / pitch) + 1)]
+    heights = [0.0]
+    for low, high in pairwise(radii):
+        heights.append(heights[-1] + float(_rise(body, low, high)))
+    if digits is not None:
+        places = digits - 1 - math.floor(math.log10(heights[-1]))
+        heights = [round(z, places) for z in heights]
+    return {"kind": "table", "r": radii, "z": heights}
+
+
+def _rise(body: Body, low: float, high: float) -> float:
+    """∫ f′ dr by Gauss between kinks: exact for the slopes up to cubic, and to round-off for these pitches."""
+    ends = [low, *(b for b in body.kinks if low < b < high), high]
+    u, w = np.polynomial.legendre.leggauss(8)
+    return sum(
+        0.5 * (q - p) * sum(wi * body.slope(0.5 * (p + q) + 0.5 * (q - p) * ui) for ui, wi in zip(u, w, strict=True))
+        for p, q in pairwise(ends)
+    )
