@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from itertools import groupby, pairwise
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from validation.hard.judge import Curve, Expected, Function
 from validation.hard.surfaces import Surface, power
@@ -149,9 +150,11 @@ def _receded(edge: Receding, d: Legs) -> Expected:
 def _withdrawn(edge: Receding, way: Path, d: Legs) -> Curve:
     """F over the largest tension while the displacement falls, nan elsewhere."""
     t, _, radii, force = (np.array(column) for column in zip(*way.states, strict=True))
+    _, first = np.unique(t, return_index=True)
+    edge_at = PchipInterpolator(t[first], radii[first])
 
     def values(times: Floats) -> Floats:
-        a = np.interp(times, t, radii)
+        a = edge_at(times)
         falls = np.array([d.rate(float(time)) < 0.0 for time in times])
         drawn = [edge.force(*one) if one[0] > 0.0 else 0.0 for one in zip(a, map(d, times), strict=True)]
         return np.where(falls, drawn, math.nan)
