@@ -9,7 +9,7 @@ from validation.study import Bench, Findings, Study
 
 SOURCE, TING = "the MDR by quadrature of the body", "Lee, Radok and Ting"
 PLANE = RandomClass(
-    "plane", 20261127, 25, 500,
+    "plane", 20261201, 25, 500,
     {"JKR, path": 0.33, "friction, tangential": 0.12, "JKR, load": 0.08, "JKR, tension": 0.08, "JKR, pull_off": 0.17,
      "elastic, load": 0.11, "elastic, path": 0.11}, ANY, kinked=0.3,
 )  # fmt: skip
