@@ -62,6 +62,7 @@ def test_every_problem_is_told_at_once(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("change", "words"),
     [
+        ({"radius": None}, "radius: give either a radius or a profile"),
         ({"profile": {"kind": "cone", "slope": 0.1}}, "radius: give either a radius or a profile"),
         ({"load": "-1 N"}, 'load = "-1 N": must be at least 0'),
         ({"upper": "rigid", "lower": "rigid"}, "upper: one of the two bodies must be elastic"),
@@ -90,7 +91,7 @@ def test_the_page_has_every_key(tmp_path: Path) -> None:
 
 def test_the_spacing_of_a_body_follows_from_its_contact_radius(tmp_path: Path) -> None:
     """Sneddon (1965): F = (2/π) E* a² tan, with tan the slope."""
-    cone = {"profile": {"kind": "cone", "slope": 0.2}, "load": "10000 mN", "roughness": "1 nm"}
+    cone = {"profile": {"kind": "cone", "slope": 0.2}, "load": "10000 mN", "surface_energy": 0.0}
     found = from_material(BODIES | cone, tmp_path / "run")
     radius = math.sqrt(10.0 / (0.5 * math.pi * 0.2 * STEEL_ON_GLASS))
     assert found.contact_radius == pytest.approx(radius, rel=GRID)

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from contact1d.analysis.residual import independent, noise_by
 from contact1d.analysis.scan import ScanError, Taken, one_pass, take
 
 R, LAND, NOISE = 1e4, 100.0, 3e-3
@@ -71,6 +72,9 @@ def test_a_radius_and_an_apex_are_within_their_uncertainties() -> None:
         low, high = sorted(1.0 / taken.deviations[1, :, 0])
         inside += [low <= R <= high, abs(taken.centre[0] + R * tilt) <= taken.centre[1]]
     assert inside.min() >= FEWEST
+    # z = x²/2R + b x: the apex moves by R b, and the heights determine b to σ/√Σx²; the sample is uncertain by 4 %.
+    assert taken.centre[1] == pytest.approx(1.98 * R * taken.noise / math.sqrt(np.sum(x**2)), rel=0.1)
+    assert taken.offset[1] < NOISE
 
 
 def test_noise_and_its_correlation_length_are_those_of_the_generator_and_no_shape() -> None:
@@ -158,6 +162,27 @@ def test_a_scan_in_another_unit_and_from_another_origin_is_the_same_body(how: di
     assert other.tilt == pytest.approx(own.tilt, rel=1e-3)
     powers = [1.0, 0.0] if own.shape == "power" else [0.0]
     assert other.parameters == pytest.approx(own.parameters * size ** np.array(powers), rel=1e-4, abs=1e-9)
+
+
+def test_correlations_count_up_to_the_first_that_is_chance() -> None:
+    """σ² 0.8ᵏ of 400 points: 0.8¹⁰ = 0.107 counts and 0.8¹¹ = 0.086 does not, since 2/√400 = 0.1."""
+    noise = noise_by(9.0 * 0.8 ** np.arange(40.0), 400)
+    assert noise.deviation == pytest.approx(3.0)
+    assert noise.together == pytest.approx(1.0 + 2.0 * sum(0.8**k for k in range(1, 11)))
+    assert noise.power == pytest.approx(9.0 * noise.together)
+    n = 400.0 / noise.together
+    assert noise.price(400, 7) == pytest.approx(noise.power * (math.log(n) + 2.0 * math.log(7.0)))
+
+
+def test_a_sample_to_both_sides_is_its_own_deviation() -> None:
+    """Of two directions the one that moves heights more comes first; what moves none is left out."""
+    along, across = np.array([2.0, 1.0, 0.0]), np.array([-0.1, 0.2, 0.0])
+    sample = np.array([along + across, along - across, -along + across, -along - across])
+    pairs = independent(sample, np.eye(3))
+    assert pairs.shape == (2, 2, 3)
+    for pair, one in zip(pairs, (along, across), strict=True):
+        assert np.abs(0.5 * (pair[0] - pair[1])) == pytest.approx(np.abs(one), abs=1e-12)
+    assert len(independent(sample, np.array([[1.0, 2.0, 0.0]]) - np.array([[0.0, 0.0, 1.0]]))) == 1
 
 
 def test_forth_and_back_are_one_scan_on_the_positions_of_the_first() -> None:
