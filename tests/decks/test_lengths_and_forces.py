@@ -167,6 +167,15 @@ def test_a_search_moves_by_a_twelfth_of_its_way_at_most(tables: dict[str, Any], 
     assert np.diff(done.curve.displacement).max() == pytest.approx(min(longest, way), rel=0.02)
 
 
+@pytest.mark.parametrize("neighbours", [None, {"stiffness": 1e-6}])
+def test_on_a_plane_each_particle_bears_what_its_spring_is_pressed_in_by(neighbours: dict[str, float] | None) -> None:
+    done = run(chains(RADIUS, SPRING, **ON_PLANE, neighbours=neighbours, experiment=path(0.5)), figures=False)
+    profile = done.profiles["deepest"]
+    wanted = SPRING * np.maximum(0.0, 0.5 - profile.x**2 / RADIUS)
+    assert profile.pressure == pytest.approx(wanted, abs=TOLERANCE)  # the spacing is 1
+    assert done.curve.force[-1] == pytest.approx(wanted.sum(), rel=TOLERANCE)
+
+
 @pytest.mark.parametrize("timed", [{}, TIMED])
 def test_on_a_plane_the_plane_alone_has_the_scenes_spring(timed: dict[str, Any]) -> None:
     """In time, too: nothing acts on a particle apart from its body."""

@@ -217,6 +217,7 @@ def test_each_row_of_the_curve_is_a_frame_with_types_places_and_forces_that_ase_
     np.testing.assert_array_equal(atoms(whole.folder).arrays["opposite_force"], frames[-1].get_forces())
     kept, largest = read_states(whole.folder / "states.npz"), float(np.abs(whole.curve.force).max())
     assert kept.rows.tolist() == list(range(len(whole.curve.force)))
+    np.testing.assert_allclose(frames[-1].positions[upper, 0], kept.x[-1], rtol=SINGLE)
     carried = whole.scene.bodies.own_spacing * kept.pressure.sum(axis=1)
     np.testing.assert_allclose(carried, whole.curve.force, rtol=SINGLE, atol=SINGLE * largest)
 

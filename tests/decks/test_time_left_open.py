@@ -160,7 +160,7 @@ def at_rest(spring: float, force: float) -> float:
         (2000.0, 300.0, 1e-2),
         (2.0, 300.0, 30.0),
         (2000.0, 1e5, 30.0),
-        (2000.0, 1e6, 0.3),
+        (2.0, 1e6, 0.3),
     ],
 )  # fmt: skip
 def test_a_slide_is_loaded_under_its_own_drag_where_that_is_enough_and_no_more_than_ten_times_that(

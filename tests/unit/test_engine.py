@@ -249,10 +249,15 @@ def test_frames_that_are_not_whole_or_have_atoms_in_another_order_are_refused(tm
     def read(*frames: list[list[float]], cut: int = 0) -> list[Any]:
         whole = b"".join(bytes(52) + np.asarray(rows).tobytes() for rows in frames)
         (tmp_path / "a.bin").write_bytes(whole[: len(whole) - cut])
-        found: list[Any] = last_frames(tmp_path / "a.bin", 2, 2, 3, 0)[0].tolist()
+        found: list[Any] = last_frames(tmp_path / "a.bin", len(frames), 2, 3, 0)[0].tolist()
         return found
 
-    assert read(first, second) == [[[3.0, 4.0], [5.0, 6.0]], [[7.0, 8.0], [9.0, 10.0]]]
+    whole = [[[3.0, 4.0], [5.0, 6.0]], [[7.0, 8.0], [9.0, 10.0]]]
+    assert read(first, second) == whole
+    assert read(first, second, first)[1:] == whole[::-1]
+    for start, part in ((100, slice(None)), (0, slice(1, 2))):
+        more, end = last_frames(tmp_path / "a.bin", 3 - start // 100, 2, 3, start, part)
+        assert (more[0].tolist(), end) == (whole[1], 300)
     for cut in (1, 40, 60, 110):
         with pytest.raises(ValueError, match=r"are not 2 frames|change their order"):
             read(first, second, cut=cut)
