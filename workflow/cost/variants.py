@@ -99,7 +99,7 @@ def scaled(scene: Scene, key: str, factor: float | None) -> SceneEdit:
     """Return the edit that scales a number of a scene by a factor, or sets it to "auto" if the factor is None.
 
     A count changes by an even number; with a spacing the numbers of POWERS change, too, each by a power of the factor.
-    A number that is 0 or not given is left out.
+    A number that is not given is left out.
     """
     if factor is None:
         return SceneEdit({key: "auto"})

@@ -103,7 +103,7 @@ class SweepPlan:
         return self._combined(axis.cells for axis in self.axes)
 
     def _combined(self, columns: Iterable[tuple[Any, ...]]) -> Iterator[tuple[Any, ...]]:
-        """Yield the items of each point, one of each column: of every combination, the last column quickest, or side by side."""
+        """Yield one item of each column for each point: all combinations, the last column quickest, or side by side."""
         return itertools.product(*columns) if self.combine == "product" else zip(*columns, strict=True)
 
 
