@@ -42,13 +42,13 @@ FEWEST = 3
 
 @dataclass(frozen=True)
 class LineLoad:
-    """An even line load as cubics between positions: q(x) for 0 ≤ x ≤ edge, nothing beyond.
+    """An even line load as cubics between positions: q(x) for 0 ≤ x ≤ edge, 0 beyond; q(−x) = q(x).
 
     Attributes:
         breaks: 0 = x₀ < x₁ < … < x_n = edge, shape (n + 1,) [length].
-        coefficients: of q = Σ_k coefficients[k] x^k between them, shape (4, n); with a `body` of q + c h.
-        body: c h(x) of positions x of any shape [force/length], where it is known.
-        kinks: positions at which its slope jumps [length].
+        coefficients: of q = Σ_k coefficients[k] x^k between them, shape (4, n); with a `body` those of q + c h.
+        body: returns c h(x), (…) [force/length], of positions x ≥ 0, (…); None: the cubics are those of q itself.
+        kinks: positions at which the slope of the body jumps [length].
         jump: q just inside the edge [force/length], where it is known; None: that of the polynomials.
         apex: whether the body's slope does not vanish on the axis.
     """
@@ -67,7 +67,10 @@ class LineLoad:
 
     @property
     def at_edge(self) -> float:
-        """The line load just inside the edge, from which it jumps to 0 [force/length]."""
+        """The line load just inside the edge [force/length]: `jump`.
+
+        Without it that of the cubic, less c h of a body.
+        """
         if self.jump is not None:
             return self.jump
         of_body = 0.0 if self.body is None else float(self.body(np.asarray([self.edge]))[0])
@@ -79,7 +82,9 @@ class LineLoad:
         return self.apex or bool(self.coefficients[1, 0] != 0.0)
 
     def pressure(self, r: ArrayLike) -> Array:
-        """Return p(r) [force/length²], exactly; infinite at r = 0 under an apex, 0 from the edge on.
+        """Return p(r) [force/length²], of the shape of r, compression positive as q; 0 from the edge on.
+
+        At r = 0 under an apex it is infinite: +∞ where the body has the apex, else with the sign of −dq/dx there.
 
         Args:
             r: distances from the axis ≥ 0, any shape [length].
@@ -93,7 +98,10 @@ class LineLoad:
         return p.reshape(np.shape(r))
 
     def _pressure(self, r: Array) -> Array:
-        """Return p [force/length²], (n,), at distances from the axis below the edge, (n, 1)."""
+        """Return p [force/length²], (n,), at distances r from the axis, (n, 1), below the edge.
+
+        ±∞ at r = 0 of an apex.
+        """
         ends = np.maximum(self.breaks, r)
         root = np.sqrt((ends - r) * (ends + r))
         c_0, c_1, c_2 = (k * self.coefficients[k] for k in (1, 2, 3))
@@ -116,7 +124,10 @@ class LineLoad:
 
 @cache
 def _differences() -> Array:
-    """Return M, (NODES, NODES), of ∫ w dh = w·M h over an interval, w and h values at Gauss's positions in it."""
+    """Return M, (16, 16), of ∫ w dh = w·M h over an interval, w and h the values at its 16 Gauss-Legendre positions.
+
+    It is dimensionless: the length of the interval cancels.
+    """
     node, weight = gauss(NODES)
     powers = np.polynomial.legendre.legvander(node, NODES - 1)
     slopes = np.polynomial.legendre.legvander(node, NODES - 2) @ np.polynomial.legendre.legder(np.eye(NODES))
@@ -124,9 +135,15 @@ def _differences() -> Array:
 
 
 def _graded(width: Array, smooth: Array, halvings: int = 20) -> Array:
-    """Return the ends, (…, m), of intervals that halve towards 0, from half of the `width`, (…), on.
+    """Return distances from one end of intervals, (…, m), rising: borders of parts whose length grows geometrically.
 
-    The first one is as long as h is `smooth`, (…), or the last of so many halvings.
+    They go from `smooth`, but at least 0.5^halvings of the width and at most half of it, to half the width; m follows
+    from the largest ratio of the two, so that borders double at most.
+
+    Args:
+        width: lengths of the intervals, (…).
+        smooth: distance from the end over which the integrand is smooth, (…); 0: it is singular at the end itself.
+        halvings: largest number of halvings.
     """
     half, least = 0.5 * width[..., None], np.clip(smooth, 0.5**halvings * width, 0.5 * width)[..., None]
     count = math.ceil(np.log2((half / least).max()))
@@ -135,11 +152,15 @@ def _graded(width: Array, smooth: Array, halvings: int = 20) -> Array:
 
 @lru_cache(maxsize=64)
 def _of_body(body: Body, distances: bytes, borders: Sequence[float]) -> Array:
-    """Return (1/π) ∫ dh/t at distances r, (n,).
+    """Return (1/π) ∫ dh/t, (n,) [force/length²], with x² = r² + t²: the pressure that belongs to c h(x) of a body.
 
-    The borders are the axis or a kink before r, the kinks beyond it, the edge, and the kink after that. h is smooth in
-    t up to √(r² − x²) of the kink x before, and from the edge to the next kink; on the axis the remainder at 0 is that
-    of a power of t.
+    h is smooth in t up to √(r² − x²) of the kink x before, and from the edge to the next kink; on the axis the
+    remainder at 0 is that of a power of t. The result is cached.
+
+    Args:
+        body: returns c h(x) [force/length].
+        distances: r, (n,) [length], as the bytes of an array of float64.
+        borders: the axis or the kink before all r, the kinks beyond r, the edge, and the kink beyond it, ∞ without one.
     """
     (node, _), r = gauss(NODES), np.frombuffer(distances)
     ends = np.stack([np.zeros_like(r), *(np.sqrt((x - r) * (x + r)) for x in borders[1:])], axis=1)
@@ -178,21 +199,22 @@ def line_load(
     body: Body | None = None,
     kinks: Sequence[float] = (),
 ) -> LineLoad:
-    """Return the even line load: between positions the cubic through the four nearest means of both sides.
+    """Return the even line load through values: cubics through the four nearest positions, both sides averaged.
 
     Polynomials up to x³ on each side (Hertz, cone, flat punch) are exact, others of the third order in the spacing.
+    Values within 0.3 spacings of the edge, half a spacing unless `jump` is 0, are left out.
 
     Args:
         x: positions, rising and the same on both sides of 0, shape (n,) [length].
         load: q there, shape (n,) [force/length].
-        edge: contact radius a [length]; None: the load fades out, to 0 at the last position.
+        edge: contact radius a [length]; None: the last position.
         jump: q just inside the edge [force/length], from which it jumps to 0; None: the last cubic goes on to the edge.
         apex: whether q has a kink on the axis, as under a cone; else it is smooth there, an even function.
-        body: c h(x) [force/length]: cubics are put through q + c h, which is smooth.
-        kinks: positions at which its slope jumps [length].
+        body: returns c h(x) [force/length]: cubics are put through q + c h, which is smooth on the axis.
+        kinks: positions at which the slope of the body jumps [length].
 
     Raises:
-        ValueError: fewer than FEWEST positions on a side within the edge, or positions that differ between both sides.
+        ValueError: fewer than 3 positions on a side within the edge, or positions that differ between both sides.
     """
     right, mean, spacing = of_both_sides(x, load)
     end = float(right[-1]) if edge is None else edge
@@ -212,7 +234,13 @@ def line_load(
 
 
 def _even(x: Array, q: Array, end: float) -> LineLoad:
-    """Return from 0 to the `end` the cubics through the positions x ≥ 0 and their mirror images, smooth on the axis."""
+    """Return the line load from 0 to `end` by cubics through values and their mirror images, smooth on the axis.
+
+    Args:
+        x: positions ≥ 0, rising, (n,) [length].
+        q: line load there, (n,) [force/length].
+        end: where it ends [length].
+    """
     mirrored = slice(None) if x[0] > 0.0 else slice(1, None)
     even = _cubics(np.append(-x[mirrored][::-1], x), np.append(q[mirrored][::-1], q), end)
     if x[0] > 0.0:
@@ -223,7 +251,14 @@ def _even(x: Array, q: Array, end: float) -> LineLoad:
 
 
 def of_both_sides(x: ArrayLike, load: ArrayLike) -> tuple[Array, Array, float]:
-    """Return positions from the axis on, the mean load of both sides there, and the spacing.
+    """Return positions x ≥ 0, (m,) [length], the mean load of both sides there, (m,), and the spacing [length].
+
+    The load keeps its unit. The positions are the same on both sides of 0 to 1e-6 spacings; m is half of their number,
+    rounded up.
+
+    Args:
+        x: positions, rising, (n,) [length].
+        load: values there, (n,).
 
     Raises:
         ValueError: arrays of unequal lengths, or positions that differ between both sides.
@@ -239,7 +274,15 @@ def of_both_sides(x: ArrayLike, load: ArrayLike) -> tuple[Array, Array, float]:
 
 
 def _cubics(x: Array, q: Array, end: float) -> LineLoad:
-    """Return from 0 to the `end` the cubics through the four nearest positions x; of fewer a parabola or a line."""
+    """Return the line load from 0 to the `end` [length] by the cubics through the four nearest positions.
+
+    Through fewer than four positions it is the parabola or the straight line through all of them.
+
+    Args:
+        x: positions, rising, (n,) [length]; those below 0 are mirror images.
+        q: line load there, (n,) [force/length].
+        end: where it ends [length].
+    """
     count = min(4, x.size)
     right_of_axis = x[x > 1e-12 * end]
     inner = right_of_axis[right_of_axis < end * (1.0 - 1e-12)]
@@ -252,7 +295,12 @@ def _cubics(x: Array, q: Array, end: float) -> LineLoad:
 
 
 def in_powers(newton: Array, positions: Array) -> Array:
-    """Return the coefficients in powers of x, (4, n), of Σ_k newton[k] Π_{j<k} (x − positions[j]), k < 4 at most."""
+    """Return the coefficients in powers of x, (4, n), of n polynomials Σ_k newton[k] Π_{j<k} (x − positions[j]).
+
+    Args:
+        newton: divided differences of each polynomial, (k, n), k ≤ 4; with fewer than four the highest powers are 0.
+        positions: those of Newton's form, (k, n); the last row is not used.
+    """
     powers = np.zeros((4, newton.shape[1]))
     for value, position in zip(newton[::-1], positions[::-1], strict=True):
         powers[1:] = powers[:-1] - position * powers[1:]

@@ -61,7 +61,15 @@ def atoms(folder: str | Path, state: int = -1) -> Atoms:
 
 
 def _frame(text: str, where: str) -> tuple[int, dict[str, NDArray[np.float64]]]:
-    """Return timestep and columns of one frame, the text after ITEM: TIMESTEP."""
+    """Return timestep and columns of one frame of a dump by name, (n,) each, sorted by the atoms' id.
+
+    Args:
+        text: of the frame, after ITEM: TIMESTEP.
+        where: file and state, for a message.
+
+    Raises:
+        ValueError: the frame is cut short, or lacks a column.
+    """
     head, _, body = text.partition("ITEM: ATOMS ")
     names, _, rows = body.partition("\n")
     words, lines = head.split(), rows.splitlines()

@@ -36,7 +36,7 @@ class Axis:
         zero: whether 0 is shown, with a line.
         log: whether it is logarithmic.
         ticks: labels in place of numbers, by their positions.
-        view: ends of the axis, in the unit of the numbers.
+        view: lower and upper end of the axis, in the unit of the numbers; NaN before `written` has chosen them.
     """
 
     name: str
@@ -53,11 +53,20 @@ class Axis:
         return f"{self.name}{'' if self.unit == '1' else f' ({self.unit})'}{self.remark}"
 
     def ended(self, values: Array) -> Array:
-        """Return the values, (…), with ±∞ replaced by the ends of the axis."""
+        """Return the values, (…), with −∞ and ∞ replaced by the lower and upper end of the axis; NaN stays."""
         return np.nan_to_num(values, nan=math.nan, neginf=self.view[0], posinf=self.view[1])
 
     def written(self, numbers: Sequence[Array], unit_of: UnitOf) -> tuple[float, Axis]:
-        """Return the factor to the unit that fits the numbers, and the axis in that unit, with its ends around them."""
+        """Return the factor to the unit that fits the numbers, and the axis in that unit, with its ends around them.
+
+        There are 5 % of the span beyond the numbers on both sides (of equal numbers 5 % of their size), on a
+        logarithmic axis of its logarithms. Numbers that are not finite do not count, nor those ≤ 0 on a logarithmic
+        axis.
+
+        Args:
+            numbers: arrays of what is drawn, in the axis' unit.
+            unit_of: returns factor and new unit for the largest |number| and its unit.
+        """
         shown = np.concatenate([[0.0] * self.zero, *map(np.ravel, numbers)])
         shown = shown[np.isfinite(shown) & ((shown > 0.0) | (not self.log))]
         low, high = (shown.min(), shown.max()) if shown.size else (0.0, 0.0)
@@ -117,14 +126,20 @@ class Panel:
 
     @property
     def legend(self) -> list[str]:
-        """The names in the legend: all up to seven; of more the first and the last three."""
+        """The names in the legend, each once, in order: all up to seven; of more the first three and the last three."""
         names, most = list(dict.fromkeys(series.name for series in self.series if series.name)), 7
         return names if len(names) <= most else names[: most // 2] + names[-(most // 2) :]
 
 
 @dataclass(frozen=True)
 class Chart:
-    """Panels one below the other over one axis, and their title."""
+    """Panels one below the other over one axis, and their title.
+
+    Attributes:
+        x: the axis along x, of all panels.
+        panels: from the top.
+        title: above all panels; "" for none.
+    """
 
     x: Axis
     panels: Sequence[Panel]
@@ -133,8 +148,10 @@ class Chart:
     def written(self, unit_of: UnitOf, words: Callable[[str], str] = str) -> Chart:
         """Return the chart as it is drawn: every axis with its ends, and in the unit that fits its numbers.
 
+        Series of theories, marked by their colour, widen no axis, unless a panel has no others.
+
         Args:
-            unit_of: the unit in which a number is written.
+            unit_of: returns the factor and the unit in which a number is written, for the largest and its unit.
             words: puts the numbers of a text into these units.
         """
         decisive = [[line for line in panel.series if line.colour != THEORY] or panel.series for panel in self.panels]
@@ -155,11 +172,17 @@ class Chart:
 
 
 def upright(*positions: float, **look: Any) -> Series:
-    """Return dashed lines across a panel at positions along x."""
+    """Return dashed lines across a panel, from end to end, at positions along x, in its unit.
+
+    `look` has fields of Series.
+    """
     x, y = np.repeat(positions, 3), np.tile([*ENDLESS, math.nan], len(positions))
     return Series(x, y, **{"colour": BLACK, "look": "--", "width": 1.0, **look})
 
 
 def area(x: Any, y: Any, **look: Any) -> Series:
-    """Return the rectangle between two ends along x and two along y."""
+    """Return the filled rectangle between two ends along x and two along y, in the axes' units.
+
+    `look`: fields of Series.
+    """
     return Series(np.repeat(x, 2), np.asarray([*y, *y[::-1]]), look=FILL, **look)

@@ -13,10 +13,14 @@ SLOWEST = 0.9
 
 
 def extrapolated(coarse: Numbers, fine: Numbers, finest: Numbers) -> Array:
-    """Return |v_h − v_{h/2}|/(1 − q), with the observed ratio q = 2⁻ᵖ of the differences of three spacings h, h/2, h/4.
+    """Return the discretisation error of `coarse`, ≥ 0, in its unit and of its shape: |v_h − v_{h/2}|/(1 − q).
 
-    For v_h = v + c hᵖ it is |v_h − v|. Where the second difference is the larger one, the first is small by accident,
-    and later ones are assumed to halve.
+    q is the observed ratio |v_{h/2} − v_{h/4}|/|v_h − v_{h/2}|, bounded to 0.9: of v_h = v + c hᵖ it is 2⁻ᵖ, and the
+    error is |v_h − v|. Where the second difference is the larger one, the first is small by accident: the error is then
+    |v_h − v_{h/2}| + 2 |v_{h/2} − v_{h/4}|. It is 0 where all three are equal.
+
+    Args:
+        coarse, fine, finest: values on lattices of spacing h, h/2 and h/4.
     """
     first, second = np.abs(np.subtract(coarse, fine)), np.abs(np.subtract(fine, finest))
     share = np.minimum(second, SLOWEST * first) / np.maximum(first, TINY)

@@ -59,7 +59,10 @@ def write_columns(path: Path, columns: Mapping[str, Column], units: Mapping[str,
 
 
 def put_columns(file: TextIO, columns: Mapping[str, Column], units: Mapping[str, str]) -> None:
-    """Write columns to an open file as CSV, in the format of `write_columns`."""
+    """Write columns, equally long, to an open file as CSV, in the format of `write_columns`.
+
+    Texts are marked as `as_text`.
+    """
     writer, chunk = csv.writer(file, lineterminator="\n"), 100_000  # rows that are turned into text at a time
     writer.writerow(headed(columns, units))
     for start in range(0, max(map(len, columns.values()), default=0), chunk):
@@ -68,7 +71,7 @@ def put_columns(file: TextIO, columns: Mapping[str, Column], units: Mapping[str,
 
 
 def headed(names: Iterable[str], units: Mapping[str, str]) -> list[str]:
-    """Return the names of columns with their units, as in `force [N]`."""
+    """Return the names of columns, each with its unit, as in `force [N]`, if `units` has one."""
     return [f"{name} [{units[name]}]" if name in units else name for name in names]
 
 
@@ -81,12 +84,15 @@ def as_text(cell: Any) -> Any:
 
 
 def plain(cell: str) -> str:
-    """Return the text of a cell that `as_text` made."""
+    """Return the text of a cell without the apostrophe that `as_text` puts before a formula.
+
+    Other cells as they are.
+    """
     return re.sub(MARKED, r"\1", cell)
 
 
 def _cells(column: Column) -> Sequence[str]:
-    """Return the cells of a column; all numbers are formatted by one `%` operation."""
+    """Return the cells of a column as text: numbers with 17 digits, NaN as "", texts marked as by `as_text`."""
     if len(column) and isinstance(column[0], str):
         return [*map(cache(as_text), map(str, column))]  # a few words, over and over
     numbers = np.asarray(column, dtype=np.float64).tolist()
@@ -95,7 +101,13 @@ def _cells(column: Column) -> Sequence[str]:
 
 
 def read_columns(path: Path, needed: Iterable[str] = ()) -> Columns:
-    """Return the columns of a table that `write_columns` wrote.
+    """Return the columns of a table that `write_columns` wrote: numbers, with NaN for an empty cell, and texts.
+
+    Texts are the columns `branch`, `state` and `input`. Units in the header become `units`.
+
+    Args:
+        path: of the CSV file.
+        needed: names of columns that the table must have; it then needs a row, too.
 
     Raises:
         ValueError: if one of those `needed` is missing, or a cell is no number.
@@ -118,7 +130,10 @@ def read_columns(path: Path, needed: Iterable[str] = ()) -> Columns:
 
 
 def profile_columns(profiles: Mapping[str, Profile]) -> dict[str, Any]:
-    """Return the columns of profile.csv: the profiles below each other, the state's name in the last column."""
+    """Return the columns of profile.csv by name: the profiles of one or more states below each other.
+
+    They are `x`, `z_lower`, `z_upper` [LU], `pressure` and `shear` [FU/LU], and last `state`, the state's name.
+    """
     numbers = {
         name: np.concatenate([getattr(profile, name) for profile in profiles.values()]) for name in PROFILE_COLUMNS
     }
@@ -126,7 +141,10 @@ def profile_columns(profiles: Mapping[str, Profile]) -> dict[str, Any]:
 
 
 def by_state(columns: Columns) -> dict[str, Columns]:
-    """Return the columns of each state, by the names in the column `state`, without that column."""
+    """Return the columns of each state, by the names in the column `state`, without that column.
+
+    Empty if it is absent.
+    """
     if "state" not in columns:
         return {}
     states, numbers = columns.state, {name: column for name, column in columns.items() if name != "state"}
@@ -141,9 +159,12 @@ Floats = NDArray[np.float32]
 
 @dataclass(frozen=True, eq=False)
 class States:
-    """Profiles of m states at n particles, in seven digits, for animations.
+    """Profiles of m states at n particles, in seven digits (float32), for animations.
 
-    rows: which row of curve.csv each state is, (m,); x, z_lower, z_upper [LU], pressure and shear [FU/LU], (m, n).
+    Attributes:
+        rows: which row of curve.csv each state is, (m,).
+        x, z_lower, z_upper: positions and heights of both surfaces [LU], (m, n).
+        pressure, shear: compression positive, and along x [FU/LU], (m, n).
     """
 
     rows: NDArray[np.int64]
@@ -158,7 +179,7 @@ def states_of(profiles: Sequence[Profile], kept: Sequence[int] | None = None, mo
     """Return the states of a curve, thinned evenly; the first and the last one stay, and the outer particles.
 
     Args:
-        profiles: of each row of the curve, all with the same number of particles.
+        profiles: of each row of the curve, one at least, all with the same number of particles.
         kept: the rows whose states are kept, however many they are; None: as many as most_numbers allows.
         most_numbers: numbers of one kind that are kept: 100 states of 2000 particles.
     """

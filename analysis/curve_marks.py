@@ -12,15 +12,17 @@ from contact1d.analysis.polynomial import Array, divided, lowest_minimum, real_r
 
 @dataclass(frozen=True)
 class Peak:
-    """The force maximum of a sampled curve.
+    """The force maximum of a sampled curve, tension positive.
 
     Attributes:
         index: the highest sampled point.
-        tension: at that point [FU], positive.
-        uncertainty: the sampling error of `smooth` [FU].
-        smooth: the tension at the vertex of the polynomial through the point and its neighbours [FU].
-        position: the displacement of the vertex [LU]; of the sampled point where the curve jumps there.
-        misplaced: distance of `position` from the vertex of another polynomial [LU]; 0 where the curve jumps.
+        tension: at that point [FU]; below 0 where all points are under compression.
+        uncertainty: the sampling error of `smooth` [FU]; |tension| where the highest point is the first or the last.
+        smooth: the tension at the vertex of the polynomial through the point and its neighbours [FU]; that of the point
+            at an end of the curve, or where it jumps.
+        position: the displacement of the vertex [LU]; of the sampled point at an end of the curve, or where it jumps.
+        misplaced: distance of `position` from the vertex of another polynomial [LU]; 0 at an end or where the curve
+            jumps.
     """
 
     index: int
@@ -36,12 +38,17 @@ WIDEST_REACH = 3
 
 
 def largest_tension(displacement: Sequence[float], force: Sequence[float]) -> Peak:
-    """Return the largest −F of an unloading branch (displacements falling).
+    """Return the largest tension −F of an unloading branch, with its position and sampling errors.
 
     Between samples the maximum of a smooth curve is that of the polynomial through five points; the polynomial through
     three estimates its error, and the one through seven the error of its position. Where a particle snaps after the
     maximum, tension rises right up to the snap, no faster than before the sampled point: the sampled point is then the
-    position, and the rise up to the next point the largest sampling error.
+    position, and the rise up to the next point the largest sampling error. At an end of the curve it is the point
+    itself, with its tension as the error.
+
+    Args:
+        displacement: falling, (n,) [LU].
+        force: compression positive, (n,) [FU].
     """
     d, tension = np.asarray(displacement), -np.asarray(force)
     i = int(np.argmax(tension))
@@ -65,10 +72,14 @@ def largest_tension(displacement: Sequence[float], force: Sequence[float]) -> Pe
 
 
 def _apart_from(d: Array, tension: Array, i: int) -> tuple[Array, Array, int]:
-    """Return the samples without those that nearly coincide with the inner sample i, and its new index.
+    """Return displacements and tensions without samples that nearly coincide with the inner one i, and its new index.
 
     The first and the last sample stay. The residual ε of two samples makes a slope of ε over their distance: over the
-    width of the widest polynomial 1000 ε at most.
+    width of the widest polynomial, three samples to each side, 1000 ε at most.
+
+    Args:
+        d, tension: displacements, falling, and tensions, (n,).
+        i: index of the sample.
     """
     width = float(d[max(i - WIDEST_REACH, 0)] - d[min(i + WIDEST_REACH, len(d) - 1)])
     kept = np.abs(d - d[i]) > 1e-3 * width
@@ -77,9 +88,15 @@ def _apart_from(d: Array, tension: Array, i: int) -> tuple[Array, Array, int]:
 
 
 def _about(x: Array, y: Array, middle: int, neighbours: int) -> tuple[float, Array] | None:
-    """Return the width of the samples about one, and the polynomial through them; None where they lie too close.
+    """Return the width of the samples about one, and the coefficients of the polynomial through them.
 
-    Its variable is x − x[middle] over the width, its value y − y[middle]. There are so many neighbours on each side.
+    None if too close. Its variable is x − x[middle] over the width, its value y − y[middle], lowest power first.
+    Samples are too close where two are within 1e-5 of the width.
+
+    Args:
+        x, y: positions and values, (n,).
+        middle: index of the sample.
+        neighbours: samples on each side; fewer at the ends.
     """
     near = slice(max(middle - neighbours, 0), middle + neighbours + 1)
     if not are_apart(x[near]):
@@ -91,11 +108,12 @@ def _about(x: Array, y: Array, middle: int, neighbours: int) -> tuple[float, Arr
 def vertex(x: Array, y: Array, highest: int, neighbours: int) -> tuple[float, float]:
     """Return position and value of the maximum of the polynomial through the highest of samples and its neighbours.
 
-    It lies between the next two; where these are too near, it is the sample itself.
+    It lies between the next two; where samples are too near (within 1e-5 of their width), or the polynomial has no
+    higher maximum there, it is the sample itself.
 
     Args:
         x, y: positions, rising or falling, and values, (n,).
-        highest: index of the highest sample.
+        highest: index of the highest sample, neither the first nor the last.
         neighbours: samples on either side that the polynomial goes through.
     """
     position, top = float(x[highest]), float(y[highest])
@@ -109,9 +127,15 @@ def vertex(x: Array, y: Array, highest: int, neighbours: int) -> tuple[float, fl
 
 
 def promised(displacement: Sequence[float], force: Sequence[float], positions: Sequence[float]) -> Array:
-    """Return the tension [FU] at positions [LU] near the force maximum, (m,).
+    """Return the tension [FU] that samples let expect at positions [LU] near the force maximum, (m,), tension positive.
 
-    It is that of the polynomial through the maximum and two points on each side; NaN where there are none.
+    It is that of the polynomial through the maximum and two points on each side. All are NaN where the maximum is the
+    first or last point, or points are too near to each other.
+
+    Args:
+        displacement: falling, (n,) [LU].
+        force: compression positive, (n,) [FU].
+        positions: (m,) [LU].
     """
     d, tension = np.asarray(displacement), -np.asarray(force)
     i = int(np.argmax(tension))
@@ -126,8 +150,14 @@ def promised(displacement: Sequence[float], force: Sequence[float], positions: S
 def rivals(displacement: Sequence[float], force: Sequence[float], peak: Peak) -> dict[int, float]:
     """Return by how much each other maximum of a sawtooth may exceed the peak [FU], by the index of its highest point.
 
-    Beyond its highest point the tension rises no faster than up to it, and at most as far as the next point; between
-    the highest point and the one before, no faster than up to the latter. Displacements fall.
+    A negative number: it can't exceed it. Empty without other maxima. Beyond its highest point the tension rises no
+    faster than up to it, and at most as far as the next point; between the highest point and the one before, no faster
+    than up to the latter.
+
+    Args:
+        displacement: falling, (n,) [LU].
+        force: compression positive, (n,) [FU].
+        peak: the force maximum that they are compared with.
     """
     d, tension = np.asarray(displacement), -np.asarray(force)
     inner = np.arange(1, len(tension) - 1)
@@ -143,12 +173,19 @@ def rivals(displacement: Sequence[float], force: Sequence[float], peak: Peak) ->
 
 
 def are_apart(d: Array) -> bool:
-    """Return whether neighbouring displacements are far enough from each other for a polynomial through them."""
+    """Return whether neighbours of d, (n,), are farther apart than 1e-5 of its width, as a polynomial requires."""
     return float(np.abs(np.diff(d)).min()) > 1e-5 * float(np.ptp(d))
 
 
 def _bend(d: Array, tension: Array, i: int) -> float:
-    """Return the change of slope of a smooth curve over both increments about point i, from the increments before."""
+    """Return the change of slope [FU/LU] of a smooth curve over both increments about point i, from those before it.
+
+    0 with fewer than two points before, or where these are at the same displacement.
+
+    Args:
+        d, tension: displacements [LU], falling, and tensions [FU], (n,).
+        i: index of the point, not the last.
+    """
     if i < 2 or d[i - 2] == d[i - 1]:
         return 0.0
     before = slice(i - 2, i + 1)
@@ -157,7 +194,13 @@ def _bend(d: Array, tension: Array, i: int) -> float:
 
 
 def crossing(displacement: Sequence[float], force: Sequence[float], level: float) -> tuple[int, float]:
-    """Return (i, displacement [LU]) of the first crossing of `level` [FU], linear between points i and i + 1.
+    """Return i and the displacement [LU] of the first crossing of `level` [FU], linear between points i and i + 1.
+
+    A point at the level itself counts as a crossing.
+
+    Args:
+        displacement, force: (n,) [LU] and (n,) [FU].
+        level: [FU], compression positive as the force.
 
     Raises:
         ValueError: if the curve never crosses the level.
@@ -174,8 +217,13 @@ def crossing(displacement: Sequence[float], force: Sequence[float], level: float
 def smooth_crossing(displacement: Sequence[float], force: Sequence[float], level: float) -> float:
     """Return the displacement [LU] of the first crossing of `level` [FU].
 
-    It is that of the cubic through two points on each side; at an end of the curve, and where the cubic does not cross
-    between the two inner points, as near a jump, that of the straight line.
+    It is that of the cubic through two points on each side; at an end of the curve, where points are within 1e-5 of the
+    width, and where the cubic does not cross exactly once between the two inner points, as near a jump, that of the
+    straight line.
+
+    Args:
+        displacement, force: (n,) [LU] and (n,) [FU].
+        level: [FU], compression positive as the force.
 
     Raises:
         ValueError: if the curve never crosses the level.
@@ -193,7 +241,10 @@ def smooth_crossing(displacement: Sequence[float], force: Sequence[float], level
 
 
 def tops(tension: list[float], fall: float) -> list[int]:
-    """Return the indices of maxima after which values fall by more than `fall` before they rise by more than that."""
+    """Return the indices of maxima after which values fall by more than `fall` before they rise by more than that.
+
+    `fall` has the unit of the values. Empty where they never fall that far.
+    """
     maxima: list[int] = []
     high = low = 0
     for i, force in enumerate(tension):
@@ -217,9 +268,10 @@ class Work:
     """The work along a path.
 
     Attributes:
-        area: ∫ F dd [FU·LU], by the trapezoidal rule; of a closed path the dissipated energy.
-        uncertainty: of the area, by interpolation of F between load steps [FU·LU].
-        whole: ∫ |F| |dd| [FU·LU].
+        area: ∫ F dd [FU·LU], by the trapezoidal rule, F compression positive and d positive in approach; of a closed
+            path the dissipated energy.
+        uncertainty: of the area, by interpolation of F between load steps, ≥ 0 [FU·LU].
+        whole: ∫ |F| |dd| ≥ 0 [FU·LU].
         length: of the path, ∫ |dd| [LU].
     """
 
@@ -230,12 +282,13 @@ class Work:
 
 
 def work_of(displacement: Sequence[float], force: Sequence[float]) -> Work | None:
-    """Return the work along a path through points, (n,) [LU] and (n,) [FU]; None where nothing moves.
+    """Return the work along a path through points, (n,) [LU] and (n,) [FU].
 
-    Between two points a smooth curve departs from its chord by h³F″/12, F″ from the chords before and after. Where the
-    chord's slope is not the mean of these two, the force may have jumped, anywhere between the points: that part of its
-    change may count for half of the increment h more or less. An unloading through the same displacements has the same
-    error as the loading, so that only the difference of the two counts.
+    None with fewer than 3, or where nothing moves. Between two points a smooth curve departs from its chord by h³F″/12,
+    F″ from the chords before and after. Where the chord's slope is not the mean of these two, the force may have
+    jumped, anywhere between the points: that part of its change may count for half of the increment h more or less. An
+    unloading through the same displacements has the same error as the loading, so that only the difference of the two
+    counts.
     """
     d, f = np.asarray(displacement, dtype=np.float64), np.asarray(force, dtype=np.float64)
     round_off = CLOSURE * float(np.ptp(d))
@@ -255,7 +308,12 @@ def work_of(displacement: Sequence[float], force: Sequence[float]) -> Work | Non
 def closes(displacement: Sequence[float], force: Sequence[float], tolerance: float) -> bool:
     """Return whether a path ends in the state in which it began: at the same displacement, under the same force.
 
-    `tolerance`: relative, of the forces at both ends.
+    Displacements may differ by 1e-9 of the width of the path, forces by the tolerance of the larger one plus 1e-6 of
+    the largest of all.
+
+    Args:
+        displacement, force: (n,) [LU] and (n,) [FU].
+        tolerance: relative, of the forces at both ends.
     """
     d, f = np.asarray(displacement), np.asarray(force)
     residual = 1e-6 * np.abs(f).max()  # minimisers leave less
@@ -264,7 +322,12 @@ def closes(displacement: Sequence[float], force: Sequence[float], tolerance: flo
 
 
 def _missed(h: Array, rise: Array) -> float:
-    """Return the error bound [FU·LU] of the trapezoidal rule on a leg of increments h > 0 with changes of the force."""
+    """Return the error bound, ≥ 0 [FU·LU], of the trapezoidal rule on a leg of increments in one direction.
+
+    Args:
+        h: increments > 0, (n,) [LU].
+        rise: change of the force over each, (n,) [FU].
+    """
     if len(h) < 2:
         return float(0.5 * h @ np.abs(rise))
     last, slope = len(h) - 1, rise / h

@@ -32,7 +32,13 @@ SIDE_COUNTS = (3, 5, 10)
 
 @dataclass(frozen=True)
 class EstimatedPosition:
-    """A position with its estimated uncertainty; at_end: at the first or last sample, so it may lie beyond."""
+    """A position with its estimated uncertainty, both in the unit of the positions that it is made of.
+
+    Attributes:
+        position: the estimate.
+        uncertainty: it covers the error in at least 95 % of random cases; ≥ 0.
+        at_end: whether it is at the first or last sample, so that the true position may lie beyond.
+    """
 
     position: float
     uncertainty: float
@@ -40,12 +46,17 @@ class EstimatedPosition:
 
 
 def position_of_minimum(x: Array, y: Array, candidates: NDArray[np.intp]) -> EstimatedPosition:
-    """Return the position of the minimum of y(x) near the lowest of the candidate samples.
+    """Return the position of the minimum of y(x) near the lowest of the candidate samples, with its uncertainty.
 
-    x: positions, ascending, (n,), n >= 3; y: values, (n,); candidates: indices, ascending.
-    The uncertainty covers the error in at least 95 % of random closed-form cases (see the module), without noise and
-    with white noise of up to 1 % of the depth, and of skewed dips at least 0.3 spacings wide; where y jumps, the
-    minimum is anywhere between two samples.
+    At the first or the last sample it is that sample, uncertain by a spacing and marked `at_end`. The uncertainty
+    covers the error in at least 95 % of random closed-form cases (see the module), without noise and with white noise
+    of up to 1 % of the depth, and of skewed dips at least 0.3 spacings wide; where y jumps, the minimum is anywhere
+    between two samples.
+
+    Args:
+        x: positions, ascending, (n,), n >= 3.
+        y: values, (n,).
+        candidates: indices of samples, ascending, one at least.
     """
     last = len(x) - 1
     index = int(candidates[np.argmin(y[candidates])])
@@ -66,10 +77,11 @@ def position_of_minimum(x: Array, y: Array, candidates: NDArray[np.intp]) -> Est
 
 
 def _noise(y: Array, index: int, reach: int = 20, highest_order: int = 12) -> float:
-    """Return the standard deviation of the noise in the samples up to a reach from `index`.
+    """Return the standard deviation of the noise, in the unit of y, in the samples up to a reach from `index`.
 
     The d-th difference of white noise has the variance (2d over d) sigma^2; that of a smooth function falls with d. The
-    smallest estimate up to the highest order has least of the signal.
+    smallest estimate, of the orders from 2 up to the highest, has least of the signal. With fewer than three samples it
+    is 0.
     """
     difference, median_to_sigma = y[max(0, index - reach) : index + reach + 1], 0.6745  # of |n|, n normal
     least = math.inf
@@ -87,7 +99,7 @@ def _median(values: Array) -> float:
 
 
 def _smoothest(x: Array, y: Array, index: int, size: int) -> list[slice]:
-    """Return the slices of `size` samples around `index`, smoothest first: with the least highest divided difference.
+    """Return the slices of `size` samples that contain `index`, smoothest first, by their highest divided difference.
 
     Where y jumps, a polynomial across the jump oscillates (the choice of essentially non-oscillatory schemes).
     A slice one sample off the middle has to be smoother by a factor of three to be preferred.
@@ -104,8 +116,14 @@ def _smoothest(x: Array, y: Array, index: int, size: int) -> list[slice]:
 def _converging(x: Array, y: Array, index: int, noise: float) -> EstimatedPosition | None:
     """Return the minimum of the polynomial through as many samples on each side of `index` as reduce its uncertainty.
 
-    On even samples of a smooth function it converges with the degree; those of lower degree show how fast. None where
-    the samples are not smooth, or too few.
+    They are 3, 5 or 10. On even samples of a smooth function it converges with the degree; those of lower degree show
+    how fast. None where the samples are not smooth, fewer than 5 on a side, or one of the first two polynomials has no
+    minimum.
+
+    Args:
+        x, y: positions, ascending, and values, (n,).
+        index: of the lowest sample.
+        noise: standard deviation of the noise in y.
     """
     room = min(index, len(x) - 1 - index)
     if room < SIDE_COUNTS[1] or not _is_smooth(x, y, index, noise):
@@ -133,6 +151,13 @@ def _is_smooth(x: Array, y: Array, index: int, noise: float, decay: float = 0.6,
     """Return whether the differences of samples about `index` fall to `decay`, up to noise, with every even order.
 
     Each is taken over that of a sawtooth of height 1: across a jump, and of noise, the ratio of two orders is near 1.
+
+    Args:
+        x, y: positions, ascending, and values, (n,); up to 10 on each side count.
+        index: of the lowest sample.
+        noise: standard deviation of the noise in y.
+        decay: largest ratio of two even orders in turn.
+        highest_order: of the differences.
     """
     near = slice(max(0, index - SIDE_COUNTS[-1]), index + SIDE_COUNTS[-1] + 1)
     spacing, before = spacing_of(x[near]), math.inf
@@ -149,7 +174,14 @@ def _is_smooth(x: Array, y: Array, index: int, noise: float, decay: float = 0.6,
 def _interpolated(x: Array, y: Array, index: int, noise: float) -> EstimatedPosition:
     """Return the minimum of the polynomial through seven samples about `index`, compared with two others.
 
-    These go through five samples, and through the seven that are next in smoothness.
+    These go through five samples, and through the seven that are next in smoothness. Where y jumps, so that the first
+    has no minimum, it is halfway across the larger of both steps next to the lowest sample, within half the distance of
+    its neighbours.
+
+    Args:
+        x, y: positions, ascending, and values, (n,).
+        index: of the lowest sample, neither the first nor the last.
+        noise: standard deviation of the noise in y.
     """
     low, high = float(x[index - 1]), float(x[index + 1])
     seven, five = (_smoothest(x, y, index, min(size, len(x)))[:2] for size in (7, 5))
@@ -167,7 +199,10 @@ def _interpolated(x: Array, y: Array, index: int, noise: float) -> EstimatedPosi
 
 
 def _steepness(y: Array, index: int) -> float:
-    """Return the rise from the lowest sample to its higher neighbour over the depth below the lower shoulder, ≤ 1."""
+    """Return the rise from the lowest sample to its higher neighbour over the depth below the lower shoulder, ≤ 1.
+
+    A shoulder is the largest value on one side of `index`; without a depth the steepness is 1.
+    """
     depth = min(float(y[:index].max()), float(y[index:].max())) - float(y[index])
     rise = max(float(y[index - 1]), float(y[index + 1])) - float(y[index])
     return min(1.0, rise / depth) if depth > 0.0 else 1.0
@@ -176,7 +211,15 @@ def _steepness(y: Array, index: int) -> float:
 def _fitted(x: Array, y: Array, first: int, last: int, noise: float, degree: int = 4) -> EstimatedPosition:
     """Return the minimum of a least-squares quartic over samples first … last, any of which may be the lowest.
 
-    Of three windows (wider to the right, to both sides, to the left) it is the one that fits best.
+    Of three windows (wider to the right, to both sides, to the left) it is the one that fits best. Without a minimum it
+    is halfway between the two samples, within half their distance.
+
+    Args:
+        x, y: positions, ascending, and values, (n,).
+        first, last: indices of the first and the last sample that may be the lowest.
+        noise: standard deviation of the noise in y; a misfit above twice that makes the distance of the two samples the
+            uncertainty at least.
+        degree: of the polynomial; one of a degree less estimates its error.
     """
     margin = max(2, (last - first + 1) // 2)
     windows = []
@@ -197,7 +240,10 @@ def _fitted(x: Array, y: Array, first: int, last: int, noise: float, degree: int
 
 
 def _misfit(x: Array, y: Array, window: slice, degree: int) -> float:
-    """Return the root mean square residual of a polynomial of that degree, per degree of freedom."""
+    """Return the residual of a least-squares polynomial of a degree over the samples in a window, in the unit of y.
+
+    It is the root of the sum of squares per degree of freedom, of which there is 1 at least.
+    """
     points, values = x[window], y[window]
     t = (points - points[0]) / float(np.ptp(points))
     coefficients = fitting(t, degree) @ values
@@ -208,10 +254,16 @@ def _misfit(x: Array, y: Array, window: slice, degree: int) -> float:
 def _minimum(
     x: Array, y: Array, under: slice, low: float, high: float, degree: int | None = None, near: float | None = None
 ) -> tuple[float, float]:
-    """Return the position of the lowest minimum, between low and high, of the polynomial over samples.
+    """Return the position of the lowest minimum, between low and high, of the polynomial over samples, and its shift.
 
-    The second number is its shift per noise in y; (NaN, NaN) without a minimum. The polynomial goes through all samples
-    unless its `degree` is lower. A minimum that is expected `near` a position is sought from there.
+    The shift is that by noise of standard deviation 1 in y. Both are NaN without a minimum, or where all values are 0.
+
+    Args:
+        x, y: positions, ascending, and values, (n,).
+        under: the samples of the polynomial.
+        low, high: ends of the interval, in the unit of x.
+        degree: of a least-squares polynomial; None: it goes through all samples.
+        near: position from which the minimum is sought; None: the lowest of all is taken.
     """
     points, values = x[under], y[under]
     origin, width, depth = float(points.sum()) / len(points), float(np.ptp(points)), float(np.abs(values).max())

@@ -48,13 +48,16 @@ COMPRESSIVE = ", compression positive"
 
 
 def path(x: Axis, along: Array, legs: Legs, *panels: Upwards, spread: Array | float = 0.0) -> Chart:
-    """Return the path of an experiment, leg by leg; where few points are drawn with other series, without lines.
+    """Return the chart of an experiment's path, leg by leg; with few points marked, without lines beside other series.
+
+    Legs without any finite position are left out.
 
     Args:
-        x, along: what the path is drawn over, (n,).
-        legs: of the path.
-        panels: the main one first.
-        spread: uncertainty along x, (n,).
+        x: the axis along x.
+        along: what the path is drawn over, (n,), in the unit of that axis.
+        legs: of the path: the branch of each, and the indices of its points.
+        panels: the main one first, which is the highest: axis, values (n,) in its unit, series drawn beside these.
+        spread: uncertainty along x, (n,), in its unit.
     """
     drawn, spread = [], np.broadcast_to(spread, along.shape)
     few = 25  # points that are marked: a line through a single one would be invisible
@@ -71,24 +74,27 @@ def path(x: Axis, along: Array, legs: Legs, *panels: Upwards, spread: Array | fl
 
 
 def lines(*theories: Theory) -> list[Series]:
-    """Return a dashed line for each theory."""
+    """Return a dashed line for each theory, named as it; an empty list without one."""
     return [Series(x, y, name, look="--") for name, x, y in theories]
 
 
 def level(value: float, uncertainty: float, name: str) -> list[Series]:
-    """Return a number as a line across a panel, with a band for its uncertainty."""
+    """Return a value as a line across a panel, in the unit of its axis, with a band of ± its uncertainty."""
     band = area(ENDLESS, [value - uncertainty, value + uncertainty], colour=TENSION, opacity=0.3)
     return [band, Series(ENDLESS, np.full(2, value), name, TENSION, ":")]
 
 
 def reduced(largest: float) -> list[Series]:
-    """Return F/F_A over a/a₀ of JKR up to a radius (the paper's Fig. 8)."""
+    """Return F/F_A over a/a₀ of JKR, both dimensionless, up to the radius `largest` (the paper's Fig. 8)."""
     a = np.linspace(0.0, largest, 400)
     return [Series(a, 4.0 * a**3 - 4.0 * a**1.5, "JKR", BLACK, "--")]
 
 
 def detachments(forces: Array) -> Chart:
-    """Return the tensions [FU] at which the bodies separated, (pulls,), sorted; their mean and its standard error."""
+    """Return the chart of the tensions at which the bodies separated, sorted, with their mean and its standard error.
+
+    `forces` are these tensions, (pulls,) [FU], two at least.
+    """
     share, error = (np.arange(forces.size) + 0.5) / forces.size, float(forces.std(ddof=1)) / math.sqrt(forces.size)
     mean = level(float(forces.mean()), error, f"mean of {forces.size} repeats, standard error")
     legs = [("pulls", np.arange(forces.size))]
@@ -96,7 +102,7 @@ def detachments(forces: Array) -> Chart:
 
 
 def scan(taken: Taken) -> Chart:
-    """Return the points of a scan and the fitted curve, their residual, and its autocorrelation over the distance."""
+    """Return the chart of a scan [LU]: points and fitted curve, residual, autocorrelation over the distance."""
     x, lag = Axis("distance from the apex", "LU"), taken.pitch * np.arange(taken.autocorrelation.size)
     points = Series(taken.x, taken.heights, "scan", LOADING, "o", 2.0)
     curve = Series(taken.x, taken.heights - taken.residual, "fitted", TENSION)
@@ -112,9 +118,10 @@ def scan(taken: Taken) -> Chart:
 
 
 def seen(profiles: Mapping[str, Profile]) -> dict[str, Profile]:
-    """Return the profiles of the states in contact, over the width in which one of them has a pressure.
+    """Return the profiles of the states in contact, over the width in which one of them has a pressure, by name.
 
-    A state whose largest pressure is below 1e-3 of that of the others has none: the bodies are apart.
+    A state whose largest |pressure| is below 1e-3 of that of the others has none: the bodies are apart, and it is left
+    out.
     """
     largest = {name: np.abs(profile.pressure).max() for name, profile in profiles.items()}
     least = 1e-3 * max(largest.values())
@@ -127,7 +134,12 @@ def seen(profiles: Mapping[str, Profile]) -> dict[str, Profile]:
 
 
 def pressure(profiles: Mapping[str, Profile], radii: Mapping[str, ContactRadius]) -> Chart:
-    """Return the pressure over x of each state, in a panel each, with the contact edges marked (the paper's Fig. 4)."""
+    """Return the chart of line load [FU/LU] over x [LU], compression positive, a panel for each state (paper's Fig. 4).
+
+    Args:
+        profiles: by state.
+        radii: by state, whose edges are marked; a state without one, or with radius 0, has no marks.
+    """
     panels = []
     for name, profile in profiles.items():
         series = [*_bars(profile.x, profile.pressure, profile.pressure > 0.0)]
@@ -142,7 +154,9 @@ def pressure(profiles: Mapping[str, Profile], radii: Mapping[str, ContactRadius]
 def stick_slip(
     profiles: Mapping[str, Profile], coefficient: float, zones: Mapping[str, tuple[float, float, int]]
 ) -> Chart:
-    """Return the shear traction over x of each state between ±μp, with sticking and slipping particles in two colours.
+    """Return the chart of the shear [FU/LU] over x [LU] of each state between ±μp, with slip in another colour.
+
+    The shear is that on the lower body, 0 where there is no pressure.
 
     Args:
         profiles: by state.
@@ -173,9 +187,10 @@ def _bars(x: Array, load: Array, first: NDArray[np.bool_], names: tuple[str, str
 
 
 def half_width(x: Array, p: Array) -> float:
-    """Return the half-width of a figure of a pressure, (n,) or of m states (m, n).
+    """Return the half-width of a figure of a pressure, in the unit of x, for p (n,) or of m states (m, n), and x as p.
 
-    It is 1.15 times that of all that exceeds 1 % of the largest pressure; a tenth of the body's where there is none.
+    It is 1.15 times that of all that exceeds 1 % of the largest pressure of its state; a tenth of the body's where
+    there is none; and two spacings more.
     """
     carrying = np.abs(p) > 0.01 * np.abs(p).max(axis=-1, keepdims=True)
     reach = np.abs(x[carrying]).max() if carrying.any() else 0.1 * np.abs(x).max()
@@ -183,6 +198,7 @@ def half_width(x: Array, p: Array) -> float:
 
 
 def _state(name: str) -> str:
+    """Return the name of a state as a title, such as `zero load state`."""
     return f"{name.replace('_', ' ')} state"
 
 
@@ -192,13 +208,15 @@ def body(
     marks: Mapping[str, Mapping[str, float]],
     theories: Mapping[str, Theory],
 ) -> Chart:
-    """Return a traction on the three-dimensional body over r, in a panel for each state, with its closed form.
+    """Return the chart of a traction on the three-dimensional body over r, in a panel for each state.
+
+    Values above 8 times the median, near a pole at the edge, are left out.
 
     Args:
         name: of the traction, and of its column.
         states: its columns by state, `r` [LU], `<name>` and `<name>_uncertainty` [FU/LU²].
-        marks: by state the radii to mark, by name [LU].
-        theories: by state.
+        marks: by state the radii to mark, by name [LU]; one of 0 is not marked, and of more than two the first two are.
+        theories: by state name, r [LU] and values [FU/LU²] of its closed form; a state may have none.
     """
     panels = []
     for state, columns in states.items():

@@ -15,17 +15,17 @@ ShapeName = Literal["parabola", "circle", "power"]
 
 @dataclass(frozen=True)
 class Form:
-    """A shape f(r; θ).
+    """A shape f(r; θ), with r and f in any one unit of length.
 
     Attributes:
         name: of a named shape, or "smooth".
-        value: f, (n,), of r ≥ 0 and θ.
-        slope: ∂f/∂r, (n,).
-        gradient: ∂f/∂θ, (n, k).
-        start: θ, (k,), to begin with.
+        value: returns f, (n,) [length], of r ≥ 0, (n,) [length], and θ, (k,).
+        slope: returns ∂f/∂r, (n,), dimensionless.
+        gradient: returns ∂f/∂θ, (n, k).
+        start: θ, (k,), to begin a fit with.
         least: lower bounds of θ, (k,).
         powers: exponents of length in the unit of each θ, (k,).
-        knots: of a smooth curve, (k + 1,), from 0.
+        knots: radii of the knots of a smooth curve, (k + 1,), from 0 [length]; None of a named shape.
         convex: whether θ of a smooth curve are the increments of the slope from knot to knot, and not the slopes.
     """
 
@@ -40,13 +40,24 @@ class Form:
     convex: bool = False
 
     def shown(self, theta: Array) -> Array:
-        """Return θ, (…, k), within its bounds; of a smooth curve as slopes at the knots."""
+        """Return θ, (…, k), with values below the lower bounds set to these.
+
+        Of a smooth curve the slopes at its knots.
+        """
         theta = np.maximum(theta, self.least)
         return np.cumsum(theta, axis=-1) if self.convex else theta
 
 
 def named(shape: ShapeName, curvature: float) -> Form:
-    """Return a named shape: θ = (1/R), or (h, n) of h rⁿ."""
+    """Return a shape by its name: "parabola" r²/2R, "circle" R − √(R² − r²), or "power" h rⁿ.
+
+    θ is (1/R), bounded by 1/R ≥ 0, or (h, n), bounded by h ≥ 0 and n ≥ 1. Of a circle 1 − r²/R² is 1e-6 at least, so
+    that it has values beyond r = R, too.
+
+    Args:
+        shape: the name.
+        curvature: 1/R to begin a fit with [1/length]; a power begins with n = 2 and h = 1/2R.
+    """
     tiny = 1e-300  # in place of 0 in a logarithm
     if shape == "power":
         return Form(
@@ -76,7 +87,15 @@ def named(shape: ShapeName, curvature: float) -> Form:
 
 
 def smooth(knots: Array, convex: bool) -> Form:
-    """Return a smooth curve: θ are the slopes at the knots, or their increments; on the axis the slope is 0."""
+    """Return a curve f(r) whose slope is linear between knots and 0 on the axis; θ ≥ 0 is dimensionless, (k,).
+
+    A fit begins with f = r²/2. Beyond the last knot the last piece goes on.
+
+    Args:
+        knots: radii, rising from 0, (k + 1,) [length].
+        convex: whether θ are the increments of the slope from knot to knot; else they are the slopes at all knots but
+            0.
+    """
     from scipy.interpolate import make_interp_spline  # which takes longer to import than a small run
 
     many = len(knots) - 1

@@ -25,12 +25,12 @@ FEWEST_PERIODS = 3
 
 @dataclass(frozen=True)
 class Mean:
-    """A mean over blocks.
+    """A mean over blocks, in the unit of the averaged quantity, such as [FU].
 
     Attributes:
         blocks: means of the periods after the run-in, shape (n,).
         first: number of periods of the run-in.
-        missed: sampling error of a block.
+        missed: sampling error of the mean.
     """
 
     blocks: Array
@@ -39,18 +39,24 @@ class Mean:
 
     @property
     def value(self) -> float:
-        """The mean of the blocks."""
+        """The mean of the blocks, in their unit."""
         return float(self.blocks.mean())
 
     @property
     def error(self) -> float:
-        """Half of the 95 % interval of the mean, and the sampling error."""
+        """Half of the 95 % interval of the mean plus the sampling error, in the unit of the blocks."""
         return interval(self.blocks) + self.missed
 
 
 @dataclass(frozen=True)
 class Slip:
-    """A jump of the plate into another potential minimum: its end [TU], its position and its size [LU]."""
+    """A jump of the plate into another potential minimum.
+
+    Attributes:
+        time: its end [TU].
+        place: position of the plate at its begin [LU].
+        size: displacement of the plate during it, with its sign [LU].
+    """
 
     time: float
     place: float
@@ -58,16 +64,18 @@ class Slip:
 
 
 def block_means(time: Array, integral: Array, period: float, rate: Array | None = None) -> Array:
-    """Return the means over whole periods, the last of which ends with the series; shape (periods,).
+    """Return the means over whole periods, the last of which ends with the series; shape (periods,), in order.
 
-    The integral at the end of a period, between two times, is that of Hermite's cubic where the `rate` is known: along
-    a straight line the mean of a periodic friction would change from period to period, as they end elsewhere.
+    It is empty for a series shorter than a period. The integral at the end of a period, between two times, is that of
+    Hermite's cubic where the `rate` is known: along a straight line the mean of a periodic friction would change from
+    period to period, as they end elsewhere.
 
     Args:
         time: shape (n,), rising [TU].
-        integral: of the averaged quantity, up to each of the times, shape (n,).
+        integral: of the averaged quantity, up to each of the times, shape (n,), in its unit times [TU].
         period: [TU].
-        rate: the averaged quantity at these times, where it is smooth; shape (n,).
+        rate: the averaged quantity at these times, where it is smooth; shape (n,). None: the integral is interpolated
+            linearly.
     """
     count = math.floor((time[-1] - time[0]) / period * (1.0 + 1e-9))
     ends = np.maximum(time[-1] - period * np.arange(count, -1, -1), time[0])
@@ -81,13 +89,16 @@ def block_means(time: Array, integral: Array, period: float, rate: Array | None 
 
 
 def mean_of(blocks: Array) -> Mean:
-    """Return the mean after the run-in.
+    """Return the mean after the run-in, in the unit of the blocks, without a sampling error.
 
     The run-in minimises the error of the mean. It has one period at least, with the path from the start to the first
     slip, and half of the periods at most.
 
+    Args:
+        blocks: means of successive periods, from the start on, shape (n,).
+
     Raises:
-        ValueError: fewer than FEWEST_PERIODS blocks.
+        ValueError: fewer than 3 blocks.
     """
     if blocks.size < FEWEST_PERIODS:
         raise ValueError(f"a mean needs {FEWEST_PERIODS} periods, got {blocks.size}")
@@ -96,15 +107,20 @@ def mean_of(blocks: Array) -> Mean:
 
 
 def sampled_mean(time: Array, force: Array, period: float) -> Mean:
-    """Return the mean of forces that are known at single times only, shape (n,), with many in a period.
+    """Return the mean, with a sampling error, of forces that are known at single times only, with many in a period.
 
     In a heat bath the balance of momentum that gives the integral of the friction contains the random forces as well,
     ∫ ξ dt ~ √(2γkT t): samples may be more accurate. The time of a slip between two samples is off by half of the time
     between them at most: slips at random times add to the scatter of the blocks, slips at the same time in each period
     shift their mean. Such a slip is larger than the step between two samples by the rise of friction in between.
 
+    Args:
+        time: shape (n,), rising [TU].
+        force: at these times, shape (n,) [FU].
+        period: [TU].
+
     Raises:
-        ValueError: fewer than FEWEST_PERIODS periods.
+        ValueError: fewer than 3 periods.
     """
     integral = np.concatenate([[0.0], np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(time))])
     blocks = block_means(time, integral, period)
@@ -119,12 +135,12 @@ def sampled_mean(time: Array, force: Array, period: float) -> Mean:
 
 
 def standard_error(blocks: Array) -> float:
-    """Return the standard error of the mean of blocks, shape (n,); of a single one, without scatter, its magnitude."""
+    """Return the standard error of the mean of blocks, shape (n,), in their unit; of a single block its magnitude."""
     return float(blocks.std(ddof=1)) / math.sqrt(blocks.size) if blocks.size > 1 else abs(float(blocks[0]))
 
 
 def interval(blocks: Array) -> float:
-    """Return half of the 95 % interval of the mean of blocks, shape (n,).
+    """Return half of the 95 % interval of the mean of two or more blocks, shape (n,), in their unit, ≥ 0.
 
     It is the largest for blocks of one, two and four periods, if four such blocks are left: slips may repeat after
     several periods only. It is at least half the difference of the means of both halves, as of a slow drift.
@@ -141,10 +157,10 @@ def interval(blocks: Array) -> float:
 
 
 def student(freedom: int) -> float:
-    """Return the half-width of the 95 % interval of Student's distribution over the standard error.
+    """Return the half-width of the 95 % interval of Student's distribution over the standard error, for `freedom` ≥ 1.
 
-    Beyond nine degrees of freedom it is Fisher's expansion in 1/freedom (Abramowitz and Stegun 26.7.5), which begins
-    with the normal distribution.
+    Up to nine degrees of freedom it is tabulated; beyond it is Fisher's expansion in 1/freedom (Abramowitz and Stegun
+    26.7.5), which begins with the normal distribution.
     """
     exact = (12.71, 4.30, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26)
     if freedom <= len(exact):
@@ -155,9 +171,10 @@ def student(freedom: int) -> float:
 def slips(
     time: Array, position: Array, spacing: float, velocity: float, faster: float = 2.0, least: float = 0.45
 ) -> list[Slip]:
-    """Return the slips of a plate: across a barrier, or from a barrier into a minimum.
+    """Return the slips of a plate in order of time: across a barrier, or from a barrier into a minimum.
 
-    At high drag the plate slows down on the barrier itself, wherever that is: a slip has no given position.
+    Empty without one. At high drag the plate slows down on the barrier itself, wherever that is: a slip has no given
+    position.
 
     Args:
         time, position: of the plate, shape (n,) [TU], [LU].
@@ -176,11 +193,17 @@ def slips(
 
 
 def largest_before(friction: Array, position: Array, spacing: float) -> tuple[float, float]:
-    """Return (largest friction [FU] until the plate has moved by one period, its sampling error [FU]).
+    """Return the largest friction [FU] until the plate has moved by one period, and its sampling error ≥ 0 [FU].
 
     The friction rises smoothly until the plate slips: the sampling error is less than the rise from the point before.
     Over the top of a barrier that the plate passes without a slip it is a smooth function of the position: its maximum
-    is that of the polynomial through five points, with the difference to that through three as its error.
+    is that of the polynomial through five points, with the difference to that through three as its error. The error is
+    0 where the first point is the largest.
+
+    Args:
+        friction: shape (n,) [FU].
+        position: of the plate, shape (n,) [LU].
+        spacing: of the other body, the period [LU].
     """
     before = position - position[0] < spacing
     top = int(np.argmax(np.where(before, friction, -np.inf)))
@@ -195,10 +218,17 @@ def largest_before(friction: Array, position: Array, spacing: float) -> tuple[fl
 def _summit(
     friction: Array, position: Array, top: int, neighbours: int = 2, largest_ratio: float = 2.0
 ) -> tuple[float, float] | None:
-    """Return (friction at a smooth maximum near the point `top`, its uncertainty); None where it is not smooth.
+    """Return friction at a smooth maximum near the point `top`, and its uncertainty; None where it is not smooth.
 
-    The polynomial goes through so many neighbours on each side. Where a slip begins the points lie so far apart that
-    the ratio of the largest to the smallest curvature of friction over position is many times as large as the limit.
+    Both are in the unit of `friction`. It is not smooth, either, where positions do not rise or there are too few
+    points on a side. Where a slip begins the points lie so far apart that the ratio of the largest to the smallest
+    curvature of friction over position is many times as large as the limit.
+
+    Args:
+        friction, position: shape (n,) each.
+        top: index of the largest friction.
+        neighbours: points on each side through which the polynomial goes.
+        largest_ratio: of the largest curvature to the smallest.
     """
     near = slice(top - neighbours, top + neighbours + 1)
     x, y = position[near], friction[near]

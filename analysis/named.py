@@ -11,7 +11,7 @@ class Named(dict[str, T]):
     """A dictionary whose values are also attributes: `curve.force` is `curve["force"]`."""
 
     def __missing__(self, name: str) -> T:
-        """Raise KeyError with the names that there are."""
+        """Raise KeyError with the names that there are; a missing name has no default value."""
         raise KeyError(f"there is no {name}, there are {', '.join(self) or 'none'}")
 
     def __getattr__(self, name: str) -> T:
@@ -22,5 +22,5 @@ class Named(dict[str, T]):
             raise AttributeError(error.args[0]) from None
 
     def __dir__(self) -> list[str]:
-        """Return the names for completion, with those of the values."""
+        """Return the names for completion in an editor: those of the attributes of a dict, then those of the values."""
         return [*super().__dir__(), *self]

@@ -25,7 +25,10 @@ PAD = 6.0
 
 
 def draw(chart: Chart) -> Figure:
-    """Return the figure of a chart, with the numbers and units of its description."""
+    """Return the figure of a chart, 6.4 inches wide, its panels below each other over one x axis, in the chart's units.
+
+    Every axis needs its ends (`view`). A legend equal to that of the panel above is not repeated.
+    """
     heights = [panel.height for panel in chart.panels]
     figure = _figure_class()(figsize=(WIDTH, 1.0 + sum(heights)), dpi=DPI)  # with an inch for title and axis
     axes = figure.subplots(len(heights), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
@@ -40,7 +43,7 @@ def draw(chart: Chart) -> Figure:
 
 
 def _arrange(figure: Figure, axes: Sequence[Axes], chart: Chart) -> None:
-    """Arrange panels one below the other, with room for their labels [pt].
+    """Set the margins of a figure and the distances of its panels, one below the other, so that all labels have room.
 
     A constrained layout measures every text several times, and takes longer than the drawing.
     """
@@ -61,7 +64,7 @@ def _arrange(figure: Figure, axes: Sequence[Axes], chart: Chart) -> None:
 
 
 def draw_panel(axes: Axes, x: Axis, panel: Panel, legend: bool = True) -> None:
-    """Draw a panel of a chart over its axis along x, with a legend or without."""
+    """Draw a panel of a chart over the axis `x` into `axes`, with a legend if `legend`; ±∞ are the ends of an axis."""
     from matplotlib.ticker import LogLocator
 
     for series in panel.series:
@@ -92,7 +95,7 @@ def draw_panel(axes: Axes, x: Axis, panel: Panel, legend: bool = True) -> None:
 
 
 def describe(axes: Axes, x: str = "", y: str = "", title: str = "", zero: bool = True) -> None:
-    """Write the labels of both axes and the title; where `zero`, draw a line at y = 0."""
+    """Write the labels of both axes and the title, left above; where `zero`, draw a line at y = 0."""
     if zero:
         axes.axhline(0.0, color=BLACK, linewidth=0.8)
     axes.set(xlabel=x, ylabel=y)
@@ -100,12 +103,13 @@ def describe(axes: Axes, x: str = "", y: str = "", title: str = "", zero: bool =
 
 
 def new_figure(size: tuple[float, float]) -> Figure:
-    """Return an empty figure of that size [inch], without the state that pyplot keeps; a notebook shows it."""
+    """Return an empty figure of `size`, width and height [inch], that pyplot does not keep; a notebook shows it."""
     return _figure_class()(figsize=size, dpi=DPI, layout="constrained")
 
 
 @cache
 def _figure_class() -> type[Figure]:
+    """Return the class of all figures: matplotlib's Figure, which a notebook shows as a PNG even without pyplot."""
     from matplotlib.figure import Figure
 
     class ShownFigure(Figure):
@@ -119,14 +123,17 @@ def _figure_class() -> type[Figure]:
 
 
 def plain_axes(figure: Figure) -> Figure:
-    """Hide the lines above and to the right of each axis, and return the figure."""
+    """Hide the lines above and to the right of each axis of a figure, and return that same figure."""
     for axis in figure.axes:
         axis.spines[["top", "right"]].set_visible(False)
     return figure
 
 
 def save_figure(figure: Figure, path: Path) -> None:
-    """Save a figure in the format of the file's suffix (png, svg, pdf), atomically."""
+    """Save a figure in the format of the file's suffix (png, svg, pdf), whole or not at all.
+
+    Its layout is fixed then.
+    """
     if layout := plain_axes(figure).get_layout_engine():
         layout.execute(figure)
         figure.set_layout_engine(None)  # savefig would draw it twice, to find the layout again

@@ -18,7 +18,8 @@ Array = NDArray[np.float64]
 def fitting(t: Array, degree: int) -> Array:
     """Return the matrix M, (degree + 1, n), of the coefficients c = M y for values y at n different positions t.
 
-    P goes through all values where degree = n - 1; of a lower degree it is that of least squares.
+    P goes through all values where degree = n - 1; of a lower degree it is that of least squares. M is cached and
+    cannot be written to.
     """
     return _fitting(np.ascontiguousarray(t).tobytes(), degree)
 
@@ -32,7 +33,7 @@ def _fitting(positions: bytes, degree: int) -> Array:
 
 
 def _lagrange(t: Array) -> Array:
-    """Return the inverse of the powers of t: its column j has the coefficients of Πₖ (t − tₖ) / (tⱼ − tₖ), k ≠ j.
+    """Return the inverse of the powers of t, (n, n): column j has the coefficients of Πₖ (t − tₖ) / (tⱼ − tₖ), k ≠ j.
 
     The products keep all digits of the coefficients; of 21 positions an inverse by elimination keeps nine.
     """
@@ -65,17 +66,21 @@ def divided(t: Array, y: Array) -> Iterator[Array]:
 
 
 def value(c: Array, t: float) -> float:
-    """Return P(t), the value of the polynomial with the coefficients c."""
+    """Return P(t) = Σ cₖ tᵏ, the value at t of the polynomial with the coefficients c, lowest power first."""
     return float(c @ t ** np.arange(len(c)))
 
 
 def real_roots(c: Array, low: float, high: float) -> Array:
-    """Return the positions between low and high where P is 0.
+    """Return the positions between low and high where P is 0, in no order; empty for a constant P.
 
     They are eigenvalues of the companion matrix; `numpy.polynomial` does the same in twice the time. With the textbook
     form of the matrix a highest coefficient of mere round-off would spoil all roots. Roots far off leave errors in
-    those between low and high, which a Newton step removes. A longer one is not made: next to a double root it is
-    round-off over round-off.
+    those between low and high, which a Newton step removes. A longer one than 1e-6 is not made: next to a double root
+    it is round-off over round-off.
+
+    Args:
+        c: coefficients of P, (n,), lowest power first.
+        low, high: ends of the interval, both included.
     """
     round_off, longest_step = 1e-9, 1e-6
     while len(c) and c[-1] == 0.0:
@@ -95,9 +100,14 @@ def real_roots(c: Array, low: float, high: float) -> Array:
 
 
 def lowest_minimum(c: Array, low: float, high: float, near: float | None = None) -> tuple[float, float]:
-    """Return (t, P″(t)) of the lowest minimum of P between low and high, NaN where it has none.
+    """Return t and P″(t) of the lowest minimum of P between low and high; (NaN, NaN) where it has none.
 
-    A minimum that is known to be `near` some position is found from there by Newton's method, where |t| < 1.
+    A minimum at an end of the interval, where P′ is not 0, does not count.
+
+    Args:
+        c: coefficients of P, (n,), lowest power first.
+        low, high: ends of the interval.
+        near: a position near the minimum, from which Newton's method finds it, where |t| < 1; None: all are compared.
     """
     powers = np.arange(len(c))
     first = c[1:] * powers[1:]
@@ -114,9 +124,16 @@ def lowest_minimum(c: Array, low: float, high: float, near: float | None = None)
 def _newton(
     first: Array, second: Array, low: float, high: float, t: float, steps: int = 20, last: float = 1e-12
 ) -> Array:
-    """Return the root near t of P′, with the coefficients `first`; `second` are those of P″. Empty without convergence.
+    """Return the root of P′ near t with P″ > 0, (1,).
 
-    A step below the `last` one would be round-off.
+    Empty where it is not between low and high, or without convergence.
+
+    Args:
+        first, second: coefficients of P′ and P″, lowest power first.
+        low, high: ends of the interval.
+        t: position to begin with; |t| must stay below 1.
+        steps: at most.
+        last: step that ends the iteration; a shorter one would be round-off.
     """
     exponents = np.arange(len(first))
     for _ in range(steps):

@@ -23,9 +23,11 @@ Array = NDArray[np.float64]
 class Profile:
     """The state of a contact along x; all arrays (n,), sorted by x. Two are equal if they are the same object.
 
-    x: positions of the upper particles [LU]; z_lower, z_upper: heights of the lower and upper surface there [LU];
-    pressure: force on the upper particle in +z per spacing, compression positive [FU/LU];
-    shear: force on the upper particle in +x per spacing [FU/LU].
+    Attributes:
+        x: positions of the upper particles [LU].
+        z_lower, z_upper: heights of the lower and upper surface there [LU].
+        pressure: force on the upper particle in +z per spacing, compression positive [FU/LU].
+        shear: force on the upper particle in +x per spacing [FU/LU].
     """
 
     x: Array
@@ -47,9 +49,12 @@ class Profile:
 class ZonedProfile(Profile):
     """A profile with a known contact edge.
 
-    edge: contact radius a [LU]; reach: outer radius c of an attraction with a range [LU]; jump: the line load just
-    inside of a less that just outside [FU/LU]; doubt: uncertainty of a [LU]; layer: possible rise of the line load just
-    inside of a, over less than the spacing [FU/LU].
+    Attributes:
+        edge: contact radius a [LU].
+        reach: outer radius c of an attraction with a range [LU].
+        jump: the line load just inside of a less that just outside [FU/LU].
+        doubt: uncertainty of a [LU].
+        layer: possible rise of the line load just inside of a, over less than the spacing [FU/LU].
     """
 
     edge: float
@@ -62,7 +67,16 @@ class ZonedProfile(Profile):
 def zoned(
     profile: Profile, edge: float, reach: float, jump: float, doubt: float = 0.0, layer: float = 0.0
 ) -> ZonedProfile:
-    """Return a profile whose contact ends at an edge [LU] by a jump [FU/LU]."""
+    """Return a profile with the columns of `profile` and a known contact edge.
+
+    Args:
+        profile: without an edge, or with another one.
+        edge: contact radius a [LU].
+        reach: outer radius c of an attraction with a range [LU].
+        jump: the line load just inside of a less that just outside [FU/LU].
+        doubt: uncertainty of a [LU].
+        layer: possible rise of the line load just inside of a, over less than the spacing [FU/LU].
+    """
     columns = profile.x, profile.z_lower, profile.z_upper, profile.pressure, profile.shear
     return ZonedProfile(*columns, edge, reach, jump, doubt, layer)
 
@@ -108,11 +122,14 @@ def mean_pressure(profile: Profile, spacing: float, radius: float) -> float:
 
 
 def penetration_depth(x_upper: ArrayLike, z_upper: ArrayLike, x_lower: ArrayLike, z_lower: ArrayLike) -> float:
-    """Return the largest depth of an upper particle below the lower surface of straight lines [LU]; 0 for none.
+    """Return the largest depth [LU], >= 0, of an upper particle below the straight lines between the lower particles.
 
-    x_upper, z_upper: upper particles [LU], (n,); x_lower, z_lower: lower particles in any order [LU], (m,), m >= 1.
-    Particles beyond the ends of the lower body do not count. The paper names interpenetration as the limit of a model
-    of one layer (Section 5).
+    It is 0 where none is below, or there is no upper particle. Particles beyond the ends of the lower body do not
+    count. The paper names interpenetration as the limit of a model of one layer (Section 5).
+
+    Args:
+        x_upper, z_upper: upper particles [LU], (n,).
+        x_lower, z_lower: lower particles in any order [LU], (m,), m >= 1.
     """
     surface = np.interp(np.asarray(x_upper), *_sorted_by_x(x_lower, z_lower), left=-np.inf, right=-np.inf)
     return float(np.max(surface - np.asarray(z_upper), initial=0.0))
@@ -159,14 +176,23 @@ def end_pressure_share(profile: Profile) -> float:
 
 
 def spacing_of(x: Array) -> float:
-    """Return the mean distance of neighbours [length] of rising positions x, (n,), n >= 1; 0 for one."""
+    """Return the mean distance of neighbours, in the unit of x, of rising positions x, (n,), n >= 1.
+
+    0 for one position.
+    """
     return float(np.ptp(x)) / max(x.size - 1, 1)
 
 
 def left_out(law: DoubleExponential, table: Table, profile: Profile) -> float:
-    """Return Σ |F_table(r) - f(r)| |z|/r [FU], the truncation and table error of an interaction in a state.
+    """Return Σ |F_table(r) - f(r)| |z|/r [FU], the truncation and table error of an interaction in a state, >= 0.
 
-    Summed offset by offset along the chain: memory for one row of pairs.
+    The sum is over pairs of particles up to the cutoff plus five times the longest range; pairs nearer than the core of
+    the table count at its core. Summed offset by offset along the chain: memory for one row of pairs.
+
+    Args:
+        law: the exact pair potential, f(r) [FU].
+        table: its force as LAMMPS has it, 0 beyond the cutoff [FU].
+        profile: the state; particles are evenly spaced, two at least.
     """
     reach = table.cutoff + 5.0 * law.longest_range  # with all but a share exp(-5) of the tail
     x, lower, upper = profile.x, profile.z_lower, profile.z_upper

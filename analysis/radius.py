@@ -32,9 +32,12 @@ PARABOLA_POINTS = 3
 class ContactRadius:
     """Half the distance between the two edges of a contact.
 
-    value = (right - left) / 2 [LU]; uncertainty: estimated [LU], covers the error in at least 95 % of random cases;
-    left, right: positions of the edges [LU]; reaches_end: an edge is at the chain's end, so the chain is too short and
-    the true radius may be larger than value + uncertainty.
+    Attributes:
+        value: (right − left)/2 ≥ 0 [LU]; 0 where there is no contact, or a single spot.
+        uncertainty: estimated [LU]; it covers the error in at least 95 % of random cases.
+        left, right: positions of the edges [LU].
+        reaches_end: whether an edge is at the chain's end: the chain is too short, and the true radius may be larger
+            than value + uncertainty.
     """
 
     value: float
@@ -68,17 +71,21 @@ def tensile_radius(profile: Profile) -> ContactRadius:
 
 
 def compressive_radius(profile: Profile, residual: float = 0.0) -> ContactRadius:
-    """Return where the pressure without attraction vanishes: p(a) = 0 beyond the outermost loaded particle.
+    """Return the contact radius a [LU] where the pressure vanishes, p(a) = 0, beyond the outermost loaded particles.
 
-    profile: a pressure profile of one contact, p >= 0, n >= 3 particles. Springs to a bulk give p = (k/s) (d - x^2/2R),
-    a parabola in x, so the parabola through the three outermost loaded particles is extended to p = 0: exact there (to
-    round-off), where a straight line through two overshoots by up to s^2/a with the spacing s. The edge is kept between
-    the outermost loaded particle and the next. Where the parabola has no zero there (few particles, a load
-    concentrated at the edge, a soft law's tail) it is halfway, within half a spacing.
-    residual: error of each pressure that a minimiser leaves, over the largest one; it moves the edge by that error over
-    the slope dp/dx at the edge.
-    No load at all: radius 0 at the middle of the chain, uncertain by half a spacing.
-    Raises ValueError for fewer than 3 particles, and where a particle carries tension (use `tensile_radius`).
+    Springs to a bulk give p = (k/s) (d - x^2/2R), so that the parabola through the three outermost loaded particles is
+    extended to p = 0: exact there (to round-off), where a straight line through two overshoots by up to s^2/a with the
+    spacing s. The edge is kept between the outermost loaded particle and the next. Where the parabola has no zero there
+    (few particles, a load concentrated at the edge, a soft law's tail) it is halfway, within half a spacing. No load at
+    all: radius 0 at the middle of the chain, uncertain by half a spacing.
+
+    Args:
+        profile: of one contact, p >= 0, n >= 3 particles.
+        residual: error of each pressure that a minimiser leaves, over the largest pressure; it moves the edge by that
+            error over the slope dp/dx at the edge, which is added to the uncertainty.
+
+    Raises:
+        ValueError: fewer than 3 particles, a pressure that is not finite, or a particle under tension.
     """
     x, p = profile.x, profile.pressure
     least, most = _extremes(profile)
@@ -90,21 +97,28 @@ def compressive_radius(profile: Profile, residual: float = 0.0) -> ContactRadius
 
 
 def held_radius(profile: Profile) -> ContactRadius:
-    """Return the radius of a contact whose pressure jumps to 0 at its edges, as JKR's does; 0 where nothing carries.
+    """Return the contact radius [LU] of a profile whose pressure jumps to 0 at its edges, as JKR's.
 
-    profile: of a chain of evenly spaced particles, n >= 3. The share of the last cell that lies inside the edge follows
-    from the pressure of the last particle and the parabola through the three before it. Where there are fewer, as in a
-    contact a few spacings wide, the edge is somewhere in the cell.
-    Raises ValueError for fewer than 3 particles.
+    The share of the last cell that lies inside the edge follows from the pressure of the last particle and the parabola
+    through the three before it. Where there are fewer, as in a contact a few spacings wide, or where that share is not
+    within 0 … 1, the edge is at the last loaded particle, within half a spacing. Where all pressures are 0 the radius
+    is 0, uncertain by half a spacing.
+
+    Args:
+        profile: of a chain of evenly spaced particles, n >= 3.
+
+    Raises:
+        ValueError: fewer than 3 particles, or a pressure that is not finite.
     """
     _extremes(profile)
     return _of_edges(profile.x, profile.pressure, profile.pressure != 0.0, _held_edge)
 
 
 def whole_cells(profile: Profile, radius: ContactRadius) -> Array:
-    """Return the pressures [FU/LU], (n,), with those of whole cells at the particles at both edges.
+    """Return the pressures, (n,) [FU/LU], with those of the two outermost loaded particles as if whole cells carried.
 
-    There the pressure inside is extrapolated; it is 0 for a particle outside the edge of the contact `radius`.
+    There the pressure inside is extrapolated by a parabola; it is 0 for a particle outside the edges of `radius`. With
+    fewer than 8 loaded particles (p other than 0) all pressures are returned as they are.
     """
     x, p = profile.x, profile.pressure.copy()
     held = np.flatnonzero(p != 0.0)
@@ -118,7 +132,10 @@ def whole_cells(profile: Profile, radius: ContactRadius) -> Array:
 
 
 def moved_centre(profile: Profile) -> float:
-    """Return the centre of a contact that was displaced along x [LU]; 0 if by less than a spacing."""
+    """Return the position of the centre of a contact that was displaced along x [LU]: the mean of x weighted with |p|.
+
+    0 if it is less than a spacing from x = 0, for a single particle, and without any pressure.
+    """
     if profile.x.size < 2 or not np.any(profile.pressure):
         return 0.0
     centre = _centre(profile.x, profile.pressure)
@@ -126,16 +143,22 @@ def moved_centre(profile: Profile) -> float:
 
 
 def _centre(x: Array, p: Array) -> float:
-    """Return the mean of x weighted with |p| [LU]."""
+    """Return the mean of x weighted with |p|, in the unit of x; some p must differ from 0."""
     return float(np.average(x, weights=np.abs(p)))
 
 
 def _edge(x: Array, p: Array, centre: float, outwards: float) -> EstimatedPosition:
-    """Return the force maximum on one side of the centre; outwards: the spacing, negative for the left side [LU].
+    """Return the position [LU] of the largest tension, where p is least, on one side of the centre, as estimated.
 
-    A particle just beyond the centre belongs to both sides, so that both find a single spot. A maximum more than a
-    quarter of a spacing beyond the centre is that of the other side; where it is as high as its mirror image, but for
-    the residual of a minimiser, the mirror image counts.
+    A particle just beyond the centre belongs to both sides, so that both find a single spot. A minimum more than a
+    quarter of a spacing beyond the centre is that of the other side; where one on this side is as low, but for the
+    residual of a minimiser, the latter counts.
+
+    Args:
+        x: positions, rising, (n,) [LU].
+        p: pressures, (n,) [FU/LU].
+        centre: position of the centre [LU].
+        outwards: the spacing [LU], negative for the left side.
     """
     away = (x - centre) / outwards
     reach, inside = np.flatnonzero(away >= -0.5), np.flatnonzero(away >= 0.0)
@@ -147,7 +170,11 @@ def _edge(x: Array, p: Array, centre: float, outwards: float) -> EstimatedPositi
 
 
 def _extremes(profile: Profile) -> tuple[float, float]:
-    """Return the smallest and the largest pressure [FU/LU]; ValueError for too few particles or one not finite."""
+    """Return the smallest and the largest pressure of a profile [FU/LU], compression positive.
+
+    Raises:
+        ValueError: fewer than 3 particles, or a pressure that is not finite.
+    """
     if len(profile.x) < PARABOLA_POINTS:
         raise ValueError(f"a contact radius needs at least {PARABOLA_POINTS} particles, got {len(profile.x)}")
     extremes = float(profile.pressure.min()), float(profile.pressure.max())
@@ -157,6 +184,7 @@ def _extremes(profile: Profile) -> tuple[float, float]:
 
 
 def _between(left: EstimatedPosition, right: EstimatedPosition) -> ContactRadius:
+    """Return half the distance of two edges, 0 where the left one is beyond the right one; uncertain by their mean."""
     value = max(0.0, 0.5 * (right.position - left.position))
     uncertainty = 0.5 * (left.uncertainty + right.uncertainty)
     return ContactRadius(value, uncertainty, left.position, right.position, left.at_end or right.at_end)
@@ -170,8 +198,13 @@ def _of_edges(
 ) -> ContactRadius:
     """Return the radius between the right `edge` of the particles that carry, and that of their mirror image.
 
-    `edge` takes x and p of the last PARABOLA_POINTS + 1 that carry and of the next particle, if there is one, and the
-    indices of the first and the last that carry.
+    Without such a particle it is 0 at the middle of the chain, uncertain by half a spacing.
+
+    Args:
+        x, p: positions, rising, and pressures, (n,).
+        carries: which particles are loaded, (n,).
+        edge: returns the right edge of x and p of the last 4 particles that carry and of the next one, if there is one,
+            and of the indices in these of the first and the last that carry.
     """
     carrying, end = np.flatnonzero(carries), len(x) - 1
     if carrying.size == 0:
@@ -190,7 +223,16 @@ def _of_edges(
 
 
 def _zero(x: list[float], p: list[float], first: int, last: int, residual: float) -> EstimatedPosition:
-    """Return the right edge of a contact whose loaded particles are first … last; p and residual over the largest p."""
+    """Return the right edge of a contact, where p is 0, in the unit of x, with its uncertainty.
+
+    It is the end of the chain (`at_end`) if the last particle is loaded, and halfway to the next particle where no
+    parabola through three loaded particles falls to 0 between the two.
+
+    Args:
+        x, p: positions, and pressures over the largest one.
+        first, last: indices of the first and the last loaded particle.
+        residual: error of each of these pressures.
+    """
     if last == len(x) - 1:
         return EstimatedPosition(x[last], x[last] - x[last - 1], True)
     inner, outer = x[last], x[last + 1]
@@ -217,6 +259,11 @@ def _parabola_zero(
     c + b t + a t^2 falls with the slope -sqrt(D), D = b^2 - 4ac, at t = c/q for b < 0 and else at q/a, where
     q = -(b + sign(b) sqrt(D))/2: no difference of near numbers, so that a straight line (a cone's pressure) is no
     special case.
+
+    Args:
+        x, p: positions, and pressures over the largest one, of the three particles.
+        inner, outer: positions of the outermost loaded particle and of the next.
+        residual: error of each pressure, over the largest one; its share of the slope is the uncertainty.
     """
     width = outer - inner
     (first, second, third), (high, middle, low) = ((position - inner) / width for position in x), p
@@ -237,7 +284,15 @@ def _parabola_zero(
 
 
 def _held_edge(x: list[float], p: list[float], first: int, last: int) -> EstimatedPosition:
-    """Return the right edge of a contact whose pressure jumps to 0 at it; the particles first … last carry."""
+    """Return the right edge of a contact whose pressure jumps to 0 at it, in the unit of x, with its uncertainty.
+
+    It is the position of the last loaded particle, within half a spacing, where fewer than 5 particles are loaded or
+    the share of the last cell is not within 0 … 1.
+
+    Args:
+        x, p: positions and pressures, evenly spaced.
+        first, last: indices of the first and the last loaded particle.
+    """
     spacing = (x[-1] - x[0]) / (len(x) - 1)
     somewhere = EstimatedPosition(x[last], 0.5 * spacing, last == len(x) - 1)
     if last - first <= PARABOLA_POINTS:  # the parabola would include the other edge
@@ -252,9 +307,15 @@ def _held_edge(x: list[float], p: list[float], first: int, last: int) -> Estimat
 
 
 def _share(carried: float, inner: list[float], steps: int = 10) -> float:
-    """Return φ of the last particle by the parabola through the pressures of three before it, NaN where it is 0.
+    """Return the share φ of its cell that the last particle carries, 1 for a whole cell; NaN for a pressure 0 inside.
 
-    Each step of the iteration leaves a small part of the error, (φ − 1) s p′/2p.
+    By the parabola through the pressures of the three particles before it, extrapolated to the middle of the share. It
+    may lie outside of 0 … 1. Each step of the iteration leaves a small part of the error, (φ − 1) s p′/2p.
+
+    Args:
+        carried: force of the last particle over the spacing.
+        inner: pressures of the three before, the outermost last.
+        steps: of the iteration.
     """
     bend = inner[2] - 2.0 * inner[1] + inner[0]
     slope = inner[2] - inner[1] + 0.5 * bend

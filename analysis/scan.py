@@ -41,12 +41,12 @@ class ScanError(ValueError):
 
 @dataclass(frozen=True)
 class Taken:
-    """The fitted profile of a scan.
+    """The fitted profile of a scan; lengths in the unit of the scan.
 
     Attributes:
         shape: "smooth", or the name of the fitted shape.
-        parameters: θ, (k,): 1/R; h and n of h (r/w)ⁿ, w the width of the scan; the slopes at the knots.
-        knots: of a smooth curve, (k + 1,), from 0.
+        parameters: θ, (k,): 1/R; h and n of h (r/w)ⁿ, w the width of the scan; or the slopes at the knots but 0.
+        knots: of a smooth curve, (k + 1,), from 0; of a named shape empty.
         deviations: pairs of θ, (m, 2, k): half of the difference of a result between the two of a pair is its
             uncertainty at 95 %, independent of the other pairs.
         centre, tilt, offset: position of the apex, slope and height there; each with its uncertainty at 95 %, 0 where
@@ -55,9 +55,9 @@ class Taken:
         noise, correlation: standard deviation of the residual, and its correlation length, Σ ρ_k of the points' pitch.
         x: positions of the points from the apex, rising, (n,).
         heights, residual: without tilt and offset, and without the curve, too, (n,).
-        autocorrelation: ρ_k of the residual.
+        autocorrelation: ρ_k of the residual, k from 0 to a quarter of n, (n // 4,); 0 without any residual.
+        patches: number of parts in which the measured points would touch a plane 2 σ above the lowest one.
         missed: RMS residual of a named shape beyond the noise; 0 of a smooth curve.
-        patches: parts in which the measured points would touch a plane ASPERITY σ above the lowest one.
     """
 
     shape: str
@@ -79,16 +79,20 @@ class Taken:
 
     @property
     def pitch(self) -> float:
-        """The median distance of neighbouring points."""
+        """The median distance of neighbouring points, in the unit of the scan."""
         return float(np.median(np.diff(self.x)))
 
     @property
     def both_sides(self) -> bool:
-        """Whether the scan has points on both sides of the apex."""
+        """Whether the scan has points on both sides of the apex, 5 % of its width at least on each."""
         return is_two_sided(self.x)
 
     def folded(self) -> tuple[Array, Array]:
-        """Return radii and heights, (n,) each, of the points: the mean of both sides where there are two, z(0) = 0."""
+        """Return radii and heights of the points without tilt, (m,) each, in the unit of the scan, with z(0) = 0.
+
+        The radii are evenly spaced by about the median distance of points, to the nearer end where there are two sides,
+        which are then averaged.
+        """
         from scipy.interpolate import PchipInterpolator  # which takes longer to import than a small run
 
         sides = [PchipInterpolator(*_rising(sign * self.x, self.heights)) for sign in (1.0, -1.0)]
@@ -104,13 +108,20 @@ def is_two_sided(x: Array) -> bool:
 
 
 def _rising(x: Array, z: Array) -> tuple[Array, Array]:
-    """Return the points sorted by position; of several at the same position their mean."""
+    """Return positions and heights sorted by position, each position once.
+
+    Of several at the same position the mean height.
+    """
     positions, index, counts = np.unique(x, return_inverse=True, return_counts=True)
     return positions, np.bincount(index, z) / counts
 
 
 def one_pass(x: Array, z: Array) -> tuple[Array, Array]:
-    """Return the points in rising x; of a scan forth and back the mean of the passes, at the positions of the first."""
+    """Return positions, rising, and heights of a scan, (n,) each; of a scan forth and back the mean of its passes.
+
+    The means are at the positions of the first pass, where all passes have points. A pass with half of the points of
+    the longest or fewer is left out.
+    """
     steps = np.flatnonzero(np.diff(x))
     turns = steps[np.flatnonzero(np.diff(np.sign(np.diff(x)[steps])))] + 1
     ends = [0, *turns.tolist(), len(x) - 1]
@@ -131,14 +142,14 @@ def take(
     length: float | None = None,
     shape: ShapeName | None = None,
 ) -> Taken:
-    """Return the profile fitted to the points of a scan.
+    """Return the profile fitted to the points of a scan, in the unit of x and z.
 
     Args:
         x, z: positions and heights, (n,), growing away from the plane; a scan may go forth and back.
         centre: position of the apex; None: it is fitted.
-        level: whether a tilt is removed.
+        level: whether a tilt is fitted and removed.
         length: distance of the knots of a smooth curve; None: by the noise.
-        shape: the named shape that is fitted, in place of a smooth curve.
+        shape: the named shape that is fitted; None: a smooth curve.
 
     Raises:
         ScanError: too few points, a flat or inverted profile, or an apex or tilt that the points do not determine.
@@ -158,7 +169,11 @@ def take(
 class _Fit:
     """Points of a scan over its width, from the given apex or the first point on; what is fitted; the true lengths.
 
-    moves, tilts: whether the apex and a tilt are fitted; size: the width; origin, base: position and height of 0.
+    Attributes:
+        x, z: positions from `origin` and heights from `base` over the width, (n,), dimensionless.
+        moves, tilts: whether the apex and a tilt are fitted.
+        size: the width, in the unit of the scan.
+        origin, base: position and height of 0, in the unit of the scan.
     """
 
     x: Array
@@ -170,7 +185,15 @@ class _Fit:
     base: float
 
     def of(self, shape: ShapeName | None, length: float | None) -> Taken:
-        """Return the fit of a named shape, or of a smooth curve."""
+        """Return the fit of a named shape, or of a smooth curve where `shape` is None.
+
+        Args:
+            shape: name of the shape.
+            length: distance of the knots of a smooth curve over the width of the scan; None: by the noise.
+
+        Raises:
+            ScanError: an inverted profile, or an apex or tilt that the points do not determine.
+        """
         square, linear, _ = np.polyfit(self.x, self.z, 2)
         start = -0.5 * linear / square if self.moves else 0.0
         if square <= 0.0 and float(np.median(self.z)) > 0.5 * float(self.z.max()):
@@ -189,13 +212,21 @@ class _Fit:
         return self.judged(free, 0.0)
 
     def excess(self, shape: _Solved, smooth_curve: _Solved) -> float:
-        """Return the RMS residual of a named shape beyond that of a smooth curve, 0 where it may be chance."""
+        """Return the RMS residual of a named shape beyond that of a smooth curve, over the width.
+
+        0 where it may be chance.
+        """
         more, knots = shape.squares - smooth_curve.squares, len(smooth_curve.form.start)
         price = self.noise_of(smooth_curve).price(len(self.x), knots)
         return math.sqrt(more / len(self.x)) if more > price * knots else 0.0
 
     def require_flat_part(self, reach: float, start: float) -> None:
-        """Raise ScanError where a tilt and a moved apex have the same effect on all heights: a correlation near 1."""
+        """Raise ScanError where a tilt and a moved apex have the same effect on heights: a correlation above 0.9999.
+
+        Args:
+            reach: largest distance of a point from the apex, over the width.
+            start: position of the apex, over the width.
+        """
         curve = replace(self, tilts=False).solve(smooth(np.linspace(0.0, reach, FIRST_KNOTS), True), start)
         if abs(np.corrcoef(curve.columns[:, -1], self.x)[0, 1]) > 0.9999:
             raise ScanError(
@@ -204,7 +235,13 @@ class _Fit:
             )
 
     def smoothed(self, reach: float, start: float, length: float | None) -> _Solved:
-        """Return a smooth curve whose slope rises from the apex on, unless the scan shows that it falls somewhere."""
+        """Return the fitted smooth curve: its slope rises from the apex on, unless the scan shows a fall somewhere.
+
+        Args:
+            reach: largest distance of a point from the apex, over the width of the scan.
+            start: position of the apex to begin with, over the width.
+            length: distance of the knots over the width; None: by the noise.
+        """
 
         def curve(convex: bool) -> _Solved:
             if length is None:
@@ -216,11 +253,11 @@ class _Fit:
         return free if convex.squares - free.squares > price else convex
 
     def fitted(self, form: Form) -> NDArray[np.bool_]:
-        """Return which of all parameters are fitted: θ and z₀ always, c and t where required."""
+        """Return which of the parameters θ, z₀, c and t are fitted, (k + 3,): always θ and z₀, else as required."""
         return np.array([True] * (len(form.start) + 1) + [self.moves, self.tilts])
 
     def design(self, form: Form, parameters: Array) -> tuple[Array, Array]:
-        """Return the curve at the points, (n,), and its derivatives by all parameters, θ, z₀, c and t, (n, k)."""
+        """Return the curve over the width at the points, (n,), and its derivatives by θ, z₀, c and t, (n, k + 3)."""
         count = len(form.start)
         theta, (offset, centre, tilt) = parameters[:count], parameters[count:]
         away = self.x - centre
@@ -235,10 +272,10 @@ class _Fit:
 
         Args:
             form: the shape.
-            centre: position of the apex to begin with.
-            iterations: at most.
-            largest_step: of the position of the apex and of the tilt.
-            tolerance: relative change of the curve in the last step.
+            centre: position of the apex to begin with, over the width of the scan.
+            iterations: at most; the last one is returned whether it has converged or not.
+            largest_step: of the position of the apex, over the width, and of the tilt.
+            tolerance: change of the curve over its largest height in the last step.
         """
         count = len(form.start)
         parameters = np.concatenate([form.start, [0.0, centre, 0.0]])
@@ -258,7 +295,13 @@ class _Fit:
         return _Solved(form, parameters, columns[:, self.fitted(form)], self.z - curve)
 
     def adapted(self, reach: float, centre: float, convex: bool) -> _Solved:
-        """Return a smooth curve with as many knots as the noise allows."""
+        """Return the fitted smooth curve with as many knots as the noise allows.
+
+        Args:
+            reach: largest distance of a point from the apex, over the width of the scan.
+            centre: position of the apex to begin with, over the width.
+            convex: whether its slope may only rise.
+        """
         pitch = float(np.median(np.diff(self.x)))
         first = min(FIRST_KNOTS, max(2, round(reach / pitch / PER_KNOT)))
         solved = self.solve(smooth(np.linspace(0.0, reach, first + 1), convex), centre)
@@ -270,7 +313,7 @@ class _Fit:
         return solved
 
     def noise_of(self, solved: _Solved) -> Noise:
-        """Return the noise by the difference of both sides; for one side by the residual in blocks.
+        """Return the noise, over the width, by the difference of both sides; for one side by the residual in blocks.
 
         These are twelve: a kink in one of them does not change the median of their autocovariances.
         """
@@ -286,9 +329,16 @@ class _Fit:
         return noise_by(spectrum, len(x))
 
     def selected(self, solved: _Solved, noise: Noise, most_points: int = 4000, most_knots: int = 40) -> Array:
-        """Return the knots: intervals are halved, first the one that lowers the residual most, as the criterion says.
+        """Return the knots over the width, (k + 1,), from 0: intervals are halved, first the one that gains most.
 
-        Of more than most_points the knots are selected on means of neighbours. A scan without noise has most_knots.
+        It ends by the extended Bayesian information criterion; knots that have become needless are removed again. Of
+        more than most_points the knots are selected on means of neighbours. A scan without noise has most_knots.
+
+        Args:
+            solved: a fit with the position of the apex.
+            noise: of the residual, over the width.
+            most_points: from which on neighbours are averaged.
+            most_knots: number of knots at most.
         """
         away = np.abs(self.x - solved.centre)
         reach, group = float(away.max()), -(-len(away) // most_points)
@@ -316,7 +366,10 @@ class _Fit:
         return _needed(knots, np.column_stack([columns_of(knots), z]), convex, 3.0 * noise.power / group)
 
     def errors(self, solved: _Solved, noise: Noise) -> tuple[Array, float]:
-        """Return drawn errors of the fitted parameters, (n, k), and the factor from a deviation of them to 95 %."""
+        """Return drawn errors of the fitted parameters, (draws, k), and the factor from a standard deviation to 95 %.
+
+        Lengths are over the width of the scan; the factor is that of Student's distribution.
+        """
         from scipy.special import stdtrit
 
         points = len(self.x) / noise.together
@@ -326,7 +379,15 @@ class _Fit:
         return drawn(solved.columns, exact, solved.form.least, deviation), float(stdtrit(free, 0.975))
 
     def judged(self, solved: _Solved, missed: float) -> Taken:
-        """Return the fitted profile with its uncertainties at 95 %; `missed`: excess residual of a named shape."""
+        """Return the fitted profile in the unit of the scan, with its uncertainties at 95 %.
+
+        Args:
+            solved: the fit.
+            missed: RMS residual of a named shape beyond that of a smooth curve, over the width.
+
+        Raises:
+            ScanError: a fitted apex at the edge of the scan or outside.
+        """
         form, parameters, count = solved.form, solved.parameters, len(solved.form.start)
         x, points, size = self.x - solved.centre, len(self.x), self.size
         if self.moves and not is_two_sided(x):
@@ -365,10 +426,13 @@ class _Fit:
 
 
 def _needed(knots: Array, columns: Array, convex: bool, increase: float) -> Array:
-    """Return the knots without needless ones, which are removed one by one.
+    """Return the knots without needless ones, which are removed one by one; the first and the last one stay.
 
-    columns: derivatives of the heights by the slopes at all knots and by other parameters, and the heights, (n, k);
-    increase: of the squared residual by all removed knots together, at most.
+    Args:
+        knots: from 0, (k + 1,).
+        columns: derivatives of the heights by the slopes at all knots and by other parameters, and the heights, (n, m).
+        convex: whether the slope may only rise.
+        increase: of the squared residual by all removed knots together, at most.
     """
     _, upper = np.linalg.qr(columns)
 
@@ -392,7 +456,14 @@ def _needed(knots: Array, columns: Array, convex: bool, increase: float) -> Arra
 
 @dataclass(frozen=True)
 class _Solved:
-    """A fitted form: θ, z₀, c and t, the derivatives of the curve by the fitted ones, (n, k), the residual, (n,)."""
+    """A fitted form; lengths over the width of the scan.
+
+    Attributes:
+        form: the shape.
+        parameters: θ, z₀, c and t, (k + 3,).
+        columns: derivatives of the curve by those that are fitted, (n, m).
+        residual: heights less the curve, (n,).
+    """
 
     form: Form
     parameters: Array
@@ -401,10 +472,10 @@ class _Solved:
 
     @property
     def centre(self) -> float:
-        """The position of the apex c."""
+        """The position of the apex c, over the width of the scan."""
         return float(self.parameters[-2])
 
     @property
     def squares(self) -> float:
-        """The sum of the squares of the residual."""
+        """The sum of the squares of the residual, over the width squared."""
         return float(np.sum(self.residual**2))

@@ -27,12 +27,14 @@ ROUND_OFF = 1e-10
 
 
 def stick_margin(profile: Profile, coefficient: float, direction: int) -> Array:
-    """Return the part of μ p not used up in the direction of motion [FU/LU], (n,); 0 where a particle slips or is free.
+    """Return the part of μ p not used up in the direction of motion, (n,) ≥ 0 [FU/LU].
+
+    0 where a particle slips or is free. A margin below 1e-10 of the largest μ p is 0, too.
 
     Args:
         profile: pressure p, and shear of the lower body on the upper one, which is against the motion [FU/LU].
-        coefficient: μ.
-        direction: of the body along x, 1 or -1; 0 where it has not moved, and |shear| counts.
+        coefficient: μ, dimensionless.
+        direction: of the body along x, 1 or -1; 0 where it has not moved: then |shear| is what is used up.
     """
     limit = coefficient * np.maximum(profile.pressure, 0.0)
     shear = np.abs(profile.shear) if direction == 0 else -direction * profile.shear
@@ -41,10 +43,15 @@ def stick_margin(profile: Profile, coefficient: float, direction: int) -> Array:
 
 
 def stick_radius(profile: Profile, coefficient: float, direction: int) -> ContactRadius:
-    """Return the half-width c of the stick zone [LU]: out to where the margin of μ p vanishes; 0 where all slips.
+    """Return the half-width c of the stick zone [LU], out to where the margin of μ p vanishes.
 
-    As a pressure without attraction, the margin is a smooth function of x inside the zone and 0 outside, and so is its
-    zero that of `analysis.radius.compressive_radius`. The arguments are those of `stick_margin`.
+    0, exactly, if all slips. As a pressure without attraction, the margin is a smooth function of x inside the zone and
+    0 outside: its zero is that of a parabola through the outermost particles that stick.
+
+    Args:
+        profile: pressure p and shear of the lower body on the upper one [FU/LU], n ≥ 3 particles.
+        coefficient: μ, dimensionless.
+        direction: of the motion along x, 1 or -1; 0 where the body has not moved.
     """
     margin = stick_margin(profile, coefficient, direction)
     radius = compressive_radius(replace(profile, pressure=margin), ROUND_OFF)
@@ -55,8 +62,10 @@ def stick_radius(profile: Profile, coefficient: float, direction: int) -> Contac
 class Slip:
     """Changes of particles in contact during a load step: arrays (…, n).
 
-    force: tangential force after the step [FU]; distance: signed slip of each particle [LU]; work: dissipated by the
-    slip [FU·LU].
+    Attributes:
+        force: tangential force after the step [FU].
+        distance: slip of each particle, positive along +x [LU]; 0 where it sticks.
+        work: ≥ 0, dissipated by the slip [FU·LU].
     """
 
     force: Array
@@ -65,7 +74,7 @@ class Slip:
 
 
 def slip(force: Array, pushed: Array, limit: Array, next_limit: Array, stiffness: float) -> Slip:
-    """Return the forces of tangential springs whose ends are moved, while the limits of their forces change.
+    """Return force, slip and dissipated work of springs whose ends move while the limits of their forces change.
 
         s₁ = clip(s₀ + k Δu, ±B₁)
 
@@ -75,7 +84,7 @@ def slip(force: Array, pushed: Array, limit: Array, next_limit: Array, stiffness
     Args:
         force: s₀ [FU], (…, n), |s₀| ≤ B₀.
         pushed: k Δu [FU], (…, n).
-        limit, next_limit: B₀ and B₁ = μ f, before and after [FU], (…, n).
+        limit, next_limit: B₀ and B₁ = μ f ≥ 0, before and after [FU], (…, n).
         stiffness: k [FU/LU].
     """
     wanted = force + pushed
@@ -90,10 +99,11 @@ def slip(force: Array, pushed: Array, limit: Array, next_limit: Array, stiffness
 
 
 def kinks_of(stick: Sequence[float], contact: Sequence[float]) -> list[list[float]]:
-    """Return the kinks of the line shear after each load step, inside the contact edge, ascending [length].
+    """Return a list of kinks of the line shear for each load step, inside the contact edge, ascending [length].
 
     The edge c of the stick zone is a kink. Where c grows, at a turn or with the load, the old edge remains as a kink,
-    and so does the old edge of a growing contact; a kink that c reaches again vanishes.
+    and so does the old edge of a growing contact; a kink that c reaches again vanishes. A list is empty where all
+    sticks (c = a) or slips (c = 0) and no old edge lies within c.
 
     Args:
         stick: c after each load step [length].
@@ -115,7 +125,7 @@ def shear_load(
     """Return the even line shear through values at positions: a cubic spline in each zone between kinks, 0 at the edge.
 
     At a kink it is the mean of the values extrapolated from the zones on both sides. A kink that leaves fewer than
-    FEWEST positions on one side of it is left out.
+    3 positions on one side of it is left out.
 
     Args:
         x: positions, rising and the same on both sides of 0, shape (n,) [length].
@@ -125,7 +135,7 @@ def shear_load(
         apex: whether the body has an apex at x = 0, so that the line shear may have a slope there.
 
     Raises:
-        ValueError: fewer than FEWEST positions on a side within the edge, or positions that differ between both sides.
+        ValueError: fewer than 3 positions on a side within the edge, or positions that differ between both sides.
     """
     right, mean, spacing = of_both_sides(x, shear)
     near = 1e-6 * spacing  # a particle that is closer to a kink belongs to it
@@ -150,7 +160,13 @@ def shear_load(
 
 
 def _height(x: Array, y: Array, within: int, beyond: int, kink: float) -> float:
-    """Return the mean at a kink of two parabolas, through FEWEST positions before `within` and from `beyond` on."""
+    """Return the line shear at a kink, in the unit of y: the mean of parabolas through 3 positions on either side.
+
+    Args:
+        x, y: positions, rising, and line shear there, (n,).
+        within, beyond: index after the last position before the kink, and that of the first one beyond it.
+        kink: its position.
+    """
     sides = [slice(start, start + FEWEST) for start in (within - FEWEST, beyond)]
     return float(np.mean([np.polynomial.Polynomial.fit(x[side], y[side], FEWEST - 1)(kink) for side in sides]))
 
@@ -158,10 +174,13 @@ def _height(x: Array, y: Array, within: int, beyond: int, kink: float) -> float:
 def _spline(
     positions: Array, values: Array, low: tuple[float, float], high: tuple[float, float], first: bool, apex: bool
 ) -> tuple[Array, Array]:
-    """Return where each cubic of a zone but the first begins, and the coefficients of all in powers of x, (4, n).
+    """Return where the cubics of a zone but the first begin, (m − 1,), and their coefficients in powers of x, (4, m).
 
-    low, high: the borders of the zone with their heights. The `first` zone is mirrored at the axis, unless the body has
-    an `apex`.
+    Args:
+        positions, values: line shear inside the zone, (n,) each.
+        low, high: the borders of the zone, each with its position and the line shear there.
+        first: whether the zone begins at the axis; it is then mirrored there, and `low` has only a position, 0.
+        apex: whether the body has an apex: the first zone is then not mirrored.
     """
     from scipy.interpolate import CubicSpline
 

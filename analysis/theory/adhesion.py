@@ -70,12 +70,12 @@ class Dmt(Contact):
 
     @property
     def _load(self) -> float:
-        """The unit of N, pi W R [force]."""
+        """The unit of N = F/(pi W R), pi W R [force]."""
         return math.pi * self.work_of_adhesion * self.radius
 
     @property
     def _length(self) -> float:
-        """The unit of A, (pi W R^2/K)^(1/3) [length]."""
+        """The unit of A = a/(pi W R^2/K)^(1/3), with K = 4E*/3 [length]."""
         return math.cbrt(0.75 * self._load * self.radius / self.contact_modulus)
 
     def force(self, contact_radius: float) -> float:
@@ -120,51 +120,84 @@ class MaugisDugdale(Dmt):
 
     @property
     def tabor(self) -> float:
-        """The Tabor parameter mu = (R W^2/(E*^2 h_0^3))^(1/3)."""
+        """The Tabor parameter mu = (R W^2/(E*^2 h_0^3))^(1/3), dimensionless."""
         ratio = self.work_of_adhesion / self.contact_modulus
         return math.cbrt(self.radius * ratio**2 / self.range_of_attraction**3)
 
     @property
     def transition(self) -> float:
-        """The parameter lambda = 1.127 mu of Maugis."""
+        """The parameter lambda = 1.127 mu of Maugis, dimensionless."""
         return LAMBDA_OVER_TABOR * self.tabor
 
     @property
     def theories(self) -> dict[Theory, Contact]:
-        """The contact by JKR and DMT, which have no range, and by Maugis-Dugdale."""
+        """The contact by theory: JKR and DMT, which have no range of the attraction, and Maugis-Dugdale, this one."""
         sphere = self.radius, self.contact_modulus, self.work_of_adhesion
         return {Theory.JKR: PowerLaw.sphere(*sphere), Theory.DMT: Dmt(*sphere), Theory.MAUGIS: self}
 
     def ring_width(self, contact_radius: float) -> float:
-        """Return c - a, the root of the adhesion equation [length]; a >= 0 [length]."""
+        """Return c - a, the width of the ring under attraction, root of the adhesion equation [length].
+
+        A >= 0 [length].
+
+        Raises:
+            ValueError: if a is negative.
+        """
         return self._length * _ring_width(self.transition, contact_radius / self._length)
 
     def force(self, contact_radius: float) -> float:
-        """Return F, N = A^3 - lambda [A S + C^2 phi] [force]; a >= 0 [length]."""
+        """Return F, positive in compression, by N = A^3 - lambda [A S + C^2 phi] [force]; a >= 0 [length].
+
+        Raises:
+            ValueError: if a is negative.
+        """
         return self._load * _reduced(self.transition, contact_radius / self._length)[0]
 
     def displacement(self, contact_radius: float) -> float:
-        """Return d, D = A^2 - (4/3) lambda S [length]; a >= 0 [length]."""
+        """Return d, positive in approach, by D = A^2 - (4/3) lambda S [length]; a >= 0 [length].
+
+        Raises:
+            ValueError: if a is negative.
+        """
         return self._length**2 / self.radius * _reduced(self.transition, contact_radius / self._length)[1]
 
     def critical_radius(self) -> float:
-        """Return a where a fixed load pulls off [length]; 0 where F rises from first touch on."""
+        """Return a where a fixed load pulls off, the F(a) of which is lowest [length].
+
+        0 where F rises from first touch on.
+        """
         return self._length * _lowest(self.transition, 0)
 
     def fixed_grips_radius(self) -> float:
-        """Return a where a prescribed displacement pulls off [length]."""
+        """Return a where a prescribed displacement pulls off, d(a) lowest [length].
+
+        0 where d rises from first touch on.
+        """
         return self._length * _lowest(self.transition, 1)
 
 
 def _reduced(transition: float, a: float) -> tuple[float, float]:
-    """Return N and D at the reduced contact radius A, by lambda."""
+    """Return N = F/(pi W R) and D, force and displacement in the units of Maugis, dimensionless.
+
+    Args:
+        transition: lambda of Maugis.
+        a: contact radius A >= 0 in the unit of Maugis.
+    """
     u = _ring_width(transition, a)
     s = math.sqrt(u * (2.0 * a + u))
     return a**3 - transition * (a * s + (a + u) ** 2 * math.atan2(s, a)), a**2 - 4.0 / 3.0 * transition * s
 
 
 def _adhesion_excess(transition: float, a: float, u: float) -> float:
-    """Return (lambda/2) [A S + (C^2-2A^2) phi] + (4 lambda^2/3) [S phi - C + A] - 1 for C = a + u: rises with u."""
+    """Return (lambda/2) [A S + (C^2-2A^2) phi] + (4 lambda^2/3) [S phi - C + A] - 1 for C = a + u: rises with u.
+
+    It is 0 where the adhesion equation of Maugis holds; all numbers are dimensionless, in his units.
+
+    Args:
+        transition: lambda of Maugis.
+        a: contact radius A.
+        u: width of the ring, C - A.
+    """
     s = math.sqrt(u * (2.0 * a + u))
     phi = math.atan2(s, a)
     elastic = a * s + (s**2 - a**2) * phi
@@ -172,9 +205,17 @@ def _adhesion_excess(transition: float, a: float, u: float) -> float:
 
 
 def _ring_width(transition: float, a: float) -> float:
-    """Return u = C - A >= 0 of one contact radius A; it is widest at A = 0, where the equation is quadratic in C.
+    """Return u = C - A >= 0 of one contact radius A, in the unit of Maugis; it is widest at A = 0.
 
-    There (pi/4) lambda C^2 + (4 lambda^2/3)(pi/2 - 1) C = 1; the root is written without a difference of large numbers.
+    There the equation is quadratic in C, (pi/4) lambda C^2 + (4 lambda^2/3)(pi/2 - 1) C = 1; the root is written
+    without a difference of large numbers.
+
+    Args:
+        transition: lambda of Maugis.
+        a: contact radius A in the unit of Maugis.
+
+    Raises:
+        ValueError: if a is negative.
     """
     from scipy.optimize import brentq  # which takes longer to import than a small run
 
@@ -191,9 +232,9 @@ def _ring_width(transition: float, a: float) -> float:
 
 @lru_cache(maxsize=256)
 def _lowest(transition: float, component: int) -> float:
-    """Return A of the lowest N (component 0) or D (1) of one lambda, between 0 and 1.5.
+    """Return A of the lowest N (component 0) or D (1) of one lambda, between 0 and 1.5, in the unit of Maugis.
 
-    The largest such A is JKR's, (3/2)^(1/3) = 1.145. The end A = 0 is compared with the minimum that the search finds.
+    It is 0 where N or D rises from A = 0 on. The largest such A is JKR's, (3/2)^(1/3) = 1.145.
     """
     from scipy.optimize import minimize_scalar
 
@@ -230,7 +271,7 @@ class Verdict:
 
 
 def of_tabor(tabor: float) -> Theory:
-    """Return the theory for mu at any load: DMT below 0.1, JKR above 5, else Maugis-Dugdale."""
+    """Return the theory for a Tabor parameter mu at any load: DMT below 0.1, JKR above 5, else Maugis-Dugdale."""
     if tabor < DMT_TABOR:
         return Theory.DMT
     return Theory.JKR if tabor > JKR_TABOR else Theory.MAUGIS

@@ -32,7 +32,10 @@ Floats = NDArray[np.float64]
 
 @cache
 def galin_factor(exponent: float) -> float:
-    """Return kappa_n = (sqrt(pi)/2) n Gamma(n/2)/Gamma((n+1)/2): pi/2 for a cone, 2 for a paraboloid; `exponent` n."""
+    """Return kappa_n = (sqrt(pi)/2) n Gamma(n/2)/Gamma((n+1)/2), dimensionless, for the `exponent` n > 0 of z = c r^n.
+
+    It is pi/2 for a cone (n = 1), 2 for a paraboloid (n = 2).
+    """
     n = exponent
     return 0.5 * math.sqrt(math.pi) * n * math.exp(math.lgamma(0.5 * n) - math.lgamma(0.5 * (n + 1.0)))
 
@@ -60,27 +63,30 @@ class Contact(ABC):
 
     @property
     def reach(self) -> float:
-        """The largest contact radius [length], infinite by default."""
+        """The largest contact radius for which the contact is defined [length], infinite by default."""
         return math.inf
 
     def critical_radius(self) -> float:
-        """Return a where a fixed load pulls off [length]: dF/da = 0, or 0."""
+        """Return a where a fixed load pulls off, dF/da = 0 [length]; by default 0."""
         return 0.0
 
     def fixed_grips_radius(self) -> float:
-        """Return a where a prescribed displacement pulls off [length]: dd/da = 0, or 0."""
+        """Return a where a prescribed displacement pulls off, dd/da = 0 [length]; by default 0."""
         return 0.0
 
     def pull_off_force(self) -> float:
-        """Return F_A, the force maximum under a fixed load, a positive magnitude [force]."""
+        """Return F_A, the largest tension under a fixed load, a positive magnitude [force]; 0 without adhesion."""
         return -self.force(self.critical_radius())
 
     def zero_load_radius(self) -> float:
-        """Return a_0 with F(a_0) = 0 [length]."""
+        """Return a_0, the stable contact radius without a load, F(a_0) = 0 [length]; 0 without adhesion."""
         return self.contact_radius(0.0)
 
     def contact_radius(self, force: float) -> float:
-        """Return the stable a with F(a) = `force` [length].
+        """Return the stable contact radius a with F(a) = `force` [length].
+
+        The force is positive in compression [force]. At the pull-off force it is the critical radius, and never more
+        than `reach`.
 
         Raises:
             ValueError: if the tension exceeds the pull-off force.
@@ -91,7 +97,9 @@ class Contact(ABC):
         return self._where(self.force, force, low)
 
     def radius_at(self, displacement: float) -> float:
-        """Return the stable a with d(a) = `displacement` under fixed grips [length].
+        """Return the stable contact radius a with d(a) = `displacement` under fixed grips [length].
+
+        D positive in approach. It is never more than `reach`.
 
         Raises:
             ValueError: if the bodies have separated before.
@@ -102,11 +110,24 @@ class Contact(ABC):
         return self._where(self.displacement, displacement, low)
 
     def curve(self, least: float, largest: float, points: int = 400) -> Floats:
-        """Return a [length], d(a) [length] and F(a) [force] at evenly spaced radii between two, shape (3, points)."""
+        """Return a [length], d(a) [length] and F(a) [force] at evenly spaced radii between two, shape (3, points).
+
+        Args:
+            least, largest: first and last contact radius [length].
+            points: number of radii.
+        """
         return np.asarray([(a, self.displacement(a), self.force(a)) for a in np.linspace(least, largest, points)]).T
 
     def _where(self, curve: Callable[[float], float], wanted: float, low: float) -> float:
-        """Return the radius from `low` on at which a rising curve is `wanted`, to the last digit; or `low` itself."""
+        """Return the radius [length] at which a rising curve is `wanted`, to the last digit.
+
+        It is `low` where the curve is not below that there, and `reach` where it does not get there.
+
+        Args:
+            curve: returns force or displacement of a contact radius.
+            wanted: value of the curve, in its unit.
+            low: radius to begin with [length].
+        """
         if not wanted > curve(low):
             return low
         high = min(2.0 * low or 1.0, self.reach)
@@ -118,7 +139,13 @@ class Contact(ABC):
 
 
 def punch_tension(contact_modulus: float, work_of_adhesion: float, contact_radius: float) -> float:
-    """Return Kendall's F = sqrt(8 pi E* W a^3) [force], the largest tension of a flat punch of radius a."""
+    """Return Kendall's F = sqrt(8 pi E* W a^3), a positive magnitude [force]: the largest tension of a flat punch.
+
+    Args:
+        contact_modulus: E* [stress].
+        work_of_adhesion: W [force/length].
+        contact_radius: a [length].
+    """
     return math.sqrt(8.0 * math.pi * contact_modulus * work_of_adhesion * contact_radius**3)
 
 
@@ -143,7 +170,7 @@ class Indenter(Contact):
 
     @abstractmethod
     def _steep(self, wanted: float) -> float:
-        """Return the radius a at which g'(a) sqrt(a) is `wanted` [length]."""
+        """Return the radius a at which g'(a) sqrt(a) is `wanted` [length]; wanted > 0 [length^(1/2)]."""
 
     def displacement(self, contact_radius: float) -> float:
         """Return d = g(a) - sqrt(2 pi W a/E*) [length]; a >= 0 [length]."""
@@ -156,19 +183,23 @@ class Indenter(Contact):
         return self.pressed(contact_radius) - tension
 
     def critical_radius(self) -> float:
-        """Return a where a fixed load pulls off [length]; of JKR (9 pi W R^2/8E*)^(1/3)."""
+        """Return a where a fixed load pulls off [length]; of JKR (9 pi W R^2/8E*)^(1/3). 0 without adhesion."""
         return self._edge(0.75)
 
     def fixed_grips_radius(self) -> float:
-        """Return a where a prescribed displacement pulls off [length]; of JKR (pi W R^2/8E*)^(1/3)."""
+        """Return a where a prescribed displacement pulls off [length]; of JKR (pi W R^2/8E*)^(1/3).
+
+        0 without adhesion.
+        """
         return self._edge(0.25)
 
     def _edge(self, share: float) -> float:
+        """Return the radius a at which g'(a) sqrt(a) is `share` of sqrt(8 pi W/E*) [length]; 0 without adhesion."""
         wanted = share * math.sqrt(8.0 * math.pi * self.work_of_adhesion / self.contact_modulus)
         return self._steep(wanted) if wanted else 0.0
 
     def _tension(self, contact_radius: float) -> float:
-        """Return the tension of adhesion on the axis, sqrt(2 E* W/pi a) [stress]."""
+        """Return the tension of adhesion on the axis, sqrt(2 E* W/pi a) [stress], a positive magnitude; 0 at a = 0."""
         a = contact_radius
         return math.sqrt(2.0 * self.contact_modulus * self.work_of_adhesion / (math.pi * a)) if a else 0.0
 
@@ -209,6 +240,7 @@ class PowerLaw(Indenter):
 
     @property
     def _rise(self) -> float:
+        """The factor kappa_n c of g(a) = kappa_n c a^n [length^(1-n)]."""
         return galin_factor(self.exponent) * self.coefficient
 
     def transformed(self, contact_radius: float) -> float:
@@ -221,10 +253,14 @@ class PowerLaw(Indenter):
         return float(2.0 * n / (n + 1.0) * self._rise * self.contact_modulus * contact_radius ** (n + 1.0))
 
     def _steep(self, wanted: float) -> float:
+        """Return a = [wanted/(n kappa_n c)]^(1/(n - 1/2)), where g'(a) sqrt(a) is `wanted` [length]."""
         return float((wanted / (self.exponent * self._rise)) ** (1.0 / (self.exponent - 0.5)))
 
     def central_pressure(self, contact_radius: float) -> float:
-        """Return p(0) = E* kappa_n c a^(n-1)/pi n/(n-1) - sqrt(2 E* W/pi a) [stress], infinite at a cone's tip."""
+        """Return p(0) = E* kappa_n c a^(n-1)/pi n/(n-1) - sqrt(2 E* W/pi a) [stress], positive in compression.
+
+        Infinite at a cone's tip (n = 1); 0 at a = 0 of any other body.
+        """
         n, a = self.exponent, contact_radius
         if n == 1.0:
             return math.inf
@@ -238,7 +274,8 @@ class PowerLaw(Indenter):
     def pressure(self, r: Floats, contact_radius: float) -> Floats:
         """Return p(r) [stress], positive in compression, of a cone or a paraboloid; 0 from the edge on.
 
-        (E* c/2) arcosh(a/r) or (2 E* a/pi R) sqrt(1 - r^2/a^2), less sqrt(2 E* W/pi a)/sqrt(1 - r^2/a^2).
+        (E* c/2) arcosh(a/r) or (2 E* a/pi R) sqrt(1 - r^2/a^2), less sqrt(2 E* W/pi a)/sqrt(1 - r^2/a^2). Any exponent
+        other than 1 counts as 2: it is no result of another one.
 
         Args:
             r: distances from the axis >= 0 [length], any shape.
@@ -282,7 +319,7 @@ class Ellipsoid(Indenter):
 
     @property
     def reach(self) -> float:
-        """The largest contact radius [length], next to the rim of the body, where F has no bound."""
+        """The largest contact radius, (1 - 1e-12) c [length], next to the rim of the body, where F has no bound."""
         return (1.0 - 1e-12) * self.radius
 
     def transformed(self, contact_radius: float) -> float:
@@ -295,17 +332,18 @@ class Ellipsoid(Indenter):
         return self.half_axis / c * self.contact_modulus * ((c**2 + a**2) * math.atanh(a / c) - a * c)
 
     def _steep(self, wanted: float) -> float:
+        """Return the radius a < c at which g'(a) sqrt(a) is `wanted` [length], by bisection."""
         return self._where(lambda a: self._rate(a) * math.sqrt(a), wanted, 0.0)
 
     def _rate(self, position: float) -> float:
-        """Return g'(x) = (b/c) [artanh(x/c) + x c/(c^2 - x^2)]; 0 <= x < c [length]."""
+        """Return g'(x) = (b/c) [artanh(x/c) + x c/(c^2 - x^2)], dimensionless; 0 <= x < c [length]."""
         x, c = position, self.radius
         return self.half_axis / c * (math.atanh(x / c) + x * c / (c**2 - x**2))
 
     def central_pressure(self, contact_radius: float) -> float:
-        """Return p(0) = (E*/pi) int_0^a g'/x dx - sqrt(2 E* W/pi a) [stress]; 0 <= a < c [length].
+        """Return p(0) = (E*/pi) int_0^a g'/x dx - sqrt(2 E* W/pi a) [stress]; 0 <= a < c [length], 0 at a = 0.
 
-        By quadrature: the integral has no elementary form.
+        By quadrature: the integral has no elementary form. `peak_pressure` is the same number.
         """
         if not contact_radius:
             return 0.0
@@ -345,7 +383,12 @@ class FlatPunch:
         return 2.0 * self.contact_modulus * self.radius
 
     def pressure(self, r: Floats | float, displacement: float) -> Floats:
-        """Return p(r) = (E* d/pi) (a^2 - r^2)^(-1/2) [stress] at 0 <= r < a [length], any shape; d [length]."""
+        """Return p(r) = (E* d/pi) (a^2 - r^2)^(-1/2) [stress], of the shape of r, with the sign of d.
+
+        Args:
+            r: distances from the axis, 0 <= r < a [length], any shape.
+            displacement: d, positive in approach [length].
+        """
         root = np.sqrt(self.radius**2 - np.asarray(r, dtype=np.float64) ** 2)
         return np.asarray(self.contact_modulus * displacement / (math.pi * root))
 

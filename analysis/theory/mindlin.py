@@ -24,10 +24,14 @@ def sliding_displacement(friction: float, ratio: float, displacement: float) -> 
 
 
 def _amplitudes(positions: Sequence[float]) -> list[list[float]]:
-    """Return at each position the first remembered turn, or the position without one, and half of each later distance.
+    """Return for each position the first remembered turn, or the position without one, and half of each later distance.
 
-    These are the distances from turn to turn and from the last turn to the position [length]. A turn is forgotten where
-    the path reaches the turn before it, the first one where it reaches its mirror image, but for round-off.
+    These are the distances from turn to turn and from the last turn to the position, with their signs [length]. A turn
+    is forgotten where the path reaches the turn before it, the first one where it reaches its mirror image, but for
+    round-off.
+
+    Args:
+        positions: of the path, which begins at 0 [length].
     """
     turns: list[float] = []
     current, direction, amplitudes = 0.0, 0.0, []
@@ -45,15 +49,15 @@ def _amplitudes(positions: Sequence[float]) -> list[list[float]]:
 
 
 def mindlin_path(positions: Sequence[float], normal_force: float, friction: float, sliding: float) -> list[float]:
-    """Return F_x [force] at each of the positions, reached one after the other from 0 under a constant load.
+    """Return F_x [force], with the sign of u in loading, at positions reached in turn from 0 under a constant N.
 
-    From turn to turn T(u_1) + 2 T((u_2 - u_1)/2) + ..., T the force of the initial loading.
+    From turn to turn T(u_1) + 2 T((u_2 - u_1)/2) + ..., T the force of the initial loading; |F_x| = mu N in full slip.
 
     Args:
         positions: u [length].
         normal_force: N [force].
         friction: mu.
-        sliding: u* [length].
+        sliding: u* [length], from which on all slips.
     """
 
     def force(distance: float) -> float:
@@ -95,11 +99,13 @@ def mindlin_cycle_energy(amplitude: float, normal_force: float, friction: float,
 
 
 def mindlin_stick_path(positions: Sequence[float], contact_radius: float, sliding: float) -> list[float]:
-    """Return c [length] at each of the positions of a path as of `mindlin_path`; after a reversal all sticks again.
+    """Return the radius c of the stick zone [length] at each of the positions of a path from 0 under a constant load.
+
+    After a reversal all sticks again, c = a; c is 0 in full slip.
 
     Args:
-        positions: u [length].
+        positions: u, reached one after the other [length].
         contact_radius: a [length].
-        sliding: u* [length].
+        sliding: u* [length], from which on all slips.
     """
     return [contact_radius * math.sqrt(max(1.0 - abs(half[-1]) / sliding, 0.0)) for half in _amplitudes(positions)]

@@ -43,25 +43,31 @@ class Indented:
 
     @property
     def touched(self) -> float:
-        """The time at which the bodies first touch."""
+        """The time at which the bodies first touch, where the displacement passes 0 [time]."""
         d = np.asarray(self.displacements)
         first = int(np.argmax(d > 0.0))
         return float(np.interp(0.0, d[first - 1 : first + 1], self.times[first - 1 : first + 1]))
 
     @property
     def deepest(self) -> float:
-        """The last moment of the largest displacement."""
+        """The last moment of the largest displacement, from which on the body is retracted [time]."""
         return self.times[len(self.times) - 1 - int(np.argmax(self.displacements[::-1]))]
 
     def _relaxed(self, time: Array) -> Array:
-        """Return the relaxation function φ at times since a load step, (m,) [1]."""
+        """Return the relaxation function φ, 1 at time 0, at times since a load step, (m,), dimensionless.
+
+        Time ≥ 0 [time].
+        """
         phi = np.ones_like(time)
         for g, tau in self.terms:
             phi += g * np.expm1(-time / tau)
         return phi
 
     def _balance(self, start: float, time: float) -> float:
-        """Return ∫ φ(t − s) d′ ds from a start to a time [length]."""
+        """Return ∫ φ(t − s) d′(s) ds from `start` to `time` [length].
+
+        0 where the contact is as wide as it was at the start.
+        """
         ends = np.unique(np.clip([start, *self.times, time], start, time))
         d = np.interp(ends, self.times, self.displacements)
         kept = 1.0 - sum(g for g, _ in self.terms)
@@ -72,7 +78,7 @@ class Indented:
         return float(integral)
 
     def lost(self, end: float) -> float | None:
-        """Return the time at which the contact is lost, up to an end; None where it is not."""
+        """Return the time at which the contact is lost [time], up to the time `end`; None where it is not."""
         from scipy.optimize import brentq
 
         if self._balance(self.touched, end) > 0.0:
@@ -80,9 +86,14 @@ class Indented:
         return float(brentq(lambda time: self._balance(self.touched, time), self.deepest, end))
 
     def forces(self, times: Sequence[float], parts: int = 4000) -> Array:
-        """Return F at times within the history, (m,) [force].
+        """Return F at times within the history, (m,), compression positive [force].
 
-        The loading has so many parts, each with φ at its middle: the error is some 1e-7 of F.
+        0 before the first touch and without contact. The loading has `parts` parts, each with φ at its middle: the
+        error is some 1e-7 of F.
+
+        Args:
+            times: of the force, (m,) [time].
+            parts: number of parts.
         """
         from scipy.optimize import brentq
 

@@ -43,6 +43,7 @@ app = typer.Typer(
 
 
 def _version(wanted: bool) -> None:
+    """Print the version and end the program, if it is `wanted`."""
     if wanted:
         from importlib.metadata import version
 
@@ -51,6 +52,7 @@ def _version(wanted: bool) -> None:
 
 
 def _cite(wanted: bool) -> None:
+    """Print what to cite, in BibTeX, and end the program, if it is `wanted`."""
     if wanted:
         typer.echo(Path(__file__).with_name("citation.bib").read_text(encoding="utf-8"), nl=False)
         raise typer.Exit
@@ -74,7 +76,10 @@ def contact1d(
 
 
 def scene_files(incomplete: str) -> list[str]:
-    """Return the *.toml files and the folders that begin with `incomplete`, or what is in the only such folder."""
+    """Return the *.toml files and the folders, ending in "/", whose paths begin with `incomplete`, for completion.
+
+    Where that is a single folder and no file, it is what is in that folder.
+    """
     paths = sorted(glob(f"{escape(incomplete)}*"))
     files = [path for path in paths if path.endswith(".toml")]
     folders = [os.path.join(path, "") for path in paths if os.path.isdir(path)]
@@ -82,7 +87,7 @@ def scene_files(incomplete: str) -> list[str]:
 
 
 def effect_names(incomplete: str) -> list[str]:
-    """Return the names of the effects that begin with `incomplete`."""
+    """Return the names of the effects that begin with `incomplete`, for completion; all for ""."""
     from contact1d.workflow.scene import EFFECTS
 
     return [name for name in EFFECTS if name.startswith(incomplete)]
@@ -374,7 +379,10 @@ def schema(
 
 
 def _write(path: Path, text: str, instead: str) -> None:
-    """Write a new file; an existing one is never replaced."""
+    """Write a new file.
+
+    A file or folder that is in the way ends the program with a message, and nothing is replaced.
+    """
     if path.parent.is_file():
         stop(f"{path.parent} is a file; a folder is needed", CALL_IS_WRONG)
     if not path.parent.is_dir():

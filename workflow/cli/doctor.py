@@ -93,6 +93,8 @@ def checks() -> list[Check]:
 def listening_sockets(pid: int) -> list[str]:
     """Return the local addresses (as the kernel writes them, hexadecimal) at which process `pid` accepts connections.
 
+    Empty where it accepts none.
+
     Raises:
         OSError: this system has no /proc, or the process belongs to another user.
     """
@@ -128,6 +130,7 @@ def _python() -> Iterator[Check]:
 
 
 def _machine() -> Iterator[Check]:
+    """Yield the checks of this machine: whether its current and temporary folder can be written to; its cores."""
     for name, folder in (("current folder", Path.cwd()), ("temporary folder", Path(tempfile.gettempdir()))):
         try:
             with tempfile.TemporaryFile(dir=folder) as file:

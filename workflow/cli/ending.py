@@ -39,13 +39,13 @@ class Commands(typer.core.TyperGroup):
     """All commands, with the errors of their options reported in the same form as others."""
 
     def invoke(self, ctx: Any) -> Any:
-        """Run a command, with errors of its options reported like all others."""
+        """Run a command and return its value; errors of its options end the program with a message, like all others."""
         with command(ctx.info_name, quiet=True):
             return super().invoke(ctx)
 
 
 def stop(message: str, code: int) -> NoReturn:
-    """Print an error message and end the program with an exit code."""
+    """Print an error message to standard error and end the program with an exit code; nothing is returned."""
     typer.secho(message, err=True, fg="red")
     raise SystemExit(code)
 
@@ -68,7 +68,11 @@ def print_lines(lines: Iterable[str], warnings: Mapping[str, str], path: object 
 
 
 def print_counts(counts: Mapping[str, int], table: Path) -> None:
-    """Print the number of points by status, and the path of their table; exit code 3 if any is not done."""
+    """Print the number of points by status, and the path of their table.
+
+    Raises:
+        typer.Exit: exit code 3, if any point is not done, or there is none.
+    """
     show(f"{', '.join(f'{count} {status}' for status, count in sorted(counts.items()))}; {table}")
     if set(counts) != {"done"}:
         raise typer.Exit(RUN_FAILED)
@@ -77,7 +81,11 @@ def print_counts(counts: Mapping[str, int], table: Path) -> None:
 def read(path: Path, overrides: list[str] | None, without: list[str] | None, progress: Progress | None = None) -> Scene:
     """Return the scene in a file with the changes of the options; report all problems and end if there are any.
 
-    With a `progress`, a suggested fix is tried first, and reported there.
+    Args:
+        path: of the scene file.
+        overrides: texts `key=value`.
+        without: effects to leave out.
+        progress: informed of the trial of a suggested fix, whose outcome is reported; None: no fix is tried.
     """
     from contact1d.workflow.scene import SceneError, read_scene
 
@@ -93,7 +101,10 @@ def read(path: Path, overrides: list[str] | None, without: list[str] | None, pro
 
 
 def problems_in(where: str, error: Exception) -> str:
-    """Return the number of problems of a file and a line for each; of another error its message."""
+    """Return the number of problems of the file `where` and a line for each.
+
+    Of an error without problems its message.
+    """
     count = len(getattr(error, "problems", ()))
     head = [f"{where}: {count} problem{'s' if count > 1 else ''}"] if count else []
     return "\n  ".join([*head, *str(error).split("\n")])
@@ -132,7 +143,15 @@ def command(
 
 
 def _ending(error: BaseException, task: str, left: Iterable[str], folder: str, source: str) -> tuple[str, int] | None:
-    """Return message and exit code of an error; None for a defect of the program."""
+    """Return message and exit code of an error; None for a defect of the program.
+
+    Args:
+        error: that ended the command.
+        task: subject of "… failed".
+        left: what is to be said on files that are kept.
+        folder: of the files, for a path error without a path; "" without one.
+        source: name of the file that was read, above its problems.
+    """
     from concurrent.futures.process import BrokenProcessPool
 
     from contact1d.workflow.errors import Contact1dError

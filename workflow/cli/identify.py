@@ -75,7 +75,10 @@ def identify(
 
 
 def _mistakes(given: Mapping[str, Any], material: Path | None) -> list[str]:
-    """Return the messages about options with a wrong value, or that exclude or lack one another."""
+    """Return the messages about options with a wrong value, or that exclude or lack one another.
+
+    Empty if all is right.
+    """
     if material is not None:
         names = ", ".join(f"--{name}" for name in given)
         return [f"{names}: not with MATERIAL: give it in the file"] if names else []
@@ -102,7 +105,13 @@ def _mistakes(given: Mapping[str, Any], material: Path | None) -> list[str]:
 
 
 def _units_of_run(folder: Path, contact_modulus: float, surface_energy: float) -> None:
-    """Print LU and FU of a finished run, and its results in SI."""
+    """Print LU [m] and FU [N] of a finished run, and its results in SI.
+
+    Args:
+        folder: of the run.
+        contact_modulus: E* [Pa].
+        surface_energy: γ of one side [J/m²].
+    """
     from contact1d.workflow.cli.summary import quantities
     from contact1d.workflow.identify.interaction import scales_of_run
 
@@ -124,7 +133,13 @@ def _from_material(file: Path, out: Path) -> None:
 
 
 def _scene_of_sphere(given: Mapping[str, float], tolerance: float, out: Path) -> None:
-    """Find the interaction of a sphere, and print its parameters and the results of the run."""
+    """Find the interaction of a sphere, and print its parameters [FU·LU] and [LU], deviations, and results of the run.
+
+    Args:
+        given: options by name, in SI: E* and R, and γ or F_A with a₀.
+        tolerance: relative tolerance of the scene.
+        out: run folder.
+    """
     modulus, radius = given["contact-modulus"], given["radius"]
     with command("the run", out) as progress:
         from contact1d.workflow.identify import Target, jkr_target, material_scene

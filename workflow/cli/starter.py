@@ -27,7 +27,7 @@ DATA: dict[str, Any] = tomllib.loads(Path(__file__).with_name("starter.toml").re
 
 
 def starter_scene(kind: str, profile: str | None = None, material: str | None = None) -> dict[str, Any]:
-    """Return the tables of a scene of an experiment.
+    """Return the tables of a scene of an experiment, to start from.
 
     Args:
         kind: experiment.
@@ -35,7 +35,7 @@ def starter_scene(kind: str, profile: str | None = None, material: str | None = 
         material: upper and lower body, such as "steel/glass", or one name for both; None: steel on glass.
 
     Raises:
-        SceneError: the bodies of this experiment are fixed.
+        SceneError: the bodies of this experiment are fixed, and a profile or a material is given.
     """
     scene = dict(DATA["scenes"][kind])
     bodies = scene.get("bodies", {})
@@ -50,7 +50,16 @@ def starter_scene(kind: str, profile: str | None = None, material: str | None = 
 
 
 def starter(kind: str, profile: str | None = None, material: str | None = None) -> str:
-    """Return the text of a scene file for an experiment; arguments as of `starter_scene`."""
+    """Return the text of a scene file for an experiment, with every key; those that are not set are behind #.
+
+    Args:
+        kind: experiment.
+        profile: profile of the upper body; None: a parabola.
+        material: upper and lower body, such as "steel/glass", or one name for both; None: steel on glass.
+
+    Raises:
+        SceneError: the bodies of this experiment are fixed, or a material has no such name.
+    """
     scene, keys = starter_scene(kind, profile, material), keys_of(Scene)
     read_scene({"title": kind, **scene})  # so that a material without a name is reported before there is a file
     experiment = keys["experiment"].allowed.kinds[kind]
@@ -89,6 +98,7 @@ def _inside(allowed: Allowed, given: object) -> Iterator[str]:
 
 
 def _other_kinds(allowed: Allowed, chosen: type[Table], begin: str = "# ") -> Iterator[str]:
+    """Yield the comments on the other kinds of table that may stand in place of the `chosen` one, with their keys."""
     for kind, table in allowed.kinds.items():
         if table is not chosen:
             keys = keys_of(table)
@@ -98,4 +108,5 @@ def _other_kinds(allowed: Allowed, chosen: type[Table], begin: str = "# ") -> It
 
 
 def _comment(text: str, begin: str = "# ", width: int = 118) -> list[str]:
+    """Return a text as lines of a comment, wrapped to `width` characters, the first of which begins with `begin`."""
     return textwrap.wrap(text, width, initial_indent=begin, subsequent_indent="#" + " " * (len(begin) + 1))

@@ -38,7 +38,8 @@ NAMES = {
 def quantities(results: Mapping[str, Any]) -> list[str]:
     """Return a line with the reduction, and a line for each result: name, value ± uncertainty, unit, closed forms.
 
-    Results are in SI where the units are known, and LU and FU are printed where they are not 1 m and 1 N.
+    Results are in SI where the units are known, and LU and FU are printed where they are not 1 m and 1 N. A result too
+    uncertain is "not reported". Lines on a scan and on uncertain inputs are added where there are any.
     """
     lines = [f"  {'reduction':<31} {_reduction(results)}"] if "reduction" in results else []
     if scan := results.get("scan"):
@@ -67,7 +68,10 @@ def _reduction(results: Mapping[str, Any]) -> str:
 
 
 def line_load(run: Run) -> list[str]:
-    """Return a plot of the line load of the state that is reported first, as lines of text."""
+    """Return a plot of the line load of the state that is reported first, as lines of text.
+
+    The run needs its outcome.
+    """
     assert run.outcome is not None
     name, profile = next(iter(run.outcome.profiles.items()))
     return [
@@ -79,7 +83,17 @@ def line_load(run: Run) -> list[str]:
 def pressure_plot(
     profile: Profile, radius: float, scales: Scales = UNKNOWN, columns: int = 64, rows: int = 9
 ) -> list[str]:
-    """Plot the line load over x with characters, compression up, marks at ±a below; in SI by `scales`."""
+    """Return a plot of the line load over x as lines of text, compression up, marks at ±a below; in SI by `scales`.
+
+    A line without pressure anywhere says so; a radius of 0 or wider than the plot has no marks.
+
+    Args:
+        profile: line load [FU/LU] over x [LU].
+        radius: contact radius a [LU].
+        scales: of LU and FU; by default unknown: the plot is in these.
+        columns: width of the plot in characters.
+        rows: its height, about.
+    """
     largest = float(np.max(np.abs(profile.pressure), initial=0.0))
     if largest == 0.0:
         return ["  no pressure"]
@@ -130,7 +144,14 @@ def regime(done: MaterialRun) -> Iterator[str]:
 
 
 def theory_table(done: MaterialRun, width: int = 18) -> Iterator[str]:
-    """Yield the lines of a table with the predictions of each theory, a column of `width` characters for each."""
+    """Yield the lines of a table with the predictions of each theory [m], [N].
+
+    None without theories of an adhesive sphere.
+
+    Args:
+        done: the run of the contact.
+        width: of a column in characters.
+    """
     theories = done.theories
     if theories is None:
         return

@@ -23,7 +23,12 @@ if TYPE_CHECKING:
 
 
 class Error(NamedTuple):
-    """A relative error of a result, or an upper bound of it."""
+    """A relative error of a result, or an upper bound of it.
+
+    Attributes:
+        relative: error over the size of the result, ≥ 0, dimensionless; ∞ where it is not known.
+        is_bound: whether it is an upper bound.
+    """
 
     relative: float
     is_bound: bool = False
@@ -43,7 +48,7 @@ class VariantRuns:
         warnings: names of the warnings, then of the results that miss the tolerance.
         failure: why there are no numbers, "" where there are.
         edit: what is changed in the scene, in the form that `contact1d run` accepts; the varied key first.
-        errors: errors of the main results against the reference.
+        errors: relative errors of the main results against the reference, by name; empty where the runs failed.
         dominant: the largest source in the budget of the result with the largest error.
     """
 
@@ -57,7 +62,7 @@ class VariantRuns:
 
     @property
     def cpu_s(self) -> float:
-        """Median CPU time [s]."""
+        """Median CPU time of the runs [s]; NaN without runs."""
         return median(self.cpu_runs or (math.nan,))
 
     @property
@@ -68,7 +73,7 @@ class VariantRuns:
 
     @property
     def error(self) -> Error:
-        """The largest of the errors; infinite if there is none."""
+        """The largest of the relative errors; infinite if there is none."""
         return max(self.errors.values(), default=Error(math.inf))
 
 
@@ -78,9 +83,9 @@ class CostRecord:
 
     Attributes:
         title: title of the scene.
-        tolerance: accuracy.tolerance of the scene.
-        reference_tolerance: accuracy.tolerance of the reference.
-        reference: main results of the reference, by name.
+        tolerance: accuracy.tolerance of the scene, relative.
+        reference_tolerance: accuracy.tolerance of the reference, relative.
+        reference: main results of the reference, by name, in units of the model.
         rows: tolerances from coarse to fine, that of the scene among them, then settings, then effects left out.
     """
 
@@ -96,12 +101,16 @@ class CostRecord:
         return next(row for row in self.rows if row.edit.values == {"accuracy.tolerance": self.tolerance})
 
     def new_warnings(self, variant: VariantRuns) -> list[str]:
-        """Return the warnings of a variant that the scene without a change does not have."""
+        """Return the names of warnings of a variant that the scene without a change does not have; empty for none."""
         return [name for name in variant.warnings if name not in self.baseline.warnings]
 
     @property
     def advice(self) -> str:
-        """The cheapest variant within the tolerance without new warnings, where it saves enough time."""
+        """A sentence with the cheapest variant within the tolerance without new warnings, where it saves enough time.
+
+        That is 0.1 s and 10 % of the time at least; otherwise it says to keep the scene, and without any such variant
+        that none is known to be within the tolerance.
+        """
         # CPU time [s], and its part of that of the scene, which a change saves at least to be recommended.
         saved_s = saved_share = 0.1
         baseline = self.baseline
@@ -122,7 +131,10 @@ def write_report(record: CostRecord, folder: Path) -> None:
 
 
 def table(record: CostRecord) -> list[tuple[str, ...]]:
-    """Return the table of a study as text: a header, then a row for each variant."""
+    """Return the table of a study as text: a header, then a row for each variant.
+
+    Cells of one that failed are empty.
+    """
     rows: list[tuple[str, ...]] = [("setting", "value", "true error", "CPU time", "of the scene's", "dominant error")]
     baseline = record.baseline
     for variant in record.rows:
@@ -150,7 +162,10 @@ def summary(record: CostRecord) -> list[str]:
 
 
 def cost_figure(record: CostRecord) -> Figure:
-    """Draw error over CPU time of every variant with numbers, labelled with its value; ↓ marks upper bounds."""
+    """Return the figure of relative error over CPU time [s] of every variant that has errors, labelled with its value.
+
+    Both axes are logarithmic; ↓ marks upper bounds.
+    """
     figure = new_figure((7.4, 5.2))
     axes = figure.subplots()
     groups: dict[str, list[tuple[float, float]]] = {}

@@ -27,7 +27,10 @@ from contact1d.workflow.scene import Scene
 
 
 def run_once(scene: Scene, folder: Path) -> VariantRuns:
-    """Run a scene once, in a folder of this process in `folder`; a run that fails is returned with the reason."""
+    """Return the results, CPU time [s] and warnings of one run of a scene, or the reason why it failed.
+
+    It runs in a folder of this process in `folder`.
+    """
     began = time.process_time()
     try:
         done = run(scene, folder / str(os.getpid()), figures=False, workers=1)
@@ -42,7 +45,7 @@ def run_once(scene: Scene, folder: Path) -> VariantRuns:
 def measure(
     scenes: Sequence[Scene], folder: Path, repeats: int, workers: int, progress: Progress, longest_s: float = 60.0
 ) -> list[VariantRuns]:
-    """Run all scenes in rounds, so that a machine that is slow for a while slows all of them.
+    """Return the runs of each scene, in order, from rounds in which all run, so that a slow machine slows all of them.
 
     Args:
         scenes: at least one.
@@ -65,7 +68,7 @@ def measure(
 
 
 def cost_of(scene: Scene, folder: Path, repeats: int, workers: int, progress: Progress) -> CostRecord:
-    """Measure the true error and the CPU time of a scene and of its variants.
+    """Return the true errors and CPU times of a scene and of its variants, from runs of all.
 
     Args:
         scene: the scene of the study.
@@ -93,7 +96,9 @@ def cost_of(scene: Scene, folder: Path, repeats: int, workers: int, progress: Pr
 def reference_of(
     scene: Scene, folder: Path, levels: int = 4, longest_s: float = 10.0
 ) -> tuple[float, Mapping[str, Result]]:
-    """Return tolerance and main results of the finest reference; the change from the one before counts as an error.
+    """Return tolerance and main results, by name, of the finest reference with numbers; none is of size 0.
+
+    The change from the reference before is one of the errors of a result (`model`).
 
     Args:
         scene: the scene of the study.
@@ -125,7 +130,10 @@ def reference_of(
 
 
 def with_errors(runs: VariantRuns, reference: Mapping[str, Result]) -> VariantRuns:
-    """Return the runs of a variant with their errors against the reference; without a main result they have failed."""
+    """Return the runs of a variant with relative errors against the reference.
+
+    Without one of its results they failed.
+    """
     if missing := [name for name in reference if name not in runs.results]:
         return replace(runs, failure=runs.failure or f"no {missing[0]}")
     errors = {name: _error(runs.results[name], best) for name, best in reference.items()}
@@ -137,9 +145,10 @@ def with_errors(runs: VariantRuns, reference: Mapping[str, Result]) -> VariantRu
 
 
 def _error(result: Result, best: Result, largest_share: float = 0.1) -> Error:
-    """Return the error of a result against its reference.
+    """Return the relative error of a result against its reference, over the size of the latter.
 
-    It is an upper bound where the uncertainty of the reference and the statistical error exceed `largest_share` of it.
+    Where the uncertainty of the reference and the statistical error of the result together exceed `largest_share` of
+    the error, they are added to it, and it is an upper bound.
     """
     error = abs(result.value - best.value)
     uncertainty = best.uncertainty - best.given + result.errors.get("statistics", 0.0)

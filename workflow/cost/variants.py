@@ -42,7 +42,10 @@ class Setting(NamedTuple):
 
 
 def quasistatic(scene: Scene) -> list[SceneEdit]:
-    """Return the edit that makes a motion quasi-static; none where time is physics, or there is no motion."""
+    """Return the edit that makes a motion quasi-static, in a list.
+
+    Empty where time is physics, or there is no motion.
+    """
     edit = SceneEdit({"experiment.method": "quasistatic"}, tuple(sorted({"damping", "plate"} & {*scene.effects})))
     return [edit] if scene.method == "dynamic" and edited(scene, edit) else []
 
@@ -65,7 +68,7 @@ SETTINGS = {
 
 
 def numbers_of(scene: Scene) -> dict[str, float]:
-    """Return the numbers that a scene gives, by dotted keys."""
+    """Return the numbers that a scene gives, by dotted keys, in units of the model."""
     return {place.path: place.value for place in Place(scene.model_dump(by_alias=True), WHOLE) if place.is_number}
 
 
@@ -76,7 +79,10 @@ def settings_of(scene: Scene) -> dict[str, Setting]:
 
 
 def variants_of(scene: Scene) -> list[tuple[SceneEdit, Scene]]:
-    """Return each valid variant of a scene with its edit; the scene itself is among the tolerances."""
+    """Return each valid variant of a scene with its edit, in units of SI where LU and FU are known.
+
+    The scene itself is among the tolerances; variants that are no valid scene are left out.
+    """
     edits = [scaled(scene, key, factor) for key, setting in settings_of(scene).items() for factor in setting.factors]
     edits += [*quasistatic(scene), *(SceneEdit(without=(effect,)) for effect in scene.effects)]
     return [(in_si(scene, edit, EXACT), variant) for edit in edits if (variant := edited(scene, edit))]
@@ -92,7 +98,8 @@ def edited(scene: Scene, edit: SceneEdit) -> Scene | None:
 def scaled(scene: Scene, key: str, factor: float | None) -> SceneEdit:
     """Return the edit that scales a number of a scene by a factor, or sets it to "auto" if the factor is None.
 
-    A count changes by an even number; with a spacing the numbers of POWERS change, too.
+    A count changes by an even number; with a spacing the numbers of POWERS change, too, each by a power of the factor.
+    A number that is not given is left out.
     """
     if factor is None:
         return SceneEdit({key: "auto"})
@@ -110,7 +117,8 @@ def scaled(scene: Scene, key: str, factor: float | None) -> SceneEdit:
 def finer(scene: Scene) -> Scene:
     """Return the scene with tolerance, spacing and steps finer, as far as its rules allow.
 
-    A motion becomes quasi-static where time is no physics, and noise gets another seed.
+    An edit they refuse is left out. A motion becomes quasi-static where time is no physics, and noise gets another
+    seed.
     """
     settings = settings_of(scene)
     for edit in [*(scaled(scene, key, setting.finer) for key, setting in settings.items()), *quasistatic(scene)]:

@@ -55,7 +55,7 @@ class MaterialRun(Choice):
 
 
 def theories_of(contact: AskedContact) -> Theories | None:
-    """Return the theories of an adhesive sphere; None for any other body, or without attraction."""
+    """Return the theories of an adhesive sphere, in SI; None for any other body, or without attraction."""
     if contact.radius is None or not contact.work_of_adhesion:
         return None
     sphere = MaugisDugdale(contact.radius, contact.contact_modulus, contact.work_of_adhesion, contact.range)
@@ -63,7 +63,7 @@ def theories_of(contact: AskedContact) -> Theories | None:
 
 
 def choose(contact: AskedContact) -> Choice:
-    """Return the scene that represents a contact.
+    """Return the scene that represents a contact, one chain on a rigid plane or two chains, and how it was chosen.
 
     Raises:
         IdentifyError: no chain can represent it; the message says why.
@@ -83,12 +83,17 @@ def choose(contact: AskedContact) -> Choice:
 
 
 def default_preload(contact: AskedContact) -> float:
-    """Return the preload of a pull-off without a given one [N]: PRELOAD_SHARE of JKR's pull-off force of the body."""
+    """Return the preload of a pull-off without a given one [N], > 0: 0.7 of JKR's pull-off force of the body."""
     return -PRELOAD_SHARE * float(contact_curve(on_plane(contact, {"kind": "load", "force": 1.0}))[2].min())
 
 
 def on_plane(contact: AskedContact, experiment: Any, **tables: Any) -> Scene:
-    """Return the scene of a contact on a rigid plane, with an experiment and further tables.
+    """Return the scene of a contact on a rigid plane, with an experiment and further tables, in metres and newtons.
+
+    Args:
+        contact: the described contact; one without attraction has no [adhesion].
+        experiment: the table of the experiment.
+        tables: further tables by name, in place of those of the description.
 
     Raises:
         SceneError: the tables make no valid scene.
@@ -132,14 +137,14 @@ def _particles(contact: AskedContact, theories: Theories | None, doubts: dict[st
 
 
 def from_material(source: AnyContact, folder: AnyPath, progress: Progress | None = None) -> MaterialRun:
-    """Choose the scene of a contact that is described in SI, and run it.
+    """Return the finished run of a contact that is described in SI, with the scene that was chosen for it.
 
         contact1d.from_material("rubber.toml", "runs/rubber").run.results.adhesion_force
 
     Args:
         source: a TOML file, by its path, or its tables; docs/identify.md has the keys.
         folder: run folder.
-        progress: informed of phases and steps.
+        progress: informed of phases and steps; None: nobody is.
 
     Raises:
         SceneError: all problems of the description.

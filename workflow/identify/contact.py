@@ -98,12 +98,15 @@ class AskedContact:
 
     @property
     def range(self) -> float:
-        """The range h₀ of the attraction [m]."""
+        """The range h₀ of the attraction [m].
+
+        Where an attraction has none 0.3 nm is assumed, and 0 is that of no attraction.
+        """
         return law_of(self.scene).range_of(self.scene, ASSUMED_RANGE)
 
     @property
     def load(self) -> float | None:
-        """The load [N]; None: not given."""
+        """The load [N], compression positive; None: not given."""
         return self.scene.experiment.compression if "load" in self.given else None
 
     @property
@@ -142,6 +145,7 @@ def read_contact(source: AnyContact, complete: bool = True) -> AskedContact:
 
 
 def _adheres(data: Mapping[str, Any]) -> bool:
+    """Return whether a description has a surface energy or a work of adhesion other than 0."""
     return bool(data.get("surface_energy") or data.get("work_of_adhesion"))
 
 
@@ -201,7 +205,10 @@ def _as_scene(data: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _as_given(problem: Problem, data: Mapping[str, Any]) -> Problem:
-    """Return a problem of the scene with the key of the description in place of the scene's."""
+    """Return a problem of the scene with the key of the description in its path.
+
+    Unchanged if it belongs to no such key.
+    """
     keys = [key for key in SCENE_KEYS if key in data]
     described = next((key for key in keys if problem.path.startswith(SCENE_KEYS[key])), problem.path)
     path = problem.path.replace(SCENE_KEYS.get(described, described), described, 1)
@@ -215,7 +222,13 @@ def _rank(problem: Problem) -> int:
 
 
 def _length(data: Mapping[str, Any], key: str, problems: list[Problem]) -> float | None:
-    """Return a length ≥ 0 [m]; None if it is absent, or invalid, which is appended to `problems`."""
+    """Return a length ≥ 0 [m]; None if it is absent or invalid.
+
+    Args:
+        data: the description; a text has a unit, a number is in [m].
+        key: of the length.
+        problems: list to which the problem of an invalid length is appended.
+    """
     given = data.get(key)
     if given is None:
         return None

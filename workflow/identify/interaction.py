@@ -48,17 +48,23 @@ class IdentifyError(Contact1dError, ValueError):
 
 @dataclass(frozen=True)
 class Target:
-    """Required results of a run: F_A [FU] and a₀ [LU]."""
+    """Required results of a run.
+
+    Attributes:
+        adhesion_force: F_A > 0, tension as a positive magnitude [FU], or [N] before a scene is made.
+        zero_load_radius: a₀ > 0 [LU], or [m].
+    """
 
     adhesion_force: float
     zero_load_radius: float
 
 
 def require_reachable(scene: Scene, target: Target) -> None:
-    """Check that springs of the scene's stiffness can reach a target.
+    """Check that springs of the scene's stiffness can reach a target, F_A [FU] and a₀ [LU].
 
     Raises:
-        IdentifyError: they cannot; the message has the nearest zero-load radius and the nearest adhesion force.
+        IdentifyError: they cannot; the message has the nearest zero-load radius and the nearest adhesion force. Or the
+            scene is no pull-off with an attraction, or of no parabola.
     """
     if not isinstance(scene.experiment, PullOff) or scene.interaction is None or scene.interaction.attraction is None:
         raise IdentifyError("only a pull_off with an attraction finds F_A and a₀")
@@ -99,7 +105,7 @@ def require_held(target: Target, layer: float, radius: float, units: tuple[str, 
 def material_scene(
     contact_modulus: float, radius: float, target: Target, length_unit: float | None = None, *, tolerance: float
 ) -> tuple[Scene, Target]:
-    """Return the scene of a sphere of a material, whose interaction is still to be identified, and its target.
+    """Return the scene of a sphere of a material and its target in LU and FU; its interaction is only a start.
 
     The reduction is the MDR's, so that stiffness, displacement and radius are those of the sphere. FU is chosen so that
     a bulk spring has the stiffness 1 FU/LU.
@@ -110,9 +116,6 @@ def material_scene(
         target: F_A [N] and a₀ [m].
         length_unit: one LU [m]; None: 28.5 particles in a₀, as in the first row of the paper's Table 1.
         tolerance: relative tolerance of the scene.
-
-    Returns:
-        The scene, and the target in its units.
 
     Raises:
         IdentifyError: the target is out of reach, or the length unit too coarse or too fine.
@@ -175,9 +178,9 @@ def jkr_target(contact_modulus: float, surface_energy: float, radius: float) -> 
 
 
 def estimated(scene: Scene, target: Target) -> Scene:
-    """Return the scene with amplitudes and ranges scaled so that F_A [FU] and a₀ [LU] are the target, without a run.
+    """Return the scene with amplitudes and ranges scaled so that the predictor gives the target, without a run.
 
-    F_A and a₀ are those of the predictor, whose pairs of particles are independent.
+    Its F_A [FU] and a₀ [LU] are those of independent pairs of particles, not of a run.
 
     Raises:
         IdentifyError: no interaction of this shape has the target.
@@ -187,12 +190,12 @@ def estimated(scene: Scene, target: Target) -> Scene:
 
 
 def start(scene: Scene, target: Target) -> Array:
-    """Return the logarithms of the factors with which independent pairs reach the target, (2,).
+    """Return the logarithms of the factors of amplitudes and ranges, (2,), to reach the target by independent pairs.
 
     F_A is monotone in the amplitudes, and a₀ in the range at that F_A: two nested bracketed searches.
 
     Raises:
-        IdentifyError: no interaction of this shape has the target.
+        IdentifyError: no interaction of this shape has the target; the message has the nearest a₀ at the same F_A.
     """
     amplitude, wanted = 0.0, np.log([target.adhesion_force, target.zero_load_radius])
 
@@ -226,7 +229,7 @@ class _NoRootError(ValueError):
 def _root(
     function: Callable[[float], float], start: float, step: float = 0.25, last_step: float = 9.0, error: float = 1e-4
 ) -> float:
-    """Return the zero of a monotone function of a logarithm, searched on both sides of `start`.
+    """Return the zero of a monotone function of a logarithm, to ± `error`, searched on both sides of `start`.
 
     Args:
         function: function of the logarithm of a factor.
@@ -249,9 +252,10 @@ def _root(
 
 
 def slopes(scene: Scene, logarithms: Array, step: float = 0.03) -> Array:
-    """Return d(ln F_A, ln a₀)/d(logarithms) of independent pairs, (2, 2), by central differences.
+    """Return d(ln F_A, ln a₀)/d(logarithms) of independent pairs, (2, 2), dimensionless, by central differences.
 
-    The step is much larger than the error of the predictor by its grid.
+    Rows are ln F_A and ln a₀, columns the logarithms of the factors of amplitudes and ranges. The step is much larger
+    than the error of the predictor by its grid.
     """
     moves = step * np.eye(2)
     ends = [[_estimated(scaled(scene, logarithms + sign * move)) for sign in (1.0, -1.0)] for move in moves]
@@ -259,7 +263,7 @@ def slopes(scene: Scene, logarithms: Array, step: float = 0.03) -> Array:
 
 
 def scaled(scene: Scene, logarithms: Array) -> Scene:
-    """Return the scene with both amplitudes and both ranges multiplied by the exponentials of `logarithms`."""
+    """Return the scene with amplitudes and ranges of its interaction times the exponentials of `logarithms`, (2,)."""
     data = scene.model_dump(by_alias=True, exclude_none=True)
     for term in ("repulsion", "attraction"):
         for key, factor in zip(("amplitude", "range"), np.exp(logarithms).tolist(), strict=True):
@@ -268,7 +272,7 @@ def scaled(scene: Scene, logarithms: Array) -> Scene:
 
 
 def _estimated(scene: Scene, tail: float = 1e-5, points: int = 1000) -> Array:
-    """Return ln F_A and ln a₀ of independent pairs, (2,), by the predictor of the settings on a coarser grid.
+    """Return ln F_A [FU] and ln a₀ [LU] of independent pairs, (2,), by the predictor of the settings on a coarser grid.
 
     Args:
         scene: scene with an interaction.
@@ -311,13 +315,15 @@ class Identified:
 def identify(
     scene: Scene, target: Target, folder: Path, progress: Progress | None = None, most_runs: int = 8
 ) -> Identified:
-    """Scale the interaction of a pull_off `scene` so that its F_A and a₀ are those of `target`.
+    """Return the scene whose run has the F_A and a₀ of `target`, with that run, after scaling its interaction.
+
+    Both are met to 0.3 of the tolerance of the scene.
 
     Args:
         scene: a pull_off with attraction; the shape of its interaction is kept.
-        target: required F_A and a₀.
+        target: required F_A [FU] and a₀ [LU].
         folder: run folder, for the last run.
-        progress: informed of phases and steps.
+        progress: informed of phases and steps; None: nobody is.
         most_runs: runs after which the search ends without a result; two to four are usual.
 
     Raises:
@@ -345,13 +351,15 @@ def identify(
 def scales_of_run(folder: Path, contact_modulus: float, surface_energy: float) -> tuple[Scales, dict[str, Any]]:
     """Return the scales with which a run is JKR's contact of a material, and its results with units of LU and FU.
 
+    The scales are LU [m] and FU [N]; results are by name with value, uncertainty and unit of the model.
+
     Args:
         folder: run folder of a pull_off, or of a path that found F_A and a₀.
         contact_modulus: E* [Pa].
         surface_energy: γ of one side [J/m²].
 
     Raises:
-        IdentifyError: the folder has no such run, or F_A or a₀ is missing.
+        IdentifyError: the folder has no such run, its body is no sphere, or F_A or a₀ is missing or not positive.
     """
     try:
         run = load_run(folder).model

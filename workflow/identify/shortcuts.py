@@ -30,7 +30,10 @@ class Contact:
     def scene(self, kind: str, friction: float | None = None, **experiment: Any) -> Scene:
         """Return the scene of an experiment with the keys of docs/scene.md, to run, to sweep or to print.
 
-        By default, the preload of a pull-off is 0.7 of the pull-off force of theory.
+        Args:
+            kind: experiment, such as "pull_off"; by default its preload is 0.7 of the pull-off force of theory.
+            friction: coefficient μ; None: without friction.
+            experiment: keys of the experiment.
 
         Raises:
             SceneError: all problems of the scene.
@@ -47,26 +50,40 @@ class Contact:
     def load(self, force: list[Any], folder: AnyPath | None = None) -> list[Run]: ...
 
     def load(self, force: Any, folder: AnyPath | None = None) -> Run | list[Run]:
-        """Press with a force, or pull if it is negative; without a folder, the run folder is temporary.
+        """Return the run under a force, which presses, or pulls if it is negative: a text with a unit, or [N].
 
-        A list of forces makes a list of runs, in the folders 1, 2, … of the folder.
+        A list of forces makes a list of runs, in the folders 1, 2, … of the folder. Without a folder, the run folder is
+        temporary.
         """
         if isinstance(force, list):
             return [self.load(step, folder and Path(folder) / str(i)) for i, step in enumerate(force, 1)]
         return run(self.scene("load", force=force), folder)
 
     def pull_off(self, preload: str | float | None = None, folder: AnyPath | None = None) -> Run:
-        """Press with a preload, by default that of `scene`, and pull until the bodies separate."""
+        """Return the run that presses with a preload, by default that of `scene`, and pulls until the bodies separate.
+
+        The preload is a text with a unit or [N]; without a folder, the run folder is temporary.
+        """
         return run(self.scene("pull_off", preload=preload), folder)
 
     def path(self, displacements: Any, folder: AnyPath | None = None) -> Run:
-        """Follow displacements: a list, or { from, to, steps, return }."""
+        """Return the run along displacements, texts with units or [m]: a list, or { from, to, steps, return }.
+
+        Without a folder, the run folder is temporary.
+        """
         return run(self.scene("path", displacements=displacements), folder)
 
     def tangential(
         self, normal_force: str | float, friction: float, folder: AnyPath | None = None, **experiment: Any
     ) -> Run:
-        """Press with a normal force and displace tangentially with Coulomb friction, by `displacements` or `cycles`."""
+        """Return the run under a normal force [N] with a tangential motion under Coulomb friction.
+
+        Args:
+            normal_force: text with a unit, or [N], compression positive.
+            friction: coefficient μ.
+            folder: run folder; None: a temporary one.
+            experiment: `displacements` or `cycles`, and other keys of the experiment.
+        """
         return run(self.scene("tangential", friction, normal_force=normal_force, **experiment), folder)
 
 
@@ -76,8 +93,8 @@ def sphere(radius: str | float, counter_radius: str | float | None = None, **con
         contact1d.sphere(radius="2 mm", upper="rubber", lower="glass", work_of_adhesion="80 mJ/m²").pull_off()
 
     Args:
-        radius: radius of curvature at the apex.
-        counter_radius: radius of the opposite body; None: flat.
+        radius: radius of curvature at the apex, text with a unit or [m].
+        counter_radius: radius of the opposite body, text with a unit or [m]; None: flat.
         contact: `upper` and `lower` (names of materials, or tables with youngs_modulus and poisson_ratio), or
             `contact_modulus`; `work_of_adhesion`, `tolerance`, `title` (docs/identify.md).
 
@@ -94,7 +111,7 @@ def cone(half_angle: str, **contact: Any) -> Contact:
 
 
 def punch(radius: str | float, **contact: Any) -> Contact:
-    """Return the contact of a flat punch; other arguments as `sphere`."""
+    """Return the contact of a flat punch of a radius, text with a unit or [m]; other arguments as `sphere`."""
     return _contact(contact, kind="flat_punch", radius=radius)
 
 
@@ -110,4 +127,5 @@ def profile(file: AnyPath | None = None, **contact: Any) -> Contact:
 
 
 def _contact(contact: dict[str, Any], **profile: Any) -> Contact:
+    """Return the contact of a profile, by its keys, and the description's other keys; SceneError for a wrong one."""
     return Contact(read_contact({"profile": profile, **contact}, False))

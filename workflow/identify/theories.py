@@ -37,7 +37,7 @@ class Theories:
 
     @property
     def tabor(self) -> float:
-        """The Tabor parameter μ = (R W²/(E*² h₀³))^(1/3)."""
+        """The Tabor parameter μ = (R W²/(E*² h₀³))^(1/3), dimensionless."""
         return self.sphere.tabor
 
     @cached_property
@@ -49,7 +49,10 @@ class Theories:
 
     @cached_property
     def values(self) -> Mapping[str, Mapping[str, float]]:
-        """By theory F_A [N], a₀ [m], the critical radius under load control [m], and the radius under a load [m]."""
+        """By theory F_A [N], a₀ [m], critical radius under load control [m] and of a given load its radius [m].
+
+        Keys are `adhesion_force`, a positive magnitude, `zero_load_radius`, `critical_radius` and `loaded_radius`.
+        """
         return {
             str(name): {
                 "adhesion_force": contact.pull_off_force(), "zero_load_radius": contact.zero_load_radius(),
@@ -66,10 +69,12 @@ class Theories:
 
 
 def limitations(contact: AskedContact, theories: Theories) -> dict[str, str]:
-    """Return the limitations of a chain as a model of an adhesive sphere, by name.
+    """Return the limitations of a chain as a model of an adhesive sphere: name and message; empty where there are none.
+
+    Names are `below_an_atom`, `roughness` and `tabor`.
 
     Raises:
-        IdentifyError: a chain is no model of the contact.
+        IdentifyError: a chain is no model of the contact: its roughness exceeds the elastic stretch at pull-off.
     """
     atom = 0.3e-9  # diameter [m]
     held, doubts = theories.values[theories.holding], {}
@@ -99,16 +104,16 @@ def limitations(contact: AskedContact, theories: Theories) -> dict[str, str]:
 
 
 def _down(value: float) -> str:
-    """Return a value as text, rounded down to three digits."""
+    """Return a value > 0 as text, rounded down to three significant digits."""
     digits = 10.0 ** (math.floor(math.log10(value)) - 2)
     return f"{math.floor(value / digits) * digits:.3g}"
 
 
 def require_size(contact: AskedContact, radius: float) -> None:
-    """Check that a contact radius [m] is small compared with the radius of the sphere.
+    """Check that a contact radius [m] is at most 0.6 of the radius of a sphere; any other body passes.
 
     Raises:
-        IdentifyError: it is not; the message has the largest share.
+        IdentifyError: it is larger; the message has the largest share.
     """
     sphere = contact.radius and contact.shape.steepest.curvature_radius
     if sphere and radius > LARGEST_RADIUS_SHARE * sphere:

@@ -31,15 +31,12 @@ OVITO = "view_in_ovito.py"
 
 
 def animate(folder: AnyPath, out: AnyPath | None = None, frames_per_second: int = 10) -> Path:
-    """Write the states of a finished run as an animation, GIF or MP4.
+    """Return the path of an animation, GIF or MP4, of the states of a finished run, after writing it.
 
     Args:
         folder: run folder.
         out: file to write, whose suffix is the format; None: way.gif in the run folder.
         frames_per_second: states per second.
-
-    Returns:
-        Path of the file.
 
     Raises:
         FolderError: the folder holds no finished run, or one of a single state.
@@ -59,7 +56,7 @@ def animate(folder: AnyPath, out: AnyPath | None = None, frames_per_second: int 
 
 
 def ovito_script(folder: AnyPath) -> Path:
-    """Write the script with which OVITO shows the states of a run into its folder, and return its path.
+    """Return the path of the script with which OVITO shows the states of a run, after writing it into the run's folder.
 
     Raises:
         FolderError: the folder holds no finished run, or no states.
@@ -74,6 +71,10 @@ def ovito_script(folder: AnyPath) -> Path:
 
 
 def _draw(run: Run, states: States, path: Path, frames_per_second: int) -> None:
+    """Draw and write the animation of a run's states: bodies above, the main curve with a mark below.
+
+    Whole or not at all.
+    """
     from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 
     figure = new_figure((WIDTH, HEIGHT))
@@ -94,9 +95,17 @@ def _draw(run: Run, states: States, path: Path, frames_per_second: int) -> None:
 
 
 def _bodies(axes: Axes, run: Run, chart: Chart, loads: Panel, most_springs: int = 160) -> Callable[[int], Artist]:
-    """Draw particles, coloured by pressure, and the bulk springs of chains of up to `most_springs` particles.
+    """Draw the axes of the bodies, and return the function that draws the particles of a state, by its index, there.
 
-    Of more particles the springs would be a grey area. Returns the function that draws a frame.
+    Particles are coloured by pressure; chains of up to `most_springs` particles have bulk springs, which of more would
+    be a grey area.
+
+    Args:
+        axes: to draw into.
+        run: that is shown.
+        chart: heights over x of the upper and the lower body, a row for each state.
+        loads: line load of the particles, a row for each state.
+        most_springs: number of particles.
     """
     from matplotlib.collections import LineCollection
 

@@ -36,14 +36,14 @@ Data = dict[str, Any]
 
 
 def symbols(text: str) -> str:
-    """Return `text` as HTML, escaped: `F_A` has an index, `R^{2/3}` an exponent, no line ends inside `R = 1000 LU`."""
+    """Return `text` as HTML, escaped: `F_A` has an index, `R^{2/3}` an exponent; `R = 1000 LU` is not broken."""
     unbroken = UNBREAKABLE.sub(lambda match: match[0].replace(" ", "\u00a0"), escape(text))
     indexed = INDEX.sub(r"<i>\1</i><sub>\2</sub>", unbroken)
     return EXPONENT.sub(lambda match: f"<sup>{match[1] or match[2]}</sup>", indexed)
 
 
 def charts_of(runs: Mapping[str, Mapping[str, Chart]]) -> list[Data]:
-    """Return a chart for each panel; panels of several runs with the same name, axes and scale are overlaid.
+    """Return a chart in plotly's form for each panel; those of several runs with one name, axes and scale are overlaid.
 
     Args:
         runs: by the name of a run its charts, written in base units.
@@ -64,7 +64,7 @@ def charts_of(runs: Mapping[str, Mapping[str, Chart]]) -> list[Data]:
 
 
 def _fit(charts: Sequence[Chart], least_share: float = 0.05) -> bool:
-    """Whether each chart of one panel covers `least_share` of the common axes: less would be a line or a dot."""
+    """Return whether each chart of one panel covers `least_share` of the common axes: less would be a line or a dot."""
     views = np.asarray([[chart.x.view, chart.panels[0].y.view] for chart in charts])
     return bool(np.all(np.ptp(views, axis=2) >= least_share * np.ptp(views, axis=(0, 2))))
 
@@ -90,7 +90,10 @@ def _of_a_run(panel: Panel, run: str, colour: str) -> Panel:
 
 
 def drawn(chart: Chart) -> Data:
-    """Return a written chart of one panel in plotly's form; a series that moves has a list for each state."""
+    """Return a written chart of one panel in plotly's form: title, data and layout.
+
+    A series that moves has a list of lists.
+    """
     (panel,) = chart.panels
     heading = ": ".join(filter(None, [f"{panel.y.name} over {chart.x.name}", panel.heading]))
     layout: Data = {}
@@ -110,6 +113,7 @@ def drawn(chart: Chart) -> Data:
 
 
 def _trace(line: Series, x: Axis, y: Axis) -> Data:
+    """Return a series in plotly's form; ±∞ are the ends of the axes, uncertainties are bars."""
     style = line.look.lstrip("o.x")
     trace: Data = {
         "x": listed(x.ended(line.x)), "y": listed(y.ended(line.y)), "name": _words(line.name),
@@ -127,9 +131,11 @@ def _trace(line: Series, x: Axis, y: Axis) -> Data:
 
 
 def moving(run: Run, states: States) -> list[Chart]:
-    """Return the charts that a slider moves: the main curve with a mark, line loads, bodies.
+    """Return the charts that a slider moves: the main curve with a mark, line loads [N/m], bodies [m], with prefixes.
 
-    Their series have a row for each state.
+    Without units of the scene they are in LU and FU. Their series that move have a row for each state; x of particles
+    that do not move along it has one row. A shear other than 0 is drawn beside the line load, as it acts on the lower
+    body.
     """
     main = path_chart(run.model)
     panel, (x, y, *_) = main.panels[0], main_curve(run.model).values()
@@ -156,7 +162,10 @@ def moving(run: Run, states: States) -> list[Chart]:
 
 
 def path_of(run: Run, states: States) -> Data:
-    """Return the charts that the slider moves, a text for each state, and the first one: the largest force."""
+    """Return what a slider needs, by name: `words`, a text for each state, `start`, and `charts` in plotly's form.
+
+    `start` is the index of the state that is shown first, that of the largest |y| of the main curve, mostly the force.
+    """
     charts = moving(run, states)
     curve = charts[0].panels[0]
     mark, radii, unit = curve.series[-1], run.curve.contact_radius, run.curve.units.get("contact_radius", LENGTH)
@@ -170,7 +179,7 @@ def path_of(run: Run, states: States) -> Data:
 
 
 def listed(values: Any) -> list[Any]:
-    """Return numbers for JSON, rounded to seven digits; None for those that are not finite."""
+    """Return numbers as nested lists for JSON, rounded to seven digits; None for those that are not finite."""
     numbers = np.asarray(values, dtype=np.float64)
     size = np.where(np.isfinite(numbers) & (numbers != 0.0), np.abs(numbers), 1.0)
     digits = 10.0 ** (6.0 - np.floor(np.log10(size)))
@@ -180,5 +189,5 @@ def listed(values: Any) -> list[Any]:
 
 
 def _words(text: str) -> str:
-    """Return a text with TeX marks as HTML."""
+    """Return a text with symbols as HTML, as `symbols` writes them, without the $ of TeX."""
     return symbols(text.replace("$", ""))

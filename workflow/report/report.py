@@ -39,14 +39,11 @@ SIGNATURES = (
 
 
 def report(folders: Sequence[AnyPath], out: AnyPath = "report.html") -> Path:
-    """Write the page of runs or of a sweep.
+    """Return the path of the page of runs or of a sweep, after writing it.
 
     Args:
-        folders: folders of one or several runs, which are overlaid; or the folder of one sweep.
-        out: file to write.
-
-    Returns:
-        Path of the file.
+        folders: folders of one or several runs, 24 at most, which are overlaid; or the folder of one sweep.
+        out: file to write; an earlier page is replaced.
 
     Raises:
         FolderError: a folder holds neither a run nor a sweep, or there are too many; or the file is there and no page.
@@ -72,7 +69,10 @@ def report(folders: Sequence[AnyPath], out: AnyPath = "report.html") -> Path:
 
 
 def _of_runs(runs: Sequence[Run]) -> str:
-    """Return the page of runs; a failed run is reported with the reason."""
+    """Return the HTML page of runs.
+
+    A failed run is reported with the reason, and a single run has a slider over its states.
+    """
     names = _names(runs)
     done = {name: run for name, run in zip(names, runs, strict=True) if run.status == "done"}
     drawn = {name: charts(run) for name, run in done.items()}
@@ -88,12 +88,13 @@ def _of_runs(runs: Sequence[Run]) -> str:
 
 
 def _deck(run: Run) -> str:
+    """Return the text of in.lammps of a run; "" without the file."""
     path = run.folder / "in.lammps"
     return path.read_text(encoding="utf-8") if path.is_file() else ""
 
 
 def _facts(run: Run) -> dict[str, str]:
-    """Return tolerance, refinements, LAMMPS steps and times of a run as text."""
+    """Return tolerance, refinements, LAMMPS steps and times [s] of a run as texts by what they are."""
     accuracy: Mapping[str, Any] = run.document.get("accuracy", {})
     asked, timing = run.scene.accuracy.tolerance, run.timing
     return {
@@ -107,7 +108,7 @@ def _facts(run: Run) -> dict[str, str]:
 
 
 def _names(runs: Sequence[Run]) -> list[str]:
-    """Return the name of each run on the page: its title, or its folder if two titles are equal."""
+    """Return the name of each run on the page: its title; or its folder's name, or path, if two runs have the same."""
     for names in ([run.scene.title for run in runs], [run.folder.name for run in runs]):
         if len(set(names)) == len(names):
             return names
@@ -115,6 +116,7 @@ def _names(runs: Sequence[Run]) -> list[str]:
 
 
 def _of_sweep(folder: Path) -> str:
+    """Return the HTML page of a sweep, with the first 500 points in its table."""
     most_rows = 500  # results.csv has all
     plan, units = read_record(folder), units_in(folder)
     drawn = {"": sweep_charts(folder, plan, units)}
@@ -131,7 +133,14 @@ def _of_sweep(folder: Path) -> str:
 
 
 def _page(template: str, charts: Sequence[Data], moving: Mapping[str, Any] | None, **values: Any) -> str:
-    """Return a page with its scripts and data; the filter `symbols` writes `F_A` and `R^0.5` in plain text as HTML."""
+    """Return a page with its scripts and data; the filter `symbols` writes `F_A` and `R^0.5` in plain text as HTML.
+
+    Args:
+        template: name of its file.
+        charts: in plotly's form.
+        moving: charts that a slider moves, with their texts; None: without a slider.
+        values: of the names in the template.
+    """
     from plotly.offline import get_plotlyjs
 
     environment = Environment(
@@ -145,7 +154,7 @@ def _page(template: str, charts: Sequence[Data], moving: Mapping[str, Any] | Non
 
 
 def sentence(scene: Scene, scales: Scales) -> str:
-    """Return a sentence with the bodies, effects and experiment of a scene."""
+    """Return a sentence with the bodies, effects and experiment of a scene, numbers in SI with `scales` where known."""
     bodies, experiment = scene.bodies, scene.experiment
     size, given = (
         ", ".join(f"{name} {value}" for name, value in _values(table, scales) if name != "kind")
@@ -158,7 +167,10 @@ def sentence(scene: Scene, scales: Scales) -> str:
 
 
 def scene_in_words(scene: Scene, scales: Scales) -> list[dict[str, Any]]:
-    """Return name, meaning and values with units of each table of a scene, in order."""
+    """Return name, meaning and values with units of each table of a scene, in order; in SI with `scales` where known.
+
+    They are under `name`, `meaning`, and `values`, pairs of label and text.
+    """
     tables = {name: getattr(scene, name) for name in Scene.model_fields}
     return [
         {"name": name.replace("_", " "), "meaning": _meaning(table), "values": list(_values(table, scales))}
@@ -168,11 +180,16 @@ def scene_in_words(scene: Scene, scales: Scales) -> list[dict[str, Any]]:
 
 
 def _meaning(table: Table) -> str:
+    """Return the first line of the description of a table's class, without "Effect: ", with a capital."""
     text = (type(table).__doc__ or "").partition("\n")[0].removeprefix("Effect: ")
     return text[:1].upper() + text[1:]
 
 
 def _values(table: Table, scales: Scales, within: str = "") -> Iterator[tuple[str, str]]:
+    """Yield label and text with unit of each key of a table that has a value, also of those of tables in it.
+
+    Labels begin with `within`. Units of 1, and quantities whose unit is unknown in SI beside known scales, are left out.
+    """
     for name, key in keys_of(type(table)).items():
         value, unit = getattr(table, key.field), key.allowed.unit
         label = name.replace("_", " ")

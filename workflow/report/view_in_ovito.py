@@ -37,7 +37,7 @@ COLOURS = np.array([[0.70, 0.02, 0.15], [0.86, 0.86, 0.86], [0.02, 0.30, 0.70]])
 
 
 def main(folder: Path) -> None:
-    """Load the states, choose view and colours, and save session and picture."""
+    """Load the states of a run in a folder, choose view and colours, and write way.ovito and way.png there."""
     pipeline = import_file(str(folder / "system.data"))
     trajectory = LoadTrajectoryModifier()
     trajectory.source.load(str(folder / "states.lammpstrj"))
@@ -74,9 +74,14 @@ def main(folder: Path) -> None:
 
 
 def extents(states: list[Any], least_share: float = 0.01) -> tuple[float, float, float, float, int]:
-    """Return half-width, height and spacing of the view [LU], largest force on a particle [FU], frame of most force.
+    """Return half-width, height and spacing of the view [LU], largest |force| on a particle [FU], and index of a state.
 
-    The view has all particles with at least `least_share` of the largest force.
+    That state is the one with the largest sum of forces on the upper body. The view has all particles with at least
+    `least_share` of the largest force. Without any force that is 1, and the spacing of a single particle is 1.
+
+    Args:
+        states: particles of each state, with type, position and `Press`, the force onto the opposite body [FU].
+        least_share: of the largest force.
     """
     kinds = np.asarray(states[0]["Particle Type"])
     press = np.asarray([state["Press"] for state in states])

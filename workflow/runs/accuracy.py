@@ -21,10 +21,10 @@ CURVE_FORCE = "force in curve.csv"
 
 
 def accuracy_warnings(scene: Scene, outcome: Outcome) -> dict[str, str]:
-    """Return the warnings of results that are not reported (`unknown`) or miss the tolerance, by name.
+    """Return the warnings of results that are not reported or miss the tolerance of the scene: name and message.
 
-    `lattice` has the results whose discretisation error alone exceeds the tolerance, `tolerance` the others. There are
-    none of a mean under noise, whose standard error is its uncertainty.
+    Names are `unknown` (not reported), `lattice` (the discretisation error alone exceeds the tolerance) and `tolerance`
+    (the others). Empty where all meet it, and of a mean under noise, whose standard error is its uncertainty.
     """
     if kind_of(scene).is_statistical:
         return {}
@@ -50,12 +50,12 @@ def accuracy_warnings(scene: Scene, outcome: Outcome) -> dict[str, str]:
 
 
 def unreported(scene: Scene, outcome: Outcome) -> dict[str, Result]:
-    """Return the results whose uncertainty exceeds half of the value, and the tolerance of the scale of the run.
+    """Return the results whose uncertainty exceeds half of the value, and the tolerance of the run's scale, by name.
 
     The scale of a force or a displacement is the largest of the run, that of another result the largest one of its
     unit: a number that is 0 within the tolerance of that scale is reported as 0. A dissipated energy is its own scale,
-    since the question is whether there is a loss at all. Means are reported whatever their standard errors, and numbers
-    with ± do not count.
+    since the question is whether there is a loss at all. The shares of statistics and of numbers with ± do not count.
+    Empty for means under noise, which are reported whatever their standard errors.
     """
     if kind_of(scene).is_statistical:
         return {}
@@ -77,7 +77,12 @@ def unreported(scene: Scene, outcome: Outcome) -> dict[str, Result]:
 
 
 def main_results(scene: Scene, results: Mapping[str, Result]) -> dict[str, Result]:
-    """Return the main results of an experiment that a run has, without the load and prescribed ones."""
+    """Return the main results of an experiment that a run has, by name, without the load and prescribed ones.
+
+    Args:
+        scene: of the run.
+        results: all results of the run by name.
+    """
     load = scene.experiment.load_key if scene.experiment.compression is not None else None
     names = [name for name in kind_of(scene).main_results if name in results and name != load]
     return {name: results[name] for name in names if not results[name].prescribed}
@@ -96,13 +101,19 @@ def require_results(scene: Scene, outcome: Outcome) -> None:
 
 
 def with_checks(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressure]) -> Outcome:
-    """Return the outcome with the consistency checks of the body's results."""
+    """Return the outcome with the consistency checks of the body's results added to its own.
+
+    Args:
+        scene: of the run.
+        outcome: of the run, with the results of the body.
+        pressures: on the three-dimensional body, by state.
+    """
     checks = pressure(scene, outcome, pressures) | closed_form(scene, reported(scene, outcome).exact)
     return replace(outcome, consistency={**outcome.consistency, **checks})
 
 
 def require_consistency(outcome: Outcome) -> None:
-    """Raise UntrustedError where a consistency check of a run fails."""
+    """Raise UntrustedError where a consistency check of a run fails, with the first that does; nothing is returned."""
     for name, check in outcome.consistency.items():
         if not check.holds:
             raise UntrustedError(
@@ -112,7 +123,10 @@ def require_consistency(outcome: Outcome) -> None:
 
 
 def reported(scene: Scene, outcome: Outcome) -> Outcome:
-    """Return the outcome without the results that are not reported."""
+    """Return the outcome without the results of `unreported`, those too uncertain to be stated.
+
+    All else is unchanged.
+    """
     missing = unreported(scene, outcome)
     return replace(outcome, results={name: result for name, result in outcome.results.items() if name not in missing})
 
@@ -125,7 +139,10 @@ def _scale_name(name: str, result: Result) -> str:
 
 
 def _bound(result: Result) -> str:
-    """Return the bound of an uncertain result: "(less than 2.3 FU)" of one that may be 0, else "(± 2.3 FU)"."""
+    """Return the bound of an uncertain result with its unit: "(less than 2.3 FU)" if it may be 0, else "(± 2.3 FU)".
+
+    The bound of one that may be 0 is |value| + uncertainty. Of an infinite uncertainty it says that there is no bound.
+    """
     bound, words = result.uncertainty, "±"
     if np.isinf(bound):
         return "(not shown to have a bound: give more particles in the contact, or more points of a profile)"
@@ -137,7 +154,8 @@ def _bound(result: Result) -> str:
 def _curve_force(scene: Scene, outcome: Outcome) -> dict[str, Result]:
     """Return the force with the largest error of a curve that is a result, by its name in warnings.
 
-    Its scale is the largest force. Numbers with ± count for alternative profiles only.
+    Empty for other curves. It is a result in [FU] whose scale is the largest |force|. Numbers with ± count for
+    alternative profiles only.
     """
     if not kind_of(scene).curve_is_result:
         return {}
@@ -150,7 +168,12 @@ def _curve_force(scene: Scene, outcome: Outcome) -> dict[str, Result]:
 
 
 def _advice(scene: Scene, results: Mapping[str, Result]) -> str:
-    """Return how to improve results, by their dominant error."""
+    """Return a sentence on how to improve results, by their dominant error, such as a finer spacing to use.
+
+    Args:
+        scene: of the run.
+        results: those to improve, by name, one at least.
+    """
     tolerance = scene.accuracy.tolerance
     if all(MODEL in result.errors for result in results.values()):
         return "Two evaluations of this quantity differ by that much (`formulas` in results.json)"
@@ -169,7 +192,11 @@ def _is_of_points(result: Result) -> bool:
 
 
 def _by_lattice(results: Mapping[str, Result], tolerance: float) -> dict[str, float]:
-    """Return relative discretisation errors above the tolerance, without interpolation between particles, by name."""
+    """Return relative discretisation errors above the tolerance, by name, dimensionless.
+
+    Without the share of interpolation. That share, of radii between particles (`read`), falls with the spacing in
+    another way.
+    """
     of_lattice = {
         name: replace(result, errors={LATTICE: result.errors.get(LATTICE, 0.0) - result.read}, read=0.0, given=0.0)
         for name, result in results.items()
@@ -178,9 +205,14 @@ def _by_lattice(results: Mapping[str, Result], tolerance: float) -> dict[str, fl
 
 
 def _lattice_message(scene: Scene, shares: Mapping[str, float], uncertain: bool) -> str:
-    """Return the warning of discretisation errors, with a spacing by second order unless other results are unreported.
+    """Return the warning of discretisation errors, with a suggested spacing [LU] unless other results are unreported.
 
-    Of such uncertain results no order of convergence holds.
+    The spacing is by convergence of the second order; of such uncertain results no order of convergence holds.
+
+    Args:
+        scene: of the run.
+        shares: relative discretisation errors by name.
+        uncertain: whether there are unreported results with too large a discretisation error.
     """
     tolerance = scene.accuracy.tolerance
     spacing = scene.bodies.spacing * np.sqrt(0.5 * tolerance / min(1.0, max(shares.values())))

@@ -43,11 +43,11 @@ def run(
     ranks: int = 1,
     printed: Callable[[Run], object] | None = None,
 ) -> Run:
-    """Run a scene as `workflow.runs.campaign.run`; where that fails, the first suggested fix is tried.
+    """Return the finished run of a scene.
 
-    Arguments and errors are those of that function; an error says whether the scene gives a result with the fix. A
-    missing folder stands for a temporary one, which is removed with the `Run`; its figures are drawn only where
-    `figures` is given, or later by `Run.plot`.
+    Where it fails, the first suggested fix is tried, and the error says the outcome. Arguments and errors are those of
+    `workflow.runs.campaign.run`, but for defaults: a missing folder stands for a temporary one, which is removed with
+    the `Run`; its figures are drawn only where `figures` is given, or later by `Run.plot`.
     """
     progress, figures = progress or Silent(), folder is not None if figures is None else figures
     reader = partial(edited, scene)
@@ -78,6 +78,8 @@ def run(
 def mended(reader: Reader, error: SceneError, progress: Progress) -> SceneError:
     """Return the error of a scene with the outcome of its first suggested fix in the hint.
 
+    Unchanged if it suggests none.
+
     Args:
         reader: returns the scene with an edit.
         error: of the scene without an edit.
@@ -91,22 +93,35 @@ def mended(reader: Reader, error: SceneError, progress: Progress) -> SceneError:
 
 
 def edited(source: AnyScene, edit: SceneEdit, overrides: Iterable[str] = (), without: Iterable[str] = ()) -> Scene:
-    """Return a scene as `read_scene` reads it, with an edit. Raises SceneError."""
+    """Return a scene as `read_scene` reads it, with an edit.
+
+    Args:
+        source: a file, TOML text, or tables.
+        edit: values to set and tables to leave out.
+        overrides: further values, `key=value`, which the edit goes over.
+        without: further tables to leave out.
+
+    Raises:
+        SceneError: the scene with the edit is invalid.
+    """
     return read_scene(source, (*overrides, *_overrides(edit)), (*without, *edit.without))
 
 
 def _overrides(edit: SceneEdit) -> list[str]:
-    """Return the values of an edit in the form of `read_scene` and `--set`."""
+    """Return the values of an edit as texts `key=value`, in the form of `read_scene` and `--set`."""
     return [f"{key}={value if isinstance(value, str) else as_toml(value)}" for key, value in edit.values.items()]
 
 
 def in_words(edit: SceneEdit) -> str:
-    """Return an edit as options of `contact1d run`."""
+    """Return an edit as options of `contact1d run`: first `--without effect`, then `--set key=value`."""
     return " ".join([*(f"--without {name}" for name in edit.without), *(f"--set {text}" for text in _overrides(edit))])
 
 
 def _tried(reader: Reader, error: Contact1dError, progress: Progress) -> str:
-    """Try the first change that an error carries, and return the message on it; "" where it carries none."""
+    """Return the message on the trial of the first change of an error that gives a valid scene.
+
+    "" where there is none.
+    """
     edits = []
     for edit in error.changes:
         try:
@@ -127,7 +142,11 @@ def _tried(reader: Reader, error: Contact1dError, progress: Progress) -> str:
 
 
 def _attempt(scene: Scene) -> None:
-    """Run a scene once, without refinement and retries, for at most a few seconds."""
+    """Run a scene once in a temporary folder, without refinement and retries, for at most 4 s of LAMMPS.
+
+    Raises:
+        Contact1dError: the run failed.
+    """
     with TemporaryDirectory() as folder:
         scene = with_spacing(scene)
         settings = settings_for(scene)
@@ -135,7 +154,15 @@ def _attempt(scene: Scene) -> None:
 
 
 def in_si(scene: Scene, edit: SceneEdit, digits: int = 3) -> SceneEdit:
-    """Return an edit with units, "33.3pN", where LU and FU are known: a scene with units takes no plain number."""
+    """Return an edit with numbers as texts with units, "33.3pN", since a scene with units takes no plain number.
+
+    It is returned unchanged without a material or where LU or FU is not known.
+
+    Args:
+        scene: the scene with the edit.
+        edit: the edit, in units of the model.
+        digits: significant digits.
+    """
     material, scales = scene.material, scales_of(scene, {})
     if material is None or None in (material.length_unit, material.force_unit):
         return edit
@@ -151,7 +178,10 @@ def in_si(scene: Scene, edit: SceneEdit, digits: int = 3) -> SceneEdit:
 
 
 def _reported(error: RunError, cause: UntrustedError, outcome: str) -> RunError:
-    """Add the outcome of a trial to an error and to results.json; advice stays where the trial failed."""
+    """Return the error with the outcome of a trial added, and write it to results.json in its folder.
+
+    The advice of the error is kept only where the trial failed.
+    """
     document = read_results(error.folder)
     facts = document["error"]
     advice = f": {cause.advice}" if cause.advice and "gives a result" not in outcome else ""

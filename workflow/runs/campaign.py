@@ -52,14 +52,14 @@ def run(
     ranks: int = 1,
     printed: Callable[[Run], object] | None = None,
 ) -> Run:
-    """Run a scene in a folder.
+    """Return the finished run of a scene, and write all its files into a folder.
 
     Args:
         scene: a `Scene`, or anything that `read_scene` reads: a file, TOML text, tables.
         folder: made if it does not exist; an earlier run in it is replaced.
         figures: whether to draw figures, or their format: "png" (the default), "svg" or "pdf".
-        progress: informed of phases and steps.
-        time_limit: wall time for LAMMPS [s].
+        progress: informed of phases and steps; None: nobody is.
+        time_limit: wall time for LAMMPS [s], for each pass.
         settings: used in place of those that `settings_for` chooses, without refinement; for cost studies.
         retries: whether smaller steps are tried where the bodies went through each other.
         workers: number of repeats of a thermal pull-off at a time; None: as many as there are processors.
@@ -90,7 +90,8 @@ def _prepared(
 ) -> Iterator[tuple[Deck, tuple[Phase, ...], Path]]:
     """Write the deck of a scene with its planned schedule into a folder in place of an earlier run, and lock that.
 
-    Yields the deck, the schedule and the folder. Errors have numbers in SI where the units are known.
+    Yields the deck, the schedule and the folder. Errors are those of `run` but RunError; of a SettingsError the numbers
+    are in SI where the units are known.
     """
     given = scene if isinstance(scene, Scene) else read_scene(scene)
     scales = scales_of(given, {})
@@ -119,7 +120,18 @@ def _prepared(
 
 
 def _run(context: RunContext, started: float, figures: bool | str, written: Sequence[Phase], refine: bool) -> Run:
-    """Run the deck of a context, whose in.lammps has the schedule `written`, and write the files of the run."""
+    """Return the finished run of a context's deck, and write the files of the run.
+
+    Args:
+        context: with deck and folder.
+        started: reading of time.perf_counter at the beginning [s].
+        figures: whether a run that fails draws figures, or their format.
+        written: the schedule that in.lammps in the folder has.
+        refine: whether the run is repeated with finer settings where the tolerance is not met.
+
+    Raises:
+        RunError: LAMMPS failed, or the result can't be trusted; results.json says why.
+    """
     scene, settings, folder = context.deck.scene, context.deck.settings, context.folder
     if large := in_words(scene, settings.chains.upper, settings.forces.cutoff):
         context.progress.note(large)
@@ -147,7 +159,14 @@ def _run(context: RunContext, started: float, figures: bool | str, written: Sequ
 
 
 def _failed(context: RunContext, error: EngineError | UntrustedError, started: float, figures: bool | str) -> RunError:
-    """Return the error of a run that failed, in the units of its scene; the states up to there are written."""
+    """Return the error of a run that failed, in the units of its scene, and write results.json and the states so far.
+
+    Args:
+        context: with deck and folder, and what is left of the run.
+        error: the cause, whose message is put into the units of the scene.
+        started: reading of time.perf_counter at the beginning [s].
+        figures: whether figures of these states are drawn, or their format.
+    """
     scene, folder, left = context.deck.scene, context.folder, context.left
     scales = scales_of(scene, {})
     error.message = message = scales.in_words(error.message)
@@ -173,7 +192,7 @@ def _timing(context: RunContext, started: float) -> dict[str, float]:
 
 
 def _hint(message: str) -> str:
-    """Return what to do about a LAMMPS error whose message does not say it."""
+    """Return what to do about a LAMMPS error whose message does not say it, as ". Use …"; "" for any other message."""
     if "atoms" in message and ("missing" in message or "left the box" in message):
         return ". The motion is unstable: use stiffnesses, masses, damping and ranges of similar magnitude"
     if TOO_WIDE in message:
@@ -195,10 +214,15 @@ def write_deck(scene: AnyScene, folder: AnyPath) -> Path:
 
 
 def prepare(folder: Path, kind: str = "run", marks: Collection[str] = ("in.lammps", LOCK)) -> Path:
-    """Make the folder of a run or a sweep, and return its absolute path; an earlier one has a file of `marks`.
+    """Make the folder of a run or a sweep, and return its absolute path; nothing in it is removed.
+
+    Args:
+        folder: to be made; one that holds files must have one of `marks`, of an earlier run or sweep.
+        kind: "run" or "sweep", for messages.
+        marks: names of files.
 
     Raises:
-        FolderError: the folder is a file, or holds files but none of `marks`.
+        FolderError: the folder is a file, holds files but none of `marks`, or cannot be written.
     """
     if folder.exists() and not folder.is_dir():
         raise FolderError(f"{folder} is a file; a {kind} needs a folder")
@@ -215,12 +239,17 @@ def prepare(folder: Path, kind: str = "run", marks: Collection[str] = ("in.lammp
 
 @contextmanager
 def alone(folder: Path, busy: str = "another run is active in", wait: float = 1.0) -> Iterator[None]:
-    """Lock a folder; the system releases it whatever happens to this process, when its children have ended, too.
+    """Lock a folder for a `with` block.
+
+    The system releases it even if this process is killed, when its children have ended.
 
     Args:
         folder: the folder.
         busy: the message of the FolderError where it is locked, without the folder.
         wait: time [s] for the children of a run that was killed to end.
+
+    Raises:
+        FolderError: the folder is still locked after that time.
     """
     until = time.monotonic() + wait
     with (folder / LOCK).open("w") as lock:

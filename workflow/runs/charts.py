@@ -48,7 +48,10 @@ FROM_ZERO = ("contact_radius", "force", "friction", "tangential_force")
 
 
 def charts(run: Run) -> dict[str, Chart]:
-    """Return the charts of a run by the names of the figures' files, the main one first; in base units."""
+    """Return the charts of a run by the names of the figures' files, the main one first.
+
+    In SI base units where known.
+    """
     scales, bodies = run.scales, run.scene.bodies
     title = run.scene.title + ("" if bodies.reduction == "mdr" else f"\n(reduction {bodies.reduction})")
     return {
@@ -58,16 +61,17 @@ def charts(run: Run) -> dict[str, Chart]:
 
 
 def axis_of(column: str) -> Axis:
-    """Return the axis of a column of the tables, in units of the model."""
+    """Return the axis of a column of the tables, in units of the model; KeyError for a column without a unit."""
     remark = figures.COMPRESSIVE if column in CURVE_COLUMNS[:2] else ""
     name = "displacement of the drive" if column == "drive" else column.replace("_", " ")
     return Axis(name, COLUMN_UNITS[column], remark, zero=column in FROM_ZERO)
 
 
 def main_curve(run: Run) -> dict[str, Array]:
-    """Return the columns of the main curve by name, that of x first; in units of the model.
+    """Return the columns of the main curve by name, (n,) each, that of x first; in units of the model.
 
-    Each has an element for each state of the curve; those before a slide is driven are NaN.
+    `run` has its tables in these units. There is an element for each state of the curve; those before a slide is driven
+    are NaN. A normal force that changes is the third column.
     """
     columns = run.friction or run.curve
     over = next(name for name in MAIN if name in columns)
@@ -79,10 +83,10 @@ def main_curve(run: Run) -> dict[str, Array]:
 
 
 def legs_of(run: Run, along: Array) -> list[tuple[str, NDArray[np.int64]]]:
-    """Return name and rows of each leg of a prescribed path; a leg begins with the last row of the one before.
+    """Return branch and indices of the states of each leg of a path, (k,).
 
-    Of any other experiment they are the branches of each cycle, sorted by the positions `along`, since a search goes
-    back and forth.
+    Of a prescribed path a leg begins with the last state of the one before. Of any other experiment they are the
+    branches of each cycle, sorted by the positions `along`, (n,), since a search goes back and forth.
     """
     branch, kind = run.curve.branch, run.scene.experiment
     if kind.history_is_given or kind.goes_along:
@@ -131,7 +135,10 @@ def _charts(run: Run) -> Iterator[tuple[str, Chart]]:
 def path_chart(run: Run, columns: Mapping[str, Array] | None = None, **references: Sequence[Series]) -> Chart:
     """Return the chart of columns over the first one, by default of the main curve; in units of the model.
 
-    `references` has further series by the column to which they belong.
+    Args:
+        run: with its tables in units of the model.
+        columns: by name, (n,) each, that of x first; None: the main curve.
+        references: further series by the column to which they belong.
     """
     (over, along), *upwards = (columns or main_curve(run)).items()
     panels = [(axis_of(name), column, references.get(name, ())) for name, column in upwards]
@@ -139,7 +146,7 @@ def path_chart(run: Run, columns: Mapping[str, Array] | None = None, **reference
 
 
 def _samples(run: Run) -> Chart:
-    """Return the chart of the motion of a contact with noise, and of its load."""
+    """Return the chart of displacement and force over time of a contact with noise, with load and mean position."""
     table, mean = run.tables[SAMPLE_TABLE], run.results.get("displacement")
     references = {"force": figures.lines(("load", table["time"], table["load"]))}
     if mean is not None:
@@ -171,20 +178,23 @@ def _under_load(run: Run) -> Iterator[tuple[str, Chart]]:
 
 
 def _ting(run: Run, over: str) -> list[Series]:
-    """Return F of Lee, Radok and Ting over a column of the curve; an empty list where they do not apply."""
+    """Return F of Lee, Radok and Ting [FU] over a column `over` of the curve; an empty list where they do not apply."""
     history = indented(Case(run.scene, run.results))
     return [] if history is None else figures.lines(("Ting", run.curve[over], history.forces(run.curve.time)))
 
 
 def _pull_off(run: Run) -> tuple[float, float] | None:
-    """Return F_A and a₀ of the run, or of the image to which its curve belongs; None without them or where a₀ is 0."""
+    """Return F_A [FU] and a₀ > 0 [LU] of the run, or of the image to which its curve belongs; None without them."""
     force, radius = run.results.get("adhesion_force"), run.results.get("zero_load_radius")
     radius = run.results.get(f"{IMAGE}zero_load_radius", radius)
     return (force.value, radius.value) if force and radius and radius.value > 0.0 else None
 
 
 def _zones(run: Run, states: Iterable[str]) -> dict[str, tuple[float, float, int]]:
-    """Return stick radius, tangential displacement and direction of motion of states by name, from the curve."""
+    """Return stick radius [LU], tangential displacement [LU] and direction of motion of states by name, from the curve.
+
+    The direction is that of the last motion along x, 1 or -1, and 0 where there was none.
+    """
     zones, displacements = {}, run.curve.tangential_displacement
     for state in states:
         row = row_of(state, run.curve)
@@ -194,7 +204,7 @@ def _zones(run: Run, states: Iterable[str]) -> dict[str, tuple[float, float, int
 
 
 def _marks(run: Run, radii: Mapping[str, ContactRadius]) -> dict[str, dict[str, float]]:
-    """Return the contact and the stick radius on the body, named as in a legend, by state."""
+    """Return the contact and the stick radius on the body [LU], named as in a legend, by state."""
     wider = WIDER_THAN_SPHERES if stands_for_spheres(run.scene) else 1.0
     sticks = _zones(run, radii) if run.scene.experiment.goes_along else {}
     return {
@@ -204,7 +214,7 @@ def _marks(run: Run, radii: Mapping[str, ContactRadius]) -> dict[str, dict[str, 
 
 
 def _body_theory(run: Run, marks: Mapping[str, Mapping[str, float]]) -> dict[str, figures.Theory]:
-    """Return the closed form of p(r), by the state that it applies to: name, r and p."""
+    """Return the closed form of p(r), by the one state that it applies to: name, r [LU] and p [FU/LU²]; else empty."""
     case = Case(run.scene, run.results)
     for state in (name for name in REPORTED if name in marks):
         for form in applying(case):
@@ -215,7 +225,7 @@ def _body_theory(run: Run, marks: Mapping[str, Mapping[str, float]]) -> dict[str
 
 
 def _mindlin(run: Run) -> list[Series]:
-    """Return F_x of Cattaneo and Mindlin over u along the path; an empty list where they do not apply."""
+    """Return F_x of Cattaneo and Mindlin [FU] over u [LU] along the path; an empty list where they do not apply."""
     case, u = Case(run.scene, run.results), run.friction["tangential_displacement"]
     if not drawn_along(case):
         return []
@@ -226,10 +236,11 @@ def _mindlin(run: Run) -> list[Series]:
 
 
 def _theory(run: Run) -> list[tuple[str, Array, Array, Array]]:
-    """Return name, a, d and F of the closed form of the body; for two chains JKR's with the run's own F_A and a₀.
+    """Return name, a [LU], d [LU] and F [FU] of the closed form of the body; an empty list where there is none.
 
-    The image x²/2R₁ on springs E* per length is the contact of R = 2R₁; its a₀ is twice that of the two spheres. JKR is
-    drawn up to 1.3 a₀, on a plane from where fixed grips separate.
+    For two chains without a closed form it is JKR's with the run's own F_A and a₀. The image x²/2R₁ on springs E* per
+    length is the contact of R = 2R₁; its a₀ is twice that of the two spheres. JKR is drawn up to 1.3 a₀, on a plane
+    from where fixed grips separate.
     """
     scene, half, case, pull_off = run.scene, run.scene.bodies.plane_radius, Case(run.scene, run.results), _pull_off(run)
     radius, work, forms = 2.0 * (half or 0.0), scene.work_of_adhesion, applying(case)

@@ -42,7 +42,10 @@ Array = NDArray[np.float64]
 
 
 class Results(Named[Quantity]):
-    """Quantities by name; each is also an attribute: `results.adhesion_force` is `results["adhesion_force"]`."""
+    """Quantities by name; each is also an attribute: `results.adhesion_force` is `results["adhesion_force"]`.
+
+    A missing name raises KeyError, as an attribute AttributeError.
+    """
 
     def __missing__(self, name: str) -> Quantity:
         """Raise KeyError with the names that there are."""
@@ -76,7 +79,7 @@ class Run:
 
     @cached_property
     def results(self) -> Results:
-        """The reported quantities by name, each with uncertainty and unit."""
+        """The reported quantities by name, each with uncertainty and unit: in SI where the scene has units."""
         return Results({name: Quantity.of(entry) for name, entry in quantities_in(self.document).items()})
 
     @property
@@ -91,27 +94,39 @@ class Run:
 
     @property
     def timing(self) -> dict[str, float]:
-        """The wall time, wall and processor time in LAMMPS [s], and the number of steps."""
+        """Times [s] by name: `total_s`, `lammps_s` in LAMMPS and of that `rows_s` in load steps; and number of `steps`.
+
+        These are wall times; `lammps_cpu_s` is the processor time of LAMMPS.
+        """
         return dict(self.document["timing"])
 
     @property
     def curve(self) -> Columns:
-        """The measured states: every column of curve.csv."""
+        """The measured states, an element for each: every column of curve.csv, in SI where the scene has units."""
         return self.tables["curve"]
 
     @property
     def friction(self) -> Columns:
-        """The columns of friction.csv of a slide, the curve of a tangential experiment; else empty."""
+        """The columns of friction.csv of a slide; of a tangential experiment the curve; else empty.
+
+        In SI as the curve.
+        """
         return self.curve if self.scene.experiment.goes_along else self.tables.get("friction", Columns({}))
 
     @property
     def detachments(self) -> Columns:
-        """The columns of detachments.csv, a row for each pull of a pull-off with [noise]; else empty."""
+        """The columns of detachments.csv, an element for each pull of a pull-off with [noise]; else empty.
+
+        In SI as the curve.
+        """
         return self.tables.get(DETACHMENTS, Columns({}))
 
     @property
     def profiles(self) -> dict[str, Profile]:
-        """Line load and shear along x of the reported states, by name; the content of profile.csv."""
+        """Line load and shear along x of the reported states, by name; the content of profile.csv.
+
+        Lengths are in [m] and loads in [N/m] where the scene has units, else in [LU] and [FU/LU]; compression positive.
+        """
         return {
             state: Profile(*(columns[name] for name in PROFILE_COLUMNS))
             for state, columns in by_state(self.tables["profile"]).items()
@@ -119,12 +134,20 @@ class Run:
 
     @property
     def body_pressures(self) -> dict[str, Columns]:
-        """The pressure p(r) of the three-dimensional body by state, as in pressure_3d.csv; else empty."""
+        """The pressure p(r) of the three-dimensional body by state, as in pressure_3d.csv.
+
+        Empty where the run has none. Columns are `r`, `pressure`, compression positive, and `pressure_uncertainty`: [m]
+        and [Pa], without units of the scene [LU] and [FU/LU²].
+        """
         return by_state(self.tables.get("pressure_3d", Columns({})))
 
     @property
     def body_shears(self) -> dict[str, Columns]:
-        """The shear stress q(r) of the three-dimensional body by state, as in shear_3d.csv; else empty."""
+        """The shear stress q(r) of the three-dimensional body by state, as in shear_3d.csv.
+
+        Empty where the run has none. Columns are `r`, `shear_stress` and `shear_stress_uncertainty`: [m] and [Pa],
+        without units of the scene [LU] and [FU/LU²].
+        """
         return by_state(self.tables.get("shear_3d", Columns({})))
 
     @property
@@ -134,7 +157,10 @@ class Run:
 
     @cached_property
     def scales(self) -> Scales:
-        """The scales of LU, FU and, where it is known, MU in SI."""
+        """The scales of LU, FU and, where it is known, MU in SI.
+
+        Unknown ones (`known` is False) without a [material].
+        """
         return scales_of(self.scene, self._numbers)
 
     @cached_property
@@ -167,24 +193,37 @@ class Run:
         return atoms(self.folder, state)
 
     def to_json(self, path: AnyPath | None = None) -> str:
-        """Return the text of results.json, and write it to a path if there is one."""
+        """Return the text of results.json, and write it to `path`, unless that is None."""
         return _written(as_json(self.document), path)
 
     def to_csv(self, path: AnyPath | None = None, table: str = "results") -> str:
-        """Return the results with uncertainties and units, or one of `tables`, as CSV, and write it to a given path."""
+        """Return a table as CSV text, and write it to `path`, unless that is None.
+
+        Args:
+            path: of the file.
+            table: "results", with columns name, value, uncertainty and unit, or a name in `tables`.
+
+        Raises:
+            ValueError: the run has no such table; the message says which it has.
+        """
         file, columns = StringIO(), self._table(table)
         put_columns(file, columns, columns.units)
         return _written(file.getvalue(), path)
 
     def to_latex(self, path: AnyPath | None = None) -> str:
-        """Return the results with uncertainties and units as a LaTeX tabular, and write it to a given path."""
+        """Return results, uncertainties and units as a LaTeX tabular, and write it to `path`, unless that is None."""
         lines = [f"{name.replace('_', ' ')} & ${_tex(quantity)}$ \\\\" for name, quantity in self.results.items()]
         return _written("\n".join([r"\begin{tabular}{ll}", *lines, r"\end{tabular}", ""]), path)
 
     def to_xarray(self, table: str = "curve") -> Dataset:
         """Return one of `tables` as an xarray.Dataset with units, the results in its attributes as text.
 
-        Raises Contact1dError where xarray isn't installed.
+        Args:
+            table: "results" or a name in `tables`.
+
+        Raises:
+            Contact1dError: xarray isn't installed.
+            ValueError: the run has no such table; the message says which it has.
         """
         try:
             import xarray
@@ -199,6 +238,10 @@ class Run:
         return xarray.Dataset(variables, attrs={"title": self.scene.title, **results})
 
     def _table(self, name: str) -> Columns:
+        """Return the table "results" (name, value, uncertainty, unit) or one of `tables`.
+
+        ValueError for any other name.
+        """
         parts, quantities = ("value", "uncertainty", "unit"), self.results.values()
         results = {"name": [*self.results]} | {part: [getattr(number, part) for number in quantities] for part in parts}
         tables = {"results": Columns(results), **self.tables}
@@ -235,6 +278,7 @@ TEX = {"±": r"\pm", "µ": r"\mu ", "·": r"\cdot ", "²": "^2"}
 
 
 def _tex(quantity: Quantity) -> str:
+    """Return a quantity with its uncertainty and unit in LaTeX's mathematical form, without dollar signs."""
     number, unit = str(quantity).rsplit(" ", 1) if quantity.unit != NUMBER else (str(quantity), "")
     number = re.sub(r"e([+-]\d+)", lambda power: rf"\cdot 10^{{{int(power[1])}}}", number)
     text = number + re.sub(r"[A-Za-z]+", r"\\mathrm{\g<0>}", rf"\,{unit}" if unit else "")
@@ -244,14 +288,14 @@ def _tex(quantity: Quantity) -> str:
 
 
 def _written(text: str, path: AnyPath | None) -> str:
-    """Write a text to a path if there is one, and return it."""
+    """Write a text to a path, unless that is None, and return it."""
     if path:
         write_whole(Path(path), text)
     return text
 
 
 def load_run(folder: AnyPath) -> Run:
-    """Read a run from its folder.
+    """Return the finished run in a folder, without its outcome.
 
     Raises:
         FolderError: the folder holds no run, or none that this version can read.
@@ -264,7 +308,11 @@ def load_run(folder: AnyPath) -> Run:
 
 
 def read_run(folder: Path) -> Run:
-    """Read a run as `load_run`; one that failed is returned, too, without results and tables."""
+    """Return the run in a folder; one that failed is returned, too (`status` is "failed"), without tables.
+
+    Raises:
+        FolderError: the folder holds no run, or none that this version can read.
+    """
     document = read_results(folder)
     try:
         scene = read_scene(document["scene"])

@@ -20,8 +20,9 @@ INPUT_COLUMNS = ("input", "half_width")
 def inputs_of(scene: Scene, outcome: Outcome) -> dict[str, Any]:
     """Return the table `inputs`, by column: each input, its 95 % half-width, and the change of each main result.
 
-    Half-width and changes are relative to the values. The table is empty of a scene without uncertain inputs. The
-    deviation of a measured profile has no half-width.
+    Half-width and changes are relative to the values, dimensionless; a change is the larger one of both directions, ≥
+    0. The table is empty for a scene without uncertain inputs. The deviation of a measured profile has no half-width
+    (NaN), and a result of 0 no relative change (NaN).
     """
     keys = list(dict.fromkeys(move.key for move in outcome.moves))
     if not keys:
@@ -40,7 +41,7 @@ def entries(table: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 
 def chart(table: Mapping[str, Any]) -> Chart:
-    """Return the bar chart of the changes in percent, by input."""
+    """Return the bar chart of the changes of results in percent, grouped by the inputs of the table `inputs`."""
     names = [name for name in table if name not in INPUT_COLUMNS]
     words = [key.partition(".")[2].replace("profile.", "") for key in table["input"]]
     ticks = {float(i): text.replace(".", " ").replace("_", " ") for i, text in enumerate(words)}
@@ -56,7 +57,10 @@ def chart(table: Mapping[str, Any]) -> Chart:
 
 
 def in_words(document: Mapping[str, Any]) -> list[str]:
-    """Return lines on the inputs of results.json for a terminal, the one with the largest change first."""
+    """Return lines on the inputs of results.json for a terminal, the one with the largest change first.
+
+    Empty without any.
+    """
     rows = [
         ({name: change for name, change in row.items() if name not in INPUT_COLUMNS}, row)
         for row in document.get("inputs", ())

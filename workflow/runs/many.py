@@ -42,7 +42,10 @@ def run_many(
 
 
 def completed(pairs: Sequence[tuple[AnyScene, AnyPath]], executor: Executor) -> Iterator[tuple[int, Entry]]:
-    """Yield the entries of `run_many` as they are done, each after its index among the pairs."""
+    """Yield for each pair, as it is done, its index among the pairs, and its run or RunError.
+
+    A pair whose folder another one has already gives an error, as does one that the executor does not run.
+    """
     futures: dict[Future[Entry], int] = {}
     taken = set()
     for index, (scene, folder) in enumerate(pairs):
@@ -64,7 +67,10 @@ def completed(pairs: Sequence[tuple[AnyScene, AnyPath]], executor: Executor) -> 
 
 
 def attempt(scene: AnyScene, folder: Path) -> Entry:
-    """Run a scene, and return the run, or a RunError whose cause is any other error."""
+    """Return the run of a scene without figures and outcome, or a RunError.
+
+    Any other error is the cause of a RunError.
+    """
     try:
         return replace(run(scene, folder, figures=False, workers=1), outcome=None)
     except RunError as error:
@@ -78,6 +84,7 @@ def attempt(scene: AnyScene, folder: Path) -> Entry:
 
 
 def _no_answer(error: Exception, folder: Path) -> RunError:
+    """Return the RunError of a scene whose process was killed, or that its executor did not run, with the reason."""
     if isinstance(error, BrokenExecutor):
         message = "the process that was to run it was killed, most often because the machine was out of memory"
     else:

@@ -28,7 +28,7 @@ class Usual:
     Attributes:
         key: pattern of its key in a scene.
         name: its name in that of the warning.
-        least, most: ends of the range.
+        least, most: ends of the range, in `unit`.
         unit: in SI.
         low, high: the remark on a number below and above the range.
     """
@@ -60,12 +60,14 @@ USUAL = (
 
 
 def implausible(scene: Scene, scales: Scales, quantities: Mapping[str, Quantity]) -> dict[str, str]:
-    """Return the warnings of implausible numbers of a scene and its results, by name.
+    """Return the warnings of implausible numbers of a scene and its results: name and message.
+
+    Empty where there are none. Several messages of one name are joined by "; ".
 
     Args:
-        scene: with or without a material.
-        scales: of LU and FU in SI.
-        quantities: the results by name.
+        scene: with or without a material; without one only results are checked.
+        scales: of LU and FU in SI; without these only numbers without LU and FU are.
+        quantities: the results by name, in units of the model.
     """
     warnings: dict[str, list[str]] = {}
     for name, message in (*_moduli(scene), *_numbers(scene, scales), *_radii(scales, quantities)):
@@ -74,6 +76,10 @@ def implausible(scene: Scene, scales: Scales, quantities: Mapping[str, Quantity]
 
 
 def _moduli(scene: Scene) -> Iterator[tuple[str, str]]:
+    """Yield name and message of each modulus and Poisson's ratio of a material that few have; none without a material.
+
+    Moduli below 1 kPa and above 2 TPa, of a pair only if both are so stiff, and ratios below 0.
+    """
     material = scene.material
     if material is None:
         return
@@ -95,6 +101,7 @@ def _moduli(scene: Scene) -> Iterator[tuple[str, str]]:
 
 
 def _numbers(scene: Scene, scales: Scales) -> Iterator[tuple[str, str]]:
+    """Yield name and message of each number of a scene outside of its usual range; none without a material."""
     if scene.material is None:
         return  # all numbers are the model's
     for place in places(Scene, scene.model_dump(by_alias=True, exclude_none=True)):

@@ -29,7 +29,7 @@ T = TypeVar("T")
 
 
 def cores() -> int:
-    """Return the number of processors that this process may use."""
+    """Return the number of processors that this process may use, 1 where the system does not say."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
@@ -40,7 +40,10 @@ class _Pool(ProcessPoolExecutor):
     """
 
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
-        """Submit a call as to any executor; a process that starts here sees an empty `__main__`."""
+        """Submit a call as to any executor and return its future.
+
+        A process that starts here sees an empty `__main__`.
+        """
         main = sys.modules["__main__"]
         sys.modules["__main__"] = ModuleType("__main__")
         try:
@@ -69,7 +72,7 @@ def pool(workers: int) -> Iterator[ProcessPoolExecutor]:
 
 
 def _begin(parent: Connection) -> None:
-    """Begin a worker that ends with its parent; LAMMPS loads while the rest of the program does."""
+    """Begin a worker: it ignores Ctrl+C, loads LAMMPS ahead, and ends when the pipe from its `parent` closes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     start_ahead()
 

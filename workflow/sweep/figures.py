@@ -35,7 +35,10 @@ DARK_TO_LIGHT = ("#440154", "#46327e", "#365c8d", "#277f8e", "#1fa187", "#4ac16d
 
 
 def sweep_charts(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> dict[str, Chart]:
-    """Return by name the chart of each result that changes, over the first axis; in SI base units where known.
+    """Return by name the chart of each result that changes, over the first axis with several values.
+
+    They are in SI base units where these are known, else in units of the model. A result that changes by less than 1e-6
+    of its largest value has no chart.
 
     Args:
         folder: folder of the sweep, with its table.
@@ -56,10 +59,17 @@ def sweep_charts(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> dic
 
 
 def _points(folder: Path, plan: SweepPlan, names: Iterable[str], places: Mapping[str, float]) -> dict[str, DataFrame]:
-    """Return by result a table with a row for each value, of runs and of closed forms.
+    """Return by result a table with a row for each value, of runs and of closed forms; no entry without a value.
 
     Column `label` has the values of the axes but the first, `form` the name of the closed form ("" of a run), `place`
-    the abscissa: a number of the first axis, or the position of a word in it (`places`).
+    the abscissa: a number of the first axis, or the position of a word in it. `value` and `uncertainty` are in the
+    units of the sweep's table; of a closed form the uncertainty is 0.
+
+    Args:
+        folder: folder of the sweep, with its table.
+        plan: the sweep.
+        names: results.
+        places: position of each word of the first axis; empty where that has numbers.
     """
     from pandas import DataFrame
 
@@ -82,7 +92,8 @@ def _points(folder: Path, plan: SweepPlan, names: Iterable[str], places: Mapping
 def _lines(points: DataFrame) -> list[Series]:
     """Return lines of the closed forms, then the runs as points in their colours.
 
-    Runs that differ by their seed alone are one point, the mean with its standard error.
+    Their values are in the unit of the table. Runs that differ by their seed alone are one point, the mean with its
+    standard error; a single one has its uncertainty.
     """
     labels, forms = points.label.unique().tolist(), points.form.unique().tolist()
     theories, runs = [], []
@@ -100,12 +111,18 @@ def _lines(points: DataFrame) -> list[Series]:
 
 
 def _spans(values: Collection[float], least_ratio: float = 20.0) -> bool:
-    """Whether positive values span `least_ratio` or more, so that their axis is logarithmic."""
+    """Return whether positive values span `least_ratio` or more, so that their axis is logarithmic.
+
+    False without values.
+    """
     return len(values) > 0 and max(values) >= least_ratio * min(values) > 0.0
 
 
 def _dense(x: Array, values: Array, points: int = 200) -> tuple[Array, Array]:
-    """Interpolate a closed form at `points` abscissas by monotone cubics of the logarithms, exact for powers of x."""
+    """Return x and values of a closed form at `points` abscissas, by monotone cubics of their logarithms.
+
+    With fewer than three abscissas, or one of x and values not above 0, these are returned as they are.
+    """
     if len(x) < 3 or min(x.min(), values.min()) <= 0.0:
         return x, values
     log_x = np.linspace(math.log(x[0]), math.log(x[-1]), points)
@@ -113,19 +130,26 @@ def _dense(x: Array, values: Array, points: int = 200) -> tuple[Array, Array]:
 
 
 def roles_of(plan: SweepPlan) -> tuple[Axis, list[Axis]]:
-    """Return the axis along x, and the axes that distinguish lines; axes side by side (zip) make one line."""
+    """Return the axis along x, and the axes that distinguish lines; axes side by side (zip) make one line.
+
+    The seed and axes of one value count as neither; where there are no others the first axis is along x.
+    """
     axes = [axis for axis in plan.axes if axis.key != SEED and len(axis.values) > 1] or list(plan.axes[:1])
     return axes[0], [] if plan.combine == "zip" else axes[1:]
 
 
 def label_in(axis: Axis, cell: str) -> str:
-    """Return the text of an axis value in a legend, with a prefix and a unit if the axis has one."""
+    """Return the text of a table's cell in a legend: with a unit of SI and its prefix if the axis has a unit."""
     unit = axis.numbers[1]
     return str(Quantity(float(cell), 0.0, unit)) if unit else cell
 
 
 def title_of(plan: SweepPlan, axis: Axis) -> str:
-    """Return the title of an axis from the description of its key, such as `radius of curvature R at the apex`."""
+    """Return the title of an axis from the description of its key, such as `radius of curvature R at the apex`.
+
+    Where the base scene does not know the key, it is that of the last table on its path that it knows, or the last two
+    parts of the key.
+    """
     allowed, data, name = allowed_by(Scene), plan.base, ".".join(axis.key.split(".")[-2:])
     for part in axis.key.split("."):
         table = allowed.table_for(data) if isinstance(data, Mapping) else None

@@ -85,7 +85,7 @@ def sweep(
     progress: Progress | None = None,
     partition: str | None = None,
 ) -> Sweep:
-    """Run every point of a sweep that has not run yet, and write the table and figures of all.
+    """Return the sweep after running every point that has not run yet; its table and figures have all points.
 
     Args:
         source: a sweep file, by its path, or its tables.
@@ -93,7 +93,7 @@ def sweep(
         executor: "local", "slurm", or anything with the interface of `concurrent.futures`.
         workers: processes, or jobs of Slurm, at a time; None: as many as there are processors.
         figures: whether to draw, or the format: "png" (the same as True), "svg" or "pdf".
-        progress: informed of each point.
+        progress: informed of each point; None: nobody is.
         partition: partition of Slurm; None: its default.
 
     Raises:
@@ -141,9 +141,9 @@ def _record(plan: SweepPlan) -> str:
 
 
 def _continues(folder: Path, record: str, progress: Progress) -> bool:
-    """Whether the folder holds a sweep with the same base scene and axis keys; values may be added.
+    """Return whether the folder holds a sweep with the same base scene and axis keys; values may be added.
 
-    A record that can't be read is replaced where there are runs.
+    A record that can't be read is replaced where there are runs, and `progress` says so: True then, False without runs.
     """
     try:
         plans = [read_record(folder), read_sweep(record)]
@@ -176,10 +176,10 @@ def _missing(plan: SweepPlan, folder: Path, rows: list[str | Answer], progress: 
 
 
 def _answered(tasks: Iterator[Task], workplace: Workplace) -> Iterator[tuple[str, Answer]]:
-    """Run tasks, `workplace.window` chunks at a time; yield name and answer of each as it ends.
+    """Run tasks, `workplace.window` chunks at a time; yield folder name and outcome of each as it ends.
 
     A process that dies breaks its executor. The tasks that ran or waited then run again one by one, so that a second
-    failure is that of a known task.
+    failure is that of a known task, which then has failed.
     """
     while (first := next(tasks, None)) is not None:
         suspects: list[Task] = []
@@ -197,7 +197,19 @@ def _answered(tasks: Iterator[Task], workplace: Workplace) -> Iterator[tuple[str
 def _through(
     executor: Executor, tasks: Iterator[Task], chunk: int, window: int, broken: list[Task]
 ) -> Iterator[tuple[str, Answer]]:
-    """Yield name and answer of each task as it ends; put the tasks of an executor that breaks into `broken`."""
+    """Yield folder name and outcome of each task as it ends; put the tasks of an executor that breaks into `broken`.
+
+    Args:
+        executor: runs the tasks.
+        tasks: scenes with their folders.
+        chunk: tasks that are submitted together.
+        window: chunks that run or wait.
+        broken: list that gets the tasks of a process that died; no further task is then submitted.
+
+    Raises:
+        OSError: the disk is full.
+        ExecutorError: a job was refused.
+    """
     waiting: dict[Future[list[Answer]], list[Task]] = {}
     while True:
         while not broken and len(waiting) < window and (job := list(islice(tasks, chunk))):
@@ -235,7 +247,7 @@ def attempt_all(tasks: Sequence[Task]) -> list[Answer]:
 
 
 def _attempt(scene: Scene, folder: Path) -> Answer:
-    """Run a scene and return its answer.
+    """Return the outcome of a scene after running it: done, refused (no valid scene or settings), or failed, with why.
 
     Raises:
         OSError: the disk is full, which stops all other points, too.
@@ -250,7 +262,16 @@ def _attempt(scene: Scene, folder: Path) -> Answer:
 
 
 def _finish(plan: SweepPlan, folder: Path, rows: Sequence[str | Answer], answers: Mapping[str, Answer]) -> Sweep:
-    """Write the table of a sweep from refusals, run folders, and the answers that no folder holds."""
+    """Write the table of a sweep from refusals, run folders, and the answers that no folder holds; return the sweep.
+
+    A table of 100 000 points or more is written as Parquet as well.
+
+    Args:
+        plan: the sweep.
+        folder: folder of the sweep.
+        rows: folder name or refusal of each point so far, in order; the others are `missing`.
+        answers: outcomes that were not `done`, by folder name.
+    """
     parquet_rows = 100_000  # rows from which on the table is written as Parquet as well
     interrupted = Answer("missing", "the sweep was interrupted before it")
 
@@ -324,6 +345,7 @@ def workplace_of(
 
 @contextmanager
 def _slurm(folder: Path, partition: str) -> Iterator[Executor]:
+    """Yield an executor that submits jobs of one processor to a partition of Slurm, with its files in `folder`."""
     resources = {"cores": 1, "partition": partition}
     with catch_warnings():
         simplefilter("ignore")  # executorlib's use of pydantic, and that it cannot check a partition

@@ -49,7 +49,10 @@ class Answer:
 
 
 def answer_in(folder: Path) -> Answer | None:
-    """Return the outcome of the run in a folder of a sweep; None where no run ended there."""
+    """Return the outcome of the run in a folder of a sweep.
+
+    None where no run ended there or its results.json is invalid.
+    """
     document = document_in(folder)
     if not document:
         return None
@@ -96,7 +99,10 @@ def columns_of(name: str) -> tuple[str, str]:
 
 
 def frame_of(folder: Path) -> DataFrame:
-    """Return the table as a pandas.DataFrame, its texts without the mark that protects them in a spreadsheet."""
+    """Return the table of a sweep as a pandas.DataFrame, texts without the mark for spreadsheets.
+
+    A column in SI has its unit in its name, as in `radius [m]`.
+    """
     import pandas
 
     return pandas.read_csv(folder / TABLE, float_precision="round_trip").replace(MARKED, r"\1", regex=True)
@@ -135,12 +141,12 @@ def read_record(folder: Path) -> SweepPlan:
 
 
 def units_in(folder: Path) -> dict[str, str]:
-    """Return the unit of each result of a sweep, by name."""
+    """Return the unit of each result of a sweep by name, from the run folders: in SI where it is known."""
     return _units(filter(None, (answer_in(folder / row["run"]) for row in read_table(folder))))
 
 
 def _units(answers: Iterable[Answer]) -> dict[str, str]:
-    """Return the unit of each result in the first run that has it, by name."""
+    """Return the unit of each result in the first run that has it, by name; empty without results."""
     units: dict[str, str] = {}
     for answer in answers:
         for name, quantity in answer.results.items():
@@ -149,7 +155,10 @@ def _units(answers: Iterable[Answer]) -> dict[str, str]:
 
 
 def counts_in(folder: Path) -> dict[str, int]:
-    """Return how many points of a sweep's table ended as `done`, `failed`, `refused`, or are `missing`."""
+    """Return how many points of a sweep's table ended as `done`, `failed`, `refused`, or are `missing`.
+
+    Without those of 0.
+    """
     return dict(Counter(row["status"] for row in read_table(folder)))
 
 
@@ -162,5 +171,5 @@ def read_table(folder: Path) -> Iterator[dict[str, str]]:
 
 
 def bare(header: str) -> str:
-    """Return the name of a column without its unit."""
+    """Return the name of a column without its unit, `force` of `force [N]`; a header without one as it is."""
     return match[1] if (match := HEADER.fullmatch(header)) else header
