@@ -65,7 +65,7 @@ def judge(bench: Bench) -> Findings:
             known = None
             if (entry.radius, symbol) in AT_ODDS:
                 law = basis_of[symbol] * (entry.radius / basis.radius) ** POWERS[symbol]
-                known = Known(law, tolerance * law, "the first row's, as the model has it for any law")
+                known = Known(law, tolerance * law, "follows from the first row: in the model a_0 scales with √R and one FU with R for any interaction")
             checks.append(
                 row(f"{symbol}, R = {entry.radius:g} LU", value,
                     printed(expected, "Table 1, first row: identified by it" if fixed else "Table 1"),

@@ -188,7 +188,8 @@ def _meaning(table: Table) -> str:
 def _values(table: Table, scales: Scales, within: str = "") -> Iterator[tuple[str, str]]:
     """Yield label and text with unit of each key of a table that has a value, also of those of tables in it.
 
-    Labels begin with `within`. Units of 1, and quantities whose unit is unknown in SI beside known scales, are left out.
+    Labels begin with `within`. Units of 1, and quantities whose unit in SI is unknown beside known scales, are left
+    out.
     """
     for name, key in keys_of(type(table)).items():
         value, unit = getattr(table, key.field), key.allowed.unit

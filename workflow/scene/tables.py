@@ -110,7 +110,7 @@ class Elastic(Table):
 
 
 class Material(Table):
-    """The material in SI: elasticity, and either the units or the surface energy."""
+    """Elasticity of the bodies; optionally the size of LU, FU and MU, or the surface energy from which LU and FU follow."""
 
     upper: Elastic | Literal["rigid"] | None = None
     """the upper body; "rigid", or the lower one: of infinite modulus"""
