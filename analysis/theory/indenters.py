@@ -41,7 +41,7 @@ def galin_factor(exponent: float) -> float:
 
 
 def require_positive(**values: float) -> None:
-    """Raise ValueError, with its name, for a value that is not positive and finite."""
+    """Raise ValueError, with its name, for the first value that is not positive and finite; nothing is returned."""
     for name, value in values.items():
         if not (math.isfinite(value) and value > 0.0):
             raise ValueError(f"{name} must be positive and finite, got {value}")
@@ -173,12 +173,12 @@ class Indenter(Contact):
         """Return the radius a at which g'(a) sqrt(a) is `wanted` [length]; wanted > 0 [length^(1/2)]."""
 
     def displacement(self, contact_radius: float) -> float:
-        """Return d = g(a) - sqrt(2 pi W a/E*) [length]; a >= 0 [length]."""
+        """Return d = g(a) - sqrt(2 pi W a/E*) [length], positive in approach; a >= 0 [length]."""
         stretch = math.sqrt(2.0 * math.pi * self.work_of_adhesion * contact_radius / self.contact_modulus)
         return self.transformed(contact_radius) - stretch
 
     def force(self, contact_radius: float) -> float:
-        """Return F = P(a) - sqrt(8 pi E* W a^3) [force]; a >= 0 [length]."""
+        """Return F = P(a) - sqrt(8 pi E* W a^3) [force], positive in compression; a >= 0 [length]."""
         tension = punch_tension(self.contact_modulus, self.work_of_adhesion, contact_radius)
         return self.pressed(contact_radius) - tension
 
@@ -234,7 +234,16 @@ class PowerLaw(Indenter):
 
     @classmethod
     def sphere(cls, radius: float, contact_modulus: float, work_of_adhesion: float = 0.0) -> PowerLaw:
-        """Return the paraboloid z = r^2/2R of Hertz, with `work_of_adhesion` that of JKR; R `radius` [length]."""
+        """Return the paraboloid z = r^2/2R, the contact of Hertz, or with W > 0 of JKR.
+
+        Args:
+            radius: R > 0 [length].
+            contact_modulus: E* > 0 [stress].
+            work_of_adhesion: W >= 0 [force/length].
+
+        Raises:
+            ValueError: if one of them is out of its range.
+        """
         require_positive(radius=radius)
         return cls(0.5 / radius, 2.0, contact_modulus, work_of_adhesion)
 
@@ -268,7 +277,10 @@ class PowerLaw(Indenter):
         return float(pressed - self._tension(a))
 
     def peak_pressure(self, contact_radius: float) -> float:
-        """Return the largest p [stress]: for n <= 2 p(0); for n > 2 it is off the axis, and has no closed form: NaN."""
+        """Return the largest p under a contact radius a [length], positive in compression [stress]: for n <= 2 p(0).
+
+        For n > 2 it is off the axis, and has no closed form: NaN. Infinite at a cone's tip (n = 1).
+        """
         return self.central_pressure(contact_radius) if self.exponent <= 2.0 else math.nan
 
     def pressure(self, r: Floats, contact_radius: float) -> Floats:
