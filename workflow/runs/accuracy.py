@@ -132,7 +132,10 @@ def reported(scene: Scene, outcome: Outcome) -> Outcome:
 
 
 def _scale_name(name: str, result: Result) -> str:
-    """Return what a result is compared with: "radius" of radii, a dissipated energy's own name, else the unit."""
+    """Return what a result is compared with: "radius" of radii, a dissipated energy's own name, else the unit.
+
+    A dissipated energy that has a scale of its own is compared by its unit, too.
+    """
     if result.scale is None and name.startswith(LOSSES):
         return name
     return "radius" if name.endswith("radius") else result.unit
@@ -187,7 +190,7 @@ def _advice(scene: Scene, results: Mapping[str, Result]) -> str:
 
 
 def _is_of_points(result: Result) -> bool:
-    """Return whether the largest error of a result is that of a profile given by points."""
+    """Return whether more than half of the uncertainty is that of a profile by points, without numbers with ±."""
     return result.errors.get("input", 0.0) - result.given > 0.5 * (result.uncertainty - result.given)
 
 
