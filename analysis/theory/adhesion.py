@@ -139,9 +139,9 @@ class MaugisDugdale(Dmt):
         return {Theory.JKR: PowerLaw.sphere(*sphere), Theory.DMT: Dmt(*sphere), Theory.MAUGIS: self}
 
     def ring_width(self, contact_radius: float) -> float:
-        """Return c - a, the width of the ring under attraction, root of the adhesion equation [length].
+        """Return c - a [length], the width of the ring under attraction around a contact of radius a >= 0 [length].
 
-        A >= 0 [length].
+        It is the root of the adhesion equation.
 
         Raises:
             ValueError: if a is negative.
@@ -165,14 +165,14 @@ class MaugisDugdale(Dmt):
         return self._length**2 / self.radius * _reduced(self.transition, contact_radius / self._length)[1]
 
     def critical_radius(self) -> float:
-        """Return a where a fixed load pulls off, the F(a) of which is lowest [length].
+        """Return the contact radius a at which a fixed load pulls off, where F(a) is lowest [length].
 
         0 where F rises from first touch on.
         """
         return self._length * _lowest(self.transition, 0)
 
     def fixed_grips_radius(self) -> float:
-        """Return a where a prescribed displacement pulls off, d(a) lowest [length].
+        """Return the contact radius a at which a prescribed displacement pulls off, where d(a) is lowest [length].
 
         0 where d rises from first touch on.
         """

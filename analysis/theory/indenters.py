@@ -83,10 +83,9 @@ class Contact(ABC):
         return self.contact_radius(0.0)
 
     def contact_radius(self, force: float) -> float:
-        """Return the stable contact radius a with F(a) = `force` [length].
+        """Return the stable contact radius a [length] with F(a) = `force`, positive in compression [force].
 
-        The force is positive in compression [force]. At the pull-off force it is the critical radius, and never more
-        than `reach`.
+        At the pull-off force it is the critical radius, and never more than `reach`.
 
         Raises:
             ValueError: if the tension exceeds the pull-off force.
@@ -97,9 +96,9 @@ class Contact(ABC):
         return self._where(self.force, force, low)
 
     def radius_at(self, displacement: float) -> float:
-        """Return the stable contact radius a with d(a) = `displacement` under fixed grips [length].
+        """Return the stable contact radius a [length] under fixed grips with d(a) = `displacement` [length].
 
-        D positive in approach. It is never more than `reach`.
+        It is never more than `reach`.
 
         Raises:
             ValueError: if the bodies have separated before.
