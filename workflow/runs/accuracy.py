@@ -195,10 +195,9 @@ def _is_of_points(result: Result) -> bool:
 
 
 def _by_lattice(results: Mapping[str, Result], tolerance: float) -> dict[str, float]:
-    """Return relative discretisation errors above the tolerance, by name, dimensionless.
+    """Return relative discretisation errors above the tolerance, by name, dimensionless; empty where there are none.
 
-    Without the share of interpolation. That share, of radii between particles (`read`), falls with the spacing in
-    another way.
+    The share of interpolation of radii between particles, and that of numbers with ±, do not count.
     """
     of_lattice = {
         name: replace(result, errors={LATTICE: result.errors.get(LATTICE, 0.0) - result.read}, read=0.0, given=0.0)

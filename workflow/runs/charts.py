@@ -50,7 +50,7 @@ FROM_ZERO = ("contact_radius", "force", "friction", "tangential_force")
 def charts(run: Run) -> dict[str, Chart]:
     """Return the charts of a run by the names of the figures' files, the main one first.
 
-    In SI base units where known.
+    They are in SI base units where the units are known, else in units of the model.
     """
     scales, bodies = run.scales, run.scene.bodies
     title = run.scene.title + ("" if bodies.reduction == "mdr" else f"\n(reduction {bodies.reduction})")

@@ -67,9 +67,9 @@ def completed(pairs: Sequence[tuple[AnyScene, AnyPath]], executor: Executor) -> 
 
 
 def attempt(scene: AnyScene, folder: Path) -> Entry:
-    """Return the run of a scene without figures and outcome, or a RunError.
+    """Return the run of a scene without figures and outcome, or the RunError of a run that failed.
 
-    Any other error is the cause of a RunError.
+    Any other error is the cause of a RunError that is returned.
     """
     try:
         return replace(run(scene, folder, figures=False, workers=1), outcome=None)
