@@ -78,7 +78,7 @@ class LineLoad:
 
     @property
     def has_apex(self) -> bool:
-        """Whether the slope of q does not vanish on the axis, where the pressure then grows without bound."""
+        """Whether the slope of q does not vanish on the axis, where the pressure then has no bound."""
         return self.apex or bool(self.coefficients[1, 0] != 0.0)
 
     def pressure(self, r: ArrayLike) -> Array:
@@ -174,6 +174,7 @@ def _of_body(body: Body, distances: bytes, borders: Sequence[float]) -> Array:
         return body(np.sqrt(r.reshape(-1, *(1,) * (t.ndim - 1)) ** 2 + t * t))  # hypot takes five times as long
 
     def integral(low: Array, high: Array) -> Array:
+        """Return ∫ dh/t from low to high, (…) each, by Gauss-Legendre quadrature [force/length²]."""
         t = 0.5 * ((low + high)[..., None] + (high - low)[..., None] * node)
         return np.asarray(np.sum((height(t) @ _differences().T) / t, axis=-1))
 

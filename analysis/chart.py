@@ -49,7 +49,7 @@ class Axis:
 
     @property
     def label(self) -> str:
-        """Name, unit and remark, as in `force (FU), compression positive`."""
+        """Name, unit and remark, as in `force (FU), compression positive`; the unit "1" is not written."""
         return f"{self.name}{'' if self.unit == '1' else f' ({self.unit})'}{self.remark}"
 
     def ended(self, values: Array) -> Array:
@@ -121,7 +121,7 @@ class Panel:
 
     @property
     def heading(self) -> str:
-        """The title and the note of a panel, where it has them."""
+        """The title and the note of a panel, joined by ", "; "" where it has neither."""
         return ", ".join(filter(None, [self.title, self.note]))
 
     @property

@@ -53,7 +53,13 @@ MARKED = f"^'('*[{FIRST}])"
 
 
 def write_columns(path: Path, columns: Mapping[str, Column], units: Mapping[str, str] | None = None) -> None:
-    """Write a CSV file; the header has the unit of SI of a column, `force [N]`; 17 digits, NaN as an empty cell."""
+    """Write a CSV file, whole or not at all: numbers with 17 digits, NaN as "", texts marked as by `as_text`.
+
+    Args:
+        path: of the file.
+        columns: by name, equally long.
+        units: SI units of columns, which the header has as in `force [N]`; None: none has one.
+    """
     with whole(path) as part, part.open("w", newline="", encoding="utf-8") as file:
         put_columns(file, columns, units or {})
 
@@ -76,9 +82,9 @@ def headed(names: Iterable[str], units: Mapping[str, str]) -> list[str]:
 
 
 def as_text(cell: Any) -> Any:
-    """Return a text as a cell that no spreadsheet takes for a formula, `'=1+1`; other cells as they are.
+    """Return a text that a spreadsheet would take for a formula with an apostrophe before it, `'=1+1`.
 
-    `plain` is the inverse.
+    Other cells as they are. A number with a sign is no formula. `plain` is the inverse.
     """
     return f"'{cell}" if isinstance(cell, str) and FORMULA.match(cell) else cell
 
@@ -193,12 +199,12 @@ def states_of(profiles: Sequence[Profile], kept: Sequence[int] | None = None, mo
 
 
 def _spread(count: int, most: int) -> NDArray[np.int64]:
-    """Return at most `most` of the indices below `count`, evenly spread, with both ends."""
+    """Return indices from 0 to count − 1, evenly spread, with both ends: all of them, or `most` where they are more."""
     return np.linspace(0, count - 1, min(count, most)).round().astype(np.int64)
 
 
 def write_states(path: Path, states: States) -> None:
-    """Write the arrays of the states to the file states.npz."""
+    """Write the arrays of the states to the file states.npz, at `path`, whole or not at all."""
     with whole(path) as part, part.open("wb") as file:
         np.savez(file, allow_pickle=False, **vars(states))
 

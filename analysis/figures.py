@@ -177,9 +177,15 @@ def stick_slip(
 
 
 def _bars(x: Array, load: Array, first: NDArray[np.bool_], names: tuple[str, str] = ("", "")) -> Iterator[Series]:
-    """Yield two outlines of bars, of the line load [FU/LU] of the `first` particles and of the others, in two colours.
+    """Yield two outlines of bars, of the line load of the particles in `first` and of the others, in two colours.
 
-    A bar reaches half-way to the neighbours of its particle at x [LU].
+    A bar reaches half-way to the neighbours of its particle; that of a particle of the other kind has the height 0.
+
+    Args:
+        x: positions, rising, (n,) [LU].
+        load: line load, (n,) [FU/LU].
+        first: which particles are in the first outline, (n,).
+        names: of both outlines in the legend.
     """
     edges = np.repeat(np.concatenate([x[:1], (x[1:] + x[:-1]) / 2.0, x[-1:]]), 2)
     for zone, name, colour in zip((first, ~first), names, (COMPRESSION, TENSION), strict=True):

@@ -42,7 +42,7 @@ class Form:
     def shown(self, theta: Array) -> Array:
         """Return θ, (…, k), with values below the lower bounds set to these.
 
-        Of a smooth curve the slopes at its knots.
+        Of a convex smooth curve its increments are added up, so that they are the slopes at the knots.
         """
         theta = np.maximum(theta, self.least)
         return np.cumsum(theta, axis=-1) if self.convex else theta

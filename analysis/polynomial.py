@@ -26,6 +26,7 @@ def fitting(t: Array, degree: int) -> Array:
 
 @lru_cache(maxsize=512)  # particles that move only along z have the same polynomial in every state
 def _fitting(positions: bytes, degree: int) -> Array:
+    """Return the matrix of `fitting` for positions as the bytes of an array of float64; it is cached and read-only."""
     t = np.frombuffer(positions)
     matrix = _lagrange(t) if len(t) == degree + 1 else np.linalg.pinv(t[:, None] ** np.arange(degree + 1))
     matrix.flags.writeable = False
@@ -48,7 +49,7 @@ def _lagrange(t: Array) -> Array:
 
 
 def through(t: Array, y: Array) -> Array:
-    """Return the coefficients, (n,), of the polynomial through n values y at different positions t.
+    """Return the coefficients, (n,), lowest power first, of the polynomial through n values y at different t, (n,).
 
     For several sets of values, (n, m), they are (n, m). There is less round-off than by `fitting`.
     """
@@ -56,9 +57,9 @@ def through(t: Array, y: Array) -> Array:
 
 
 def divided(t: Array, y: Array) -> Iterator[Array]:
-    """Yield the divided differences of orders 1 … n − 1 of values y at positions t, (n,) or (n, m), Newton's.
+    """Yield Newton's divided differences of orders 1 … n − 1, in this order, of values y at different positions t.
 
-    Those of order k are (n − k,) or (n − k, m).
+    Those of order k are (n − k,) of values (n,), or (n − k, m) of m sets of values (n, m). None for a single value.
     """
     for order in range(1, len(t)):
         y = (y[1:] - y[:-1]) / (t[order:] - t[:-order])

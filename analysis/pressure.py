@@ -89,11 +89,18 @@ def pressure_profile(
     force_z: ArrayLike,
     spacing: float,
 ) -> Profile:
-    """Return p = F_z / spacing and q = F_x / spacing over x, sorted by x.
+    """Return the state of a contact with p = F_z / spacing and q = F_x / spacing [FU/LU] over x, sorted by x.
 
-    x_upper, z_upper: upper particles [LU], (n,); z_lower: height of the lower surface for each of them [LU], (n,);
-    force_x, force_z: force of the lower body on each upper particle [FU], (n,); spacing of the particles [LU].
-    Valid for any order of the particles. Raises ValueError for unequal lengths, a spacing <= 0 or a value not finite.
+    Valid for any order of the particles; compression, F_z > 0, is positive.
+
+    Args:
+        x_upper, z_upper: upper particles [LU], (n,).
+        z_lower: height of the lower surface for each of them [LU], (n,).
+        force_x, force_z: force of the lower body on each upper particle [FU], (n,).
+        spacing: of the particles [LU].
+
+    Raises:
+        ValueError: unequal lengths, a spacing <= 0 or a value that is not finite.
     """
     if not spacing > 0.0:
         raise ValueError(f"spacing must be positive, got {spacing}")
@@ -136,11 +143,17 @@ def penetration_depth(x_upper: ArrayLike, z_upper: ArrayLike, x_lower: ArrayLike
 
 
 def smallest_distance(x_upper: ArrayLike, z_upper: ArrayLike, x_lower: ArrayLike, z_lower: ArrayLike) -> float:
-    """Return min_ij |r_i - r_j| [LU] over upper particles i and lower particles j.
+    """Return min_ij |r_i - r_j| [LU], the smallest distance of the centres of upper particles i and lower particles j.
 
-    x_upper, z_upper [LU], (n,); x_lower, z_lower [LU], (m,). Raises ValueError where a body has no particle or a
-    position is not finite. The next lower particle along x gives a first distance for each upper one, and only pairs
-    within it along x are examined: for chains a few.
+    The next lower particle along x gives a first distance for each upper one, and only pairs within it along x are
+    examined: for chains a few.
+
+    Args:
+        x_upper, z_upper: upper particles in any order [LU], (n,).
+        x_lower, z_lower: lower particles in any order [LU], (m,).
+
+    Raises:
+        ValueError: a body has no particle, or a position is not finite.
     """
     (across, height), (x, z) = _sorted_by_x(x_upper, z_upper), _sorted_by_x(x_lower, z_lower)
     if not (across.size and x.size):

@@ -48,15 +48,20 @@ class ContactRadius:
 
 
 def tensile_radius(profile: Profile) -> ContactRadius:
-    """Return the radius of maximum tensile stress, between the particles: p(a) = min p on each side of the centre.
+    """Return the radius a of maximum tensile stress [LU], between particles: p(a) = min p on each side of the centre.
 
-    profile: a pressure profile of one contact, n >= 3 particles. The centre is the mean of x weighted with |p|. A
-    contact that has shrunk to one tensile spot has radius 0: the minimum is the same on both sides. The interpolation
-    of `analysis.extremum` has a median error of 3e-4 spacings s, 0.04 where particles snap. A radius a below 3 s is
-    uncertain by 1.2 (s - a/3) at least: over 6900 random contacts of independent pairs in closed form, with bodies as
-    sharp as two spacings, that covers at least 94 % of the errors of every size of contact; without, 85 to 90 %.
-    Source: Geike and Popov 2007, Section 3.2 and Fig. 4, after Greenwood.
-    Raises ValueError where no particle carries tension (use `compressive_radius`), and for fewer than 3 particles.
+    The centre is the mean of x weighted with |p|. A contact that has shrunk to one tensile spot has radius 0: the
+    minimum is the same on both sides. The interpolation of `analysis.extremum` has a median error of 3e-4 spacings s,
+    0.04 where particles snap. A radius a below 3 s is uncertain by 1.2 (s - a/3) at least: over 6900 random contacts of
+    independent pairs in closed form, with bodies as sharp as two spacings, that covers at least 94 % of the errors of
+    every size of contact; without, 85 to 90 %. Source: Geike and Popov 2007, Section 3.2 and Fig. 4, after Greenwood.
+
+    Args:
+        profile: a pressure profile of one contact, n >= 3 particles, compression positive.
+
+    Raises:
+        ValueError: no particle carries tension (use `compressive_radius`), fewer than 3 particles, or a pressure that
+            is not finite.
     """
     x, p = profile.x, profile.pressure
     least, most = _extremes(profile)

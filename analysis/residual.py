@@ -113,11 +113,15 @@ def drawn(columns: Array, exact: Array, least: Array, deviation: float, draws: i
 
 
 def independent(off: Array, heights: Array) -> Array:
-    """Return pairs, (m, 2, k), whose halved differences are independent standard deviations of a sample, (n, k).
+    """Return pairs of errors of k parameters, (m, 2, k), whose halved differences are independent standard deviations.
 
-    They are along the principal components of the heights by θ, (j, k): the means of the sample on either side of 0
-    along each, widened from the mean to the standard deviation, so that they respect the bounds of the sample. A
-    component with less than 1e-4 of the variance is left out.
+    They are along the principal components of the heights: the means of the sample on either side of 0 along each,
+    widened from the mean to the standard deviation, so that they respect the bounds of the sample. A component with
+    less than 1e-4 of the variance is left out, so that m is at most k.
+
+    Args:
+        off: sample of the errors, (n, k).
+        heights: derivatives of heights by the parameters, (j, k).
     """
     _, sizes, along = np.linalg.svd(heights @ off.T, full_matrices=False)
     modes = along[sizes**2 > 1e-4 * np.sum(sizes**2)]

@@ -103,7 +103,7 @@ class Taken:
 
 
 def is_two_sided(x: Array) -> bool:
-    """Return whether rising positions have 5 % of their width at least on each side of 0."""
+    """Return whether rising positions, (n,), have more than 5 % of their width on each side of 0."""
     return float(min(-x[0], x[-1])) > 0.05 * float(x[-1] - x[0])
 
 

@@ -43,10 +43,10 @@ def stick_margin(profile: Profile, coefficient: float, direction: int) -> Array:
 
 
 def stick_radius(profile: Profile, coefficient: float, direction: int) -> ContactRadius:
-    """Return the half-width c of the stick zone [LU], out to where the margin of μ p vanishes.
+    """Return the half-width c of the stick zone [LU], out to where the margin of μ p vanishes, with its uncertainty.
 
-    0, exactly, if all slips. As a pressure without attraction, the margin is a smooth function of x inside the zone and
-    0 outside: its zero is that of a parabola through the outermost particles that stick.
+    Both are 0 where all particles slip. As a pressure without attraction, the margin is a smooth function of x inside
+    the zone and 0 outside: its zero is that of a parabola through the outermost particles that stick.
 
     Args:
         profile: pressure p and shear of the lower body on the upper one [FU/LU], n ≥ 3 particles.

@@ -79,11 +79,14 @@ class Dmt(Contact):
         return math.cbrt(0.75 * self._load * self.radius / self.contact_modulus)
 
     def force(self, contact_radius: float) -> float:
-        """Return F(a) = 4 E* a^3/3R - 2 pi W R [force]; a >= 0 [length]. At a = 0 that of rigid spheres (Bradley)."""
+        """Return F(a) = 4 E* a^3/3R - 2 pi W R [force], positive in compression; a >= 0 [length].
+
+        At a = 0 it is that of rigid spheres (Bradley), the pull-off force with a negative sign.
+        """
         return 4.0 * self.contact_modulus * contact_radius**3 / (3.0 * self.radius) - 2.0 * self._load
 
     def displacement(self, contact_radius: float) -> float:
-        """Return d(a) = a^2/R [length], that of Hertz; a >= 0 [length]."""
+        """Return d(a) = a^2/R [length], that of Hertz, positive in approach; a >= 0 [length]."""
         return contact_radius**2 / self.radius
 
 
@@ -136,9 +139,9 @@ class MaugisDugdale(Dmt):
         return {Theory.JKR: PowerLaw.sphere(*sphere), Theory.DMT: Dmt(*sphere), Theory.MAUGIS: self}
 
     def ring_width(self, contact_radius: float) -> float:
-        """Return c - a, the width of the ring under attraction, root of the adhesion equation [length].
+        """Return c - a [length], the width of the ring under attraction around a contact of radius a >= 0 [length].
 
-        A >= 0 [length].
+        It is the root of the adhesion equation.
 
         Raises:
             ValueError: if a is negative.
@@ -162,14 +165,14 @@ class MaugisDugdale(Dmt):
         return self._length**2 / self.radius * _reduced(self.transition, contact_radius / self._length)[1]
 
     def critical_radius(self) -> float:
-        """Return a where a fixed load pulls off, the F(a) of which is lowest [length].
+        """Return the contact radius a at which a fixed load pulls off, where F(a) is lowest [length].
 
         0 where F rises from first touch on.
         """
         return self._length * _lowest(self.transition, 0)
 
     def fixed_grips_radius(self) -> float:
-        """Return a where a prescribed displacement pulls off, d(a) lowest [length].
+        """Return the contact radius a at which a prescribed displacement pulls off, where d(a) is lowest [length].
 
         0 where d rises from first touch on.
         """
@@ -278,14 +281,16 @@ def of_tabor(tabor: float) -> Theory:
 
 
 def valid_theory(tabor: float, reduced_load: float) -> Verdict:
-    """Return the simplest valid theory; tested in the order apart, rigid, Hertz, JKR, DMT, Maugis-Dugdale.
+    """Return the simplest valid theory with its reason.
 
-    With N = F/(pi W R): rigid where Hertz's compression under F + 2 pi W R, mu [(3 pi/4)(N + 2)]^(2/3) h_0, is small;
-    Hertz where (A^3 - N)/N is, the load that attraction adds, by the theory that goes with mu.
+    Tested in the order apart, rigid, Hertz, JKR, DMT, Maugis-Dugdale. With N = F/(pi W R): apart where the tension
+    exceeds the pull-off force; rigid where Hertz's compression under F + 2 pi W R, mu [(3 pi/4)(N + 2)]^(2/3) h_0, is
+    below 0.05 h_0; Hertz where N > 0 and (A^3 - N)/N, the load that attraction adds by the theory that goes with mu, is
+    below 0.05; then JKR for mu > 5, unless the tension exceeds its pull-off force, and DMT for mu < 0.1.
 
     Args:
-        tabor: mu > 0 [1].
-        reduced_load: N, positive in compression [1].
+        tabor: mu > 0, dimensionless.
+        reduced_load: N, positive in compression, dimensionless.
 
     Raises:
         ValueError: if mu is not positive and finite, or the load not finite.

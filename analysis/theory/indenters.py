@@ -41,7 +41,7 @@ def galin_factor(exponent: float) -> float:
 
 
 def require_positive(**values: float) -> None:
-    """Raise ValueError, with its name, for a value that is not positive and finite."""
+    """Raise ValueError, with its name, for the first value that is not positive and finite; nothing is returned."""
     for name, value in values.items():
         if not (math.isfinite(value) and value > 0.0):
             raise ValueError(f"{name} must be positive and finite, got {value}")
@@ -83,10 +83,9 @@ class Contact(ABC):
         return self.contact_radius(0.0)
 
     def contact_radius(self, force: float) -> float:
-        """Return the stable contact radius a with F(a) = `force` [length].
+        """Return the stable contact radius a [length] with F(a) = `force`, positive in compression [force].
 
-        The force is positive in compression [force]. At the pull-off force it is the critical radius, and never more
-        than `reach`.
+        At the pull-off force it is the critical radius, and never more than `reach`.
 
         Raises:
             ValueError: if the tension exceeds the pull-off force.
@@ -97,9 +96,9 @@ class Contact(ABC):
         return self._where(self.force, force, low)
 
     def radius_at(self, displacement: float) -> float:
-        """Return the stable contact radius a with d(a) = `displacement` under fixed grips [length].
+        """Return the stable contact radius a [length] under fixed grips with d(a) = `displacement` [length].
 
-        D positive in approach. It is never more than `reach`.
+        It is never more than `reach`.
 
         Raises:
             ValueError: if the bodies have separated before.
@@ -173,12 +172,12 @@ class Indenter(Contact):
         """Return the radius a at which g'(a) sqrt(a) is `wanted` [length]; wanted > 0 [length^(1/2)]."""
 
     def displacement(self, contact_radius: float) -> float:
-        """Return d = g(a) - sqrt(2 pi W a/E*) [length]; a >= 0 [length]."""
+        """Return d = g(a) - sqrt(2 pi W a/E*) [length], positive in approach; a >= 0 [length]."""
         stretch = math.sqrt(2.0 * math.pi * self.work_of_adhesion * contact_radius / self.contact_modulus)
         return self.transformed(contact_radius) - stretch
 
     def force(self, contact_radius: float) -> float:
-        """Return F = P(a) - sqrt(8 pi E* W a^3) [force]; a >= 0 [length]."""
+        """Return F = P(a) - sqrt(8 pi E* W a^3) [force], positive in compression; a >= 0 [length]."""
         tension = punch_tension(self.contact_modulus, self.work_of_adhesion, contact_radius)
         return self.pressed(contact_radius) - tension
 
@@ -234,7 +233,16 @@ class PowerLaw(Indenter):
 
     @classmethod
     def sphere(cls, radius: float, contact_modulus: float, work_of_adhesion: float = 0.0) -> PowerLaw:
-        """Return the paraboloid z = r^2/2R of Hertz, with `work_of_adhesion` that of JKR; R `radius` [length]."""
+        """Return the paraboloid z = r^2/2R, the contact of Hertz, or with W > 0 of JKR.
+
+        Args:
+            radius: R > 0 [length].
+            contact_modulus: E* > 0 [stress].
+            work_of_adhesion: W >= 0 [force/length].
+
+        Raises:
+            ValueError: if one of them is out of its range.
+        """
         require_positive(radius=radius)
         return cls(0.5 / radius, 2.0, contact_modulus, work_of_adhesion)
 
@@ -268,19 +276,26 @@ class PowerLaw(Indenter):
         return float(pressed - self._tension(a))
 
     def peak_pressure(self, contact_radius: float) -> float:
-        """Return the largest p [stress]: for n <= 2 p(0); for n > 2 it is off the axis, and has no closed form: NaN."""
+        """Return the largest p under a contact radius a [length], positive in compression [stress]: for n <= 2 p(0).
+
+        For n > 2 it is off the axis, and has no closed form: NaN. Infinite at a cone's tip (n = 1).
+        """
         return self.central_pressure(contact_radius) if self.exponent <= 2.0 else math.nan
 
     def pressure(self, r: Floats, contact_radius: float) -> Floats:
         """Return p(r) [stress], positive in compression, of a cone or a paraboloid; 0 from the edge on.
 
-        (E* c/2) arcosh(a/r) or (2 E* a/pi R) sqrt(1 - r^2/a^2), less sqrt(2 E* W/pi a)/sqrt(1 - r^2/a^2). Any exponent
-        other than 1 counts as 2: it is no result of another one.
+        (E* c/2) arcosh(a/r) or (2 E* a/pi R) sqrt(1 - r^2/a^2), less sqrt(2 E* W/pi a)/sqrt(1 - r^2/a^2).
 
         Args:
             r: distances from the axis >= 0 [length], any shape.
             contact_radius: a >= 0 [length].
+
+        Raises:
+            ValueError: an exponent other than 1 and 2.
         """
+        if self.exponent not in (1.0, 2.0):
+            raise ValueError(f"p(r) has this form for the exponents 1 and 2, and not for {self.exponent:g}")
         pressure, inside = np.zeros_like(r), r < contact_radius
         ratio, scale = r[inside] / contact_radius, self.contact_modulus * self.coefficient
         root = np.sqrt(1.0 - ratio**2)

@@ -54,9 +54,9 @@ class Indented:
         return self.times[len(self.times) - 1 - int(np.argmax(self.displacements[::-1]))]
 
     def _relaxed(self, time: Array) -> Array:
-        """Return the relaxation function φ, 1 at time 0, at times since a load step, (m,), dimensionless.
+        """Return the relaxation function φ, dimensionless, at times ≥ 0 since a load step, (m,) [time].
 
-        Time ≥ 0 [time].
+        It is 1 at time 0.
         """
         phi = np.ones_like(time)
         for g, tau in self.terms:

@@ -65,7 +65,9 @@ def judge(bench: Bench) -> Findings:
             known = None
             if (entry.radius, symbol) in AT_ODDS:
                 law = basis_of[symbol] * (entry.radius / basis.radius) ** POWERS[symbol]
-                known = Known(law, tolerance * law, "follows from the first row: in the model a_0 scales with √R and one FU with R for any interaction")
+                known = Known(
+                    law, tolerance * law, "follows from the first row, since here a_0 scales with √R, one FU with R"
+                )
             checks.append(
                 row(f"{symbol}, R = {entry.radius:g} LU", value,
                     printed(expected, "Table 1, first row: identified by it" if fixed else "Table 1"),

@@ -59,7 +59,7 @@ def show(text: str) -> None:
 
 
 def print_lines(lines: Iterable[str], warnings: Mapping[str, str], path: object = None) -> None:
-    """Print lines, warnings on standard error, and the path of the files."""
+    """Print lines, then warnings, by name, on standard error, and the path of the files, unless that is None."""
     show("\n".join(lines))
     for name, message in warnings.items():
         typer.secho(f"warning {name}: {message}", err=True, fg="yellow")

@@ -56,7 +56,7 @@ def quantities(results: Mapping[str, Any]) -> list[str]:
 
 
 def _reduction(results: Mapping[str, Any]) -> str:
-    """Return the reduction, and the body to which radii and pressures belong."""
+    """Return the name of the reduction in results.json, and the body to which radii and pressures belong, as text."""
     reduction = str(results["reduction"])
     if results.get("scene", {}).get("bodies", {}).get("profile", {}).get("kind") == "flat":
         return f"{reduction}: the same for a flat body"

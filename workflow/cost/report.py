@@ -67,7 +67,7 @@ class VariantRuns:
 
     @property
     def change(self) -> tuple[str, str]:
-        """The varied key and its value, such as `accuracy.tolerance` and `0.01`, or `without` and an effect."""
+        """The varied key and its value as text, `accuracy.tolerance` and `0.01`, or "without" and an effect."""
         setting, value = next(iter(self.edit.values.items()), ("without", "".join(self.edit.without)))
         return setting, str(value)
 

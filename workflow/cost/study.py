@@ -130,9 +130,9 @@ def reference_of(
 
 
 def with_errors(runs: VariantRuns, reference: Mapping[str, Result]) -> VariantRuns:
-    """Return the runs of a variant with relative errors against the reference.
+    """Return the runs of a variant with relative errors against the reference, and the dominant source of the largest.
 
-    Without one of its results they failed.
+    Where the runs lack a result of the reference they have failed, and have no errors.
     """
     if missing := [name for name in reference if name not in runs.results]:
         return replace(runs, failure=runs.failure or f"no {missing[0]}")

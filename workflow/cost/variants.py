@@ -73,7 +73,7 @@ def numbers_of(scene: Scene) -> dict[str, float]:
 
 
 def settings_of(scene: Scene) -> dict[str, Setting]:
-    """Return the numerical settings that a scene gives, by dotted keys, the tolerance first."""
+    """Return the numerical settings that a scene gives as numbers, by dotted keys, the tolerance first."""
     numbers = numbers_of(scene)
     return {key: setting for key, setting in SETTINGS.items() if key in numbers and setting.is_numerical(scene)}
 

@@ -111,7 +111,7 @@ class AskedContact:
 
     @property
     def model(self) -> Model:
-        """The model: a chain on a rigid plane, or two chains of particles with a fitted interaction."""
+        """The model: "plane", a chain on a rigid plane, or "particles", two chains with a fitted interaction."""
         return "particles" if self.given.get("model") == "particles" else "plane"
 
 
@@ -182,7 +182,10 @@ def _mistakes(data: Mapping[str, Any], complete: bool) -> Iterator[Problem]:
 
 
 def _without_unit(data: Mapping[str, Any], folder: Path) -> Iterator[Problem]:
-    """Yield a problem if neither the file of a profile has units nor the profile a scale."""
+    """Yield a problem if neither the file of a profile has units nor the profile a scale.
+
+    None for a file that can't be read.
+    """
     profile = data.get("profile")
     if isinstance(profile, Mapping) and isinstance(profile.get("file"), str) and not {"scale", "units"} & {*profile}:
         with suppress(ValueError):

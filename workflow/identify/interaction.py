@@ -288,7 +288,7 @@ def _estimated(scene: Scene, tail: float = 1e-5, points: int = 1000) -> Array:
 
 
 def _largest_tension(estimate: Law) -> float:
-    """Return the undeformed gap of the force maximum [LU], between the points of the grid by a parabola."""
+    """Return the undeformed gap [LU] of the predictor's largest tension, by a parabola between its points."""
     force, points = estimate.force, np.arange(estimate.force.size, dtype=np.float64)
     i = min(max(int(np.argmin(force)), 1), len(force) - 2)
     peak, _ = vertex(points, -force, i, 1)

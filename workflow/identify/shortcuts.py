@@ -116,9 +116,16 @@ def punch(radius: str | float, **contact: Any) -> Contact:
 
 
 def profile(file: AnyPath | None = None, **contact: Any) -> Contact:
-    """Return the contact of a measured profile, a file or lists `r` or `x` and `z`; other arguments as `sphere`.
+    """Return the contact of a measured profile, from a file or lists.
 
     `centre`, `level`, `smooth`, `fit` and `units` determine how a scan is read, as in a scene (docs/scene.md).
+
+    Args:
+        file: with columns r or x, and z; None: `r` or `x` and `z` are given as lists.
+        contact: these keys of a profile, and the arguments of `sphere` but its radii.
+
+    Raises:
+        SceneError: all problems of the description.
     """
     keys = keys_of(Measured).keys() - {"kind", "file"}
     given: dict[str, Any] = {key: contact.pop(key) for key in keys if key in contact}

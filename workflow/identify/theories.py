@@ -42,7 +42,7 @@ class Theories:
 
     @cached_property
     def verdict(self) -> Verdict:
-        """The theory that holds under the load, with the reason."""
+        """The theory that holds under the load (0 where none is given), with the reason."""
         return valid_theory(
             self.tabor, (self.load or 0.0) / (math.pi * self.sphere.work_of_adhesion * self.sphere.radius)
         )

@@ -71,10 +71,7 @@ def ovito_script(folder: AnyPath) -> Path:
 
 
 def _draw(run: Run, states: States, path: Path, frames_per_second: int) -> None:
-    """Draw and write the animation of a run's states: bodies above, the main curve with a mark below.
-
-    Whole or not at all.
-    """
+    """Write the animation of a run's states, whole or not at all: bodies above, the main curve with a mark below."""
     from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 
     figure = new_figure((WIDTH, HEIGHT))
@@ -126,6 +123,7 @@ def _bodies(axes: Axes, run: Run, chart: Chart, loads: Panel, most_springs: int 
     describe(axes, chart.x.label, panel.y.label, run.scene.title, zero=on_plane)
 
     def move(frame: int) -> Artist:
+        """Draw the particles of the state with this index, and return them."""
         dots.set_offsets(positions[frame])
         dots.set_array(pressure[frame])
         if count <= most_springs:
@@ -143,6 +141,7 @@ def _trace(axes: Axes, chart: Chart) -> Callable[[int], Artist]:
     (mark,) = axes.plot([], [], state.look, color=state.colour, markersize=8)
 
     def move(frame: int) -> Artist:
+        """Put the mark at the state with this index, and return it."""
         mark.set_data(state.x[frame], state.y[frame])
         return mark
 

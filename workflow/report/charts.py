@@ -70,7 +70,10 @@ def _fit(charts: Sequence[Chart], least_share: float = 0.05) -> bool:
 
 
 def _overlaid(charts: Sequence[Chart], runs: int) -> Chart:
-    """Return charts of one panel as a single chart, whose note names the runs unless it has all of them."""
+    """Return charts of one panel each as a single chart with the axes of the first.
+
+    Its note names the runs, unless it has all `runs` of them and these are several.
+    """
     panels = [chart.panels[0] for chart in charts]
     series = [line for panel in panels for line in panel.series]
     note = ", ".join(panel.note for panel in panels) * (not 1 < len(panels) == runs)

@@ -188,8 +188,7 @@ def _meaning(table: Table) -> str:
 def _values(table: Table, scales: Scales, within: str = "") -> Iterator[tuple[str, str]]:
     """Yield label and text with unit of each key of a table that has a value, also of those of tables in it.
 
-    Labels begin with `within`. Units of 1, and quantities whose unit in SI is unknown beside known scales, are left
-    out.
+    Labels begin with `within`. Units of 1 are left out, and quantities of unknown unit in SI beside known scales.
     """
     for name, key in keys_of(type(table)).items():
         value, unit = getattr(table, key.field), key.allowed.unit
@@ -206,7 +205,10 @@ def _values(table: Table, scales: Scales, within: str = "") -> Iterator[tuple[st
 
 
 def _shown(value: Any, unit: str, scales: Scales, most_items: int = 6) -> str:
-    """Return a value of a scene as text; of a list with more than `most_items` its first and last ones."""
+    """Return a value of a scene as text, a float in SI with a prefix where `scales` know its unit.
+
+    Of a list with more than `most_items` it has the first and last ones, and their number.
+    """
     if isinstance(value, Table):
         return f"({', '.join(text for _, text in _values(value, scales))})"
     if isinstance(value, bool):

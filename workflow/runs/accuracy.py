@@ -132,7 +132,10 @@ def reported(scene: Scene, outcome: Outcome) -> Outcome:
 
 
 def _scale_name(name: str, result: Result) -> str:
-    """Return what a result is compared with: "radius" of radii, a dissipated energy's own name, else the unit."""
+    """Return what a result is compared with: "radius" of radii, a dissipated energy's own name, else the unit.
+
+    A dissipated energy that has a scale of its own is compared by its unit, too.
+    """
     if result.scale is None and name.startswith(LOSSES):
         return name
     return "radius" if name.endswith("radius") else result.unit
@@ -187,15 +190,14 @@ def _advice(scene: Scene, results: Mapping[str, Result]) -> str:
 
 
 def _is_of_points(result: Result) -> bool:
-    """Return whether the largest error of a result is that of a profile given by points."""
+    """Return whether more than half of the uncertainty is that of a profile by points, without numbers with ±."""
     return result.errors.get("input", 0.0) - result.given > 0.5 * (result.uncertainty - result.given)
 
 
 def _by_lattice(results: Mapping[str, Result], tolerance: float) -> dict[str, float]:
-    """Return relative discretisation errors above the tolerance, by name, dimensionless.
+    """Return relative discretisation errors above the tolerance, by name, dimensionless; empty where there are none.
 
-    Without the share of interpolation. That share, of radii between particles (`read`), falls with the spacing in
-    another way.
+    The share of interpolation of radii between particles, and that of numbers with ±, do not count.
     """
     of_lattice = {
         name: replace(result, errors={LATTICE: result.errors.get(LATTICE, 0.0) - result.read}, read=0.0, given=0.0)

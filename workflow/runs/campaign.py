@@ -185,7 +185,11 @@ def _failed(context: RunContext, error: EngineError | UntrustedError, started: f
 
 
 def _timing(context: RunContext, started: float) -> dict[str, float]:
-    """Return the wall and processor times [s] of a run since `started`, and its number of steps, for results.json."""
+    """Return the wall and processor times [s] of a run since `started`, and its number of steps, for results.json.
+
+    Wall times are `total_s`, `lammps_s` and of that `rows_s` in load steps; `lammps_cpu_s` is on LAMMPS' processors.
+    `started` is a reading of time.perf_counter [s].
+    """
     total = time.perf_counter() - started
     lammps, cpu, rows, steps = context.clock.taken
     return {"total_s": total, "lammps_s": lammps, "lammps_cpu_s": cpu, "rows_s": rows, "steps": steps}
@@ -205,9 +209,9 @@ def _hint(message: str) -> str:
 
 
 def write_deck(scene: AnyScene, folder: AnyPath) -> Path:
-    """Write system.data, the table and in.lammps with the planned schedule without running, and return the folder.
+    """Return the absolute path of a folder, after writing system.data, the table and in.lammps into it; nothing runs.
 
-    Arguments and errors are those of `run`.
+    in.lammps has the planned schedule. Arguments and errors are those of `run`, but RunError and RanksError.
     """
     with _prepared(scene, folder, Silent()) as (_, _, path):
         return path

@@ -50,7 +50,7 @@ FROM_ZERO = ("contact_radius", "force", "friction", "tangential_force")
 def charts(run: Run) -> dict[str, Chart]:
     """Return the charts of a run by the names of the figures' files, the main one first.
 
-    In SI base units where known.
+    They are in SI base units where the units are known, else in units of the model.
     """
     scales, bodies = run.scales, run.scene.bodies
     title = run.scene.title + ("" if bodies.reduction == "mdr" else f"\n(reduction {bodies.reduction})")
@@ -100,7 +100,7 @@ def legs_of(run: Run, along: Array) -> list[tuple[str, NDArray[np.int64]]]:
 
 
 def _charts(run: Run) -> Iterator[tuple[str, Chart]]:
-    """Yield name and chart of each figure of a run, in units of the model."""
+    """Yield name and chart of each figure that a run has, in units of the model, the main one first."""
     scene, profiles = run.scene, figures.seen(run.profiles)
     over, up, *_ = main_curve(run)
     rule = radius_rule(scene, scene.accuracy.tolerance)
@@ -155,7 +155,10 @@ def _samples(run: Run) -> Chart:
 
 
 def _under_load(run: Run) -> Iterator[tuple[str, Chart]]:
-    """Yield the charts of the force over the displacement and, where that changes, over the contact radius."""
+    """Yield the charts of the force [FU] over displacement [LU] and, where that changes, contact radius [LU].
+
+    Of a sphere whose F_A and a₀ are known the latter has F/F_A over a/a₀.
+    """
     curve, theory, scale, tension = run.curve, _theory(run), _pull_off(run), run.results.get("adhesion_force")
     references = figures.lines(*((name, d, force) for name, _, d, force in theory))
     references += _ting(run, "displacement")

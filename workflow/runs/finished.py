@@ -84,12 +84,15 @@ class Run:
 
     @property
     def status(self) -> str:
-        """`done`; a run that failed has no numbers and raises instead (`run`, `load_run`)."""
+        """Whether the run has results: "done", or "failed".
+
+        `run` and `load_run` raise RunError in place of the latter.
+        """
         return str(self.document["status"])
 
     @property
     def warnings(self) -> dict[str, str]:
-        """The messages of the warnings, by name."""
+        """The messages of the warnings, by name; empty where there are none."""
         return {warning["name"]: warning["message"] for warning in self.document["warnings"]}
 
     @property
@@ -152,7 +155,7 @@ class Run:
 
     @property
     def _numbers(self) -> Results:
-        """The results in units of the model."""
+        """The reported results by name in units of the model, LU, FU and MU."""
         return Results({name: Quantity.of(entry, False) for name, entry in quantities_in(self.document).items()})
 
     @cached_property
@@ -165,19 +168,19 @@ class Run:
 
     @cached_property
     def model(self) -> Run:
-        """The run with its tables and results in units of the model."""
+        """The run with its tables and results in units of the model, LU, FU and MU; its own `model` is itself."""
         tables = {name: in_model_units(columns, self.scales) for name, columns in self.tables.items()}
         run = replace(self, tables=tables)
         vars(run).update(results=self._numbers, model=run)
         return run
 
     def plot(self, name: str | None = None) -> Figure:
-        """Draw a figure, by default the experiment's main one; `.savefig(path)` keeps it.
+        """Return a figure as a matplotlib Figure, by default the experiment's main one; `.savefig(path)` keeps it.
 
         Args:
             name: "force_displacement", "force_radius", "force_time", "displacement_time", "pressure", "pressure_3d",
                 "friction", "tangential", "stick_slip", "shear_3d", "inputs", "detachments", "samples" or "scan", as the
-                files in the folder are called.
+                files in the folder are called; None: the first one.
 
         Raises:
             ValueError: the run has no such figure; the message says which it has.
@@ -189,7 +192,13 @@ class Run:
         return plots.draw(drawable[name].written(scale_of))
 
     def atoms(self, state: int = -1) -> Atoms:
-        """Return a reported state as ase.Atoms, by default the last; see `contact1d.atoms`."""
+        """Return a reported state as ase.Atoms, positions [LU], by default the last.
+
+        For what it has see `contact1d.atoms`.
+
+        Raises:
+            IndexError: there is no such state.
+        """
         return atoms(self.folder, state)
 
     def to_json(self, path: AnyPath | None = None) -> str:
@@ -328,7 +337,13 @@ def read_run(folder: Path) -> Run:
 
 
 def draw(drawn: Mapping[str, Chart], folder: Path, figures: bool | str) -> None:
-    """Save charts in a folder by their names; `figures` is the format png, svg or pdf, and True is png."""
+    """Save charts in a folder, each under its name; numbers get units with SI prefixes.
+
+    Args:
+        drawn: charts by name, in base units.
+        folder: an existing one.
+        figures: format, "png", "svg" or "pdf"; True or False: "png".
+    """
     form = figures if isinstance(figures, str) else FORMATS[0]
     for name, chart in drawn.items():
         plots.save_figure(plots.draw(chart.written(scale_of)), folder / f"{name}.{form}")

@@ -21,12 +21,12 @@ Entry = Run | RunError
 def run_many(
     scenes: Iterable[tuple[AnyScene, AnyPath]], executor: Executor | None = None, workers: int | None = None
 ) -> list[Entry]:
-    """Run (scene, folder) pairs, several at a time, without figures.
+    """Return a run or an error for each of many scenes, which run several at a time, without figures.
 
     Args:
-        scenes: scenes as `run` reads them, each with a folder of its own.
+        scenes: pairs of a scene as `run` reads it and a folder of its own.
         executor: anything with the interface of `concurrent.futures`; None: processes on this machine.
-        workers: runs at a time on this machine; None: as many as there are processors.
+        workers: runs at a time on this machine; None: as many as there are processors. Ignored with an executor.
 
     Returns:
         An entry for each pair, in the order given: a `Run`, or a `RunError` with the folder and the message of whatever
@@ -67,9 +67,9 @@ def completed(pairs: Sequence[tuple[AnyScene, AnyPath]], executor: Executor) -> 
 
 
 def attempt(scene: AnyScene, folder: Path) -> Entry:
-    """Return the run of a scene without figures and outcome, or a RunError.
+    """Return the run of a scene without figures and outcome, or the RunError of a run that failed.
 
-    Any other error is the cause of a RunError.
+    Any other error is the cause of a RunError that is returned.
     """
     try:
         return replace(run(scene, folder, figures=False, workers=1), outcome=None)

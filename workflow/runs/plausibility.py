@@ -117,7 +117,10 @@ def _numbers(scene: Scene, scales: Scales) -> Iterator[tuple[str, str]]:
 
 
 def _radii(scales: Scales, quantities: Mapping[str, Quantity], atom: float = 1e-10) -> Iterator[tuple[str, str]]:
-    """Yield name and message of each contact smaller than an atom of a radius [m], where continuum theory fails."""
+    """Yield name and message of each contact radius in (0, `atom`) [m], where continuum theory fails.
+
+    None without scales.
+    """
     if not scales.known:
         return
     for name, quantity in quantities.items():

@@ -85,7 +85,7 @@ def _begin(parent: Connection) -> None:
 
 
 def require_ranks(deck: Deck, ranks: int, fewest: int = 50) -> None:
-    """Refuse several ranks where they can't run a deck, or are no use.
+    """Check that several MPI ranks can run a deck, and are of use; one rank always passes.
 
     Args:
         deck: of the scene.
@@ -93,7 +93,8 @@ def require_ranks(deck: Deck, ranks: int, fewest: int = 50) -> None:
         fewest: particles of a body for each rank; with fewer, communication takes longer than their forces.
 
     Raises:
-        RanksError: why, and what to do.
+        RanksError: why not, and what to do: with noise, on a rigid plane, with distant anchors, with too few particles,
+            or without a launcher of MPI.
     """
     if ranks == 1:
         return

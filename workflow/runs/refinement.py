@@ -105,7 +105,7 @@ def _after(count: int) -> str:
 
 
 def _helped(names: dict[str, float], before: Outcome, after: Outcome) -> bool:
-    """Return whether the uncertainty of one of the named results decreased by at least a fifth."""
+    """Return whether the uncertainty of one of the named results, without numbers with ±, fell by more than a fifth."""
     return any(
         name in after.results and _without_input(after.results[name]) < 0.8 * _without_input(before.results[name])
         for name in names

@@ -222,7 +222,7 @@ def results_in(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
 
 
 def quantities_in(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """Return the entries of the reported results in results.json by name."""
+    """Return the entries of the reported results in results.json by name: those whose value is not null."""
     return {name: entry for name, entry in results_in(document).items() if entry["value"] is not None}
 
 
@@ -249,7 +249,7 @@ def as_json(document: Mapping[str, Any]) -> str:
 
 
 def write_results(folder: Path, document: Mapping[str, Any]) -> None:
-    """Write results.json in a run folder, whole or not at all."""
+    """Write results.json in a run folder, whole or not at all; ValueError for a number that is not finite."""
     write_whole(folder / RESULTS, as_json(document))
 
 

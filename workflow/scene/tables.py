@@ -110,7 +110,7 @@ class Elastic(Table):
 
 
 class Material(Table):
-    """Elasticity of the bodies; optionally the size of LU, FU and MU, or the surface energy from which LU and FU follow."""
+    """Elasticity of the bodies; optionally the sizes of LU, FU and MU, or the surface energy that these follow from."""
 
     upper: Elastic | Literal["rigid"] | None = None
     """the upper body; "rigid", or the lower one: of infinite modulus"""

@@ -63,7 +63,10 @@ class Axis:
 
     @cached_property
     def cells(self) -> tuple[Any, ...]:
-        """The values as cells of the table: numbers, words as they are, tables and lists as in a scene file."""
+        """The values as cells of the table: numbers, of texts with units in SI, or words as they are.
+
+        Others as in a scene file.
+        """
         return self.numbers[0] or tuple(
             value if isinstance(value, str | int | float) and not isinstance(value, bool) else as_toml(value)
             for value in self.values
@@ -95,7 +98,7 @@ class SweepPlan:
         return math.prod(lengths) if self.combine == "product" else lengths[0]
 
     def values(self) -> Iterator[tuple[Any, ...]]:
-        """Yield the values of each point, one for each axis."""
+        """Yield the values of each point, one for each axis, as the sweep file has them."""
         return self._combined(axis.values for axis in self.axes)
 
     def cells(self) -> Iterator[tuple[Any, ...]]:
@@ -228,9 +231,10 @@ def _of_axes(axes: Sequence[Axis], combine: str) -> Iterator[Rule]:
 
 
 def _span(table: Mapping[str, Any]) -> tuple[Any, ...]:
-    """Return the steps + 1 values of an axis that is given by its ends, which are exact.
+    """Return the steps + 1 values of an axis given by its ends, which are exact: evenly spaced, or in equal ratios.
 
-    They are whole numbers if all values of a linear axis are whole, and texts with units if the ends are texts.
+    They are whole numbers if all values of a linear axis are whole, and texts with units if the ends are texts; else
+    floats.
     """
     given, steps, scale = (table["from"], table["to"]), table["steps"], table.get("scale", "linear")
     ends, unit = Axis("", given).numbers

@@ -156,7 +156,14 @@ def _continues(folder: Path, record: str, progress: Progress) -> bool:
 
 
 def _missing(plan: SweepPlan, folder: Path, rows: list[str | Answer], progress: Progress) -> Iterator[Task]:
-    """Yield scene and folder of each point without an answer, once; append each point's name or refusal to `rows`."""
+    """Yield scene and folder of each point that has not run yet, each scene once.
+
+    Args:
+        plan: the sweep.
+        folder: folder of the sweep.
+        rows: list that gets the folder name of each point, in order, or the refusal of one without a valid scene.
+        progress: informed of refusals and of points that are done.
+    """
     seen = set()
     for point in points(plan):
         if point.scene is None:
@@ -236,7 +243,7 @@ def _through(
 
 
 def _not_run(error: Exception) -> Answer:
-    """Return the answer of a point whose job ended before the point ran."""
+    """Return the outcome `missing` of a point whose job ended before the point ran, with the error as its reason."""
     words = " ".join(str(error).split()).rstrip(".")
     return Answer("missing", f"its job ended before it ran; start the sweep again: {words}")
 

@@ -67,10 +67,12 @@ def write_table(
 ) -> dict[str, str]:
     """Write results.csv, in SI where it is known, in two passes over the runs with a single run in memory.
 
+    A result whose unit differs from that in the first run that has it is left empty.
+
     Args:
         folder: folder of the sweep.
         axes: axes of the sweep.
-        rows: returns the rows in order: cells of the axes, and the answer.
+        rows: returns the rows in order, each time anew: cells of the axes, and the outcome.
 
     Returns:
         The unit of each result, by name.
@@ -94,7 +96,7 @@ def write_table(
 
 
 def columns_of(name: str) -> tuple[str, str]:
-    """Return the two columns of a result: its value and its uncertainty."""
+    """Return the names of the two columns of a result: of its value, and of its uncertainty."""
     return name, f"{name}_uncertainty"
 
 
@@ -121,7 +123,7 @@ def write_parquet(folder: Path) -> None:
 
 
 def document_in(folder: Path) -> dict[str, Any]:
-    """Return the content of results.json in a run folder; an empty dict where it can't be read."""
+    """Return the content of results.json in a run folder; an empty dict where it can't be read or is none of a run."""
     try:
         return read_results(folder)
     except FolderError:
