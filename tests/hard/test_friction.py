@@ -98,9 +98,9 @@ def test_a_flat_punch_sticks_and_then_slips_as_a_whole() -> None:
 
 
 def test_so_small_a_load_that_two_particles_carry_it() -> None:
-    """Figures and all; each carries its share and gives as its spring and slider say."""
+    """Each carries its share and gives as its spring and slider say."""
     load = 1e-6
-    done = run(scene([0.1 * load, 2.0 * load, 1.5 * load], normal_force=load), figures=True)
+    done = run(scene([0.1 * load, 2.0 * load, 1.5 * load], normal_force=load))
     assert int((done.profiles["final"].pressure > 0.0).sum()) == 2
     expected = np.array([0.08 * 2, MU, max(MU - 0.4 * 2, -MU)]) * load
     assert done.friction["tangential_force"] == pytest.approx(expected, abs=1e-6 * load)

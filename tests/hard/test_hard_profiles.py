@@ -89,7 +89,7 @@ def largest_tension(law: dict[str, Any]) -> float:
 def test_flat_punch_pulls_off_with_the_largest_tension_of_each_pair(radius: float, reduction: str) -> None:
     """Pairs that feel nothing of each other: F_A = N max(−f), whatever the springs."""
     pull = {"kind": "pull_off", "preload": 0.1}
-    found = done({"kind": "flat_punch", "radius": radius}, pull, SHORT, figures=True, reduction=reduction)
+    found = done({"kind": "flat_punch", "radius": radius}, pull, SHORT, reduction=reduction)
     force = round(2.0 * radius) * largest_tension(SHORT)
     assert found.results.adhesion_force.value == pytest.approx(force, rel=ADHESION)
     for name in ("zero_load_radius", "critical_radius"):

@@ -68,7 +68,7 @@ def running(folder: Path) -> list[int]:
     log = folder / "log.lammps"
     while not (log.is_file() and "Step" in log.read_text()):
         time.sleep(0.02)
-    time.sleep(0.7)
+    time.sleep(0.4)
     return workers(folder)
 
 

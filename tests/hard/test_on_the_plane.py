@@ -62,7 +62,7 @@ def test_what_cannot_be_resolved_or_held_has_the_remedy_that_helps(
 
 def test_a_path_down_and_up_again_has_the_tension_of_its_way_apart() -> None:
     """On the way together the bodies jump into contact at 8/9 of JKR's largest tension."""
-    span = {"from": "10 nm", "to": "-10 nm", "steps": 200}
+    span = {"from": "10 nm", "to": "-10 nm", "steps": 100}
     found = run(steel(**ADHERES, experiment={"kind": "path", "displacements": span}))
     force = found.results.adhesion_force
     assert abs(force.value - 1.5 * math.pi * WORK * 0.01) <= force.uncertainty
@@ -81,7 +81,7 @@ def energies(contact: ReducedContact) -> tuple[float, float, float]:
     ("slope", "ends", "returns", "steps"),
     [
         (lambda r: r / RADIUS, (-1.0, 1.0), False, 150),
-        (lambda _: 0.02, (1.0, -1.0), False, 150),
+        (lambda _: 0.02, (1.0, -1.0), False, 400),
         (lambda r: r / RADIUS, (-0.05, 1.0), True, 40),
         (lambda _: 0.02, (-1.0, 1.0), True, 150),
     ],

@@ -55,7 +55,7 @@ def of_a_table(kind: str, inside: float, adheres: bool) -> tuple[Run, dict[str, 
 @pytest.mark.parametrize(
     ("kind", "inside", "adheres"),
     [
-        ("rounded_punch", MANY, False), ("rounded_punch", FEW, True), ("worn_ball", MANY, False),
+        ("rounded_punch", MANY, False), ("worn_ball", MANY, False),
         ("two_radii", FEW, False), ("steps", MANY, True),
     ],
 )  # fmt: skip
