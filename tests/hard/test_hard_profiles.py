@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -36,13 +37,14 @@ def done(
     experiment: dict[str, Any],
     law: dict[str, Any] | None = None,
     figures: bool = False,
+    folder: Path | None = None,
     **bodies: Any,
 ) -> Run:
     """On a rigid plane without a law, on particles with one."""
     lower = "rigid_plane" if law is None else "particles"
     own = {"particles": "auto", "spacing": 1.0, "profile": profile, "bulk_stiffness": STIFFNESS, "lower": lower}
     tables = {"title": "hard profile", "bodies": own | bodies, "experiment": experiment}
-    return run(tables | ({"interaction": law} if law else {}), figures=figures)
+    return run(tables | ({"interaction": law} if law else {}), folder, figures)
 
 
 def path(*displacements: float) -> dict[str, Any]:
@@ -132,10 +134,10 @@ def test_needle_touches_with_the_two_particles_at_its_apex() -> None:
     assert "zero_load_radius (less than" in found.warnings["unknown"]
 
 
-def test_three_particles_are_the_fewest_and_touch_with_the_middle_one() -> None:
+def test_three_particles_are_the_fewest_and_touch_with_the_middle_one(tmp_path: Path) -> None:
     profile = {"kind": "parabola", "radius": 1.0}
     found = done(profile, path(0.1, 0.3), particles=3)
     assert found.results.largest_force.value == pytest.approx(STIFFNESS * 0.3, rel=FORCE)
     for deeper, law in ((path(1.2), None), ({"kind": "pull_off", "preload": 0.1}, LAW)):
         with pytest.raises(RunError, match="end of the chain"):
-            done(profile, deeper, law, particles=3)
+            done(profile, deeper, law, folder=tmp_path, particles=3)

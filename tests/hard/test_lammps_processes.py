@@ -283,4 +283,5 @@ def test_in_a_job_of_slurm_the_ranks_have_its_nodes(nodes: int, tmp_path: Path) 
         log = "".join((tmp_path / "slurm" / f"node{number}.log").read_text() for number in range(1, nodes + 1))
     # The script is a step of the first node; ranks on two nodes are one more, of both.
     assert len(re.findall(r"launch task", log)) == (2 if nodes == 2 else 0), log
-    assert load_run(tmp_path / "there").results.force.value == pytest.approx(1.0, rel=SAME)
+    here = run(LOAD).results.force.value
+    assert load_run(tmp_path / "there").results.force.value == pytest.approx(here, rel=SAME)

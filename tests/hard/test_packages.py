@@ -20,6 +20,11 @@ import pytest
 ROOT = Path(__file__).parents[2]
 FOLDERS = ("analysis", "lammps_inputs", "potentials", "workflow")
 CHECKOUT = ("pyproject.toml", "hatch_build.py", "README.md", "LICENSE", ".gitignore")
+BESIDE = (
+    "tests", "validation", "docs", "CHANGELOG.md", "CONTRIBUTING.md", "VALIDATION.md", "CITATION.cff", "mkdocs.yml",
+    "Makefile", "requirements.lock",
+)  # fmt: skip
+"""What the source distribution has besides."""
 UNUSED = ("__pycache__", "*.pyc")
 
 pytestmark = pytest.mark.package
@@ -83,7 +88,7 @@ def test_both_hold_every_file_of_the_installed_folders_and_no_other(built: dict[
     source = {*checked_in(*FOLDERS), *package}
     installed = {"contact1d/" + name.removeprefix("src/contact1d/") for name in source}
     assert {name for name in files_of(built["wheel"]) if ".dist-info/" not in name} == installed
-    assert files_of(built["sdist"]) == source | {*CHECKOUT, "PKG-INFO"}
+    assert files_of(built["sdist"]) == source | {*checked_in(*BESIDE), *CHECKOUT, "PKG-INFO"}
 
 
 @pytest.mark.parametrize("kind", ["wheel", "sdist"])

@@ -47,7 +47,7 @@ def fretting(**cycles: Any) -> dict[str, Any]:
 
 @pytest.mark.parametrize("amplitude", [1e-6, 0.4, 1.5])
 def test_the_energy_of_a_cycle_is_the_area_of_the_loop(amplitude: float) -> None:
-    """Which `test_theory_mindlin` has by quadrature; of small ones no digit is lost: 0.5 u_m³ (1 + u_m/4 …)."""
+    """Which `test_mindlin` has by quadrature; of small ones no digit is lost: 0.5 u_m³ (1 + u_m/4 …)."""
     energy = mindlin_cycle_energy(amplitude, 1.0, 1.0, 1.0)
     area = (
         float(mindlin_loop_area(amplitude, 1.0, 1.0, 1.0))
