@@ -107,11 +107,13 @@ class Table:
 
 @lru_cache(maxsize=4)  # each lateral offset of the bodies needs the knots
 def _knots(table: Table) -> tuple[Array, Array]:
-    """Return g = F_table/r_L [FU/LU] at the entries of a table, and M h²/6 of its spline there, (points,) each.
+    """Return (g, M h²/6) [FU/LU] at the entries of a table, (points,) each; both are cached and must not be changed.
 
-    On a uniform grid M₋ + 4 M₀ + M₊ = 6 δ²g/h² is solved by the decaying Green's function z^|j| / 2√3, z = √3 − 2. The
-    spline's ends, where LAMMPS has other end conditions, lie in the margin of INNER_CELLS and beyond the cutoff.
-    `scipy.interpolate.CubicSpline`, the reference of the tests, takes longer to import than a small run takes.
+    g = F_table/r_L is f(r)/r, repulsion positive: r [LU] is the distance in the plane of motion, r_L = √(r² + ε²) that
+    in space. M = d²g/ds² of the cubic spline of g over s = r_L², h the step of s [LU²]. On this uniform grid M₋ + 4 M₀
+    + M₊ = 6 δ²g/h² is solved by the decaying Green's function z^|j| / 2√3, z = √3 − 2. The spline's ends, where LAMMPS
+    has other end conditions, lie in the margin of INNER_CELLS and beyond the cutoff. `scipy.interpolate.CubicSpline`,
+    the reference of the tests, takes longer to import than a small run takes.
     """
     distance, _, force = table.entries()
     slope = force / distance

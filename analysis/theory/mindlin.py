@@ -51,13 +51,19 @@ def _amplitudes(positions: Sequence[float]) -> list[list[float]]:
 def mindlin_path(positions: Sequence[float], normal_force: float, friction: float, sliding: float) -> list[float]:
     """Return F_x [force], with the sign of u in loading, at positions reached in turn from 0 under a constant N.
 
-    From turn to turn T(u_1) + 2 T((u_2 - u_1)/2) + ..., T the force of the initial loading; |F_x| = mu N in full slip.
+    One value for each position, [] without any. T(u) = mu N (1 - (1 - |u|/u*)^(3/2)) sign(u), of spheres, is the
+    initial loading, ±mu N from |u| = u* on; over the turns u_1 ... u_n that count F_x = T(u_1) + 2 T((u_2 - u_1)/2) +
+    ... + 2 T((u - u_n)/2). A turn and the one before it count no more once the path comes back to the latter, nor the
+    first turn once the path reaches -u_1: closed loops leave no trace.
 
     Args:
         positions: u [length].
         normal_force: N [force].
         friction: mu.
-        sliding: u* [length], from which on all slips.
+        sliding: u* > 0 [length], from which on all slips.
+
+    Raises:
+        ZeroDivisionError: u* = 0.
     """
 
     def force(distance: float) -> float:

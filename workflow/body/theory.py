@@ -126,9 +126,15 @@ def in_words(results: Mapping[str, Any], name: str) -> Iterator[str]:
 
 
 def _without_adhesion(kind: str, body: str) -> Callable[[Case], str]:
-    """Return the condition of an elastic contact of a kind of profile without adhesion, kept by the reduction.
+    """Return a function of a case: "<body>, pressed without adhesion" where such a closed form holds, else "".
 
-    It is a function of a case: text, "" where it does not hold. `body`: name of the body in the text.
+    It holds where the profile is of this kind, the contact has linear springs alone and no attraction, the run has a
+    force or a given displacement (an impact has neither), and the reduction is "mdr", or the paper's for a parabola or
+    a circle without [interaction].
+
+    Args:
+        kind: of the profile, as in a scene: "cone".
+        body: its name in the text: "a cone".
     """
 
     def applies(case: Case) -> str:

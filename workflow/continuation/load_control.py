@@ -181,12 +181,16 @@ class LoadBranch(ContactBranch):
         return True
 
     def maximum(self, most_loads: int = 60) -> None:
-        """Try at most so many tensions until the bracket of the pull-off force is narrow, then hold its lower end.
+        """Try rising tensions until the bracket of the pull-off force is within the tolerance, then hold its lower end
+        again.
 
-        The last state is that at the lower end, and the bracket is recorded in `searches`.
+        A force must have been reached before (`reach`). Tensions that the contact carries add states; the last state is
+        that at the lower end, in the phase "critical". `searches` of the leg gets the bracket [FU], both positive: the
+        largest tension that was carried, and the smallest that was not, raised by the momentum of the plate.
 
         Raises:
-            UntrustedError: the force maximum is not bracketed, or not held again; a load does not come to rest.
+            UntrustedError: the bracket is still too wide after `most_loads` tensions; the lower end is not held again;
+                a load does not come to rest, or bodies went through each other.
         """
         self._begin_phase()
         search = LoadSearch(self.settings.tolerance, self.scale, partial(_overshoot, self), [self._latest])

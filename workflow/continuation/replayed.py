@@ -131,9 +131,14 @@ class ReplayedBranch(Branch):
         return [*d[(d > fine[0]) | (d < fine[-1])].tolist(), *fine.tolist()]
 
     def _end(self, stretch: Stretch) -> float:
-        """Return the displacement [LU] at which a stretch ends, interpolated between the states of its leg.
+        """Return the displacement [LU], compression positive, at which a stretch ends; −inf for that of the separation.
 
-        −inf: apart.
+        Of a stretch with a force it is where its leg has that force, interpolated: in the last leg at the first
+        crossing, in another on the line through the two states nearest in force. Without a force (NaN) it is the
+        position of the force maximum for the last stretch, and that of its last state for another.
+
+        Raises:
+            ValueError: the last leg never has the force.
         """
         if stretch.phase == SEPARATING:
             return -math.inf

@@ -52,10 +52,12 @@ def punch(d: Draft) -> Rows:
 
 
 def counter_body(d: Draft) -> Rows:
-    """Yield the rules of the curved lower body of a parabola: its radius, and the reduction.
+    """Yield the rules of the curved lower body of a parabola, both of the key `bodies.profile.counter_radius`.
 
-    A rule is (dotted key, whether it is broken, what is wrong, suggested fix). None where one of the two radii is not
-    given.
+    The radius is positive for a convex body and negative for a concave one: the first rule is broken from −R to 0, R
+    the radius of the upper body [LU]. The second one is broken with the reduction "geike_popov", given or by default. A
+    rule is (dotted key, whether it is broken, what is wrong, suggested fix). Nothing is yielded where one of the radii
+    is absent or wrong by itself.
     """
     key = "bodies.profile.counter_radius"
     radius, counter = d["bodies.profile.radius"], d[key]

@@ -53,7 +53,12 @@ def _mend_keys(place: Place, value: dict[str, Any]) -> None:
 
 
 def _mend_word(place: Place) -> None:
-    """Report and correct a misspelt word, in place; replace the name of a table by the table. Other values remain."""
+    """Correct the text at a place, in place, to the word or the name of a table that it most likely means.
+
+    A misspelt one is added to `place.problems`; the name of a table is replaced by a copy of the table, without a
+    problem where only case, "-" or blanks differ. A text that is similar to nothing, and what is no text, remains as it
+    is.
+    """
     value, allowed = place.value, place.allowed
     names = allowed.table.by_name if allowed.table else {}
     meant = nearest(value, (*allowed.words, *names)) if isinstance(value, str) and value not in allowed.words else None
