@@ -1,6 +1,7 @@
 """Claim: where pairs snap, a path has the same states whether its rows are narrow or as wide as the range.
 
-Reference: `tests.pair_lattice`, each pair with its folds, at the same displacements; and the energy lost
+Reference, `validation.references.folded_pairs`:
+each pair with its folds, at the same displacements; and the energy lost
 in a round, one loop for each pair that snaps.
 """
 
@@ -12,9 +13,9 @@ import numpy as np
 import pytest
 
 from contact1d import Run, run
-from tests.pair_lattice import PairLattice
 from tests.scenes import chains
 from validation.hard.cases import TENSION, PairCase, reach, shaped
+from validation.references.folded_pairs import FoldedPairs
 from validation.references.interaction import PairInteraction
 
 RANGE = 0.03
@@ -34,14 +35,15 @@ def test_every_row_is_on_its_branch() -> None:
     ratio, wide = 6.0, 3.0
     stiffness = 2.0 * float(LAW.force_slope(LAW.extremum_distance(2))) / ratio
     places = np.arange(COUNT) - 0.5 * (COUNT - 1)
-    pairs = PairLattice(LAW, stiffness, places**2 / (2.0 * RADIUS))
-    steps = round((DEEPEST + pairs.snap_off + 2.0 * RANGE) / (wide * RANGE)) + 1
+    pairs = FoldedPairs(LAW, stiffness, places**2 / (2.0 * RADIUS))
+    assert pairs.fold is not None
+    steps = round((DEEPEST + pairs.fold.gap_off + 2.0 * RANGE) / (wide * RANGE)) + 1
     way = {"from": DEEPEST - steps * wide * RANGE, "to": DEEPEST, "steps": steps, "return": True}
     path = {"kind": "path", "displacements": way}
     found = run(chains(RADIUS, stiffness, NUMBERS, bodies={"particles": COUNT}, experiment=path)).curve
-    stuck, d, force = pairs.stuck_after(DEEPEST), found.displacement, found.force
+    d, force = found.displacement, found.force
     exact = np.array([
-        pairs.force(place, pairs.stuck_after(place) if phase == "loading" else stuck)
+        float(pairs.loading(place) if phase == "loading" else pairs.unloading(place, DEEPEST))
         for place, phase in zip(d, found.branch, strict=True)
     ])  # fmt: skip
     assert np.abs(force - exact).max() < ROWS * np.abs(exact).max()

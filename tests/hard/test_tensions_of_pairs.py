@@ -1,6 +1,7 @@
 """Claim: where pairs snap, or nearly do, F_A is that of the highest tooth within what is claimed.
 
-Reference: `tests.pair_lattice`, each pair inverted with its folds, unloaded from where the run had been deepest. A
+Reference, `validation.references.folded_pairs`:
+each pair inverted with its folds, unloaded from where the run had been deepest. A
 "ratio" is a pair's greatest negative stiffness over its springs in series: towards 1, F(d) has a tooth for each pair
 that lets go, with a top as narrow as (1 - ratio)^(3/2) ranges. Above it pairs snap: between a tooth and the next the
 force of a sharp body passes 0, and soft springs follow the attraction far out.
@@ -17,9 +18,9 @@ import numpy as np
 import pytest
 
 from contact1d import RunError, read_scene, run
-from tests.pair_lattice import PairLattice
 from tests.scenes import chains
 from validation.hard.cases import TENSION, PairCase, reach, shaped
+from validation.references.folded_pairs import FoldedPairs
 from validation.references.interaction import PairInteraction
 
 NUMBERS = (0.011, 0.015, 0.01, 0.03)
@@ -57,11 +58,11 @@ def test_adhesion_force_is_that_of_the_highest_tooth(profile: str, ratio: float,
         accuracy={"tolerance": tolerance}, experiment={"kind": "pull_off", "preload": PRELOAD},
     ))  # fmt: skip
     done = run(asked)
-    pairs = PairLattice(LAW, stiffness, asked.bodies.height(done.profiles["zero_load"].x))
+    pairs = FoldedPairs(LAW, stiffness, asked.bodies.height(done.profiles["zero_load"].x))
     assert pairs.ratio == pytest.approx(ratio)
     d, force = done.curve.displacement, done.curve.force
     deepest = d[done.curve.branch == "loading"][-1]
-    exact, _ = pairs.pull_off(deepest)
+    exact, _ = pairs.adhesion(float(pairs.loading(deepest)))
     found = done.results.adhesion_force
     assert abs(found.value - exact) <= max(found.uncertainty, NARROW_CLAIM * exact)
     assert abs(found.value - exact) <= tolerance * exact or {"uncertain", "tolerance"} & set(done.warnings)
@@ -89,7 +90,8 @@ NEAR = (0.018, 0.03, 0.009, 0.06)
 def largest_tension() -> float:
     x = np.arange(PARTICLES) - 0.5 * (PARTICLES - 1)
     law = PairInteraction.of(*NEAR)
-    return float(PairLattice(law, STIFFNESS, x**2 / (2.0 * RADIUS)).pull_off(0.05)[0])
+    pairs = FoldedPairs(law, STIFFNESS, x**2 / (2.0 * RADIUS))
+    return pairs.adhesion(float(pairs.loading(0.05)))[0]
 
 
 @pytest.mark.parametrize("share", [0.99999, 1.0 + 2.0 * TOLERANCE])

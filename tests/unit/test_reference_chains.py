@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from tests.pair_lattice import PairLattice
 from validation.references.boltzmann_pairs import BoltzmannPairs
 from validation.references.energy import EnergySurface
 from validation.references.folded_pairs import FoldedPairs
@@ -172,16 +171,11 @@ def test_pairs_that_do_not_snap_are_the_integral_of_many() -> None:
         pairs.deepest(core)
 
 
-def test_a_loop_has_the_area_between_its_ways_in_both_lattices_of_pairs() -> None:
+def test_a_loop_has_the_area_between_its_ways() -> None:
     pairs = FoldedPairs(SNAPPING, 2.0 * STEEPEST / 3.0, np.zeros(1))
-    again = PairLattice(SNAPPING, pairs.bulk_stiffness, np.zeros(1))
     d = np.linspace(-0.3, 0.01, 40_001)
     area = np.trapezoid(pairs.loading(d) - pairs.unloading(d, 0.01), d)
     assert area == pytest.approx(pairs.loop_area(0.01), rel=1e-2)  # two jumps, each within a step
-    assert again.lost_in_a_round(0.01) == pytest.approx(pairs.loop_area(0.01), rel=EXACT)
-    stiffness, wide = pairs.bulk_stiffness, FoldedPairs(SNAPPING, pairs.bulk_stiffness, HEIGHTS)
-    tension, _ = PairLattice(SNAPPING, stiffness, HEIGHTS).pull_off(0.0)
-    assert tension == pytest.approx(wide.adhesion(float(wide.loading(0.0)))[0], rel=EXACT)
 
 
 def test_cold_pairs_are_at_rest() -> None:

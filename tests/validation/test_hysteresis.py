@@ -1,6 +1,7 @@
 """Claim: particles snap, and loading and unloading differ, where the springs are softer than the contact.
 
-Reference: `tests.pair_lattice`, a pair's undeformed gap G(r) = r − 2 f(r)/k, which folds where f′ exceeds k/2: there
+Reference, `validation.references.folded_pairs`:
+a pair's undeformed gap G(r) = r − 2 f(r)/k, which folds where f′ exceeds k/2: there
 the curve depends on the way. Below, r(G) is unique, and so is F(d). Between the branches lies an energy ∮F dd: n
 independent pairs lose n times the area between the fold's two jumps.
 
@@ -18,8 +19,8 @@ import pytest
 from numpy.typing import NDArray
 
 from contact1d import Run
-from tests.pair_lattice import PairLattice
 from tests.scenes import chains
+from validation.references.folded_pairs import FoldedPairs
 from validation.references.interaction import Exponential, PairInteraction
 
 RunTables = Callable[[dict[str, Any]], Run]
@@ -38,9 +39,9 @@ LAW = (0.0024, 0.015, 0.0012, 0.03)
 RADIUS, DEEPEST = 500.0, 0.1
 
 
-def pairs(stiffness: float, places: Array) -> PairLattice:
+def pairs(stiffness: float, places: Array) -> FoldedPairs:
     law = PairInteraction(Exponential(*LAW[:2]), Exponential(*LAW[2:]))
-    return PairLattice(law, stiffness, places**2 / (2.0 * RADIUS))
+    return FoldedPairs(law, stiffness, places**2 / (2.0 * RADIUS))
 
 
 CRITICAL_STIFFNESS = pairs(1.0, np.zeros(1)).ratio
@@ -69,7 +70,7 @@ def test_soft_springs_have_two(run_tables: RunTables) -> None:
     """And the energy between the curves is that of the particles that snapped on and off again."""
     stiffness = 0.25 * CRITICAL_STIFFNESS
     run, d, there, back = round_trip(run_tables, stiffness, -0.4, 160)
-    lost, energy = pairs(stiffness, run.profiles["deepest"].x).lost_in_a_round(DEEPEST), run.results.dissipated_energy
+    lost, energy = pairs(stiffness, run.profiles["deepest"].x).loop_area(DEEPEST), run.results.dissipated_energy
     assert np.all(there - back > -COINCIDE * -back.min())
     assert (there - back).max() > DIFFER * -back.min()
     assert np.trapezoid(there - back, d) == pytest.approx(lost, rel=AREA)
