@@ -185,9 +185,18 @@ def summary(paper: Record, hard: Record, speed: Record) -> str:
         "differing": _differing(paper),
         "classes": table(("class", "what is tested", "rows", "smallest margin", "measured"),
                          [_class(answer) for answer in hard.answers]),
+        "kinds": _kinds(hard),
         "made": f"Made with {made}; the hard cases took {took}, one after the other, on {hard.machine}.",
     }  # fmt: skip
     return (Path(__file__).parent / "validation.md").read_text(encoding="utf-8").format(**filled)
+
+
+def _kinds(record: Record) -> str:
+    """How many rows count what must not be, and which classes are recorded in their short form."""
+    none = sum(row.reference.value == 0.0 for row in record.rows)
+    text = f"{none} of {len(record.rows)} rows count what must not be, and pass at 0; the others compare numbers."
+    quick = [f"`{answer.name}`" for answer in record.answers if answer.form != "full"]
+    return f"{text} Recorded in their short form: {', '.join(quick)}." if quick else text
 
 
 def studies_table(record: Record) -> str:
