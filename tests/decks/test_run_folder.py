@@ -64,9 +64,9 @@ HEAT = {"accuracy": {"tolerance": 5e-2}, "noise": {"temperature": 1e-4, "seed": 
 PULL_OFF = {"kind": "pull_off", "preload": 0.5}
 SCENES: dict[str, dict[str, Any]] = {
     "load_thermal": STICKY | TIMED | HEAT | {"experiment": {"kind": "load", "force": 0.5}},
-    "path": STICKY | {"horizontal": {}, "experiment": {"kind": "path", "displacements": [-0.3, 0.1, -0.2]}},
+    "path": STICKY | {"horizontal": {}, "experiment": {"kind": "path", "displacements": [-0.05, 0.1, 0.0]}},
     "pull_off": STICKY | {"experiment": PULL_OFF},
-    "pull_off_dynamic": STICKY | TIMED | COARSE | {"experiment": PULL_OFF},
+    "pull_off_dynamic": STICKY | TIMED | {"accuracy": {"tolerance": 5e-2}} | {"experiment": PULL_OFF},
     "units": {
         "bodies": MICRO | {"lower": "rigid_plane"},
         "experiment": {"kind": "path", "displacements": {"from": 0.0, "to": 5e-7, "steps": 5}},
@@ -240,7 +240,6 @@ def test_some_states_are_frames_of_all_and_the_results_are_those_without_any(mak
 QUICK = {
     "pull_off": ["bodies.particles=60", "experiment.preload=0.3"],
     "slide": ["experiment.distance=0.5"],
-    "thermal_load": ["bodies.particles=20"],
 }
 
 

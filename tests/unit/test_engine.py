@@ -60,7 +60,7 @@ run 100
 
 ROUND_OFF = 1e-13
 STEP_ERROR = 1e-4  # velocity Verlet: the frequency is off by (ω dt)²/24 = 3e-7, over 10³ steps a phase of 1e-6
-LONG = 600_000  # about a second: several looks at the clock
+LONG = 2_000_000  # more than half a second on a machine of 2025: several looks at the clock
 
 
 def open_oscillator(session: Session) -> None:
