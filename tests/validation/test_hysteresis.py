@@ -60,7 +60,7 @@ def round_trip(run_tables: RunTables, stiffness: float, lowest: float, steps: in
 
 
 def test_stiff_springs_have_one_curve(run_tables: RunTables) -> None:
-    run, d, there, back = round_trip(run_tables, 1.2 * CRITICAL_STIFFNESS, -0.15, 20)
+    run, d, there, back = round_trip(run_tables, 1.2 * CRITICAL_STIFFNESS, -0.15, 10)
     energy = run.results.dissipated_energy
     assert np.abs(there - back).max() < COINCIDE * -back.min()
     assert abs(energy.value) <= energy.uncertainty < NOTHING * np.trapezoid(np.abs(there), d)

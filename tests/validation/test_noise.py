@@ -45,7 +45,8 @@ PARTICLES, BLOCKS = 100, 20
 RUN_ON = """
 displace_atoms upper_body move 0.0 0.0 30.0 units box
 variable every equal "floor(1.5/v_time_step)"
-dump taken all custom ${every} taken.txt x y z vx vy vz
+group kept union particles plate
+dump taken kept custom ${every} taken.txt x y z vx vy vz
 dump_modify taken sort id first yes format float %.12g
 run $(820*v_every)
 """
@@ -86,7 +87,7 @@ def sample(folder: Path, neighbours: float = 0.0, **tables: Any) -> Sample:
     rows = [line for i, line in enumerate(lines) if i % (atoms + header) >= header]
     states = np.loadtxt(rows).reshape(-1, atoms, 6)
     moved = states[SETTLED:, :, :3] - states[0, :, :3]
-    moved[:, PARTICLES:count, 2] -= moved[:, count + PARTICLES, None, 2]  # with the plate, which is free
+    moved[:, PARTICLES:count, 2] -= moved[:, count, None, 2]  # with the plate, which is free
     return Sample(moved[:, :count], states[SETTLED:, :count, 3:])
 
 

@@ -62,6 +62,8 @@ SLIDES = {
     "friction_of_lattices": ((13.0, 1.0), "static_friction", 0.255229),
     "friction_over_temperature": ((3.76e-4,), "mean_friction", 0.028431),
 }
+LONG = ("friction_over_radius", "friction_over_temperature", "friction_of_flats")
+"""Those whose like is in `test_slides.py` and among the scenes."""
 SHORTER = {"friction_over_temperature": 15.0, "friction_over_load": 3.0, "friction_of_lattices": 3.0}
 """A way [LU] that is enough for a mean under heat and its uncertainty, or for the friction before the plate slides."""
 
@@ -115,7 +117,9 @@ def test_a_pinned_slide_is_that_of_the_integrator(name: str) -> None:
     assert mean == pytest.approx(SCENES[name][1], rel=SLIDING)
 
 
-@pytest.mark.parametrize("name", SLIDES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if name in LONG else name for name in SLIDES]
+)
 def test_a_point_of_a_shipped_sweep_gives_its_number(name: str, tmp_path: Path) -> None:
     place, quantity, value = SLIDES[name]
     scene = slides(name).scenes[place]
