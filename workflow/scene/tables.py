@@ -110,7 +110,7 @@ class Elastic(Table):
 
 
 class Material(Table):
-    """Elasticity of the bodies; optionally the sizes of LU, FU and MU, or the surface energy that these follow from."""
+    """Elasticity of the bodies; optionally the units of the model, or the surface energy that they follow from."""
 
     upper: Elastic | Literal["rigid"] | None = None
     """the upper body; "rigid", or the lower one: of infinite modulus"""
