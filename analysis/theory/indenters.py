@@ -47,6 +47,12 @@ def require_positive(**values: float) -> None:
             raise ValueError(f"{name} must be positive and finite, got {value}")
 
 
+def require_work(work_of_adhesion: float) -> None:
+    """Raise ValueError for a work of adhesion [energy/area] that is negative or NaN; nothing is returned."""
+    if not work_of_adhesion >= 0.0:
+        raise ValueError(f"work_of_adhesion must not be negative, got {work_of_adhesion}")
+
+
 class Contact(ABC):
     """A contact in closed form: force and displacement over the contact radius a, and results derived from them.
 
@@ -225,11 +231,9 @@ class PowerLaw(Indenter):
     def __post_init__(self) -> None:
         """Raise ValueError for a parameter out of its range."""
         require_positive(coefficient=self.coefficient, contact_modulus=self.contact_modulus)
-        if not (self.exponent >= 1.0 and self.work_of_adhesion >= 0.0):
-            raise ValueError(
-                f"exponent must be at least 1 and work_of_adhesion not negative, got {self.exponent} and "
-                f"{self.work_of_adhesion}"
-            )
+        require_work(self.work_of_adhesion)
+        if not self.exponent >= 1.0:
+            raise ValueError(f"exponent must be at least 1, got {self.exponent}")
 
     @classmethod
     def sphere(cls, radius: float, contact_modulus: float, work_of_adhesion: float = 0.0) -> PowerLaw:
@@ -329,8 +333,9 @@ class Ellipsoid(Indenter):
     work_of_adhesion: float = 0.0
 
     def __post_init__(self) -> None:
-        """Raise ValueError for a parameter that is not positive and finite."""
+        """Raise ValueError for a parameter that is not positive and finite, or a negative work of adhesion."""
         require_positive(radius=self.radius, half_axis=self.half_axis, contact_modulus=self.contact_modulus)
+        require_work(self.work_of_adhesion)
 
     @property
     def reach(self) -> float:
@@ -389,8 +394,9 @@ class FlatPunch:
     work_of_adhesion: float = 0.0
 
     def __post_init__(self) -> None:
-        """Raise ValueError for a parameter that is not positive and finite."""
+        """Raise ValueError for a parameter that is not positive and finite, or a negative work of adhesion."""
         require_positive(radius=self.radius, contact_modulus=self.contact_modulus)
+        require_work(self.work_of_adhesion)
 
     @property
     def stiffness(self) -> float:

@@ -117,9 +117,11 @@ def test_flat_punch_is_kendall() -> None:
 def test_what_is_refused() -> None:
     for wrong, words in (
         (lambda: PowerLaw(1.0, 0.5, MODULUS), "at least 1"),
-        (lambda: PowerLaw(1.0, 2.0, MODULUS, -1.0), "not negative"),
+        (lambda: PowerLaw(1.0, 2.0, MODULUS, -1.0), "not be negative"),
         (lambda: Ellipsoid(1.0, 0.0, MODULUS), "half_axis must be positive"),
         (lambda: FlatPunch(1.0, math.nan), "contact_modulus"),
+        (lambda: FlatPunch(1.0, MODULUS, -1.0), "work_of_adhesion"),
+        (lambda: power_law(3.0)[0].pressure(np.zeros(1), 1.0), "exponents 1 and 2"),
     ):
         with pytest.raises(ValueError, match=words):
             wrong()
