@@ -116,8 +116,8 @@ def independent(off: Array, heights: Array) -> Array:
     """Return pairs of errors of k parameters, (m, 2, k), whose halved differences are independent standard deviations.
 
     They are along the principal components of the heights: the means of the sample on either side of 0 along each,
-    widened from the mean to the standard deviation, so that they respect the bounds of the sample. A component with
-    less than 1e-4 of the variance is left out, so that m is at most k.
+    widened from the mean to the standard deviation, so that they respect the bounds of the sample; 0 on a side without
+    errors. A component with less than 1e-4 of the variance is left out, so that m is at most k.
 
     Args:
         off: sample of the errors, (n, k).
@@ -126,5 +126,6 @@ def independent(off: Array, heights: Array) -> Array:
     _, sizes, along = np.linalg.svd(heights @ off.T, full_matrices=False)
     modes = along[sizes**2 > 1e-4 * np.sum(sizes**2)]
     wider = np.sqrt(np.mean(modes**2, axis=1)) / np.mean(np.abs(modes), axis=1)
-    means = [[off[side * mode > 0.0].mean(axis=0) for side in (1.0, -1.0)] for mode in modes]
-    return np.asarray(wider[:, None, None] * np.reshape(means, (len(modes), 2, off.shape[1])))
+    sides = np.stack([modes > 0.0, modes < 0.0], axis=1)
+    means = (sides @ off) / np.maximum(sides.sum(axis=2), 1)[:, :, None]
+    return np.asarray(wider[:, None, None] * means)
