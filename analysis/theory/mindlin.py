@@ -100,7 +100,8 @@ def mindlin_cycle_energy(amplitude: float, normal_force: float, friction: float,
         (0.035948, 2.8)
     """
     (stick,) = mindlin_stick_path([amplitude], 1.0, sliding)
-    partial = 0.8 * sliding * (1.0 - stick) ** 3 * (1.0 + 3.0 * stick + stick**2)
+    slipping = min(amplitude / sliding, 1.0) / (1.0 + stick)  # 1 - s, with all its digits
+    partial = 0.8 * sliding * slipping**3 * (1.0 + 3.0 * stick + stick**2)
     return friction * normal_force * (partial + 4.0 * max(amplitude - sliding, 0.0))
 
 

@@ -58,7 +58,7 @@ def test_what_is_out_of_all_proportion_is_one_sentence(tables: dict[str, Any], w
     ("tables", "words"),
     [
         (history("force", law={"terms": [{"share": 0.7, "time": "1 s"}, {"share": 0.5, "time": "1 s"}]}), "not 1.2"),
-        (history("displacement", START, ("2 s", "1 µm"), ("1 s", "0 µm")), "times must rise; 1 follows 2"),
+        (history("displacement", START, ("2 s", "1 µm"), ("1 s", "0 µm")), "times must rise; 1 s follows 2 s"),
         (history("force", ("0 s", "0 N"), ("9 s", "1 mN"), steps=3), "longer than the shortest time of the body, 1"),
         (
             history("displacement", ("0 s", "1 µm"), ("1 s", "2 µm"), law={"retardation_time": "1 s"}),

@@ -117,7 +117,7 @@ def _history(d: Draft) -> Rows:
     key = f"experiment.{given[0]}"
     times, values = zip(*((point["time"], point[given[0]]) for point in d[key]), strict=True)
     wrong = next((i for i in range(1, len(times)) if times[i] <= times[i - 1]), 0)
-    yield (key, wrong, f"times must rise; {times[wrong]:.6g} follows {times[wrong - 1]:.6g}",
+    yield (key, wrong, f"times must rise; {times[wrong]:.6g} TU follows {times[wrong - 1]:.6g} TU",
            "each point is later than the one before; a jump is a leg as short as you want")
     yield (key, max(values) <= 0.0, "must be greater than 0 somewhere, else the bodies never touch", "raise it")
     retarded, steps = d["viscoelasticity.retardation_time"], d["experiment.steps"]
