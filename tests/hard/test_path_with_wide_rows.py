@@ -1,7 +1,6 @@
 """Claim: where pairs snap, a path has the same states whether its rows are narrow or as wide as the range.
 
-Reference, `validation.references.folded_pairs`:
-each pair with its folds, at the same displacements; and the energy lost
+Reference: `folded_pairs` of validation, each pair with its folds, at the same displacements; and the energy lost
 in a round, one loop for each pair that snaps.
 """
 

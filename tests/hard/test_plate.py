@@ -34,10 +34,10 @@ def test_a_plate_with_momentum_does_not_break_the_contact_too_early() -> None:
     assert abs(found.value - exact) <= found.uncertainty <= 2e-2 * exact
 
 
-def test_a_plate_that_swings_past_a_tooth_has_no_pull_off_force(tmp_path: Path) -> None:
+def test_a_plate_that_swings_past_a_maximum_has_no_pull_off_force(tmp_path: Path) -> None:
     """With little drag it loses pairs that it would have held: F_A is uncertain by more than half, and not reported."""
-    case = PairCase("tooth", 1.5, shaped("parabola", 9, reach(1.5)), 9, 3.0 * TENSION, 1e-2, dynamic=True)
-    tables = {"title": "tooth"} | case.scene() | {"damping": {"coefficient": LITTLE_DRAG}, "plate": {"damping": 0.0}}
+    case = PairCase("maximum", 1.5, shaped("parabola", 9, reach(1.5)), 9, 3.0 * TENSION, 1e-2, dynamic=True)
+    tables = {"title": "maximum"} | case.scene() | {"damping": {"coefficient": LITTLE_DRAG}, "plate": {"damping": 0.0}}
     with pytest.raises(RunError, match=r"not reported.*adhesion_force \(± 0\.05"):
         run(read_scene(tables), tmp_path / "run", figures=False)
 

@@ -1,9 +1,8 @@
-"""Claim: where pairs snap, or nearly do, F_A is that of the highest tooth within what is claimed.
+"""Claim: where pairs snap, or nearly do, F_A is that of the highest force maximum, within its uncertainty.
 
-Reference, `validation.references.folded_pairs`:
-each pair inverted with its folds, unloaded from where the run had been deepest. A
-"ratio" is a pair's greatest negative stiffness over its springs in series: towards 1, F(d) has a tooth for each pair
-that lets go, with a top as narrow as (1 - ratio)^(3/2) ranges. Above it pairs snap: between a tooth and the next the
+Reference: `folded_pairs` of validation, each pair inverted with its folds, unloaded from the run's deepest state. A
+"ratio" is a pair's greatest negative stiffness over its springs in series: towards 1, F(d) has a maximum for each pair
+that separates, as narrow as (1 - ratio)^(3/2) ranges. Above it pairs snap: between a maximum and the next the
 force of a sharp body passes 0, and soft springs follow the attraction far out.
 
 A dynamic tension within the tolerance of F_A is held with a warning, and one beyond it is not held at all.
@@ -38,7 +37,7 @@ PRELOAD = 0.19
 NARROW_CLAIM = 1e-6
 """Least claim that is looked at, over the force: the reference's law has no cutoff and no table."""
 CARRIED = 1e-3
-"""Relative difference of F_A where the highest tooth carries the tension; measured 4e-5 and 1e-6."""
+"""Relative difference of F_A where the highest maximum carries the tension; measured 4e-5 and 1e-6."""
 BESIDE, EVEN = 7, 2.0
 """Load steps on either side of the maximum, and the ratio of the ways that they take; one of them is the maximum."""
 APART = 0.03
@@ -51,7 +50,7 @@ CASES = [
 
 
 @pytest.mark.parametrize(("profile", "ratio", "tolerance"), CASES)
-def test_adhesion_force_is_that_of_the_highest_tooth(profile: str, ratio: float, tolerance: float) -> None:
+def test_adhesion_force_is_that_of_the_highest_maximum(profile: str, ratio: float, tolerance: float) -> None:
     stiffness = 2.0 * float(LAW.force_slope(LAW.extremum_distance(2))) / ratio
     asked = read_scene(chains(
         1.0, stiffness, NUMBERS, bodies={"profile": PROFILES[profile], "reduction": "geike_popov"},
@@ -75,11 +74,11 @@ def test_adhesion_force_is_that_of_the_highest_tooth(profile: str, ratio: float,
         assert before <= EVEN * after
 
 
-def test_a_tension_in_time_is_carried_by_the_next_tooth_where_pairs_nearly_snap() -> None:
+def test_a_tension_in_time_is_carried_by_the_next_maximum_where_pairs_nearly_snap() -> None:
     """With the drag of a smooth contact the plate swung past it: 1.5 % too small, 270 times the claim."""
-    case = PairCase("tooth", 0.99, shaped("parabola", 21, reach(0.99)), 21, 1.5 * TENSION, 1e-4, dynamic=True)
+    case = PairCase("maximum", 0.99, shaped("parabola", 21, reach(0.99)), 21, 1.5 * TENSION, 1e-4, dynamic=True)
     exact, _ = case.exact().adhesion(case.preload)
-    found = run({"title": "tooth"} | case.scene()).results.adhesion_force
+    found = run({"title": "maximum"} | case.scene()).results.adhesion_force
     assert abs(found.value - exact) <= min(found.uncertainty, CARRIED * exact)
 
 

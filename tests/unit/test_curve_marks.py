@@ -114,7 +114,7 @@ def test_rows_that_lie_on_the_top_itself_leave_it_where_it_is() -> None:
         (range(3, -1, -1), [0.0, 1.0, 1.5, 0.5], {}),
     ],
 )
-def test_another_tooth_may_be_as_high_as_its_own_rise_allows(
+def test_another_maximum_may_be_as_high_as_its_own_rise_allows(
     displacement: ArrayLike, tension: list[float], expected: dict[int, float]
 ) -> None:
     d = np.asarray(displacement, dtype=float).tolist()
@@ -189,7 +189,7 @@ def test_a_smooth_loop_is_within_its_claim_which_falls_with_the_square_of_the_ro
 
 
 def test_of_a_way_of_one_row_only_the_ends_are_known() -> None:
-    """F is 1 as far as the turn and then −1: it may fall anywhere on the way back, so that the area is 0 to 4."""
+    """F is 1 as far as the turn and then −1: it may fall anywhere between, so that the loss is 0 to 4."""
     loop = loop_of([0.0, 2.0, 0.0], [1.0, 1.0, -1.0])
     assert (loop.area, loop.uncertainty) == pytest.approx((2.0, 2.0), rel=ROUND_OFF)
 

@@ -46,7 +46,7 @@ print([name for name in ("numpy", "pint") if name in sys.modules])
 
 
 def test_help_names_everything() -> None:
-    text = pydoc.render_doc(contact1d, renderer=pydoc.plaintext)  # type: ignore[attr-defined]
+    text = pydoc.render_doc(contact1d, renderer=pydoc.plaintext)
     for name in contact1d.__all__:
         assert f"class {name}" in text or f"{name}(" in text, name
 
@@ -60,7 +60,7 @@ def test_a_scene_comes_from_a_path_text_tables_or_a_scene(plane: MakeScene, tmp_
         assert read_scene(source) == scene
         assert read_scene(source, ["experiment.force=0.25"]) == plane(force=0.25)
     with pytest.raises(SceneError, match="not int"):
-        read_scene(7)  # type: ignore[arg-type]
+        read_scene(7)
 
 
 def test_a_run_takes_paths_and_has_its_files_as_long_as_it_lives(

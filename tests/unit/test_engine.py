@@ -189,7 +189,7 @@ def test_sessions_do_not_leak(tmp_path: Path) -> None:
     ],
 )
 def test_environment_of_a_worker(environ: dict[str, str], transports: str | None) -> None:
-    """Memory only on one node unless told otherwise, one thread, and never a rank of the launcher's."""
+    """Memory only on one node unless set otherwise, one thread, and never a rank of the launcher's."""
     environment = worker_environment(environ | {"PMI_RANK": "1", "PMIX_RANK": "1", "OMP_NUM_THREADS": "8", "A": "b"})
     assert environment.get("UCX_TLS") == transports
     assert (environment["OMP_NUM_THREADS"], environment["A"]) == ("1", "b")
@@ -197,7 +197,7 @@ def test_environment_of_a_worker(environ: dict[str, str], transports: str | None
 
 
 class Ears:
-    """Remembers what it is told."""
+    """Remembers the progress that is reported to it."""
 
     def __init__(self) -> None:
         self.phases: list[tuple[str, int | None]] = []

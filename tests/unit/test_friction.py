@@ -43,7 +43,7 @@ def test_a_mean_is_over_whole_periods_wherever_the_way_ends_after_the_run_in() -
 
 
 def test_the_interval_holds_the_true_mean_as_often_as_it_says() -> None:
-    """Independent blocks of a normal law, of few and of many; half-widths of 95 %; alternations and drifts are told."""
+    """Independent blocks of a normal law, few and many; half-widths of 95 %; alternations and drifts are reported."""
     random = np.random.default_rng(1)
     for count in (3, 6, 40):
         inside = sum(abs(b.mean()) <= interval(b) for b in random.normal(size=(1000, count)))

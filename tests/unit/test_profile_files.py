@@ -1,6 +1,6 @@
 """Measured profiles from files: what a file may look like, its units, what is refused, and where it is looked for.
 
-What a wrong file is told says what to do: that is tried, and makes a scene.
+The message about a wrong file has a suggested fix, which is tried and makes a scene.
 """
 
 from __future__ import annotations

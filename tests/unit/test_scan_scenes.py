@@ -117,7 +117,7 @@ def test_a_stated_length_is_compared_with_half_of_it(file: Path) -> None:
     (finer,) = profile.alternatives
     assert profile.taken is not None
     assert profile.taken.knots == pytest.approx(np.linspace(0.0, 4.1e-4, 9), rel=0.01)
-    assert len(finer.knots) == 17  # type: ignore[attr-defined]
+    assert len(finer.knots) == 17
     r = np.asarray([1e-4])
     assert float(finer.height(r)[0]) == pytest.approx(float(profile.height(r)[0]), rel=0.01)
 

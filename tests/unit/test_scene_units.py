@@ -118,7 +118,7 @@ def test_times_are_in_tu_of_the_given_units() -> None:
         tables, experiment = scene.tables, scene.experiment
         assert tables["cantilever"]["velocity"] == pytest.approx(1e-6 * TU / LU, rel=1e-14)  # round-off of the root
         assert tables["damping"]["coefficient"] == pytest.approx(1e-12 / TU, rel=1e-14)
-        found = [(leg.velocity, leg.distance) for leg in experiment.legs(0.0)]  # type: ignore[attr-defined]
+        found = [(leg.velocity, leg.distance) for leg in experiment.legs(0.0)]
         assert found == [pytest.approx((TU / LU, 1e-9 / LU)), pytest.approx((-2.0 * TU / LU, 3e-9 / LU))]
     known = Scales(1e-9, 1e-6, mass=1e-25)
     assert known.factor("TU") == pytest.approx((1e-25 * 1e-9 / 1e-6) ** 0.5, rel=1e-14)

@@ -101,7 +101,7 @@ ONE = Result(2.0, "FU", {"solver": 0.02, LATTICE: 0.1})
         ("force", ONE, (), 0.06),
         ("force", replace(ONE, given=0.01), (), 0.055),  # what the scene leaves open is no error of the program
         ("force", ONE, (LATTICE,), 0.01),
-        ("force", replace(ONE, read=0.03), (LATTICE,), 0.025),  # what is left by reading between particles counts
+        ("force", replace(ONE, read=0.03), (LATTICE,), 0.025),  # the discretisation error counts
         ("energy", replace(ONE, value=0.0), (), 0.0),
         ("energy", replace(ONE, value=0.0, scale=1.0), (), 0.12),
         ("contact_radius", replace(ONE, value=0.0), (), math.inf),  # a length without bound

@@ -1,4 +1,4 @@
-"""A contact in a line of Python, beside closed forms written out here; sizes that no laboratory has are told."""
+"""A contact in a line of Python, beside closed forms written out here; sizes that no laboratory has are named."""
 
 from __future__ import annotations
 

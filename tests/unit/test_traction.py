@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from contact1d import Run, run
-from validation.hard.surfaces import Surface, kinked_body
+from validation.hard.surfaces import Surface, kinked_body, on_plane
 from validation.references.axisymmetric import Contact, with_rest_radius
 
 R, FORCE, FLAT = 1000.0, 40.0, 10.0
@@ -28,7 +28,7 @@ SHARP: dict[str, dict[str, Any]] = {
 
 @pytest.mark.parametrize("name", SHARP)
 def test_a_pressure_without_bound_has_no_largest_one(name: str) -> None:
-    tables = Surface(SHARP[name], None, R).tables(1.0) | {"title": name, "experiment": {"kind": "load", "force": FORCE}}
+    tables = on_plane(SHARP[name], 1.0) | {"title": name, "experiment": {"kind": "load", "force": FORCE}}
     assert "peak_pressure" not in run(tables).results
 
 

@@ -1,4 +1,4 @@
-"""What a wrong or odd value is told: one sentence each, in the words of the scene, and what it says to do is tried.
+"""The message about a wrong or unusual value: one sentence each, in the keys of the scene; its suggested fix is tried.
 
 In a scene in SI and in one in units of the model.
 """

@@ -1,8 +1,7 @@
 """Claim: particles snap, and loading and unloading differ, where the springs are softer than the contact.
 
-Reference, `validation.references.folded_pairs`:
-a pair's undeformed gap G(r) = r − 2 f(r)/k, which folds where f′ exceeds k/2: there
-the curve depends on the way. Below, r(G) is unique, and so is F(d). Between the branches lies an energy ∮F dd: n
+Reference: `folded_pairs` of validation, the undeformed gap G(r) = r − 2 f(r)/k of a pair, which folds where f′ > k/2: there
+the curve depends on the path. Below, r(G) is unique, and so is F(d). Between the branches lies an energy ∮F dd: n
 independent pairs lose n times the area between the fold's two jumps.
 
 What limits the tolerance: for stiff springs the residual force at which a minimisation stops. For soft ones the area is
@@ -49,7 +48,7 @@ CRITICAL_STIFFNESS = pairs(1.0, np.zeros(1)).ratio
 
 
 def round_trip(run_tables: RunTables, stiffness: float, lowest: float, steps: int) -> tuple[Run, Array, Array, Array]:
-    """A path there and back: displacements, rising, and the forces at these on the way there and back."""
+    """A closed path: displacements, rising, and the forces at these in loading and unloading."""
     displacements = {"from": lowest, "to": DEEPEST, "steps": steps, "return": True}
     path = {"kind": "path", "method": "quasistatic", "displacements": displacements}
     run = run_tables(chains(RADIUS, stiffness, LAW, experiment=path))

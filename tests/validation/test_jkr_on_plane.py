@@ -178,7 +178,7 @@ def test_pull_off_with_a_range_is_maugis_s(tabor: float, run_tables: RunTables) 
 
 
 def test_a_stiff_contact_has_no_limit_point_but_that_of_the_attraction(run_tables: RunTables) -> None:
-    """Snap-in at d = −h₀, and attracted states with a = 0 on the way out; a soft one is lost at once."""
+    """Snap-in at d = −h₀, and attracted states with a = 0 in retraction; a soft one is lost at once."""
     for tabor, gradual in ((0.1, True), (5.0, False)):
         scene, reach = maugis(tabor, {"kind": "path"})
         scene["experiment"] |= {"displacements": {"from": -1.5 * reach - 0.3, "to": 0.2, "steps": 200}}

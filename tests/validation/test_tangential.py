@@ -141,7 +141,7 @@ def test_what_a_run_claims_covers_cattaneo_and_mindlin_wherever_the_edges_lie(ru
 
 
 def test_a_load_that_varies_with_the_way_is_exact_with_what_it_dissipates(run_tables: RunTables) -> None:
-    """Particles begin and end to touch on the way, between two rows."""
+    """Particles come into contact and leave it between two load steps."""
     phase = np.linspace(0.0, 6.0 * np.pi, 60)
     loads = (25.0 + 15.0 * np.cos(1.3 * phase)).tolist()
     run = run_tables(tables((0.3 * np.sin(phase)).tolist(), normal_force=loads))

@@ -1,5 +1,5 @@
 """Claim: under heat a load, a path and a pull-off have the means and the swing that Boltzmann's weight gives them, and
-a contact lets go at the tension that Smoluchowski's equation says.
+a contact separates at the tension that Smoluchowski's equation says.
 
 Reference of a load without dynamics: `thermal_chain`, to first order in the temperature, with neighbours and all
 pairs; `validation hard` holds it, and hotter loads, against Boltzmann's integral. The mean alone tells no temperature
@@ -118,7 +118,7 @@ def test_the_detachment_force_is_that_of_smoluchowskis_equation(rate: float, pul
 
 @pytest.mark.slow
 def test_a_spring_drawn_off_at_a_velocity_lets_go_as_smoluchowskis_equation_says(tmp_path: Path) -> None:
-    """The density of the plate under the spring's force, whose far end begins where it is slack, F = 0 on the way."""
+    """The density of the plate under the spring's force, whose far end begins where it is slack, F = 0 before."""
     drawn = {"kind": "pull_off", "preload": 0.1, "velocity": 2e-3, "stiffness": 0.5, "repeats": REPEATS}
     found = run(detachment.scene(1e-3, REPEATS).with_({"experiment": drawn}), tmp_path / "run", figures=False).results
     d, energy = detachment.free_energy()

@@ -58,9 +58,14 @@ class Surface:
 
     def tables(self, spacing: float, tolerance: float = 1e-3) -> Scene:
         """[bodies] and [accuracy] of a scene of model units, E* = 1 FU/LU²."""
-        bodies = {"particles": "auto", "spacing": spacing, "bulk_stiffness": spacing, "reduction": "mdr",
-                  "lower": "rigid_plane", "profile": self.profile}  # fmt: skip
-        return {"bodies": bodies, "accuracy": {"tolerance": tolerance}}
+        return on_plane(self.profile, spacing, tolerance)
+
+
+def on_plane(profile: Scene, spacing: float, tolerance: float = 1e-3) -> Scene:
+    """[bodies] and [accuracy] of a profile in model units on a rigid plane, E* = 1 FU/LU²."""
+    bodies = {"particles": "auto", "spacing": spacing, "bulk_stiffness": spacing, "reduction": "mdr",
+              "lower": "rigid_plane", "profile": profile}  # fmt: skip
+    return {"bodies": bodies, "accuracy": {"tolerance": tolerance}}
 
 
 def surface(radius: float, kind: str, /, **numbers: float) -> Surface:

@@ -66,7 +66,7 @@ def motion(
     change: Callable[..., Any], start: list[float], scale: float, until: float, event: Callable[..., float]
 ) -> Any:
     """The solution of y' = change(t, y) until an event falls through 0, with an absolute error of SMALL scale."""
-    event.terminal, event.direction = True, -1.0  # type: ignore[attr-defined]
+    event.terminal, event.direction = True, -1.0  # type: ignore[attr-defined]  # scipy reads them off the function
     return solve_ivp(change, (0.0, until), start, atol=SMALL * scale, events=event, **EXACT)
 
 

@@ -103,6 +103,7 @@ def corrugation(
         r = np.hypot(x - row, heights)
         return np.asarray(normal_force + stiffness * (heights - place) - (pair.force(r) * heights / r).sum(axis=0))
 
+    # mypy infers no type of a lambda that has a default, which binds x of this turn.
     for i, x in enumerate(places):  # the innermost minimum: the slope rises through 0
         slopes = slope(x, grid)
         above = np.flatnonzero((slopes[:-1] < 0.0) & (slopes[1:] >= 0.0))

@@ -68,8 +68,8 @@ class Receding:
             g = contact.body.depth(float(y[0])) - d - rate * t
             return contact.modulus * g * abs(g) / (2.0 * math.pi * float(y[0]) * contact.work) - 1.0
 
-        small.terminal = True  # type: ignore[attr-defined]
-        settled.terminal, settled.direction = settling, -1.0  # type: ignore[attr-defined]
+        small.terminal = True  # type: ignore[attr-defined]  # scipy reads it off the function
+        settled.terminal, settled.direction = settling, -1.0  # type: ignore[attr-defined]  # as above
         accuracy = {"method": "LSODA", "rtol": 1e-12, "atol": [1e-15 * a, 1e-14 * abs(contact.lost)]}
         return solve_ivp(change, (0.0, until), [a, 0.0], events=(small, settled), dense_output=True, **accuracy)
 
