@@ -1,6 +1,6 @@
 """Claim: particles snap, and loading and unloading differ, where the springs are softer than the contact.
 
-Reference: `folded_pairs` of validation, the undeformed gap G(r) = r − 2 f(r)/k of a pair, which folds where f′ > k/2: there
+Reference: `folded_pairs` of validation, the undeformed gap G(r) = r − 2 f(r)/k, which folds where f′ > k/2: there
 the curve depends on the path. Below, r(G) is unique, and so is F(d). Between the branches lies an energy ∮F dd: n
 independent pairs lose n times the area between the fold's two jumps.
 
