@@ -15,7 +15,10 @@ class LinksAreThere(BuildHookInterface[Any]):
     """Only an editable install imports through the links; a wheel is built of the folders themselves."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Abort an editable install of a checkout without symbolic links."""
+        """Abort an editable install of a checkout where src/contact1d lacks one of its four linked folders.
+
+        Nothing is checked for a wheel or a source distribution; `build_data` is not changed.
+        """
         missing = [name for name in LINKED if not (Path(self.root) / "src" / "contact1d" / name).is_dir()]
         if version == "editable" and missing:
             self.app.abort(

@@ -78,7 +78,10 @@ class LineLoad:
 
     @property
     def has_apex(self) -> bool:
-        """Whether the slope of q does not vanish on the axis, where the pressure then has no bound."""
+        """Whether `apex` is set or the first cubic has a term linear in x.
+
+        The pressure is then unbounded on the axis.
+        """
         return self.apex or bool(self.coefficients[1, 0] != 0.0)
 
     def pressure(self, r: ArrayLike) -> Array:
@@ -100,7 +103,7 @@ class LineLoad:
     def _pressure(self, r: Array) -> Array:
         """Return p [force/length²], (n,), at distances r from the axis, (n, 1), below the edge.
 
-        ±∞ at r = 0 of an apex.
+        At r = 0 of an apex it is +∞ where `apex` is set, else ∞ with the sign of −dq/dx there.
         """
         ends = np.maximum(self.breaks, r)
         root = np.sqrt((ends - r) * (ends + r))
@@ -126,7 +129,7 @@ class LineLoad:
 def _differences() -> Array:
     """Return M, (16, 16), of ∫ w dh = w·M h over an interval, w and h the values at its 16 Gauss-Legendre positions.
 
-    It is dimensionless: the length of the interval cancels.
+    It is dimensionless: the length of the interval cancels. The result is cached.
     """
     node, weight = gauss(NODES)
     powers = np.polynomial.legendre.legvander(node, NODES - 1)
@@ -154,8 +157,8 @@ def _graded(width: Array, smooth: Array, halvings: int = 20) -> Array:
 def _of_body(body: Body, distances: bytes, borders: Sequence[float]) -> Array:
     """Return (1/π) ∫ dh/t, (n,) [force/length²], with x² = r² + t²: the pressure that belongs to c h(x) of a body.
 
-    h is smooth in t up to √(r² − x²) of the kink x before, and from the edge to the next kink; on the axis the
-    remainder at 0 is that of a power of t. The result is cached.
+    The integral goes from t = 0 to the edge. h is smooth in t up to √(r² − x²) of the kink x before, and from the edge
+    to the next kink; on the axis the remainder at 0 is that of a power of t. The result is cached.
 
     Args:
         body: returns c h(x) [force/length].
@@ -171,6 +174,7 @@ def _of_body(body: Body, distances: bytes, borders: Sequence[float]) -> Array:
     graded = np.concatenate([up, down, ends[:, 1:, None]], axis=-1)
 
     def height(t: Array) -> Array:
+        """Return c h [force/length] at √(r² + t²), of the shape of t, (n, …) [length], the first index that of r."""
         return body(np.sqrt(r.reshape(-1, *(1,) * (t.ndim - 1)) ** 2 + t * t))  # hypot takes five times as long
 
     def integral(low: Array, high: Array) -> Array:
@@ -203,7 +207,7 @@ def line_load(
     """Return the even line load through values: cubics through the four nearest positions, both sides averaged.
 
     Polynomials up to x³ on each side (Hertz, cone, flat punch) are exact, others of the third order in the spacing.
-    Values within 0.3 spacings of the edge, half a spacing unless `jump` is 0, are left out.
+    Values beyond the edge are left out, and those within 0.3 spacings of it, half a spacing unless `jump` is 0.
 
     Args:
         x: positions, rising and the same on both sides of 0, shape (n,) [length].
@@ -212,10 +216,11 @@ def line_load(
         jump: q just inside the edge [force/length], from which it jumps to 0; None: the last cubic goes on to the edge.
         apex: whether q has a kink on the axis, as under a cone; else it is smooth there, an even function.
         body: returns c h(x) [force/length]: cubics are put through q + c h, which is smooth on the axis.
-        kinks: positions at which the slope of the body jumps [length].
+        kinks: positions at which the slope of the body jumps [length]; not used without a body.
 
     Raises:
-        ValueError: fewer than 3 positions on a side within the edge, or positions that differ between both sides.
+        ValueError: fewer than 3 positions on a side within the edge, positions that differ between both sides, or
+            arrays of unequal lengths.
     """
     right, mean, spacing = of_both_sides(x, load)
     end = float(right[-1]) if edge is None else edge
@@ -237,6 +242,8 @@ def line_load(
 def _even(x: Array, q: Array, end: float) -> LineLoad:
     """Return the line load from 0 to `end` by cubics through values and their mirror images, smooth on the axis.
 
+    It is that of the values, without a body, jump or apex.
+
     Args:
         x: positions ≥ 0, rising, (n,) [length].
         q: line load there, (n,) [force/length].
@@ -254,15 +261,15 @@ def _even(x: Array, q: Array, end: float) -> LineLoad:
 def of_both_sides(x: ArrayLike, load: ArrayLike) -> tuple[Array, Array, float]:
     """Return positions x ≥ 0, (m,) [length], the mean load of both sides there, (m,), and the spacing [length].
 
-    The load keeps its unit. The positions are the same on both sides of 0 to 1e-6 spacings; m is half of their number,
-    rounded up.
+    The load keeps its unit. The positions must be the same on both sides of 0 to 1e-6 spacings; m is half of their
+    number, rounded up. The spacing is the mean distance of neighbours.
 
     Args:
         x: positions, rising, (n,) [length].
         load: values there, (n,).
 
     Raises:
-        ValueError: arrays of unequal lengths, or positions that differ between both sides.
+        ValueError: arrays of unequal lengths or not 1-D, or positions that differ between both sides.
     """
     positions, values = np.asarray(x, dtype=np.float64), np.asarray(load, dtype=np.float64)
     if positions.shape != values.shape or positions.ndim != 1:

@@ -24,15 +24,14 @@ def atoms(folder: str | Path, state: int = -1) -> Atoms:
 
     Args:
         folder: the run folder.
-        state: index among the states of states.lammpstrj, in the order of the loading (a pull-off has the
-            zero-load state and then the critical one, or with `[output] states` all of its states); negative from the
-            end.
+        state: index among the states of states.lammpstrj, in the order of the loading (a pull-off has the zero-load
+            state and then the critical one, or with `[output] states` all of its states); negative from the end.
 
     Returns:
-        Atoms of the placeholder species X (the model has no chemistry), in the order of the LAMMPS ids, with the arrays
-        "id", "type", "body" ("lower", "upper"), "role" ("particle", "anchor", "far anchor", "driver": the
-        far end of a cantilever) and "opposite_force", shape (n, 3) [FU]; info["timestep"]. The paper's z is z; y is
-        out of the plane.
+        Atoms of the placeholder species X (the model has no chemistry), in the order of the LAMMPS ids, with positions
+            [LU], without cell and periodicity, and with the arrays "id", "type", "body" ("lower", "upper"), "role"
+            ("particle", "anchor", "far anchor", "driver": the far end of a cantilever) and "opposite_force", shape (n,
+            3) [FU], that of the opposite body on each; info["timestep"]. The paper's z is z; y is out of the plane.
 
     Raises:
         FileNotFoundError: the folder holds no states: no run, or one that failed.
@@ -62,6 +61,8 @@ def atoms(folder: str | Path, state: int = -1) -> Atoms:
 
 def _frame(text: str, where: str) -> tuple[int, dict[str, NDArray[np.float64]]]:
     """Return timestep and columns of one frame of a dump by name, (n,) each, sorted by the atoms' id.
+
+    The columns are id, type, x, y, z [LU], opposite_fx and opposite_fz [FU], all as float64; others are left out.
 
     Args:
         text: of the frame, after ITEM: TIMESTEP.

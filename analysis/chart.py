@@ -53,15 +53,18 @@ class Axis:
         return f"{self.name}{'' if self.unit == '1' else f' ({self.unit})'}{self.remark}"
 
     def ended(self, values: Array) -> Array:
-        """Return the values, (…), with −∞ and ∞ replaced by the lower and upper end of the axis; NaN stays."""
+        """Return a copy of the values, (…), with −∞ and ∞ replaced by the lower and the upper end of the axis.
+
+        NaN stays.
+        """
         return np.nan_to_num(values, nan=math.nan, neginf=self.view[0], posinf=self.view[1])
 
     def written(self, numbers: Sequence[Array], unit_of: UnitOf) -> tuple[float, Axis]:
-        """Return the factor to the unit that fits the numbers, and the axis in that unit, with its ends around them.
+        """Return the factor to the unit that fits the numbers, and a copy of the axis in it, with ends around them.
 
-        There are 5 % of the span beyond the numbers on both sides (of equal numbers 5 % of their size), on a
-        logarithmic axis of its logarithms. Numbers that are not finite do not count, nor those ≤ 0 on a logarithmic
-        axis.
+        There are 5 % of the span beyond the numbers on both sides (of equal numbers 5 % of their size, of none or only
+        0 ±0.05), on a logarithmic axis of its logarithms. Numbers that are not finite do not count, nor those ≤ 0 on a
+        logarithmic axis, which must have one above 0. An axis with `zero` includes 0.
 
         Args:
             numbers: arrays of what is drawn, in the axis' unit.
@@ -148,11 +151,13 @@ class Chart:
     def written(self, unit_of: UnitOf, words: Callable[[str], str] = str) -> Chart:
         """Return the chart as it is drawn: every axis with its ends, and in the unit that fits its numbers.
 
-        Series of theories, marked by their colour, widen no axis, unless a panel has no others.
+        Series of theories, marked by their colour, widen no axis, unless a panel has no others. The numbers are
+        converted in copies; this chart stays.
 
         Args:
             unit_of: returns the factor and the unit in which a number is written, for the largest and its unit.
-            words: puts the numbers of a text into these units.
+            words: puts the numbers of a text, a name in a legend, a panel's title or note, into these units; by default
+                unchanged.
         """
         decisive = [[line for line in panel.series if line.colour != THEORY] or panel.series for panel in self.panels]
         signs = (-1.0, 1.0)  # both ends of an uncertainty
@@ -172,9 +177,9 @@ class Chart:
 
 
 def upright(*positions: float, **look: Any) -> Series:
-    """Return dashed lines across a panel, from end to end, at positions along x, in its unit.
+    """Return one series of dashed lines along y, from end to end of a panel, at positions along x, in its unit.
 
-    `look` has fields of Series.
+    `look` has fields of Series, which go over black colour, dashes and width 1.
     """
     x, y = np.repeat(positions, 3), np.tile([*ENDLESS, math.nan], len(positions))
     return Series(x, y, **{"colour": BLACK, "look": "--", "width": 1.0, **look})
@@ -183,6 +188,6 @@ def upright(*positions: float, **look: Any) -> Series:
 def area(x: Any, y: Any, **look: Any) -> Series:
     """Return the filled rectangle between two ends along x and two along y, in the axes' units.
 
-    `look`: fields of Series.
+    ±∞ is an end of an axis. `look`: fields of Series other than `look`.
     """
     return Series(np.repeat(x, 2), np.asarray([*y, *y[::-1]]), look=FILL, **look)

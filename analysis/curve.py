@@ -28,7 +28,12 @@ class Columns(Named[Any]):
     """
 
     def __init__(self, columns: Mapping[str, Column], units: Mapping[str, str] | None = None) -> None:
-        """Make arrays of the columns. Raises ValueError for columns of unequal lengths."""
+        """Make arrays of the columns. Raises ValueError for columns of unequal lengths.
+
+        Args:
+            columns: by name.
+            units: SI units by column name; None: no column has one.
+        """
         super().__init__({name: np.asarray(column) for name, column in columns.items()})
         self.units = dict(units or {})
         if len(lengths := {len(column) for column in self.values()}) > 1:
@@ -53,21 +58,34 @@ MARKED = f"^'('*[{FIRST}])"
 
 
 def write_columns(path: Path, columns: Mapping[str, Column], units: Mapping[str, str] | None = None) -> None:
-    """Write a CSV file, whole or not at all: numbers with 17 digits, NaN as "", texts marked as by `as_text`.
+    """Write a CSV file, whole or not at all: numbers with 17 digits, NaN as "", ∞ as "inf".
+
+    Texts that a spreadsheet would take for a formula have an apostrophe before. An existing file is replaced.
 
     Args:
         path: of the file.
         columns: by name, equally long.
         units: SI units of columns, which the header has as in `force [N]`; None: none has one.
+
+    Raises:
+        ValueError: columns of unequal lengths.
     """
     with whole(path) as part, part.open("w", newline="", encoding="utf-8") as file:
         put_columns(file, columns, units or {})
 
 
 def put_columns(file: TextIO, columns: Mapping[str, Column], units: Mapping[str, str]) -> None:
-    """Write columns, equally long, to an open file as CSV, in the format of `write_columns`.
+    """Write columns to an open file as CSV: the header, then a line for each index.
 
-    Texts are marked as `as_text`.
+    Numbers have 17 digits, NaN is "", texts that a spreadsheet would take for a formula have an apostrophe before.
+
+    Args:
+        file: open for text.
+        columns: by name, equally long.
+        units: of columns by name, written in the header as in `force [N]`.
+
+    Raises:
+        ValueError: columns of unequal lengths; a part of them may have been written.
     """
     writer, chunk = csv.writer(file, lineterminator="\n"), 100_000  # rows that are turned into text at a time
     writer.writerow(headed(columns, units))
@@ -84,21 +102,26 @@ def headed(names: Iterable[str], units: Mapping[str, str]) -> list[str]:
 def as_text(cell: Any) -> Any:
     """Return a text that a spreadsheet would take for a formula with an apostrophe before it, `'=1+1`.
 
-    Other cells as they are. A number with a sign is no formula. `plain` is the inverse.
+    Such a text begins, also after apostrophes, with =, +, -, @, a wide form of these, a tab or the end of a line. A
+    number with a sign is no formula. Other cells, texts or not, are returned as they are.
     """
     return f"'{cell}" if isinstance(cell, str) and FORMULA.match(cell) else cell
 
 
 def plain(cell: str) -> str:
-    """Return the text of a cell without the apostrophe that `as_text` puts before a formula.
+    """Return the text of a cell without the one apostrophe that marks a formula, `=1+1` for `'=1+1`.
 
-    Other cells as they are.
+    Other cells as they are: an apostrophe goes only where, after any further ones, a character follows with which a
+    formula begins.
     """
     return re.sub(MARKED, r"\1", cell)
 
 
 def _cells(column: Column) -> Sequence[str]:
-    """Return the cells of a column as text: numbers with 17 digits, NaN as "", texts marked as by `as_text`."""
+    """Return the cells of a column as text: numbers with 17 digits, NaN as "", formulas with an apostrophe before.
+
+    The first cell decides whether they are texts or numbers.
+    """
     if len(column) and isinstance(column[0], str):
         return [*map(cache(as_text), map(str, column))]  # a few words, over and over
     numbers = np.asarray(column, dtype=np.float64).tolist()
@@ -107,16 +130,20 @@ def _cells(column: Column) -> Sequence[str]:
 
 
 def read_columns(path: Path, needed: Iterable[str] = ()) -> Columns:
-    """Return the columns of a table that `write_columns` wrote: numbers, with NaN for an empty cell, and texts.
+    """Return the columns of a table in a CSV file by name, arrays of float64, with NaN for an empty cell, or of texts.
 
-    Texts are the columns `branch`, `state` and `input`. Units in the header become `units`.
+    Texts are the columns `branch`, `state` and `input`, without the apostrophe before a formula. A unit in the header,
+    `force [N]`, is put into `units` and no part of the name. A table without rows has empty columns, an empty file
+    none.
 
     Args:
         path: of the CSV file.
         needed: names of columns that the table must have; it then needs a row, too.
 
     Raises:
-        ValueError: if one of those `needed` is missing, or a cell is no number.
+        ValueError: if one of those `needed` is missing, a cell is no number, or a row is longer or shorter than the
+            others.
+        OSError: the file cannot be read.
     """
     with path.open(newline="", encoding="utf-8") as file:
         header, *rows = [*csv.reader(file)] or [[]]
@@ -138,7 +165,8 @@ def read_columns(path: Path, needed: Iterable[str] = ()) -> Columns:
 def profile_columns(profiles: Mapping[str, Profile]) -> dict[str, Any]:
     """Return the columns of profile.csv by name: the profiles of one or more states below each other.
 
-    They are `x`, `z_lower`, `z_upper` [LU], `pressure` and `shear` [FU/LU], and last `state`, the state's name.
+    They are `x`, `z_lower`, `z_upper` [LU], `pressure` and `shear` [FU/LU], arrays, and last `state`, a list of the
+    state's name for each row. Raises ValueError without a profile.
     """
     numbers = {
         name: np.concatenate([getattr(profile, name) for profile in profiles.values()]) for name in PROFILE_COLUMNS
@@ -149,7 +177,7 @@ def profile_columns(profiles: Mapping[str, Profile]) -> dict[str, Any]:
 def by_state(columns: Columns) -> dict[str, Columns]:
     """Return the columns of each state, by the names in the column `state`, without that column.
 
-    Empty if it is absent.
+    The states are in the order of their first rows. Empty if the column is absent.
     """
     if "state" not in columns:
         return {}
@@ -199,18 +227,24 @@ def states_of(profiles: Sequence[Profile], kept: Sequence[int] | None = None, mo
 
 
 def _spread(count: int, most: int) -> NDArray[np.int64]:
-    """Return indices from 0 to count − 1, evenly spread, with both ends: all of them, or `most` where they are more."""
+    """Return indices from 0 to count − 1, evenly spread, with both ends: all of them, or `most` where they are more.
+
+    Of `most` = 1 it is 0 alone.
+    """
     return np.linspace(0, count - 1, min(count, most)).round().astype(np.int64)
 
 
 def write_states(path: Path, states: States) -> None:
-    """Write the arrays of the states to the file states.npz, at `path`, whole or not at all."""
+    """Write the arrays of the states to the file at `path`, whole or not at all; an existing file is replaced."""
     with whole(path) as part, part.open("wb") as file:
         np.savez(file, allow_pickle=False, **vars(states))
 
 
 def read_states(path: Path) -> States:
-    """Return the states in the file states.npz. Raises OSError or ValueError where it is no such file."""
+    """Return the states in the file states.npz at `path`, arrays as they were written.
+
+    Raises OSError or ValueError where it is no such file, or lacks an array.
+    """
     with np.load(path, allow_pickle=False) as kept:
         missing = [field.name for field in fields(States) if field.name not in kept]
         if missing:

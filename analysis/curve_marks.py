@@ -40,11 +40,12 @@ WIDEST_REACH = 3
 def largest_tension(displacement: Sequence[float], force: Sequence[float]) -> Peak:
     """Return the largest tension −F of an unloading branch, with its position and sampling errors.
 
-    Between samples the maximum of a smooth curve is that of the polynomial through five points; the polynomial through
-    three estimates its error, and the one through seven the error of its position. Where a particle snaps after the
-    maximum, tension rises right up to the snap, no faster than before the sampled point: the sampled point is then the
-    position, and the rise up to the next point the largest sampling error. At an end of the curve it is the point
-    itself, with its tension as the error.
+    Of equal tensions the first counts. Between samples the maximum of a smooth curve is that of the polynomial through
+    five points; the polynomial through three estimates its error, and the one through seven the error of its position.
+    Where a particle snaps after the maximum, tension rises right up to the snap, no faster than before the sampled
+    point: the sampled point is then the position, and the rise up to the next point the largest sampling error. At an
+    end of the curve it is the point itself, with its tension as the error. With one point only beside the maximum on
+    one side it is the parabola through three points.
 
     Args:
         displacement: falling, (n,) [LU].
@@ -74,8 +75,8 @@ def largest_tension(displacement: Sequence[float], force: Sequence[float]) -> Pe
 def _apart_from(d: Array, tension: Array, i: int) -> tuple[Array, Array, int]:
     """Return displacements and tensions without samples that nearly coincide with the inner one i, and its new index.
 
-    The first and the last sample stay. The residual ε of two samples makes a slope of ε over their distance: over the
-    width of the widest polynomial, three samples to each side, 1000 ε at most.
+    These are within 1e-3 of the width of up to three samples on each side of i. The first and the last sample stay. The
+    residual ε of two samples makes a slope of ε over their distance: over that width 1000 ε at most.
 
     Args:
         d, tension: displacements, falling, and tensions, (n,).
@@ -90,8 +91,8 @@ def _apart_from(d: Array, tension: Array, i: int) -> tuple[Array, Array, int]:
 def _about(x: Array, y: Array, middle: int, neighbours: int) -> tuple[float, Array] | None:
     """Return the width of the samples about one, and the coefficients of the polynomial through them.
 
-    None if too close. Its variable is x − x[middle] over the width, its value y − y[middle], lowest power first.
-    Samples are too close where two are within 1e-5 of the width.
+    None where two neighbours are within 1e-5 of the width. The variable of the polynomial is x − x[middle] over the
+    width, its value y − y[middle], lowest power first.
 
     Args:
         x, y: positions and values, (n,).
@@ -127,10 +128,10 @@ def vertex(x: Array, y: Array, highest: int, neighbours: int) -> tuple[float, fl
 
 
 def promised(displacement: Sequence[float], force: Sequence[float], positions: Sequence[float]) -> Array:
-    """Return the tension [FU] that samples let expect at positions [LU] near the force maximum, (m,), tension positive.
+    """Return the tension [FU] that samples of a curve let expect at positions [LU] near its largest tension, (m,).
 
-    It is that of the polynomial through the maximum and two points on each side. All are NaN where the maximum is the
-    first or last point, or points are too near to each other.
+    It is −F, that of the polynomial through the largest tension and two points on each side, where there are as many.
+    All are NaN where the largest is at the first or last point, or points are within 1e-5 of their width.
 
     Args:
         displacement: falling, (n,) [LU].
@@ -148,11 +149,11 @@ def promised(displacement: Sequence[float], force: Sequence[float], positions: S
 
 
 def rivals(displacement: Sequence[float], force: Sequence[float], peak: Peak) -> dict[int, float]:
-    """Return by how much each other maximum of a sawtooth may exceed the peak [FU], by the index of its highest point.
+    """Return by how much each other maximum of the tension may exceed the peak [FU], by the index of its highest point.
 
-    A negative number: it can't exceed it. Empty without other maxima. Beyond its highest point the tension rises no
-    faster than up to it, and at most as far as the next point; between the highest point and the one before, no faster
-    than up to the latter.
+    A negative number: it can't exceed it. The peak is the tension at its vertex. Empty without other maxima; the first
+    and the last point are none. Beyond its highest point the tension rises no faster than up to it, and at most as far
+    as the next point; between the highest point and the one before, no faster than up to the latter.
 
     Args:
         displacement: falling, (n,) [LU].
@@ -173,7 +174,10 @@ def rivals(displacement: Sequence[float], force: Sequence[float], peak: Peak) ->
 
 
 def are_apart(d: Array) -> bool:
-    """Return whether neighbours of d, (n,), are farther apart than 1e-5 of its width, as a polynomial requires."""
+    """Return whether all neighbours of d, (n,), n ≥ 2, are farther apart than 1e-5 of its width.
+
+    False where all are equal; a polynomial through nearer points would be mostly round-off.
+    """
     return float(np.abs(np.diff(d)).min()) > 1e-5 * float(np.ptp(d))
 
 
@@ -196,7 +200,7 @@ def _bend(d: Array, tension: Array, i: int) -> float:
 def crossing(displacement: Sequence[float], force: Sequence[float], level: float) -> tuple[int, float]:
     """Return i and the displacement [LU] of the first crossing of `level` [FU], linear between points i and i + 1.
 
-    A point at the level itself counts as a crossing.
+    A point at the level itself counts as a crossing. Crossings in both directions count.
 
     Args:
         displacement, force: (n,) [LU] and (n,) [FU].
@@ -241,9 +245,11 @@ def smooth_crossing(displacement: Sequence[float], force: Sequence[float], level
 
 
 def tops(tension: list[float], fall: float) -> list[int]:
-    """Return the indices of maxima after which values fall by more than `fall` before they rise by more than that.
+    """Return the indices, ascending, of maxima after which values fall by more than `fall` before they rise above them.
 
-    `fall` has the unit of the values. Empty where they never fall that far.
+    `fall` has the unit of the values. After such a fall the next maximum is sought once values have risen by more than
+    `fall` from the lowest one since. The first value may be a maximum, the last never. Empty where they never fall that
+    far, or without values.
     """
     maxima: list[int] = []
     high = low = 0
@@ -284,11 +290,12 @@ class Work:
 def work_of(displacement: Sequence[float], force: Sequence[float]) -> Work | None:
     """Return the work along a path through points, (n,) [LU] and (n,) [FU].
 
-    None with fewer than 3, or where nothing moves. Between two points a smooth curve departs from its chord by h³F″/12,
-    F″ from the chords before and after. Where the chord's slope is not the mean of these two, the force may have
-    jumped, anywhere between the points: that part of its change may count for half of the increment h more or less. An
-    unloading through the same displacements has the same error as the loading, so that only the difference of the two
-    counts.
+    None with fewer than 3, or where nothing moves. It is ∫ F dd by the trapezoidal rule, F compression positive, d
+    positive in approach, with its uncertainty, ∫ |F| |dd| and the length of the path. Between two points a smooth curve
+    departs from its chord by h³F″/12, F″ from the chords before and after. Where the chord's slope is not the mean of
+    these two, the force may have jumped, anywhere between the points: that part of its change may count for half of the
+    increment h more or less. An unloading through the same displacements has the same error as the loading, so that
+    only the difference of the two counts.
     """
     d, f = np.asarray(displacement, dtype=np.float64), np.asarray(force, dtype=np.float64)
     round_off = CLOSURE * float(np.ptp(d))
@@ -323,6 +330,8 @@ def closes(displacement: Sequence[float], force: Sequence[float], tolerance: flo
 
 def _missed(h: Array, rise: Array) -> float:
     """Return the error bound, ≥ 0 [FU·LU], of the trapezoidal rule on a leg of increments in one direction.
+
+    Of a single increment it is half of its length times the change of the force.
 
     Args:
         h: increments > 0, (n,) [LU].

@@ -48,10 +48,10 @@ class EstimatedPosition:
 def position_of_minimum(x: Array, y: Array, candidates: NDArray[np.intp]) -> EstimatedPosition:
     """Return the position of the minimum of y(x) near the lowest of the candidate samples, with its uncertainty.
 
-    At the first or the last sample it is that sample, uncertain by a spacing and marked `at_end`. The uncertainty
-    covers the error in at least 95 % of random closed-form cases (see the module), without noise and with white noise
-    of up to 1 % of the depth, and of skewed dips at least 0.3 spacings wide; where y jumps, the minimum is anywhere
-    between two samples.
+    Where the lowest is the first or the last sample of x it is that sample, uncertain by a spacing; `at_end` is true
+    then, and where a sample as low, but for noise, is the first or last one. The uncertainty covers the error in at
+    least 95 % of random closed-form cases (see the module), without noise and with white noise of up to 1 % of the
+    depth, and of skewed dips at least 0.3 spacings wide; where y jumps, the minimum is anywhere between two samples.
 
     Args:
         x: positions, ascending, (n,), n >= 3.
@@ -77,7 +77,7 @@ def position_of_minimum(x: Array, y: Array, candidates: NDArray[np.intp]) -> Est
 
 
 def _noise(y: Array, index: int, reach: int = 20, highest_order: int = 12) -> float:
-    """Return the standard deviation of the noise, in the unit of y, in the samples up to a reach from `index`.
+    """Return the standard deviation of the noise, in the unit of y, in up to `reach` samples on each side of `index`.
 
     The d-th difference of white noise has the variance (2d over d) sigma^2; that of a smooth function falls with d. The
     smallest estimate, of the orders from 2 up to the highest, has least of the signal. With fewer than three samples it
@@ -93,7 +93,10 @@ def _noise(y: Array, index: int, reach: int = 20, highest_order: int = 12) -> fl
 
 
 def _median(values: Array) -> float:
-    """Return the median of a few finite values; `numpy.median` with its checks takes five times as long."""
+    """Return the median of a few finite values, one at least, in any order; in their unit.
+
+    `numpy.median` with its checks takes five times as long.
+    """
     ordered = np.sort(values)
     return 0.5 * float(ordered[(len(ordered) - 1) // 2] + ordered[len(ordered) // 2])
 
@@ -101,8 +104,9 @@ def _median(values: Array) -> float:
 def _smoothest(x: Array, y: Array, index: int, size: int) -> list[slice]:
     """Return the slices of `size` samples that contain `index`, smoothest first, by their highest divided difference.
 
-    Where y jumps, a polynomial across the jump oscillates (the choice of essentially non-oscillatory schemes).
-    A slice one sample off the middle has to be smoother by a factor of three to be preferred.
+    `size` is at most n. Where y jumps, a polynomial across the jump oscillates (the choice of essentially
+    non-oscillatory schemes). A slice one sample off the middle has to be smoother by a factor of three to be preferred,
+    of two samples by nine, and so on.
     """
     lows = range(max(0, index - size + 1), min(index, len(x) - size) + 1)
     near = slice(lows[0], lows[-1] + size)
@@ -117,8 +121,8 @@ def _converging(x: Array, y: Array, index: int, noise: float) -> EstimatedPositi
     """Return the minimum of the polynomial through as many samples on each side of `index` as reduce its uncertainty.
 
     They are 3, 5 or 10. On even samples of a smooth function it converges with the degree; those of lower degree show
-    how fast. None where the samples are not smooth, fewer than 5 on a side, or one of the first two polynomials has no
-    minimum.
+    how fast. None where the samples are not smooth, fewer than 5 on a side, or where the polynomial through 3 or that
+    through 5 on each side has no minimum between the neighbours of `index`.
 
     Args:
         x, y: positions, ascending, and values, (n,).
@@ -174,9 +178,10 @@ def _is_smooth(x: Array, y: Array, index: int, noise: float, decay: float = 0.6,
 def _interpolated(x: Array, y: Array, index: int, noise: float) -> EstimatedPosition:
     """Return the minimum of the polynomial through seven samples about `index`, compared with two others.
 
-    These go through five samples, and through the seven that are next in smoothness. Where y jumps, so that the first
-    has no minimum, it is halfway across the larger of both steps next to the lowest sample, within half the distance of
-    its neighbours.
+    These go through five samples, and through the seven that are next in smoothness; the larger difference from them,
+    with the noise, is the uncertainty, and more where the dip is hardly wider than a sample. Where y jumps, so that the
+    first has no minimum, it is halfway across the larger of both steps next to the lowest sample, within half the
+    distance of its neighbours.
 
     Args:
         x, y: positions, ascending, and values, (n,).
@@ -201,7 +206,8 @@ def _interpolated(x: Array, y: Array, index: int, noise: float) -> EstimatedPosi
 def _steepness(y: Array, index: int) -> float:
     """Return the rise from the lowest sample to its higher neighbour over the depth below the lower shoulder, ≤ 1.
 
-    A shoulder is the largest value on one side of `index`; without a depth the steepness is 1.
+    A shoulder is the largest value on one side of `index`, which is neither the first nor the last; without a depth the
+    steepness is 1. It is dimensionless.
     """
     depth = min(float(y[:index].max()), float(y[index:].max())) - float(y[index])
     rise = max(float(y[index - 1]), float(y[index + 1])) - float(y[index])
@@ -256,7 +262,8 @@ def _minimum(
 ) -> tuple[float, float]:
     """Return the position of the lowest minimum, between low and high, of the polynomial over samples, and its shift.
 
-    The shift is that by noise of standard deviation 1 in y. Both are NaN without a minimum, or where all values are 0.
+    The shift, ≥ 0, is the standard deviation of the position under noise of standard deviation 1 in y. Both are NaN
+    without a minimum, or where all values are 0.
 
     Args:
         x, y: positions, ascending, and values, (n,).

@@ -48,14 +48,17 @@ COMPRESSIVE = ", compression positive"
 
 
 def path(x: Axis, along: Array, legs: Legs, *panels: Upwards, spread: Array | float = 0.0) -> Chart:
-    """Return the chart of an experiment's path, leg by leg; with few points marked, without lines beside other series.
+    """Return the chart of an experiment's path, stretch by stretch, a panel for each of `panels`, all over `x`.
 
-    Legs without any finite position are left out.
+    A stretch of at most 25 points, and every one where `spread` is not 0, is drawn with markers, without lines where
+    the panel has compared series; others are lines. Stretches without any finite position are left out. Of several
+    panels axes have no remark.
 
     Args:
         x: the axis along x.
         along: what the path is drawn over, (n,), in the unit of that axis.
-        legs: of the path: the branch of each, and the indices of its points.
+        legs: stretches of the path: the name of each, such as loading or unloading, which determines its colour, and
+            the indices of its points.
         panels: the main one first, which is the highest: axis, values (n,) in its unit, series drawn beside these.
         spread: uncertainty along x, (n,), in its unit.
     """
@@ -74,26 +77,35 @@ def path(x: Axis, along: Array, legs: Legs, *panels: Upwards, spread: Array | fl
 
 
 def lines(*theories: Theory) -> list[Series]:
-    """Return a dashed line for each theory, named as it; an empty list without one."""
+    """Return a dashed line for each theory, (name, x, y), named as it; an empty list without one."""
     return [Series(x, y, name, look="--") for name, x, y in theories]
 
 
 def level(value: float, uncertainty: float, name: str) -> list[Series]:
-    """Return a value as a line across a panel, in the unit of its axis, with a band of ± its uncertainty."""
+    """Return a band of ± the uncertainty and a dotted line at a value, across a panel, in the unit of its axis.
+
+    The band comes first and has no name; `name` is that of the line.
+    """
     band = area(ENDLESS, [value - uncertainty, value + uncertainty], colour=TENSION, opacity=0.3)
     return [band, Series(ENDLESS, np.full(2, value), name, TENSION, ":")]
 
 
 def reduced(largest: float) -> list[Series]:
-    """Return F/F_A over a/a₀ of JKR, both dimensionless, up to the radius `largest` (the paper's Fig. 8)."""
+    """Return F/F_A over a/a₀ of JKR as a list of one dashed line, from 0 to the radius `largest` (the paper's Fig. 8).
+
+    Both are dimensionless, F positive in compression, 400 points.
+    """
     a = np.linspace(0.0, largest, 400)
     return [Series(a, 4.0 * a**3 - 4.0 * a**1.5, "JKR", BLACK, "--")]
 
 
 def detachments(forces: Array) -> Chart:
-    """Return the chart of the tensions at which the bodies separated, sorted, with their mean and its standard error.
+    """Return the chart of the tensions at which the bodies separated, in ascending order over the share of the pulls.
 
-    `forces` are these tensions, (pulls,) [FU], two at least.
+    Their mean is a line, with a band of ± its standard error.
+
+    Args:
+        forces: these tensions, positive, (pulls,) [FU], two at least.
     """
     share, error = (np.arange(forces.size) + 0.5) / forces.size, float(forces.std(ddof=1)) / math.sqrt(forces.size)
     mean = level(float(forces.mean()), error, f"mean of {forces.size} repeats, standard error")
@@ -102,7 +114,10 @@ def detachments(forces: Array) -> Chart:
 
 
 def scan(taken: Taken) -> Chart:
-    """Return the chart of a scan [LU]: points and fitted curve, residual, autocorrelation over the distance."""
+    """Return the chart of a scan in three panels: points and fitted curve, residual [LU], its autocorrelation.
+
+    The first two are over the distance from the apex [LU], with its sign; the third is over the lag, on the same axis.
+    """
     x, lag = Axis("distance from the apex", "LU"), taken.pitch * np.arange(taken.autocorrelation.size)
     points = Series(taken.x, taken.heights, "scan", LOADING, "o", 2.0)
     curve = Series(taken.x, taken.heights - taken.residual, "fitted", TENSION)
@@ -118,10 +133,14 @@ def scan(taken: Taken) -> Chart:
 
 
 def seen(profiles: Mapping[str, Profile]) -> dict[str, Profile]:
-    """Return the profiles of the states in contact, over the width in which one of them has a pressure, by name.
+    """Return the profiles of the states in contact, by name, cut to the width in which one of them has a pressure.
 
     A state whose largest |pressure| is below 1e-3 of that of the others has none: the bodies are apart, and it is left
-    out.
+    out. Where no state has a pressure all stay. The width is the same for all, |x| up to 1.15 times the farthest
+    particle with more than 1 % of the largest |pressure| of its state, and two spacings more.
+
+    Raises:
+        ValueError: no profiles.
     """
     largest = {name: np.abs(profile.pressure).max() for name, profile in profiles.items()}
     least = 1e-3 * max(largest.values())
@@ -135,6 +154,8 @@ def seen(profiles: Mapping[str, Profile]) -> dict[str, Profile]:
 
 def pressure(profiles: Mapping[str, Profile], radii: Mapping[str, ContactRadius]) -> Chart:
     """Return the chart of line load [FU/LU] over x [LU], compression positive, a panel for each state (paper's Fig. 4).
+
+    A state without any pressure has the note "no contact".
 
     Args:
         profiles: by state.
@@ -156,12 +177,17 @@ def stick_slip(
 ) -> Chart:
     """Return the chart of the shear [FU/LU] over x [LU] of each state between ±μp, with slip in another colour.
 
-    The shear is that on the lower body, 0 where there is no pressure.
+    The shear is that on the lower body, 0 where the pressure is not compressive. The stick zone is shaded, |x| up to
+    its half-width.
 
     Args:
         profiles: by state.
         coefficient: μ.
-        zones: by state the half-width of the stick zone and the position of the body along x [LU], and its direction.
+        zones: by state the half-width of the stick zone and the position of the body along x [LU], and its direction,
+            1, -1 or 0.
+
+    Raises:
+        KeyError: a state without a zone.
     """
     panels = []
     for name, profile in profiles.items():
@@ -195,8 +221,8 @@ def _bars(x: Array, load: Array, first: NDArray[np.bool_], names: tuple[str, str
 def half_width(x: Array, p: Array) -> float:
     """Return the half-width of a figure of a pressure, in the unit of x, for p (n,) or of m states (m, n), and x as p.
 
-    It is 1.15 times that of all that exceeds 1 % of the largest pressure of its state; a tenth of the body's where
-    there is none; and two spacings more.
+    It is 1.15 times the largest |x| at which |p| exceeds 1 % of the largest |p| of its state; where there is none, 1.15
+    times a tenth of the largest |x|; and two spacings more.
     """
     carrying = np.abs(p) > 0.01 * np.abs(p).max(axis=-1, keepdims=True)
     reach = np.abs(x[carrying]).max() if carrying.any() else 0.1 * np.abs(x).max()
@@ -204,7 +230,7 @@ def half_width(x: Array, p: Array) -> float:
 
 
 def _state(name: str) -> str:
-    """Return the name of a state as a title, such as `zero load state`."""
+    """Return the name of a state as a title, blanks for underscores and " state" behind: `zero load state`."""
     return f"{name.replace('_', ' ')} state"
 
 
@@ -216,7 +242,7 @@ def body(
 ) -> Chart:
     """Return the chart of a traction on the three-dimensional body over r, in a panel for each state.
 
-    Values above 8 times the median, near a pole at the edge, are left out.
+    Values of more than 8 times the median magnitude, near a pole at the edge, are left out.
 
     Args:
         name: of the traction, and of its column.

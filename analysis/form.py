@@ -40,7 +40,7 @@ class Form:
     convex: bool = False
 
     def shown(self, theta: Array) -> Array:
-        """Return θ, (…, k), with values below the lower bounds set to these.
+        """Return θ, (…, k), with values below the lower bounds set to these; a new array.
 
         Of a convex smooth curve its increments are added up, so that they are the slopes at the knots.
         """
@@ -72,7 +72,10 @@ def named(shape: ShapeName, curvature: float) -> Form:
     bend = 0.0 if shape == "parabola" else 1.0
 
     def root(r: Array, p: Array) -> Array:
-        """Return √(1 − r²/R²) of a circle, bounded from below for a trial radius R < r, and 1 of a parabola."""
+        """Return √(1 − r²/R²), (n,), of a circle and 1 of a parabola, of radii r, (n,), and p = (1/R,).
+
+        It is 1e-3 at least, also for r > R.
+        """
         return np.asarray(np.sqrt(np.maximum(1.0 - bend * (p[0] * r) ** 2, 1e-6)))
 
     return Form(

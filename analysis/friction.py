@@ -39,12 +39,12 @@ class Mean:
 
     @property
     def value(self) -> float:
-        """The mean of the blocks, in their unit."""
+        """The mean of the blocks, in their unit; the periods of the run-in are not in it."""
         return float(self.blocks.mean())
 
     @property
     def error(self) -> float:
-        """Half of the 95 % interval of the mean plus the sampling error, in the unit of the blocks."""
+        """Half of the 95 % interval of the mean plus the sampling error, in the unit of the blocks, ≥ 0."""
         return interval(self.blocks) + self.missed
 
 
@@ -66,9 +66,9 @@ class Slip:
 def block_means(time: Array, integral: Array, period: float, rate: Array | None = None) -> Array:
     """Return the means over whole periods, the last of which ends with the series; shape (periods,), in order.
 
-    It is empty for a series shorter than a period. The integral at the end of a period, between two times, is that of
-    Hermite's cubic where the `rate` is known: along a straight line the mean of a periodic friction would change from
-    period to period, as they end elsewhere.
+    It is empty for a series shorter than a period; what is left before the first whole period is not used. The integral
+    at the end of a period, between two times, is that of Hermite's cubic where the `rate` is known: along a straight
+    line the mean of a periodic friction would change from period to period, as they end elsewhere.
 
     Args:
         time: shape (n,), rising [TU].
@@ -91,8 +91,8 @@ def block_means(time: Array, integral: Array, period: float, rate: Array | None 
 def mean_of(blocks: Array) -> Mean:
     """Return the mean after the run-in, in the unit of the blocks, without a sampling error.
 
-    The run-in minimises the error of the mean. It has one period at least, with the path from the start to the first
-    slip, and half of the periods at most.
+    The run-in minimises the error of the mean, half of its 95 % interval. It has one period at least, with the path
+    from the start to the first slip, and half of the periods at most.
 
     Args:
         blocks: means of successive periods, from the start on, shape (n,).
@@ -109,10 +109,12 @@ def mean_of(blocks: Array) -> Mean:
 def sampled_mean(time: Array, force: Array, period: float) -> Mean:
     """Return the mean, with a sampling error, of forces that are known at single times only, with many in a period.
 
-    In a heat bath the balance of momentum that gives the integral of the friction contains the random forces as well,
-    ∫ ξ dt ~ √(2γkT t): samples may be more accurate. The time of a slip between two samples is off by half of the time
+    In a heat bath the balance of momentum that gives the integral of the friction contains the random forces as well, ∫
+    ξ dt ~ √(2γkT t): samples may be more accurate. The time of a slip between two samples is off by half of the time
     between them at most: slips at random times add to the scatter of the blocks, slips at the same time in each period
-    shift their mean. Such a slip is larger than the step between two samples by the rise of friction in between.
+    shift their mean. Such a slip is larger than the step between two samples by the rise of friction in between. So the
+    sampling error is half of the largest step of the mean period plus half of its median step, over the number of
+    samples in a period.
 
     Args:
         time: shape (n,), rising [TU].
@@ -135,7 +137,10 @@ def sampled_mean(time: Array, force: Array, period: float) -> Mean:
 
 
 def standard_error(blocks: Array) -> float:
-    """Return the standard error of the mean of blocks, shape (n,), in their unit; of a single block its magnitude."""
+    """Return the standard error of the mean of blocks, shape (n,), in their unit; of a single block its magnitude.
+
+    Raises IndexError without a block.
+    """
     return float(blocks.std(ddof=1)) / math.sqrt(blocks.size) if blocks.size > 1 else abs(float(blocks[0]))
 
 
@@ -143,7 +148,8 @@ def interval(blocks: Array) -> float:
     """Return half of the 95 % interval of the mean of two or more blocks, shape (n,), in their unit, ≥ 0.
 
     It is the largest for blocks of one, two and four periods, if four such blocks are left: slips may repeat after
-    several periods only. It is at least half the difference of the means of both halves, as of a slow drift.
+    several periods only; the first periods are left out where their number is no multiple. It is at least half the
+    difference of the means of the first and the last half, as of a slow drift.
     """
     widest, together, most = 0.0, 1, 4
     while together == 1 or (together <= most and blocks.size // together >= most):
@@ -173,13 +179,14 @@ def slips(
 ) -> list[Slip]:
     """Return the slips of a plate in order of time: across a barrier, or from a barrier into a minimum.
 
-    Empty without one. At high drag the plate slows down on the barrier itself, wherever that is: a slip has no given
-    position.
+    A slip is an uninterrupted motion faster, in either direction, than `faster` times the drive, and longer than
+    `least` spacings. Empty without one. At high drag the plate slows down on the barrier itself, wherever that is: a
+    slip has no given position.
 
     Args:
         time, position: of the plate, shape (n,) [TU], [LU].
         spacing: of the other body [LU].
-        velocity: of the drive [LU/TU].
+        velocity: of the drive [LU/TU], of either sign.
         faster: velocity of the plate over that of the drive, at least.
         least: length of a slip over the spacing; at the threshold of stick-slip the plate passes a barrier as fast over
             0.33 of it.
@@ -195,10 +202,11 @@ def slips(
 def largest_before(friction: Array, position: Array, spacing: float) -> tuple[float, float]:
     """Return the largest friction [FU] until the plate has moved by one period, and its sampling error ≥ 0 [FU].
 
-    The friction rises smoothly until the plate slips: the sampling error is less than the rise from the point before.
-    Over the top of a barrier that the plate passes without a slip it is a smooth function of the position: its maximum
-    is that of the polynomial through five points, with the difference to that through three as its error. The error is
-    0 where the first point is the largest.
+    Friction counts with its sign, at points less than `spacing` beyond the first one in +x. The friction rises smoothly
+    until the plate slips: the sampling error is less than the rise from the point before. Over the top of a barrier
+    that the plate passes without a slip it is a smooth function of the position: its maximum is that of the polynomial
+    through five points, with the difference to that through three as its error. The error is 0 where the first point is
+    the largest.
 
     Args:
         friction: shape (n,) [FU].

@@ -15,7 +15,10 @@ class Named(dict[str, T]):
         raise KeyError(f"there is no {name}, there are {', '.join(self) or 'none'}")
 
     def __getattr__(self, name: str) -> T:
-        """Return the value of that name. Raises AttributeError without one."""
+        """Return the value of that name. Raises AttributeError without one.
+
+        Attributes of a dict have priority: a value named `items` or `keys` is reached by its key only.
+        """
         try:
             return self[name]
         except KeyError as error:

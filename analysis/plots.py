@@ -27,7 +27,8 @@ PAD = 6.0
 def draw(chart: Chart) -> Figure:
     """Return the figure of a chart, 6.4 inches wide, its panels below each other over one x axis, in the chart's units.
 
-    Every axis needs its ends (`view`). A legend equal to that of the panel above is not repeated.
+    Every axis needs its ends (`view`). A legend equal to that of the panel above is not repeated. The title is that of
+    the chart; the upper and the right line of each panel are hidden.
     """
     heights = [panel.height for panel in chart.panels]
     figure = _figure_class()(figsize=(WIDTH, 1.0 + sum(heights)), dpi=DPI)  # with an inch for title and axis
@@ -43,9 +44,10 @@ def draw(chart: Chart) -> Figure:
 
 
 def _arrange(figure: Figure, axes: Sequence[Axes], chart: Chart) -> None:
-    """Set the margins of a figure and the distances of its panels, one below the other, so that all labels have room.
+    """Set, in place, the margins of a figure and the distances of its panels, so that all labels have room.
 
-    A constrained layout measures every text several times, and takes longer than the drawing.
+    The panels, one below the other, are `axes`, from the top, those of the chart. A constrained layout measures every
+    text several times, and takes longer than the drawing.
     """
     line, digit, tick = 13.0, 6.4, 10.0  # a line of text, a digit of it, and a tick with the room around it
     ticks = [ax.yaxis.get_major_formatter().format_ticks(ax.yaxis.get_majorticklocs().tolist()) for ax in axes]
@@ -64,7 +66,11 @@ def _arrange(figure: Figure, axes: Sequence[Axes], chart: Chart) -> None:
 
 
 def draw_panel(axes: Axes, x: Axis, panel: Panel, legend: bool = True) -> None:
-    """Draw a panel of a chart over the axis `x` into `axes`, with a legend if `legend`; ±∞ are the ends of an axis."""
+    """Draw a panel of a chart over the axis `x` into `axes`: series, axes with their ends and labels, heading, legend.
+
+    Both axes need their ends. ±∞ in a series are the ends of an axis; uncertainties are bars. The legend has the
+    panel's names, and is left out without `legend` or names. `axes` is changed, nothing is returned.
+    """
     from matplotlib.ticker import LogLocator
 
     for series in panel.series:
@@ -95,7 +101,7 @@ def draw_panel(axes: Axes, x: Axis, panel: Panel, legend: bool = True) -> None:
 
 
 def describe(axes: Axes, x: str = "", y: str = "", title: str = "", zero: bool = True) -> None:
-    """Write the labels of both axes and the title, left above; where `zero`, draw a line at y = 0."""
+    """Write the labels of both axes and the title, left above, into `axes`; where `zero`, draw a line at y = 0."""
     if zero:
         axes.axhline(0.0, color=BLACK, linewidth=0.8)
     axes.set(xlabel=x, ylabel=y)
@@ -103,18 +109,21 @@ def describe(axes: Axes, x: str = "", y: str = "", title: str = "", zero: bool =
 
 
 def new_figure(size: tuple[float, float]) -> Figure:
-    """Return an empty figure of `size`, width and height [inch], that pyplot does not keep; a notebook shows it."""
+    """Return an empty figure of `size`, width and height [inch], that pyplot does not keep; a notebook shows it.
+
+    It has 120 dots per inch and a constrained layout, and no axes.
+    """
     return _figure_class()(figsize=size, dpi=DPI, layout="constrained")
 
 
 @cache
 def _figure_class() -> type[Figure]:
-    """Return the class of all figures: matplotlib's Figure, which a notebook shows as a PNG even without pyplot."""
+    """Return a subclass of matplotlib's Figure that a notebook shows as a PNG even without pyplot; it is cached."""
     from matplotlib.figure import Figure
 
     class ShownFigure(Figure):
         def _repr_png_(self) -> bytes:
-            """Return the image for a notebook, which shows a plain Figure only where pyplot was imported."""
+            """Return the figure as the bytes of a PNG file, which a notebook shows, also without pyplot."""
             shown = io.BytesIO()
             self.savefig(shown, format="png")
             return shown.getvalue()
@@ -130,9 +139,9 @@ def plain_axes(figure: Figure) -> Figure:
 
 
 def save_figure(figure: Figure, path: Path) -> None:
-    """Save a figure in the format of the file's suffix (png, svg, pdf), whole or not at all.
+    """Save a figure in the format of the file's suffix (png, svg, pdf); where that fails, an earlier file stays.
 
-    Its layout is fixed then.
+    The figure is changed: the upper and right lines of its axes are hidden, and its layout is no longer adapted.
     """
     if layout := plain_axes(figure).get_layout_engine():
         layout.execute(figure)

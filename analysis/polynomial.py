@@ -18,15 +18,22 @@ Array = NDArray[np.float64]
 def fitting(t: Array, degree: int) -> Array:
     """Return the matrix M, (degree + 1, n), of the coefficients c = M y for values y at n different positions t.
 
-    P goes through all values where degree = n - 1; of a lower degree it is that of least squares. M is cached and
-    cannot be written to.
+    The lowest power comes first. P goes through all values where degree = n - 1; of a lower degree it is that of least
+    squares. M is cached and cannot be written to.
     """
     return _fitting(np.ascontiguousarray(t).tobytes(), degree)
 
 
 @lru_cache(maxsize=512)  # particles that move only along z have the same polynomial in every state
 def _fitting(positions: bytes, degree: int) -> Array:
-    """Return the matrix of `fitting` for positions as the bytes of an array of float64; it is cached and read-only."""
+    """Return the matrix, (degree + 1, n), that maps n values to the coefficients of a polynomial, lowest power first.
+
+    It interpolates where degree = n − 1, else it is that of least squares. It is cached and read-only.
+
+    Args:
+        positions: those of the values, as the bytes of an array of float64.
+        degree: of the polynomial.
+    """
     t = np.frombuffer(positions)
     matrix = _lagrange(t) if len(t) == degree + 1 else np.linalg.pinv(t[:, None] ** np.arange(degree + 1))
     matrix.flags.writeable = False
@@ -34,9 +41,10 @@ def _fitting(positions: bytes, degree: int) -> Array:
 
 
 def _lagrange(t: Array) -> Array:
-    """Return the inverse of the powers of t, (n, n): column j has the coefficients of Πₖ (t − tₖ) / (tⱼ − tₖ), k ≠ j.
+    """Return the inverse of the matrix of the powers of t, (n, n), for n different positions t, (n,).
 
-    The products keep all digits of the coefficients; of 21 positions an inverse by elimination keeps nine.
+    Column j has the coefficients, lowest power first, of Πₖ (t − tₖ) / (tⱼ − tₖ), k ≠ j. The products keep all digits
+    of the coefficients; of 21 positions an inverse by elimination keeps nine.
     """
     c = np.zeros((len(t), len(t)))
     c[0] = 1.0
@@ -51,7 +59,7 @@ def _lagrange(t: Array) -> Array:
 def through(t: Array, y: Array) -> Array:
     """Return the coefficients, (n,), lowest power first, of the polynomial through n values y at different t, (n,).
 
-    For several sets of values, (n, m), they are (n, m). There is less round-off than by `fitting`.
+    For several sets of values, (n, m), they are (n, m). Raises numpy's LinAlgError where two positions are equal.
     """
     return np.asarray(np.linalg.solve(np.vander(t, increasing=True), y), dtype=np.float64)
 
@@ -59,7 +67,7 @@ def through(t: Array, y: Array) -> Array:
 def divided(t: Array, y: Array) -> Iterator[Array]:
     """Yield Newton's divided differences of orders 1 … n − 1, in this order, of values y at different positions t.
 
-    Those of order k are (n − k,) of values (n,), or (n − k, m) of m sets of values (n, m). None for a single value.
+    Those of order k are (n − k,) of values (n,), or (n − k, m) of m sets of values (n, m). Nothing for a single value.
     """
     for order in range(1, len(t)):
         y = (y[1:] - y[:-1]) / (t[order:] - t[:-order])
@@ -72,12 +80,12 @@ def value(c: Array, t: float) -> float:
 
 
 def real_roots(c: Array, low: float, high: float) -> Array:
-    """Return the positions between low and high where P is 0, in no order; empty for a constant P.
+    """Return the positions between low and high where P is 0, in no order; empty for a constant P, also for P = 0.
 
-    They are eigenvalues of the companion matrix; `numpy.polynomial` does the same in twice the time. With the textbook
-    form of the matrix a highest coefficient of mere round-off would spoil all roots. Roots far off leave errors in
-    those between low and high, which a Newton step removes. A longer one than 1e-6 is not made: next to a double root
-    it is round-off over round-off.
+    A double root appears twice, or is missing where round-off makes it complex. They are eigenvalues of the companion
+    matrix; `numpy.polynomial` does the same in twice the time. With the textbook form of the matrix a highest
+    coefficient of mere round-off would spoil all roots. Roots far off leave errors in those between low and high, which
+    a Newton step removes. A longer one than 1e-6 is not made: next to a double root it is round-off over round-off.
 
     Args:
         c: coefficients of P, (n,), lowest power first.
@@ -103,7 +111,8 @@ def real_roots(c: Array, low: float, high: float) -> Array:
 def lowest_minimum(c: Array, low: float, high: float, near: float | None = None) -> tuple[float, float]:
     """Return t and P″(t) of the lowest minimum of P between low and high; (NaN, NaN) where it has none.
 
-    A minimum at an end of the interval, where P′ is not 0, does not count.
+    A minimum at an end of the interval, where P′ is not 0, does not count, nor one without P″ > 0. From `near` only one
+    is sought, and it is (NaN, NaN) without convergence.
 
     Args:
         c: coefficients of P, (n,), lowest power first.
@@ -127,7 +136,7 @@ def _newton(
 ) -> Array:
     """Return the root of P′ near t with P″ > 0, (1,).
 
-    Empty where it is not between low and high, or without convergence.
+    Empty where it is not between low and high (both included), where P″ ≤ 0 on the path, or without convergence.
 
     Args:
         first, second: coefficients of P′ and P″, lowest power first.
@@ -151,6 +160,9 @@ def _newton(
 
 @cache
 def gauss(count: int) -> tuple[Array, Array]:
-    """Return nodes and weights of the Gauss-Legendre quadrature over −1 … 1, (count,) each; they are cached."""
+    """Return nodes, rising, and weights of the Gauss-Legendre quadrature over −1 … 1, (count,) each.
+
+    They are cached: the caller must not change them.
+    """
     nodes, weights = np.polynomial.legendre.leggauss(count)
     return nodes, weights

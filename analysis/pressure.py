@@ -37,7 +37,7 @@ class Profile:
     shear: Array
 
     def __post_init__(self) -> None:
-        """Raise ValueError for arrays of unequal shapes or not sorted by x."""
+        """Raise ValueError for arrays of unequal shapes, not 1-D, or not sorted by x; equal neighbours are allowed."""
         shapes = {array.shape for array in (self.x, self.z_lower, self.z_upper, self.pressure, self.shear)}
         if [len(shape) for shape in shapes] != [1]:
             raise ValueError(f"the arrays of a profile must be 1-D and equally long, got shapes {sorted(shapes)}")
@@ -67,10 +67,10 @@ class ZonedProfile(Profile):
 def zoned(
     profile: Profile, edge: float, reach: float, jump: float, doubt: float = 0.0, layer: float = 0.0
 ) -> ZonedProfile:
-    """Return a profile with the columns of `profile` and a known contact edge.
+    """Return a profile with the columns of `profile`, not copied, and a known contact edge.
 
     Args:
-        profile: without an edge, or with another one.
+        profile: without an edge, or with another one, which is dropped.
         edge: contact radius a [LU].
         reach: outer radius c of an attraction with a range [LU].
         jump: the line load just inside of a less that just outside [FU/LU].
@@ -173,14 +173,14 @@ def smallest_distance(x_upper: ArrayLike, z_upper: ArrayLike, x_lower: ArrayLike
 
 
 def _sorted_by_x(x: ArrayLike, z: ArrayLike) -> tuple[Array, Array]:
-    """Return positions x and heights z, (n,) each, sorted by x."""
+    """Return copies of positions x and heights z, (n,) each, sorted by x; those of equal x keep their order."""
     x, z = np.asarray(x, dtype=np.float64), np.asarray(z, dtype=np.float64)
     rising = np.argsort(x, kind="stable")
     return x[rising], z[rising]
 
 
 def end_pressure_share(profile: Profile) -> float:
-    """Return max(|p_first|, |p_last|) / max |p|, between 0 and 1 [-]; 0 where there is no pressure at all.
+    """Return max(|p_first|, |p_last|) / max |p|, between 0 and 1 [-]; 0 where there is no pressure at the ends.
 
     Far below 1e-3 the chain is long enough: "the contact region should be smaller than the chain" (paper, Section 4).
     """
@@ -191,7 +191,7 @@ def end_pressure_share(profile: Profile) -> float:
 def spacing_of(x: Array) -> float:
     """Return the mean distance of neighbours, in the unit of x, of rising positions x, (n,), n >= 1.
 
-    0 for one position.
+    0 for one position; ValueError for none.
     """
     return float(np.ptp(x)) / max(x.size - 1, 1)
 
@@ -199,8 +199,9 @@ def spacing_of(x: Array) -> float:
 def left_out(law: DoubleExponential, table: Table, profile: Profile) -> float:
     """Return Σ |F_table(r) - f(r)| |z|/r [FU], the truncation and table error of an interaction in a state, >= 0.
 
-    The sum is over pairs of particles up to the cutoff plus five times the longest range; pairs nearer than the core of
-    the table count at its core. Summed offset by offset along the chain: memory for one row of pairs.
+    The sum is over all pairs of an upper and a lower particle, with the distance r and the height difference z, up to
+    the cutoff plus five times the longest range; pairs nearer than the core of the table count at its core. Summed
+    offset by offset along the chain: memory for one row of pairs.
 
     Args:
         law: the exact pair potential, f(r) [FU].

@@ -50,11 +50,13 @@ class ContactRadius:
 def tensile_radius(profile: Profile) -> ContactRadius:
     """Return the radius a of maximum tensile stress [LU], between particles: p(a) = min p on each side of the centre.
 
-    The centre is the mean of x weighted with |p|. A contact that has shrunk to one tensile spot has radius 0: the
-    minimum is the same on both sides. The interpolation of `analysis.extremum` has a median error of 3e-4 spacings s,
-    0.04 where particles snap. A radius a below 3 s is uncertain by 1.2 (s - a/3) at least: over 6900 random contacts of
-    independent pairs in closed form, with bodies as sharp as two spacings, that covers at least 94 % of the errors of
-    every size of contact; without, 85 to 90 %. Source: Geike and Popov 2007, Section 3.2 and Fig. 4, after Greenwood.
+    The centre is the mean of x weighted with |p|. The value is half the distance of both minima; a contact that has
+    shrunk to one tensile spot has radius 0: the minimum is the same on both sides. An edge at the first or last
+    particle is uncertain by a spacing, and `reaches_end` is true. The interpolation of `analysis.extremum` has a median
+    error of 3e-4 spacings s, 0.04 where particles snap. A radius a below 3 s is uncertain by 1.2 (s - a/3) at least:
+    over 6900 random contacts of independent pairs in closed form, with bodies as sharp as two spacings, that covers at
+    least 94 % of the errors of every size of contact; without, 85 to 90 %. Source: Geike and Popov 2007, Section 3.2
+    and Fig. 4, after Greenwood.
 
     Args:
         profile: a pressure profile of one contact, n >= 3 particles, compression positive.
@@ -78,11 +80,13 @@ def tensile_radius(profile: Profile) -> ContactRadius:
 def compressive_radius(profile: Profile, residual: float = 0.0) -> ContactRadius:
     """Return the contact radius a [LU] where the pressure vanishes, p(a) = 0, beyond the outermost loaded particles.
 
-    Springs to a bulk give p = (k/s) (d - x^2/2R), so that the parabola through the three outermost loaded particles is
-    extended to p = 0: exact there (to round-off), where a straight line through two overshoots by up to s^2/a with the
-    spacing s. The edge is kept between the outermost loaded particle and the next. Where the parabola has no zero there
-    (few particles, a load concentrated at the edge, a soft law's tail) it is halfway, within half a spacing. No load at
-    all: radius 0 at the middle of the chain, uncertain by half a spacing.
+    A particle is loaded where p exceeds 1e-12 of the largest. Springs to a bulk give p = (k/s) (d - x^2/2R), so that
+    the parabola through the three outermost loaded particles is extended to p = 0: exact there (to round-off), where a
+    straight line through two overshoots by up to s^2/a with the spacing s. The edge is kept between the outermost
+    loaded particle and the next. Where the parabola has no zero there (few particles, a load concentrated at the edge,
+    a soft law's tail) it is halfway, within half a spacing. Where the last particle of the chain is loaded it is the
+    edge, uncertain by a spacing, and `reaches_end` is true. No load at all: radius 0 at the middle of the chain,
+    uncertain by half a spacing.
 
     Args:
         profile: of one contact, p >= 0, n >= 3 particles.
@@ -106,8 +110,9 @@ def held_radius(profile: Profile) -> ContactRadius:
 
     The share of the last cell that lies inside the edge follows from the pressure of the last particle and the parabola
     through the three before it. Where there are fewer, as in a contact a few spacings wide, or where that share is not
-    within 0 … 1, the edge is at the last loaded particle, within half a spacing. Where all pressures are 0 the radius
-    is 0, uncertain by half a spacing.
+    within 0 … 1, the edge is at the last loaded particle, within half a spacing. A particle is loaded where its
+    pressure is not exactly 0. Where all pressures are 0 the radius is 0 at the middle of the chain, uncertain by half a
+    spacing. `reaches_end` is true where an end of the chain is loaded.
 
     Args:
         profile: of a chain of evenly spaced particles, n >= 3.
@@ -122,8 +127,9 @@ def held_radius(profile: Profile) -> ContactRadius:
 def whole_cells(profile: Profile, radius: ContactRadius) -> Array:
     """Return the pressures, (n,) [FU/LU], with those of the two outermost loaded particles as if whole cells carried.
 
-    There the pressure inside is extrapolated by a parabola; it is 0 for a particle outside the edges of `radius`. With
-    fewer than 8 loaded particles (p other than 0) all pressures are returned as they are.
+    There the pressure inside is extrapolated by the parabola through the next three particles; it is 0 for a particle
+    outside the edges of `radius`. With fewer than 8 loaded particles (p other than 0) all pressures are returned as
+    they are. The result is a copy.
     """
     x, p = profile.x, profile.pressure.copy()
     held = np.flatnonzero(p != 0.0)
@@ -148,7 +154,7 @@ def moved_centre(profile: Profile) -> float:
 
 
 def _centre(x: Array, p: Array) -> float:
-    """Return the mean of x weighted with |p|, in the unit of x; some p must differ from 0."""
+    """Return the mean of x weighted with |p|, in the unit of x; ZeroDivisionError where every p is 0."""
     return float(np.average(x, weights=np.abs(p)))
 
 
@@ -189,7 +195,10 @@ def _extremes(profile: Profile) -> tuple[float, float]:
 
 
 def _between(left: EstimatedPosition, right: EstimatedPosition) -> ContactRadius:
-    """Return half the distance of two edges, 0 where the left one is beyond the right one; uncertain by their mean."""
+    """Return half the distance of two edges, 0 where the left one is beyond the right one; uncertain by their mean.
+
+    `reaches_end` is true where one of the edges is at an end. `left` and `right` are the positions as they are.
+    """
     value = max(0.0, 0.5 * (right.position - left.position))
     uncertainty = 0.5 * (left.uncertainty + right.uncertainty)
     return ContactRadius(value, uncertainty, left.position, right.position, left.at_end or right.at_end)
@@ -230,8 +239,9 @@ def _of_edges(
 def _zero(x: list[float], p: list[float], first: int, last: int, residual: float) -> EstimatedPosition:
     """Return the right edge of a contact, where p is 0, in the unit of x, with its uncertainty.
 
-    It is the end of the chain (`at_end`) if the last particle is loaded, and halfway to the next particle where no
-    parabola through three loaded particles falls to 0 between the two.
+    It is the end of the chain (`at_end`), uncertain by a spacing, if the last particle is loaded, and halfway to the
+    next particle, within half a spacing, where the parabola through the last three loaded particles has no falling zero
+    between the two, or fewer are loaded.
 
     Args:
         x, p: positions, and pressures over the largest one.
@@ -292,7 +302,8 @@ def _held_edge(x: list[float], p: list[float], first: int, last: int) -> Estimat
     """Return the right edge of a contact whose pressure jumps to 0 at it, in the unit of x, with its uncertainty.
 
     It is the position of the last loaded particle, within half a spacing, where fewer than 5 particles are loaded or
-    the share of the last cell is not within 0 … 1.
+    the share of the last cell is not within −0.05 … 1.05; a share beyond 0 … 1 counts as 0 or 1. `at_end` is true where
+    the last particle of the chain is loaded.
 
     Args:
         x, p: positions and pressures, evenly spaced.

@@ -28,7 +28,10 @@ class Noise:
 
     @property
     def power(self) -> float:
-        """The variance of a mean of n points, times n: σ²τ, in the unit of the residual squared."""
+        """The variance of a mean of n points, times n: σ²τ, in the unit of the residual squared.
+
+        σ is the standard deviation of a point, τ the number of correlated points that are worth one.
+        """
         return self.deviation**2 * self.together
 
     def price(self, points: int, choices: int) -> float:
@@ -53,14 +56,18 @@ def autocovariance(residual: Array) -> Array:
 
 
 def noise_in(residual: Array) -> Noise:
-    """Return the noise of a residual, (n,): deviation 0 and τ = 1 where all of it is 0."""
+    """Return the noise of a residual, (n,): its deviation is the root mean square, without subtraction of the mean.
+
+    τ = 1 + 2 Σ of its autocorrelations up to the first one below 2/√n. Deviation 0 and τ = 1 where all of it is 0.
+    """
     return noise_by(autocovariance(residual), len(residual))
 
 
 def noise_by(covariance: Array, points: int) -> Noise:
-    """Return the noise by its autocovariance: τ sums correlations up to the first one below that of chance, 2/√n.
+    """Return the noise by its autocovariance: τ = 1 + 2 Σ of correlations up to the first one below chance, 2/√n.
 
-    It has deviation 0 and τ = 1 where the variance is 0.
+    That one is not included; all are where none is below. The deviation is the root of the first value, in the unit of
+    the residual. It has deviation 0 and τ = 1 where the variance is 0 or negative.
 
     Args:
         covariance: Σ e_i e_{i+k}/n, for k from 0 on.
@@ -75,6 +82,8 @@ def noise_by(covariance: Array, points: int) -> Noise:
 
 def bounded(columns: Array, target: Array, least: Array) -> Array:
     """Return the parameters p, (k,), of the least squares of columns p − target; the first of p are bounded from below.
+
+    Raises RuntimeError where the search for the active bounds does not converge.
 
     Args:
         columns: (n, k).
@@ -97,8 +106,9 @@ def bounded(columns: Array, target: Array, least: Array) -> Array:
 def drawn(columns: Array, exact: Array, least: Array, deviation: float, draws: int = 300) -> Array:
     """Return errors of bounded least squares, (draws, k), with exact parameters and noise from a fixed seed.
 
-    A flat part, whose slope is 0, is more certain than by the normal equations, since bounds cut its errors. A standard
-    deviation is uncertain by 4 % after 300 draws.
+    An error is the parameter with noise less the exact one; each call has the same noise. A flat part, whose slope is
+    0, is more certain than by the normal equations, since bounds cut its errors. A standard deviation is uncertain by 4
+    % after 300 draws.
 
     Args:
         columns: derivatives by the parameters, (n, k).

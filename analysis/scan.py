@@ -84,14 +84,15 @@ class Taken:
 
     @property
     def both_sides(self) -> bool:
-        """Whether the scan has points on both sides of the apex, 5 % of its width at least on each."""
+        """Whether the scan has points on both sides of the apex, more than 5 % of its width on each."""
         return is_two_sided(self.x)
 
     def folded(self) -> tuple[Array, Array]:
         """Return radii and heights of the points without tilt, (m,) each, in the unit of the scan, with z(0) = 0.
 
-        The radii are evenly spaced by about the median distance of points, to the nearer end where there are two sides,
-        which are then averaged.
+        The radii are evenly spaced from 0 by about the median distance of points. With points on both sides of the apex
+        they end at the nearer end and heights are averaged; else they end at the last position, and a scan to the left
+        only gives the radius 0 alone. Heights between points are interpolated.
         """
         from scipy.interpolate import PchipInterpolator  # which takes longer to import than a small run
 
@@ -103,7 +104,10 @@ class Taken:
 
 
 def is_two_sided(x: Array) -> bool:
-    """Return whether rising positions, (n,), have more than 5 % of their width on each side of 0."""
+    """Return whether rising positions, (n,), have more than 5 % of their width on each side of 0.
+
+    False for one position.
+    """
     return float(min(-x[0], x[-1])) > 0.05 * float(x[-1] - x[0])
 
 
@@ -119,8 +123,9 @@ def _rising(x: Array, z: Array) -> tuple[Array, Array]:
 def one_pass(x: Array, z: Array) -> tuple[Array, Array]:
     """Return positions, rising, and heights of a scan, (n,) each; of a scan forth and back the mean of its passes.
 
-    The means are at the positions of the first pass, where all passes have points. A pass with half of the points of
-    the longest or fewer is left out.
+    The means are at the positions of the first pass, where all passes have points, between points linear. Of several
+    points of a pass at one position it is their mean. A pass with half of the points of the longest or fewer is left
+    out.
     """
     steps = np.flatnonzero(np.diff(x))
     turns = steps[np.flatnonzero(np.diff(np.sign(np.diff(x)[steps])))] + 1
@@ -148,11 +153,12 @@ def take(
         x, z: positions and heights, (n,), growing away from the plane; a scan may go forth and back.
         centre: position of the apex; None: it is fitted.
         level: whether a tilt is fitted and removed.
-        length: distance of the knots of a smooth curve; None: by the noise.
+        length: distance of the knots of a smooth curve; None: by the noise. Not used with a named shape.
         shape: the named shape that is fitted; None: a smooth curve.
 
     Raises:
-        ScanError: too few points, a flat or inverted profile, or an apex or tilt that the points do not determine.
+        ScanError: fewer than 8 points in one direction, a flat or inverted profile, or an apex or tilt that the points
+            do not determine.
     """
     x, z = one_pass(x, z)
     if len(x) < FEWEST:
@@ -212,9 +218,9 @@ class _Fit:
         return self.judged(free, 0.0)
 
     def excess(self, shape: _Solved, smooth_curve: _Solved) -> float:
-        """Return the RMS residual of a named shape beyond that of a smooth curve, over the width.
+        """Return the RMS residual of a named shape beyond that of a smooth curve, over the width of the scan.
 
-        0 where it may be chance.
+        It is the root of the difference of their mean squares, 0 where that may be chance.
         """
         more, knots = shape.squares - smooth_curve.squares, len(smooth_curve.form.start)
         price = self.noise_of(smooth_curve).price(len(self.x), knots)
@@ -235,7 +241,7 @@ class _Fit:
             )
 
     def smoothed(self, reach: float, start: float, length: float | None) -> _Solved:
-        """Return the fitted smooth curve: its slope rises from the apex on, unless the scan shows a fall somewhere.
+        """Return the fitted smooth curve: its slope rises from the apex on, unless the scan shows a fall of the slope.
 
         Args:
             reach: largest distance of a point from the apex, over the width of the scan.
@@ -244,6 +250,7 @@ class _Fit:
         """
 
         def curve(convex: bool) -> _Solved:
+            """Return the smooth curve fitted with a slope that only rises if `convex`, else with any slope ≥ 0."""
             if length is None:
                 return self.adapted(reach, start, convex)
             return self.solve(smooth(np.linspace(0.0, reach, 1 + max(1, round(reach / length))), convex), start)
@@ -253,11 +260,17 @@ class _Fit:
         return free if convex.squares - free.squares > price else convex
 
     def fitted(self, form: Form) -> NDArray[np.bool_]:
-        """Return which of the parameters θ, z₀, c and t are fitted, (k + 3,): always θ and z₀, else as required."""
+        """Return which of θ, z₀, c and t are fitted, in this order, (k + 3,).
+
+        θ and z₀ always are, the apex c if `moves`, the tilt t if `tilts`.
+        """
         return np.array([True] * (len(form.start) + 1) + [self.moves, self.tilts])
 
     def design(self, form: Form, parameters: Array) -> tuple[Array, Array]:
-        """Return the curve over the width at the points, (n,), and its derivatives by θ, z₀, c and t, (n, k + 3)."""
+        """Return the curve over the width at the points, (n,), and its derivatives by θ, z₀, c and t, (n, k + 3).
+
+        `parameters` are θ, (k,), z₀, c and t, in this order; the tilt is about the apex.
+        """
         count = len(form.start)
         theta, (offset, centre, tilt) = parameters[:count], parameters[count:]
         away = self.x - centre
@@ -348,6 +361,7 @@ class _Fit:
         knots, convex = np.asarray([0.0, reach]), solved.form.convex
 
         def columns_of(knots: Array) -> Array:
+            """Return the derivatives of heights by the slopes at the knots and by the other parameters, (n, p)."""
             return np.hstack([smooth(knots, False).gradient(r, knots), rest])
 
         while len(knots) < most_knots:

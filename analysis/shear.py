@@ -29,10 +29,12 @@ ROUND_OFF = 1e-10
 def stick_margin(profile: Profile, coefficient: float, direction: int) -> Array:
     """Return the part of μ p not used up in the direction of motion, (n,) ≥ 0 [FU/LU].
 
-    0 where a particle slips or is free. A margin below 1e-10 of the largest μ p is 0, too.
+    0 where a particle slips or is free; a tensile pressure counts as 0. A margin below 1e-10 of the largest μ p is 0,
+    too.
 
     Args:
-        profile: pressure p, and shear of the lower body on the upper one, which is against the motion [FU/LU].
+        profile: pressure p, compression positive, and shear of the lower body on the upper one, which is against the
+            motion [FU/LU].
         coefficient: μ, dimensionless.
         direction: of the body along x, 1 or -1; 0 where it has not moved: then |shear| is what is used up.
     """
@@ -46,12 +48,16 @@ def stick_radius(profile: Profile, coefficient: float, direction: int) -> Contac
     """Return the half-width c of the stick zone [LU], out to where the margin of μ p vanishes, with its uncertainty.
 
     Both are 0 where all particles slip. As a pressure without attraction, the margin is a smooth function of x inside
-    the zone and 0 outside: its zero is that of a parabola through the outermost particles that stick.
+    the zone and 0 outside: its zero is that of a parabola through the outermost particles that stick; without a zero
+    before the next particle it is halfway to that.
 
     Args:
         profile: pressure p and shear of the lower body on the upper one [FU/LU], n ≥ 3 particles.
         coefficient: μ, dimensionless.
         direction: of the motion along x, 1 or -1; 0 where the body has not moved.
+
+    Raises:
+        ValueError: fewer than 3 particles.
     """
     margin = stick_margin(profile, coefficient, direction)
     radius = compressive_radius(replace(profile, pressure=margin), ROUND_OFF)
@@ -79,7 +85,8 @@ def slip(force: Array, pushed: Array, limit: Array, next_limit: Array, stiffness
         s₁ = clip(s₀ + k Δu, ±B₁)
 
     For a straight path and a limit B that changes evenly along it this is exact: a force that reaches its limit stays
-    at it. The slip is (s₀ + k Δu − s₁)/k, from s₀ + k Δu t = ±B(t) on, under the mean of B from there on.
+    at it. The slip is (s₀ + k Δu − s₁)/k, with its sign, from s₀ + k Δu t = ±B(t) on, under the mean of B from there
+    on; 0 where the spring sticks. The work is ≥ 0, for each spring.
 
     Args:
         force: s₀ [FU], (…, n), |s₀| ≤ B₀.
@@ -108,6 +115,9 @@ def kinks_of(stick: Sequence[float], contact: Sequence[float]) -> list[list[floa
     Args:
         stick: c after each load step [length].
         contact: a after each load step [length].
+
+    Raises:
+        ValueError: arguments of unequal lengths.
     """
     kinks: list[list[float]] = []
     kept: list[float] = []
@@ -124,18 +134,19 @@ def shear_load(
 ) -> LineLoad:
     """Return the even line shear through values at positions: a cubic spline in each zone between kinks, 0 at the edge.
 
-    At a kink it is the mean of the values extrapolated from the zones on both sides. A kink that leaves fewer than
-    3 positions on one side of it is left out.
+    At a kink it is the mean of the values extrapolated from the zones on both sides. A kink that leaves fewer than 3
+    positions on one side of it is left out, and so are values from the edge on.
 
     Args:
         x: positions, rising and the same on both sides of 0, shape (n,) [length].
         shear: line shear at these positions, shape (n,) [force/length].
         edge: contact radius a [length].
-        kinks: inside of the edge [length].
+        kinks: inside of the edge, in any order [length].
         apex: whether the body has an apex at x = 0, so that the line shear may have a slope there.
 
     Raises:
-        ValueError: fewer than 3 positions on a side within the edge, or positions that differ between both sides.
+        ValueError: fewer than 3 positions on a side within the edge, positions that differ between both sides, or
+            arrays of unequal lengths.
     """
     right, mean, spacing = of_both_sides(x, shear)
     near = 1e-6 * spacing  # a particle that is closer to a kink belongs to it
@@ -175,6 +186,8 @@ def _spline(
     positions: Array, values: Array, low: tuple[float, float], high: tuple[float, float], first: bool, apex: bool
 ) -> tuple[Array, Array]:
     """Return where the cubics of a zone but the first begin, (m − 1,), and their coefficients in powers of x, (4, m).
+
+    The spline goes through the values and those at the borders; the lowest power comes first.
 
     Args:
         positions, values: line shear inside the zone, (n,) each.

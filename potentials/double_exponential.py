@@ -72,7 +72,7 @@ class DoubleExponential(PairPotential):
     attraction: Exponential | None = None
 
     def __post_init__(self) -> None:
-        """Check that exactly one distance is force-free where there is an attraction.
+        """Check that exactly one distance is force-free; nothing without an attraction.
 
         Raises:
             ValueError: the attraction does not reach further than the repulsion, or the repulsion does not prevail at r
@@ -106,7 +106,9 @@ class DoubleExponential(PairPotential):
 
     @property
     def longest_range(self) -> float:
-        """Range [LU] of the term that dominates at large distance: the attraction, or the repulsion without one."""
+        """Decay length [LU] of the term that dominates at large distance: of the attraction, or of the repulsion
+        without one.
+        """
         return self.repulsion.range if self.attraction is None else self.attraction.range
 
     def force_free_distance(self) -> float:
@@ -123,9 +125,8 @@ class DoubleExponential(PairPotential):
     def cutoff_for(self, share: float) -> float:
         """Return the distance r₀ + b ln(1/share) [LU], beyond which the force is small.
 
-        The far force is that of the longest term, of range b, and falls as exp(−r/b): at that distance it is about
-        `share` (relative) of that term's force at the force-free distance r₀. Without attraction r₀ is 0, and b the
-        range of the repulsion.
+        There it is about `share` (relative, > 0) of the force that the attraction, of range b, has at the force-free
+        distance r₀. Without attraction r₀ is 0, and b the range of the repulsion.
         """
         start = self.force_free_distance() if self.attraction is not None else 0.0
         return start + self.longest_range * math.log(1.0 / share)

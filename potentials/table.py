@@ -46,28 +46,32 @@ class Table:
 
     @property
     def cell(self) -> float:
-        """Grid step of r² [LU²]."""
+        """Grid step of r², or of r_L² = r² + ε² [LU²]."""
         return self.cutoff**2 / (self.points - 1 - INNER_CELLS)
 
     @property
     def plane_offset(self) -> float:
-        """Distance ε of the two bodies' planes [LU]: ε² lies one cell beyond the margin of the grid."""
+        """Distance ε of the two bodies' planes [LU]; ε² is five grid steps of r²."""
         return math.sqrt((INNER_CELLS + 1) * self.cell)
 
     @property
     def core(self) -> float:
-        """Distance [LU] below which the force is smoothed to 0."""
+        """Distance in the plane of motion [LU] below which the force falls in proportion to the distance, to 0 at
+        distance 0.
+        """
         return math.sqrt(self.cell)
 
     def grid(self) -> Array:
-        """Return r_L² [LU²] of all entries, rising, (points,)."""
+        """Return the squares r_L² [LU²] of the distances in space of all entries, rising in equal steps, (points,)."""
         first = self.plane_offset**2 - INNER_CELLS * self.cell
         return np.asarray(first + self.cell * np.arange(self.points), dtype=np.float64)
 
     def entries(self) -> tuple[Array, Array, Array]:
-        """Return (r_L [LU], energy [FU·LU], F_table [FU]) of all entries, (points,) each.
+        """Return (r_L [LU], energy [FU·LU], F_table [FU]) of all entries, by rising distance r_L in space, (points,)
+        each.
 
-        F_table is positive where particles repel each other; the energy is 0 at the cutoff.
+        F_table is positive where particles repel each other; the energy is 0 at the cutoff. Nearer than the core the
+        force over the distance is constant.
         """
         squared = self.grid()
         distance = np.sqrt(squared)
@@ -80,11 +84,10 @@ class Table:
     def force(self, r: Array) -> Array:
         """Return the force in the plane [FU] that LAMMPS interpolates from this table at distances 0 ≤ r ≤ r_c [LU].
 
-        Same shape.
-
-        Repulsion is positive. LAMMPS interpolates g = F_table/r_L by a cubic spline over s = r_L² with knots at the
-        entries. Between two of them, at the share t of the cell h: (1 − t) g₀ + t g₁ − t (1 − t) [(2 − t) M₀ + (1 + t)
-        M₁] h²/6, M = g″.
+        It has the shape of r, and repulsion is positive. Beyond r_c, where LAMMPS has no force, it is not 0 but
+        meaningless. LAMMPS interpolates g = F_table/r_L by a cubic spline over s = r_L² with knots at the entries.
+        Between two of them, at the share t of the cell h: (1 − t) g₀ + t g₁ − t (1 − t) [(2 − t) M₀ + (1 + t) M₁] h²/6,
+        M = g″.
         """
         slope, bend = _knots(self)
         position = (np.square(r) + self.plane_offset**2 - self.grid()[0]) / self.cell
@@ -97,7 +100,7 @@ class Table:
     # Cached, since a scene needs the errors of few tables often.
     @lru_cache(maxsize=64)  # noqa: B019  # a table is small, and equal by value
     def error_beyond(self, r_min: float, samples: int = 20_000) -> float:
-        """Return the largest interpolation error of the force [FU] ≥ 0 for r_min ≤ r ≤ r_c.
+        """Return the largest absolute error of the interpolated force [FU] ≥ 0 for r_min ≤ r ≤ r_c; it is cached.
 
         `r_min`: [LU], > 0; `samples`: number of distances in geometric progression at which it is measured.
         """
@@ -128,8 +131,8 @@ def _knots(table: Table) -> tuple[Array, Array]:
 def table_for(law: DoubleExponential, cutoff: float, closest: float, error: float) -> Table:
     """Return the smallest table whose force error is at most `error` [FU] from `closest` [LU] to the cutoff [LU].
 
-    The number of points doubles from 2000 on until the measured error (`Table.error_beyond`) is small enough, or 400
-    000 would be exceeded; the error is then larger. `law`: interaction of a pair.
+    The number of points doubles from 2000 on until the measured error is small enough, or 400000 would be exceeded;
+    then the error is larger, and nothing is raised. `law`: interaction of a pair.
     """
     table = Table(law, cutoff, FEWEST_POINTS)
     while table.error_beyond(closest) > error and 2 * table.points <= MOST_POINTS:
@@ -138,7 +141,8 @@ def table_for(law: DoubleExponential, cutoff: float, closest: float, error: floa
 
 
 def write_table(table: Table, closest: float, path: Path) -> None:
-    """Write the LAMMPS table file atomically; its header states the interaction and the measured error.
+    """Write the LAMMPS table file atomically, over an existing one; its header states the interaction and the measured
+    error.
 
     `closest`: distance [LU] from which on that error holds.
     """
@@ -147,9 +151,10 @@ def write_table(table: Table, closest: float, path: Path) -> None:
 
 @lru_cache(maxsize=4)  # scenes run one after the other mostly share their law, and 32 000 rows take 45 ms
 def _text(table: Table, closest: float) -> str:
-    """Return the text of the LAMMPS table file: a header, and a line for each entry.
+    """Return the text of the LAMMPS table file: comments, section, size, and a line (number, r_L, energy, force) per
+    entry.
 
-    The header has the error of the force beyond `closest` [LU].
+    The comments state the interaction and the largest error of the force beyond `closest` [LU]. It is cached.
     """
     law = table.law
     distance, energy, force = table.entries()

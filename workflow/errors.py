@@ -37,18 +37,22 @@ class Contact1dError(Exception):
     exit_code: ClassVar[int] = 2
 
     def __init__(self, *arguments: object, changes: Iterable[SceneEdit] = ()) -> None:
-        """Store the arguments and the changes; both are kept by pickling."""
+        """Store `arguments` as `args`, and the changes as a tuple; both are kept by pickling."""
         super().__init__(*arguments)
         self._changes = tuple(changes)
 
     @cached_property
     def message(self) -> str:
-        """What is wrong, as text, without the folder of the files."""
+        """What is wrong, as text: `str(self)`, cached at the first access.
+
+        An error of a run, of a result that can't be trusted or of LAMMPS stores here its argument `message`, without
+        folder, advice or phase.
+        """
         return str(self)
 
     @property
     def changes(self) -> tuple[SceneEdit, ...]:
-        """Edits of the scene that may help, the best one first; empty without any."""
+        """Edits of the scene that may help, the best one first; () where the error was raised without any."""
         return self._changes
 
 
@@ -68,12 +72,15 @@ class RunError(Contact1dError, RuntimeError):
     exit_code = 3
 
     def __init__(self, message: str, folder: Path, kept: bool = True) -> None:
-        """Store the attributes; all of them are arguments, so that the error can be pickled."""
+        """Store message, run folder and `kept` (files are in it) as attributes and in `args`, for pickling.
+
+        There are no suggested edits: `changes` is ().
+        """
         super().__init__(message, folder, kept)
         self.message, self.folder, self.kept = message, folder, kept
 
     def __str__(self) -> str:
-        """Return the message, and on a second line the run folder."""
+        """Return two lines: the message; then "files kept in" (where `kept`) or "run folder:" with the run folder."""
         return f"{self.message}\n{'files kept in' if self.kept else 'run folder:'} {self.folder}"
 
 
@@ -88,12 +95,12 @@ class UntrustedError(Contact1dError, RuntimeError):
     exit_code = 3
 
     def __init__(self, message: str, advice: str = "", changes: Iterable[SceneEdit] = ()) -> None:
-        """Store the attributes and the changes."""
+        """Store the message and the advice, both also in `args`, and the suggested edits of the scene as a tuple."""
         super().__init__(message, advice, changes=changes)
         self.message, self.advice = message, advice
 
     def __str__(self) -> str:
-        """Return the message, and behind a colon the advice where there is any."""
+        """Return the message, or "message: advice" where the advice is not empty."""
         return f"{self.message}: {self.advice}" if self.advice else self.message
 
 
@@ -129,9 +136,10 @@ class TensionError(UntrustedError):
     """
 
     def __init__(self, force: float, most: float) -> None:
-        """Store the required `force`, tension negative, and the pull-off force `most`, positive [FU].
+        """Store the pull-off force `most` [FU], positive, and both arguments as `args`, for pickling.
 
-        Both are the arguments for pickling.
+        `force` is the required one [FU], tension negative. The message names both; the advice is "". The one suggested
+        edit sets experiment.force to −0.9 `most`, to three digits.
         """
         suggested = float(f"{-0.9 * most:.3g}")  # a tensile force that the contact sustains
         super().__init__(

@@ -39,7 +39,10 @@ class ModelUnit(NamedTuple):
 
     @property
     def powers(self) -> dict[str, float]:
-        """The powers that are not 0, by "LU", "FU" and "MU": the unit has a size in SI where these have one."""
+        """The exponents of LU, FU and MU, by these names, without those that are 0; {} for a number without unit.
+
+        A time is in powers of all three: TU = √(MU·LU/FU).
+        """
         return {base: power for base, power in zip(("LU", "FU", "MU"), self[1:], strict=True) if power}
 
 
@@ -74,10 +77,11 @@ EXACTNESS = 1e-8
 
 
 def scale_of(value: float, unit: str) -> tuple[float, str]:
-    """Return (factor, unit with its prefix) in which a number of the size of `value` [`unit`] is written.
+    """Return (factor, unit with its SI prefix) in which a number of the size of `value` [`unit`] is written.
 
-    In a compound unit (N/m) the first one takes the prefix, as in mN/m. The factor is 1 and the unit unchanged for 0
-    and infinity, for a unit without prefixes, and for sizes beyond these.
+    |value| × factor is from 1 to below 1000, after rounding of the value to six digits. In a compound unit (N/m) the
+    first one takes the prefix, as in mN/m. The factor is 1 and the unit unchanged for 0, NaN and infinity, for a unit
+    that takes no prefix (kg, "1" and units of the model), and for values below 1e-24 or from 1e15 on.
     """
     power = 0
     if value and math.isfinite(value) and unit in WITH_PREFIX:
@@ -88,14 +92,18 @@ def scale_of(value: float, unit: str) -> tuple[float, str]:
 
 
 def prefixed(value: float, unit: str, digits: int = DIGITS) -> str:
-    """Return a value [SI `unit`] as text with this number of significant digits and a prefix: `2.356 µN`."""
+    """Return a value [SI `unit`] as text with an SI prefix, `2.356 µN`, in format "g" with this number of digits.
+
+    Zeros at the end are left out, and more digits before the point than `digits` give an exponent. A unit that takes no
+    prefix stays as it is.
+    """
     factor, name = scale_of(value, unit)
     return f"{value * factor:.{digits}g} {name}"
 
 
 @cache
 def registry() -> Any:
-    """Return pint's registry with the units of the model, for arithmetic with quantities; cached."""
+    """Return pint's registry with LU, FU, MU and TU as additional base units; the same object at each call."""
     import pint
 
     units: Any = pint.UnitRegistry()
@@ -105,18 +113,27 @@ def registry() -> Any:
 
 
 def _calculated(operation: Callable[[Any, Any], Any]) -> Callable[[Quantity, Any], Quantity]:
-    """Return the operator that applies one of pint's, `operation`, to a quantity and another one or a number.
+    """Return the function of a binary operator of `Quantity` that applies one of pint's, `operation`.
 
-    Its result is in an SI unit of the program, else in base units; its uncertainty is the sum of the changes due to the
-    uncertainty of each operand.
+    It takes the left quantity and another one, or a number, which counts as exact and without unit. Its result is in
+    the first SI unit of `WITH_PREFIX` of the right dimension (m, N, Pa, N/m, J, s, …), else in base units. Its
+    uncertainty is the sum of the absolute changes of the result as one operand after the other is raised by its
+    uncertainty.
     """
 
     def calculate(self: Quantity, operand: Any) -> Quantity:
-        """Return the result of the operation with its uncertainty."""
+        """Return the result of the operation on `self` and `operand`, a quantity or an exact number without unit.
+
+        It is in the first SI unit of `WITH_PREFIX` of its dimension, else in base units; its uncertainty is the sum of
+        the absolute changes as one operand after the other is raised by its uncertainty.
+
+        Raises:
+            pint.DimensionalityError: the dimensions do not allow the operation, as m + N.
+        """
         right = operand if isinstance(operand, Quantity) else Quantity(float(operand), 0.0, NUMBER)
 
         def applied(left_value: float, right_value: float) -> Any:
-            """Return pint's result for two values in the units of the operands."""
+            """Return pint's quantity for the operation on two numbers, in the units of left and right operand."""
             return operation(registry().Quantity(left_value, self.unit), registry().Quantity(right_value, right.unit))
 
         result = applied(self.value, right.value)
@@ -144,32 +161,41 @@ class Quantity:
     unit: str
 
     def __float__(self) -> float:
-        """Return the value without unit and uncertainty."""
+        """Return the value, in `unit`; the uncertainty is dropped."""
         return self.value
 
     @classmethod
     def of(cls, entry: Mapping[str, Any], in_si: bool = True) -> Quantity:
-        """Return the quantity of an entry in results.json, in SI where the entry has that.
+        """Return the quantity of an entry in results.json, by its "value", "uncertainty" and "unit".
 
-        Without `in_si`, and where the scene has no units, it is in model units.
+        In SI where the entry has a part "si"; without `in_si`, and where it has none, in the entry's own unit, of the
+        model.
+
+        Raises:
+            KeyError: one of the three is missing.
         """
         entry = entry.get("si", entry) if in_si else entry
         return cls(entry["value"], entry["uncertainty"], entry["unit"])
 
     @property
     def si(self) -> Quantity | None:
-        """This quantity where its unit is one of SI, or none; None where it is a unit of the model."""
+        """This quantity itself; None where its unit is one of those of the model in `SI`, as "FU" or "FU/LU²".
+
+        Any other unit, also "1" and a power of a model unit that `SI` lacks, such as "LU²", gives the quantity itself.
+        """
         return None if self.unit in SI and self.unit != NUMBER else self
 
     def entry(self) -> dict[str, Any]:
-        """Return the entry of this quantity in results.json: value, uncertainty and unit by these names."""
+        """Return the entry of this quantity in results.json, a new dict with "value", "uncertainty" and "unit"."""
         return vars(self).copy()
 
     def to(self, unit: str) -> Quantity:
-        """Return the quantity, with its uncertainty, in another unit, "mN" for instance.
+        """Return a new quantity with value and uncertainty converted to another unit, "mN" for instance.
 
         Raises:
-            pint.DimensionalityError: the unit has another dimension.
+            pint.DimensionalityError: the unit has another dimension, as one of SI for a quantity in units of the
+                model.
+            pint.UndefinedUnitError: pint does not know the unit.
         """
         factor = registry().Quantity(1.0, self.unit).to(unit).magnitude
         return Quantity(self.value * factor, self.uncertainty * factor, unit)
@@ -182,9 +208,10 @@ class Quantity:
     __pow__ = _calculated(pow)
 
     def __str__(self) -> str:
-        """Return `402.7 ± 1.3 MPa`: the uncertainty with two digits, SI units with a prefix.
+        """Return `402.7 ± 1.3 MPa`: the uncertainty with two digits; an SI unit has a prefix, one of the model none.
 
-        With a relative uncertainty of 1e-8 or less it is the value alone, with five digits.
+        With an uncertainty of at most 1e-8 of the value it is the value alone, with up to five digits. Unit "1" is left
+        out.
         """
         factor, unit = (
             (1.0, self.unit) if self.si is None else scale_of(max(abs(self.value), self.uncertainty), self.unit)
@@ -197,9 +224,10 @@ class Quantity:
 
 
 def rounded(value: float, uncertainty: float) -> str:
-    """Return `value ± uncertainty`: the uncertainty with two digits, the value with the same decimals and exponent.
+    """Return `value ± uncertainty`, without unit: the uncertainty with two digits, the value with the same decimals.
 
-    An uncertainty that is not finite, or below 1e-11 of the value, leaves the value with ten digits.
+    For an uncertainty below 1e-9 or from 1e5 on both have a common exponent, `(1.23 ± 0.45)e+06`. Where the uncertainty
+    is not finite, or at most 1e-11 of the value, the value has up to ten digits instead.
     """
     if not math.isfinite(uncertainty) or uncertainty <= 1e-3 * EXACTNESS * abs(value):
         return f"{value:.10g} ± {uncertainty:.2g}"
@@ -234,14 +262,18 @@ class Scales:
     ends: tuple[tuple[Scales, ...], ...] = ()
 
     def know(self, unit: str) -> bool:
-        """Return whether the size of one `unit` (of the model) in SI is known."""
+        """Return whether the size of one `unit` of the model, "FU/LU" for instance, in SI is known.
+
+        False without units in the scene, for a name that is not in `SI`, and, where the mass unit is not known, for
+        units that contain it, times among them.
+        """
         return self.known and unit in SI and (self.mass is not None or not SI[unit].mass)
 
     def factor(self, unit: str) -> float:
-        """Return the size of one `unit` (of the model) in its SI unit.
+        """Return the size of one `unit` of the model in its SI unit: 1e-9 where one "FU" is 1 nN.
 
         Raises:
-            KeyError: it is unknown.
+            KeyError: the size is unknown, or `unit` is none of the units in `SI`.
         """
         if not self.know(unit):
             raise KeyError(unit)
@@ -251,24 +283,33 @@ class Scales:
     def base(self, unit: str) -> tuple[float, str]:
         """Return (factor, unit) with which a number in a model `unit` is shown: factor × number [unit].
 
-        This is the SI unit where its size is known, otherwise the model unit with the factor 1.
+        It is the SI unit without prefix where its size is known, else the model unit itself with the factor 1.
         """
         return (self.factor(unit), SI[unit].si) if self.know(unit) else (1.0, unit)
 
     def written(self, value: float, unit: str) -> tuple[float, str]:
-        """Return (factor, unit) as `base`, the unit with the prefix for a number `value` in the model `unit`."""
+        """Return (factor, unit) to show numbers of the size of `value` in a model `unit`: factor × number [unit].
+
+        It is the SI unit with the prefix for this size, where its size is known; else the model unit itself with the
+        factor 1.
+        """
         factor, name = self.base(unit)
         prefix, name = scale_of(value * factor, name)
         return factor * prefix, name
 
     def in_words(self, text: str) -> str:
-        """Return a text with its numbers in SI units, where these are known: `1.5 nN` for `1.5e-09 FU`.
+        """Return a text with its numbers in SI units instead of units of the model: `1.5 nN` for `1.5e-09 FU`.
 
-        A unit in brackets without a number is replaced as well. Numbers have four digits, or as many as before.
+        Numbers have up to four significant digits, or as many as before if that is more, and a prefix; of 0 only the
+        unit is replaced. A unit in brackets without a number becomes the SI unit without prefix. Where the size of a
+        unit in SI is unknown, unit and number stay.
         """
 
         def shown(match: re.Match[str]) -> str:
-            """Return a number with its unit in SI; unchanged where the size of the unit is unknown."""
+            """Return the text for a match: the number with SI unit and prefix, or for a unit in brackets its SI unit.
+
+            For 0 only the unit is replaced. Where its size in SI is unknown, the text is unchanged.
+            """
             number, _, unit, alone = match.groups()
             if alone or not self.know(unit):
                 return f"({self.base(alone)[1]})" if alone else match[0]
@@ -282,12 +323,15 @@ class Scales:
         return IN_WORDS.sub(shown, text)
 
     def in_si(self, value: float, uncertainty: float, unit: str) -> dict[str, float | str]:
-        """Return "value", "uncertainty" and "unit" in SI of a quantity in a model `unit`, that of the scales added.
+        """Return {"value", "uncertainty", "unit"} in the SI unit, without prefix, of a quantity in a model `unit`.
 
-        Changes by different inputs of the scene add up in squares, and then to the uncertainty of the quantity.
+        `uncertainty` is given in the model unit. That of the scales is added to it: |value| times the sum of the
+        relative uncertainties of LU and FU, each times the magnitude of its power in the unit, and of √(Σ change²) over
+        the inputs with ± on which the scales depend, of each the larger relative change of the unit at the ends of its
+        range.
 
         Raises:
-            KeyError: the size of the unit is unknown.
+            KeyError: the size of the unit in SI is unknown.
         """
         factor, model_unit = self.factor(unit), SI[unit]
         relative = abs(model_unit.length) * self.length_uncertainty / self.length

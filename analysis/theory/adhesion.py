@@ -65,17 +65,20 @@ class Dmt(Contact):
     work_of_adhesion: float
 
     def __post_init__(self) -> None:
-        """Raise ValueError for a parameter that is not positive and finite."""
+        """Raise ValueError for a parameter that is not positive and finite.
+
+        Of MaugisDugdale the range of attraction is one of them.
+        """
         require_positive(**vars(self))
 
     @property
     def _load(self) -> float:
-        """The unit of N = F/(pi W R), pi W R [force]."""
+        """pi W R [force], by which a force is divided to give N = F/(pi W R)."""
         return math.pi * self.work_of_adhesion * self.radius
 
     @property
     def _length(self) -> float:
-        """The unit of A = a/(pi W R^2/K)^(1/3), with K = 4E*/3 [length]."""
+        """(pi W R^2/K)^(1/3) with K = 4E*/3 [length], by which a radius is divided to give A."""
         return math.cbrt(0.75 * self._load * self.radius / self.contact_modulus)
 
     def force(self, contact_radius: float) -> float:
@@ -118,7 +121,10 @@ class MaugisDugdale(Dmt):
 
     @classmethod
     def reduced(cls, tabor: float) -> MaugisDugdale:
-        """Return the contact of a `tabor` parameter mu > 0 in the units of Maugis: a is A, F is N, d is D."""
+        """Return the contact of a `tabor` parameter mu > 0 in units in which a is A, F is N and d is D of Maugis.
+
+        R = 1, E* = 3/4, W = 1/pi. Raises ValueError for a negative mu, ZeroDivisionError for 0.
+        """
         return cls(1.0, 0.75, 1.0 / math.pi, math.cbrt((0.75 * math.pi) ** -2) / tabor)
 
     @property
@@ -134,14 +140,17 @@ class MaugisDugdale(Dmt):
 
     @property
     def theories(self) -> dict[Theory, Contact]:
-        """The contact by theory: JKR and DMT, which have no range of the attraction, and Maugis-Dugdale, this one."""
+        """The contacts by theory, in the order JKR, DMT, Maugis-Dugdale, all with the same R, E* and W.
+
+        The first two have no range of the attraction; the last is this contact itself.
+        """
         sphere = self.radius, self.contact_modulus, self.work_of_adhesion
         return {Theory.JKR: PowerLaw.sphere(*sphere), Theory.DMT: Dmt(*sphere), Theory.MAUGIS: self}
 
     def ring_width(self, contact_radius: float) -> float:
         """Return c - a [length], the width of the ring under attraction around a contact of radius a >= 0 [length].
 
-        It is the root of the adhesion equation.
+        There the gap at c times sigma_0 is W. It is found by bracketing to round-off.
 
         Raises:
             ValueError: if a is negative.
@@ -149,7 +158,10 @@ class MaugisDugdale(Dmt):
         return self._length * _ring_width(self.transition, contact_radius / self._length)
 
     def force(self, contact_radius: float) -> float:
-        """Return F, positive in compression, by N = A^3 - lambda [A S + C^2 phi] [force]; a >= 0 [length].
+        """Return F = pi W R N [force], positive in compression, N = A^3 - lambda [A S + C^2 phi]; a >= 0 [length].
+
+        A and C are the radii of contact and ring over (pi W R^2/K)^(1/3), K = 4E*/3, S = sqrt(C^2-A^2), phi =
+        arccos(A/C).
 
         Raises:
             ValueError: if a is negative.
@@ -157,7 +169,9 @@ class MaugisDugdale(Dmt):
         return self._load * _reduced(self.transition, contact_radius / self._length)[0]
 
     def displacement(self, contact_radius: float) -> float:
-        """Return d, positive in approach, by D = A^2 - (4/3) lambda S [length]; a >= 0 [length].
+        """Return d = (pi^2 W^2 R/K^2)^(1/3) D [length], positive in approach, D = A^2 - (4/3) lambda S.
+
+        A = a/(pi W R^2/K)^(1/3) and C are the radii of contact and ring, K = 4E*/3, S = sqrt(C^2-A^2); a >= 0 [length].
 
         Raises:
             ValueError: if a is negative.
@@ -167,7 +181,7 @@ class MaugisDugdale(Dmt):
     def critical_radius(self) -> float:
         """Return the contact radius a at which a fixed load pulls off, where F(a) is lowest [length].
 
-        0 where F rises from first touch on.
+        0 where F rises from first touch on, as at a small lambda.
         """
         return self._length * _lowest(self.transition, 0)
 
@@ -180,11 +194,16 @@ class MaugisDugdale(Dmt):
 
 
 def _reduced(transition: float, a: float) -> tuple[float, float]:
-    """Return N = F/(pi W R) and D, force and displacement in the units of Maugis, dimensionless.
+    """Return N = F/(pi W R), positive in compression, and D, positive in approach, in the units of Maugis.
+
+    Both are dimensionless, D is d/(pi^2 W^2 R/K^2)^(1/3) with K = 4E*/3.
 
     Args:
         transition: lambda of Maugis.
         a: contact radius A >= 0 in the unit of Maugis.
+
+    Raises:
+        ValueError: if a is negative.
     """
     u = _ring_width(transition, a)
     s = math.sqrt(u * (2.0 * a + u))
@@ -194,7 +213,8 @@ def _reduced(transition: float, a: float) -> tuple[float, float]:
 def _adhesion_excess(transition: float, a: float, u: float) -> float:
     """Return (lambda/2) [A S + (C^2-2A^2) phi] + (4 lambda^2/3) [S phi - C + A] - 1 for C = a + u: rises with u.
 
-    It is 0 where the adhesion equation of Maugis holds; all numbers are dimensionless, in his units.
+    S = sqrt(C^2-A^2), phi = arccos(A/C). It is 0 where the adhesion equation of Maugis holds; all numbers are
+    dimensionless, in his units.
 
     Args:
         transition: lambda of Maugis.
@@ -237,11 +257,12 @@ def _ring_width(transition: float, a: float) -> float:
 def _lowest(transition: float, component: int) -> float:
     """Return A of the lowest N (component 0) or D (1) of one lambda, between 0 and 1.5, in the unit of Maugis.
 
-    It is 0 where N or D rises from A = 0 on. The largest such A is JKR's, (3/2)^(1/3) = 1.145.
+    It is 0 where N or D rises from A = 0 on. The largest such A is JKR's, (3/2)^(1/3) = 1.145. The result is cached.
     """
     from scipy.optimize import minimize_scalar
 
     def curve(a: float) -> float:
+        """Return N or D, by `component`, at the contact radius A; dimensionless."""
         return _reduced(transition, a)[component]
 
     options = {"xatol": 1e-9}  # of A; the lowest value is off by the square of it
@@ -274,19 +295,23 @@ class Verdict:
 
 
 def of_tabor(tabor: float) -> Theory:
-    """Return the theory for a Tabor parameter mu at any load: DMT below 0.1, JKR above 5, else Maugis-Dugdale."""
+    """Return the theory for a Tabor parameter mu at any load: DMT below 0.1, JKR above 5, else Maugis-Dugdale.
+
+    At 0.1 and 5 themselves it is Maugis-Dugdale.
+    """
     if tabor < DMT_TABOR:
         return Theory.DMT
     return Theory.JKR if tabor > JKR_TABOR else Theory.MAUGIS
 
 
 def valid_theory(tabor: float, reduced_load: float) -> Verdict:
-    """Return the simplest valid theory with its reason.
+    """Return the simplest valid theory with its reason, one sentence in the numbers of the contact.
 
     Tested in the order apart, rigid, Hertz, JKR, DMT, Maugis-Dugdale. With N = F/(pi W R): apart where the tension
-    exceeds the pull-off force; rigid where Hertz's compression under F + 2 pi W R, mu [(3 pi/4)(N + 2)]^(2/3) h_0, is
-    below 0.05 h_0; Hertz where N > 0 and (A^3 - N)/N, the load that attraction adds by the theory that goes with mu, is
-    below 0.05; then JKR for mu > 5, unless the tension exceeds its pull-off force, and DMT for mu < 0.1.
+    exceeds both the pull-off force of JKR, 1.5 pi W R, and that of Maugis-Dugdale, or of DMT for mu < 0.1; rigid where
+    Hertz's compression under F + 2 pi W R, mu [(3 pi/4)(N + 2)]^(2/3) h_0, is below 0.05 h_0; Hertz where N > 0 and
+    (A^3 - N)/N, the load that attraction adds by the theory that goes with mu, is below 0.05; then JKR for mu > 5,
+    unless the tension exceeds its pull-off force, and DMT for mu < 0.1; in all other cases Maugis-Dugdale.
 
     Args:
         tabor: mu > 0, dimensionless.

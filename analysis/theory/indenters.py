@@ -34,7 +34,7 @@ Floats = NDArray[np.float64]
 def galin_factor(exponent: float) -> float:
     """Return kappa_n = (sqrt(pi)/2) n Gamma(n/2)/Gamma((n+1)/2), dimensionless, for the `exponent` n > 0 of z = c r^n.
 
-    It is pi/2 for a cone (n = 1), 2 for a paraboloid (n = 2).
+    It is pi/2 for a cone (n = 1), 2 for a paraboloid (n = 2). The result is cached.
     """
     n = exponent
     return 0.5 * math.sqrt(math.pi) * n * math.exp(math.lgamma(0.5 * n) - math.lgamma(0.5 * (n + 1.0)))
@@ -48,7 +48,10 @@ def require_positive(**values: float) -> None:
 
 
 def require_work(work_of_adhesion: float) -> None:
-    """Raise ValueError for a work of adhesion [energy/area] that is negative or NaN; nothing is returned."""
+    """Raise ValueError for a work of adhesion [energy/area] that is negative or NaN; nothing is returned.
+
+    0 and infinity pass.
+    """
     if not work_of_adhesion >= 0.0:
         raise ValueError(f"work_of_adhesion must not be negative, got {work_of_adhesion}")
 
@@ -61,23 +64,32 @@ class Contact(ABC):
 
     @abstractmethod
     def force(self, contact_radius: float) -> float:
-        """Return F(a) [force], positive in compression; a >= 0 [length]."""
+        """Return F(a) [force], positive in compression; a >= 0 [length]. With adhesion it is negative for small a."""
 
     @abstractmethod
     def displacement(self, contact_radius: float) -> float:
-        """Return d(a) [length]; a >= 0 [length]."""
+        """Return d(a) [length], positive in approach; a >= 0 [length].
+
+        With adhesion it is negative for small a, but not of DMT.
+        """
 
     @property
     def reach(self) -> float:
-        """The largest contact radius for which the contact is defined [length], infinite by default."""
+        """The largest contact radius for which the contact is defined [length].
+
+        Infinite; only of an ellipsoid finite, next to its rim.
+        """
         return math.inf
 
     def critical_radius(self) -> float:
-        """Return a where a fixed load pulls off, dF/da = 0 [length]; by default 0."""
+        """Return a where a fixed load pulls off, F(a) lowest [length]: 0 here, as of DMT; other subclasses find it."""
         return 0.0
 
     def fixed_grips_radius(self) -> float:
-        """Return a where a prescribed displacement pulls off, dd/da = 0 [length]; by default 0."""
+        """Return a where a prescribed displacement pulls off, d(a) lowest [length].
+
+        0 here, as of DMT; other subclasses find it.
+        """
         return 0.0
 
     def pull_off_force(self) -> float:
@@ -91,7 +103,7 @@ class Contact(ABC):
     def contact_radius(self, force: float) -> float:
         """Return the stable contact radius a [length] with F(a) = `force`, positive in compression [force].
 
-        At the pull-off force it is the critical radius, and never more than `reach`.
+        At the pull-off force it is the critical radius. Where F(a) stays below `force` up to `reach` it is `reach`.
 
         Raises:
             ValueError: if the tension exceeds the pull-off force.
@@ -104,10 +116,10 @@ class Contact(ABC):
     def radius_at(self, displacement: float) -> float:
         """Return the stable contact radius a [length] under fixed grips with d(a) = `displacement` [length].
 
-        It is never more than `reach`.
+        At the lowest d it is the radius there. Where d(a) stays below `displacement` up to `reach` it is `reach`.
 
         Raises:
-            ValueError: if the bodies have separated before.
+            ValueError: if `displacement` is below the lowest d(a), at which the bodies separate.
         """
         low = self.fixed_grips_radius()
         if displacement < self.displacement(low):
@@ -116,6 +128,8 @@ class Contact(ABC):
 
     def curve(self, least: float, largest: float, points: int = 400) -> Floats:
         """Return a [length], d(a) [length] and F(a) [force] at evenly spaced radii between two, shape (3, points).
+
+        Both ends are included. Displacement is positive in approach, force in compression.
 
         Args:
             least, largest: first and last contact radius [length].
@@ -229,7 +243,7 @@ class PowerLaw(Indenter):
     work_of_adhesion: float = 0.0
 
     def __post_init__(self) -> None:
-        """Raise ValueError for a parameter out of its range."""
+        """Raise ValueError for c or E* that is not positive and finite, W that is negative or NaN, or n below 1."""
         require_positive(coefficient=self.coefficient, contact_modulus=self.contact_modulus)
         require_work(self.work_of_adhesion)
         if not self.exponent >= 1.0:
@@ -282,17 +296,19 @@ class PowerLaw(Indenter):
     def peak_pressure(self, contact_radius: float) -> float:
         """Return the largest p under a contact radius a [length], positive in compression [stress]: for n <= 2 p(0).
 
-        For n > 2 it is off the axis, and has no closed form: NaN. Infinite at a cone's tip (n = 1).
+        For n > 2 it is off the axis, and has no closed form: NaN. Infinite at a cone's tip (n = 1); 0 at a = 0 for 1 <
+        n <= 2.
         """
         return self.central_pressure(contact_radius) if self.exponent <= 2.0 else math.nan
 
     def pressure(self, r: Floats, contact_radius: float) -> Floats:
         """Return p(r) [stress], positive in compression, of a cone or a paraboloid; 0 from the edge on.
 
-        (E* c/2) arcosh(a/r) or (2 E* a/pi R) sqrt(1 - r^2/a^2), less sqrt(2 E* W/pi a)/sqrt(1 - r^2/a^2).
+        (E* c/2) arcosh(a/r) or (2 E* a/pi R) sqrt(1 - r^2/a^2), less sqrt(2 E* W/pi a)/sqrt(1 - r^2/a^2). Infinite at r
+        = 0 of a cone.
 
         Args:
-            r: distances from the axis >= 0 [length], any shape.
+            r: distances from the axis >= 0 [length], an array of any shape, which p has, too.
             contact_radius: a >= 0 [length].
 
         Raises:
@@ -352,7 +368,7 @@ class Ellipsoid(Indenter):
         return self.half_axis / c * self.contact_modulus * ((c**2 + a**2) * math.atanh(a / c) - a * c)
 
     def _steep(self, wanted: float) -> float:
-        """Return the radius a < c at which g'(a) sqrt(a) is `wanted` [length], by bisection."""
+        """Return the radius a at which g'(a) sqrt(a) is `wanted` [length], by bisection; at most (1 - 1e-12) c."""
         return self._where(lambda a: self._rate(a) * math.sqrt(a), wanted, 0.0)
 
     def _rate(self, position: float) -> float:
@@ -361,9 +377,10 @@ class Ellipsoid(Indenter):
         return self.half_axis / c * (math.atanh(x / c) + x * c / (c**2 - x**2))
 
     def central_pressure(self, contact_radius: float) -> float:
-        """Return p(0) = (E*/pi) int_0^a g'/x dx - sqrt(2 E* W/pi a) [stress]; 0 <= a < c [length], 0 at a = 0.
+        """Return p(0) = (E*/pi) int_0^a g'/x dx - sqrt(2 E* W/pi a) [stress], positive in compression; 0 at a = 0.
 
-        By quadrature: the integral has no elementary form. `peak_pressure` is the same number.
+        0 <= a < c [length]. By quadrature: the integral has no elementary form. `peak_pressure` is this number, too:
+        the largest pressure, but for a above some 0.9 c, where that is off the axis.
         """
         if not contact_radius:
             return 0.0
@@ -404,7 +421,9 @@ class FlatPunch:
         return 2.0 * self.contact_modulus * self.radius
 
     def pressure(self, r: Floats | float, displacement: float) -> Floats:
-        """Return p(r) = (E* d/pi) (a^2 - r^2)^(-1/2) [stress], of the shape of r, with the sign of d.
+        """Return p(r) = (E* d/pi) (a^2 - r^2)^(-1/2) [stress], of the shape of r, with the sign of d; without adhesion.
+
+        Infinite at r = a, NaN beyond.
 
         Args:
             r: distances from the axis, 0 <= r < a [length], any shape.
@@ -414,5 +433,5 @@ class FlatPunch:
         return np.asarray(self.contact_modulus * displacement / (math.pi * root))
 
     def pull_off_force(self) -> float:
-        """Return Kendall's F_A = sqrt(8 pi E* W a^3), a positive magnitude [force]."""
+        """Return Kendall's F_A = sqrt(8 pi E* W a^3), a positive magnitude [force]; 0 without adhesion."""
         return punch_tension(self.contact_modulus, self.work_of_adhesion, self.radius)

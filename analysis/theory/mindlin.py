@@ -19,16 +19,19 @@ from itertools import pairwise
 
 
 def sliding_displacement(friction: float, ratio: float, displacement: float) -> float:
-    """Return u* = mu d/(G*/E*) [length], where full slip begins: mu `friction`, G*/E* `ratio`, d `displacement`."""
+    """Return u* = mu d/(G*/E*) [length], where full slip begins.
+
+    mu is `friction`, G*/E* `ratio`, both dimensionless, and d the normal `displacement` [length].
+    """
     return friction * displacement / ratio
 
 
 def _amplitudes(positions: Sequence[float]) -> list[list[float]]:
     """Return for each position the first remembered turn, or the position without one, and half of each later distance.
 
-    These are the distances from turn to turn and from the last turn to the position, with their signs [length]. A turn
-    is forgotten where the path reaches the turn before it, the first one where it reaches its mirror image, but for
-    round-off.
+    A turn is a position at which the motion reverses [length]. Later distances are those from turn to turn and from the
+    last turn to the position, with their signs [length]: none without a turn. A turn is forgotten where the path
+    reaches the turn before it, the first one where it reaches its mirror image, but for round-off.
 
     Args:
         positions: of the path, which begins at 0 [length].
@@ -63,10 +66,11 @@ def mindlin_path(positions: Sequence[float], normal_force: float, friction: floa
         sliding: u* > 0 [length], from which on all slips.
 
     Raises:
-        ZeroDivisionError: u* = 0.
+        ZeroDivisionError: u* = 0, with any position.
     """
 
     def force(distance: float) -> float:
+        """Return T(u) [force] of a displacement u from 0 [length], with its sign; ±mu N from |u| = u* on."""
         left = max(1.0 - abs(distance) / sliding, 0.0)
         return friction * normal_force * math.copysign(1.0 - left**1.5, distance)
 
@@ -74,9 +78,10 @@ def mindlin_path(positions: Sequence[float], normal_force: float, friction: floa
 
 
 def mindlin_cycle_energy(amplitude: float, normal_force: float, friction: float, sliding: float) -> float:
-    """Return the energy [force length] that a closed cycle u_m -> -u_m -> u_m dissipates under a constant load.
+    """Return the energy [force length] that a closed cycle u_m -> -u_m -> u_m dissipates under a constant load, >= 0.
 
-    By Masing's rules oint F_x du = 8 int_0^u_m T du - 4 u_m T(u_m), with T of `mindlin_path` and s = c/a at u_m
+    By Masing's rules oint F_x du = 8 int_0^u_m T du - 4 u_m T(u_m), with T = mu N (1 - (1 - u/u*)^(3/2)) and s = c/a at
+    u_m
 
         W = (4/5) mu N u* (1 - s)^3 (1 + 3 s + s^2),    s^2 = 1 - u_m/u*,    for u_m <= u*,
         W = 4 mu N (u_m - (4/5) u*)                                          beyond, where all slips.
@@ -91,7 +96,10 @@ def mindlin_cycle_energy(amplitude: float, normal_force: float, friction: float,
         amplitude: u_m >= 0 [length].
         normal_force: N [force].
         friction: mu.
-        sliding: u* [length].
+        sliding: u* > 0 [length].
+
+    Raises:
+        ZeroDivisionError: u* = 0.
 
     Source: R. D. Mindlin, H. Deresiewicz, J. Appl. Mech. 20 (1953) 327; K. L. Johnson, Contact Mechanics (1985),
     Eq. (7.57).
@@ -108,11 +116,15 @@ def mindlin_cycle_energy(amplitude: float, normal_force: float, friction: float,
 def mindlin_stick_path(positions: Sequence[float], contact_radius: float, sliding: float) -> list[float]:
     """Return the radius c of the stick zone [length] at each of the positions of a path from 0 under a constant load.
 
-    After a reversal all sticks again, c = a; c is 0 in full slip.
+    In loading c² = a² (1 - |u|/u*). After a reversal at u_m all sticks again, c = a, and then c² = a² (1 - |u -
+    u_m|/2u*); c is 0 in full slip. [] without positions.
 
     Args:
         positions: u, reached one after the other [length].
         contact_radius: a [length].
         sliding: u* [length], from which on all slips.
+
+    Raises:
+        ZeroDivisionError: u* = 0, with any position.
     """
     return [contact_radius * math.sqrt(max(1.0 - abs(half[-1]) / sliding, 0.0)) for half in _amplitudes(positions)]

@@ -36,37 +36,37 @@ class Indented:
     terms: tuple[tuple[float, float], ...]
 
     def __post_init__(self) -> None:
-        """Raise ValueError where the displacements begin above 0 or have more than one maximum."""
+        """Raise ValueError where the displacements begin above 0, never exceed 0, or have more than one maximum.
+
+        A maximum may last, and the whole path may rise.
+        """
         signs = np.sign(np.diff(self.displacements))
         if self.displacements[0] > 0.0 or (np.diff(signs[signs != 0.0]) > 0.0).any() or max(self.displacements) <= 0.0:
             raise ValueError("displacements must begin at 0 or below and have one maximum")
 
     @property
     def touched(self) -> float:
-        """The time at which the bodies first touch, where the displacement passes 0 [time]."""
+        """The time at which the displacement first passes 0, linear between points: the bodies first touch [time]."""
         d = np.asarray(self.displacements)
         first = int(np.argmax(d > 0.0))
         return float(np.interp(0.0, d[first - 1 : first + 1], self.times[first - 1 : first + 1]))
 
     @property
     def deepest(self) -> float:
-        """The last moment of the largest displacement, from which on the body is retracted [time]."""
+        """The last of the given times at which the displacement is largest [time]: from then on it falls."""
         return self.times[len(self.times) - 1 - int(np.argmax(self.displacements[::-1]))]
 
     def _relaxed(self, time: Array) -> Array:
-        """Return the relaxation function φ, dimensionless, at times ≥ 0 since a load step, (m,) [time].
-
-        It is 1 at time 0.
-        """
+        """Return φ(t) = 1 − Σ g (1 − e^(−t/τ)), dimensionless, at times t ≥ 0 since a load step, (m,) [time]."""
         phi = np.ones_like(time)
         for g, tau in self.terms:
             phi += g * np.expm1(-time / tau)
         return phi
 
     def _balance(self, start: float, time: float) -> float:
-        """Return ∫ φ(t − s) d′(s) ds from `start` to `time` [length].
+        """Return ∫ φ(t − s) d′(s) ds from `start` to `time` [length]; φ = 1 − Σ g (1 − e^(−t/τ)), d by straight lines.
 
-        0 where the contact is as wide as it was at the start.
+        After the maximum it is positive where the contact is wider than it was at `start`, and 0 where it is as wide.
         """
         ends = np.unique(np.clip([start, *self.times, time], start, time))
         d = np.interp(ends, self.times, self.displacements)
@@ -78,7 +78,7 @@ class Indented:
         return float(integral)
 
     def lost(self, end: float) -> float | None:
-        """Return the time at which the contact is lost [time], up to the time `end`; None where it is not."""
+        """Return the time after the maximum at which the contact is lost [time]; None where it is not before `end`."""
         from scipy.optimize import brentq
 
         if self._balance(self.touched, end) > 0.0:
@@ -88,12 +88,12 @@ class Indented:
     def forces(self, times: Sequence[float], parts: int = 4000) -> Array:
         """Return F at times within the history, (m,), compression positive [force].
 
-        0 before the first touch and without contact. The loading has `parts` parts, each with φ at its middle: the
-        error is some 1e-7 of F.
+        0 before the first touch and from the loss of the contact on. The loading has `parts` points, each part with φ
+        at its middle: the error is some 1e-7 of F.
 
         Args:
             times: of the force, (m,) [time].
-            parts: number of parts.
+            parts: number of points.
         """
         from scipy.optimize import brentq
 

@@ -7,7 +7,7 @@ EXACT = 12
 def digits_apart(value: float, limit: float, least: int = 3) -> int:
     """Return the number of significant digits, at least `least`, that show which one of two numbers is larger.
 
-    17 at most; `least` for equal numbers.
+    17 at most; `least` for equal numbers. Two numbers are apart as soon as they are rounded to different ones.
 
     >>> digits_apart(0.10003, 0.1)
     5
@@ -19,6 +19,9 @@ def digits_apart(value: float, limit: float, least: int = 3) -> int:
 
 def apart(value: float, limit: float, least: int = 3) -> tuple[str, str]:
     """Return both numbers as text, with the significant digits, at least `least`, that show which one is larger.
+
+    Both are rounded to the same number of digits, 17 at most, `least` for equal numbers; zeros at the end are not
+    written.
 
     >>> apart(0.10003, 0.1)
     ('0.10003', '0.1')

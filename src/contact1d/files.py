@@ -22,7 +22,7 @@ FULL_DISK = {
 
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
-    """Yield the temporary path to write to, `path` with ".part" behind it; it replaces `path` at the end.
+    """Provide the temporary path to write to, `path` with ".part" behind it; it replaces `path` after the block.
 
     Where the block raises an error, `path` remains as it was and the temporary file is left.
     """
@@ -42,8 +42,8 @@ class UnreadableError(ValueError):
 def read_text(path: Path, largest: int = 8_000_000) -> str:
     """Return the text of a regular file of at most `largest` bytes, in UTF-8, without a byte-order mark.
 
-    By default a file may be twice as large as a scene with a measured profile of 1e5 points. A pipe or a device is not
-    opened, since it may have no end.
+    Line ends stay as they are. By default a file may be twice as large as a scene with a measured profile of 1e5
+    points. A pipe or a device is not opened, since it may have no end.
 
     Raises:
         UnreadableError: there is no such file, it is too large, no regular file or no text, or it cannot be read.
@@ -67,6 +67,9 @@ def read_text(path: Path, largest: int = 8_000_000) -> str:
 
 
 def write_whole(path: Path, text: str) -> None:
-    """Write a text file in UTF-8 atomically: completely or not at all; an existing file is replaced."""
+    """Write a text file in UTF-8 atomically: completely or not at all; an existing file is replaced.
+
+    Where that fails the error is raised, and an incomplete file, `path` with ".part" behind it, may be left.
+    """
     with whole(path) as part:
         part.write_text(text, encoding="utf-8")

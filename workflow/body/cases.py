@@ -40,15 +40,20 @@ class Case:
 
     @property
     def contact_modulus(self) -> float:
-        """E* [FU/LU²] of the body: that of the layer, c = k/χh, with the MDR; 2c with the paper's reduction."""
+        """Contact modulus E* [FU/LU²] of the body: c with the MDR, 2c with the reduction of Geike and Popov.
+
+        c = k/(n s) is the stiffness per length of the layer, with the stiffness k [FU/LU] of a particle to its bulk,
+        the spacing s [LU], and n = 2 chains with springs, or 1 on a rigid lower body.
+        """
         layer = self.scene.bulk_stiffness / (self.scene.chains * self.scene.bodies.spacing)
         return layer if self.scene.bodies.reduction == "mdr" else 2.0 * layer
 
     @property
     def radius(self) -> float | None:
-        """Effective radius R [LU] of a sphere on a plane, or of the paper's two equal spheres, R/2.
+        """Effective radius of curvature R [LU] of the contact: with the MDR that of the profile at its apex.
 
-        None where the profile has no radius of curvature, and with the paper's reduction for any other body.
+        With the reduction of Geike and Popov half of that for a parabola or a circle (two equal spheres), and None for
+        any other profile. None, too, where the profile has no radius of curvature: a cone, a flat punch, a power.
         """
         curvature = self.scene.bodies.profile.curvature_radius
         if curvature is None or self.scene.bodies.reduction == "mdr":
@@ -57,15 +62,15 @@ class Case:
 
     @property
     def kind(self) -> str:
-        """The kind of the profile, as a scene has it: "parabola", "cone", "power", …"""
+        """The kind of the profile, as a scene file names it: "parabola", "cone", "power", …"""
         return self.scene.bodies.profile.kind
 
     @property
     def force(self) -> float | None:
-        """F [FU], compression positive, of the reported state; None where the run has no result "force".
+        """Force F [FU], compression positive, of the reported state: the result "force" of the run.
 
-        None also with adhesion where displacements are given: a force has two displacements, so that it determines no
-        state.
+        None where the run has no such result, as a path, and where the bodies attract each other while the scene
+        prescribes displacements: one force then belongs to two displacements, and determines no state.
         """
         if self.law.attracts(self.scene) and self.scene.experiment.places():
             return None
@@ -73,9 +78,10 @@ class Case:
 
     @property
     def displacement(self) -> float | None:
-        """d [LU] of the reported state where the scene gives it; None where it does not, or `force` is known.
+        """Displacement d [LU], positive in compression, of the reported state of a scene that prescribes displacements.
 
-        Of a path it is the largest, of `tangential` the last.
+        It is the result "displacement" where the run has one, else the largest prescribed displacement, in a tangential
+        experiment the last one. None where the scene prescribes none, and wherever `force` is not None.
         """
         displacements = self.scene.experiment.places()
         if not displacements or self.force is not None:
@@ -86,43 +92,53 @@ class Case:
 
     @property
     def work(self) -> float:
-        """Work of adhesion W [FU/LU]: given, or implied by the interaction at the resulting radius.
+        """Work of adhesion W [FU/LU] ≥ 0: the result "work_of_adhesion" of the run where there is one.
 
-        0 without adhesion.
+        An interaction with attraction has it. Else the W that the scene gives in [adhesion]; 0 without [adhesion].
         """
         implied = self.quantities.get("work_of_adhesion")
         return self.scene.work_of_adhesion if implied is None else float(implied.value)
 
     @property
     def range(self) -> float:
-        """Range h₀ of the attraction [LU]: of the scene, or assumed as 0.3 nm.
+        """Range h₀ [LU] of the attraction: given in [adhesion], or for JKR, which has none, assumed as 0.3 nm.
 
-        0 without attraction, or where LU is unknown. For an interaction it is that of Lennard-Jones surfaces with its
-        force-free distance.
+        Of an interaction with attraction it is that of Lennard-Jones surfaces with the same force-free distance r₀:
+        r₀/1.026. 0 without attraction, and for JKR where the size of LU in metres is unknown.
         """
         return self.law.range_of(self.scene, ASSUMED_RANGE / self.scales.length if self.scales.known else 0.0)
 
     @property
     def law(self) -> type[Law]:
-        """The contact law of the scene, as a class."""
+        """The class of the contact law of the scene, a subclass of `Law`; not an instance of it."""
         return law_of(self.scene)
 
     @property
     def is_elastic(self) -> bool:
-        """Whether the contact has linear springs alone: no attraction, no memory, no other effects."""
+        """Whether particles are pressed as linear springs without memory, as in the theories of Hertz and Sneddon.
+
+        False with adhesion, an interaction that attracts, viscoelasticity, springs between neighbours, or noise; a
+        repulsive interaction, friction, damping, a plate or a cantilever may be present.
+        """
         return self.scene.keeps_springs and "pressed" in self.law.closed_forms and not self.law.attracts(self.scene)
 
     @property
     def sphere(self) -> tuple[float, float, float]:
-        """(R [LU], E* [FU/LU²], W [FU/LU]) of a sphere, which the body must be."""
+        """Tuple (effective radius R [LU], contact modulus E* [FU/LU²], work of adhesion W [FU/LU], 0 without it).
+
+        Raises:
+            AssertionError: the body has no effective radius (`radius` is None), as a cone.
+        """
         assert self.radius is not None
         return self.radius, self.contact_modulus, self.work
 
     @property
     def with_range(self) -> MaugisDugdale | None:
-        """The contact of an adhesive sphere whose attraction has a range, by Maugis and Dugdale.
+        """The contact by the theory of Maugis and Dugdale, by effective radius R, E*, W and the range h₀ of the case.
 
-        None for anything else.
+        None where the profile has no effective radius, W is 0, or h₀ is 0. The range of a scene with JKR is an assumed
+        one, 0.3 nm, where the size of LU is known. A circle or an ellipsoid counts as the sphere with its radius at the
+        apex.
         """
         if self.radius is None or not (self.work > 0.0 and self.range > 0.0):
             return None
@@ -130,10 +146,13 @@ class Case:
 
     @cached_property
     def body(self) -> PowerLaw | Ellipsoid:
-        """The contact, in closed form, of a cone, a power, an ellipsoid or a circle.
+        """The contact in closed form, with the contact modulus and W (0 without adhesion), without a range; cached.
 
-        Of any other profile that of a paraboloid. With W where it adheres, without a range. The profile must then have
-        a radius of curvature.
+        A `PowerLaw` of a cone and a power, an `Ellipsoid` of an ellipsoid and a circle; of any other profile the
+        paraboloid of its effective radius.
+
+        Raises:
+            AssertionError: a profile of another kind without an effective radius, as a flat punch.
         """
         profile: Any = self.scene.bodies.profile
         if self.kind == "cone":
@@ -150,7 +169,14 @@ class Case:
 
     @cached_property
     def contact_radius(self) -> float:
-        """a [LU] of the reported state by its force or displacement, without one at F = 0; 0 of separated bodies."""
+        """Contact radius a [LU] ≥ 0 that the closed form of the body (not the run) predicts for the state; cached.
+
+        It is that at the displacement of the reported state where this is known, else under its force, without both at
+        F = 0; 0 where the closed form has no contact there, as beyond pull-off.
+
+        Raises:
+            AssertionError: the profile has no closed form with a variable radius, as a flat punch.
+        """
         try:
             if self.displacement is not None:
                 return self.body.radius_at(self.displacement)
@@ -160,7 +186,11 @@ class Case:
 
     @cached_property
     def punch(self) -> tuple[FlatPunch, float]:
-        """(Contact of a flat punch, its d [LU] ≥ 0 or F over its stiffness); d is 0 where neither is given."""
+        """Tuple (contact of a flat punch in closed form, its displacement d [LU], positive in compression); cached.
+
+        d is the force over the stiffness 2E*a of the punch where the force is known, below 0 for a tension; else the
+        prescribed displacement, at least 0; 0 where neither is known. The profile must be a flat punch.
+        """
         profile: Any = self.scene.bodies.profile
         punch = FlatPunch(profile.radius, self.contact_modulus, self.work)
         return punch, max(self.displacement or 0.0, 0.0) if self.force is None else self.force / punch.stiffness

@@ -15,11 +15,17 @@ from contact1d.workflow.units import Quantity
 
 
 def pressure(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressure]) -> dict[str, Agreement]:
-    """Return {"pressure": `Agreement`} of ∫ p dA and the force, of the reported state that differs most.
+    """Return {"pressure": `Agreement`}: the relative difference of ∫ p dA of the body and the force of the run.
 
-    {} with an interaction, or without pressures. The difference is relative to ∫ |p| dA. The force has the uncertainty
-    of the forces of the run; under a given force the displacement has one, which changes ∫ p dA. `pressures`: by the
-    name of a state.
+    The difference is |∫ p dA − F| over ∫ |p| dA of one state; of several the one that is largest relative to what is
+    allowed. Allowed is the uncertainty of pressure and force, and 1e-4 at least, for a profile given by a table or a
+    scan 1e-3. The force has the uncertainty of the forces of the run; under a given force the displacement has one,
+    which changes ∫ p dA. {} with an interaction, or without pressures.
+
+    Args:
+        scene: the scene of the run.
+        outcome: its outcome, with marked states of the same names.
+        pressures: by the name of a state.
     """
     if scene.interaction is not None:
         return {}
@@ -43,14 +49,17 @@ def pressure(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressur
 
 
 def closed_form(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Agreement]:
-    """Return {"closed_form": `Agreement`} of the result that differs most from a closed form that is exact.
+    """Return {"closed_form": `Agreement`}: relative difference of a result from an exact closed form.
 
-    Closed forms hold for a contact radius between 10 spacings and 90 % of the half-width of the body. {} outside of
-    that, with given particles, or where none is exact.
+    Of several results it is the difference that is largest relative to what is allowed, 1e-4 plus three times the
+    relative uncertainty of the result. {} where no exact closed form predicts a result other than 0, where the scene
+    gives the number of particles (but for a body with an edge, such as a flat punch), with a contact radius below 10
+    spacings, and with one above 90 % of the half-width of a body without an edge.
 
     Args:
         scene: the scene of the run.
-        quantities: the results as if the inputs were exact, by name.
+        quantities: the results as if the inputs were exact, by name; the largest one whose name ends in "radius" counts
+            as the contact radius.
     """
     radius = max((quantity.value for name, quantity in quantities.items() if name.endswith("radius")), default=0.0)
     bodies, reach = scene.bodies, scene.bodies.profile.reach

@@ -54,21 +54,30 @@ FORMULAS = {
 
 
 def first_of(results: Mapping[str, Quantity], *names: str) -> Quantity | None:
-    """Return the first of the named results that a run has; None where it has none of them."""
+    """Return the result of the first of the `names`, in their order, that is in `results`; None where none is."""
     return next((results[name] for name in names if name in results), None)
 
 
 def with_implied(scene: Scene, settings: Settings, outcome: Outcome) -> Outcome:
-    """Return the outcome of a run with the results that its interaction implies; unchanged without an attraction."""
+    """Return a copy of the outcome with the results that the attraction of [interaction] implies; the same without one.
+
+    Added are "separation_energy" [FU], the work w that separates a particle from the opposite chain, over the spacing,
+    and, of a profile with a radius of curvature and a contact radius above 0, "work_of_adhesion" [FU/LU].
+    """
     quantities = implied(scene, settings, outcome.quantities)
     return _with_results(outcome, {name: (quantity, 0.0) for name, quantity in quantities.items()})
 
 
 def _with_results(outcome: Outcome, made: Made) -> Outcome:
-    """Return the outcome with further results; the uncertainty of W is that of the model, of others of the input.
+    """Return a copy of the outcome with the results of `made` added; they replace results of the same name.
 
-    `made`: (quantity, uncertainty of inputs) by name. A pressure that may be 0, as under a punch without load, has the
-    scale of the largest force over a².
+    Each has one error, the uncertainty of the quantity plus that of its inputs: from the source "model" for
+    "work_of_adhesion", else "input". A pressure [FU/LU²] that is 0 within its uncertainty has the scale max |F|/a²,
+    with a the largest result whose name ends in "radius"; without an a above 0 it has no scale.
+
+    Args:
+        outcome: the outcome, with one state at least.
+        made: (quantity, uncertainty by the inputs in its unit), by name.
     """
     sources = {"work_of_adhesion": MODEL}
     radii = (quantity.value for name, quantity in outcome.quantities.items() if name.endswith("radius"))
@@ -83,12 +92,17 @@ def _with_results(outcome: Outcome, made: Made) -> Outcome:
 
 
 def implied(scene: Scene, settings: Settings, results: Mapping[str, Quantity]) -> dict[str, Quantity]:
-    """Return `separation_energy`, w/s [FU], and of a sphere `work_of_adhesion` [FU/LU]; {} without an attraction.
+    """Return the results that the attraction of [interaction] implies, by name; {} without an attraction.
+
+    "separation_energy" is w/s [FU], the work that separates a particle from the opposite chain, over the spacing;
+    "work_of_adhesion" [FU/LU] is W = w/(πsa), with the reduction of Geike and Popov 4w/(πsa). There is no W where the
+    profile has no radius of curvature, or the results have no radius a above 0. The uncertainty of W has its difference
+    from the W that follows by JKR from the pull-off force: the result "adhesion_force", or the one expected by the law.
 
     Args:
         scene: the scene of the run.
         settings: its settings.
-        results: its results; without a radius above 0 there is no W.
+        results: its results: a is "zero_load_radius", else "contact_radius", as read off the particles.
     """
     if settings.forces.law is None or settings.forces.law.attraction is None:
         return {}
@@ -107,9 +121,10 @@ def implied(scene: Scene, settings: Settings, results: Mapping[str, Quantity]) -
 
 
 def formulas(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, dict[str, str]]:
-    """Return {"formulas": {result: formula in words}} for results.json, of results with more than one definition.
+    """Return {"formulas": {name: definition in words}} of "separation_energy" and "work_of_adhesion".
 
-    {} where the run has none of these.
+    One that is not in `quantities` is left out; {} where the run has neither. The definition of W depends on the
+    reduction of the scene.
     """
     texts = {
         "separation_energy": "w/s: w = ∫ −f dr separates one particle from the opposite chain, s the spacing; energy "
@@ -122,16 +137,25 @@ def formulas(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, dict
 
 @lru_cache(maxsize=16)  # scenes run one after the other mostly share their law
 def _work(law: DoubleExponential, spacing: float, points: int = 8000) -> Quantity:
-    """Return w [FU·LU] ≥ 0 of one particle and a chain of this spacing [LU], by the trapezoidal rule.
+    """Return w [FU·LU] ≥ 0, the work that separates one particle from a straight opposite chain; cached.
 
-    Its uncertainty is the difference from twice the step. `points`: of the distance, up to the end of the range.
+    It is the largest ∫ −f dr (f repulsion positive) from any distance to the end of the range, by the trapezoidal rule;
+    0 without tension. Its uncertainty is the difference from twice the step.
+
+    Args:
+        law: interaction of a pair.
+        spacing: of the chain [LU].
+        points: number of distances up to the end of the range.
     """
     end = law.cutoff_for(1e-10)
     r = np.linspace(end / points, end, points)
     force = row_force(law, r, spacing, end)
 
     def work(values: Array, step: float) -> float:
-        """Return the largest work [FU·LU] ≥ 0 of the attraction from a distance on, by forces (n,) at a `step` [LU]."""
+        """Return the largest work [FU·LU] ≥ 0 against attraction from any of the distances to the last one.
+
+        0 without attraction. `values`: forces, (n,) [FU], repulsion positive, at rising distances a `step` [LU] apart.
+        """
         inwards = np.cumsum(0.5 * (values[1:] + values[:-1])[::-1]) * step
         return float(max(-inwards.min(), 0.0))
 
@@ -140,9 +164,13 @@ def _work(law: DoubleExponential, spacing: float, points: int = 8000) -> Quantit
 
 
 def pressures_of(scene: Scene, outcome: Outcome) -> dict[str, BodyPressure]:
-    """Return p(r) of the reported states by name, as uncertain as the results of which it is a function.
+    """Return the pressure p(r) of each marked state of the run, by the name of the state.
 
-    {} where the run represents no body; a state without a contact radius is left out.
+    Left out are states without a contact radius above 0, or with too few particles in contact. {} where the run
+    represents no axisymmetric body: with noise, in a slide, of a flat profile, on a rigid chain, and with the reduction
+    of Geike and Popov, unless two equal spheres stand for it. The uncertainty of p includes those of displacement,
+    force and radii of the run; under linear springs on a plane, of a body without an edge, that of the contact radius
+    alone.
     """
     exact = outcome.exact
     shares = {
@@ -160,9 +188,16 @@ def pressures_of(scene: Scene, outcome: Outcome) -> dict[str, BodyPressure]:
 
 
 def _pressure_share(scene: Scene, outcome: Outcome, state: str) -> float:
-    """Return the relative change of the pressures of a state due to the uncertain numbers of the scene.
+    """Return the relative uncertainty (dimensionless) of a state's pressures due to the scene's uncertain numbers.
 
-    0 without any.
+    Of springs that are not linear, on a rigid plane, it is that of the pressure on the axis in the reduced model; else
+    that of c h(a)/a, with the stiffness c of the layer per length and the profile h under the reduction. The latter is
+    0 without a contact radius above 0, and of a body with an edge; 0, too, where all numbers are certain.
+
+    Args:
+        scene: the scene of the run.
+        outcome: its outcome.
+        state: name of the marked state, "deepest" for instance.
     """
     names = {PRESSURE, PRESSURE + state} & {name for move in outcome.moves for name in move.changes}
     if names and scene.is_stepped:
@@ -171,10 +206,11 @@ def _pressure_share(scene: Scene, outcome: Outcome, state: str) -> float:
 
 
 def _pressure_size(scene: Scene, results: Mapping[str, Quantity]) -> dict[str, Quantity]:
-    """Return {"pressure": E* g(a)/a [FU/LU²]}, to which pressures are proportional.
+    """Return {"pressure": c h(a)/a [FU/LU²]}, to which pressures are proportional, with the uncertainty 0.
 
-    That is exact of a power, with adhesion at F = 0. {} without a contact radius above 0, and of a body with an edge.
-    The uncertainty is 0.
+    c is the stiffness of the layer per length, h the profile under the reduction, and a the first of "contact_radius",
+    "largest_radius", "zero_load_radius" in the results. The proportion is exact of a power, with adhesion at F = 0. {}
+    without an a above 0, where h(a) is 0, and of a body with an edge.
     """
     radius = first_of(results, *RADII)
     if radius is None or not radius.value > 0.0 or scene.bodies.profile.has_edge:
@@ -187,8 +223,10 @@ def _pressure_size(scene: Scene, results: Mapping[str, Quantity]) -> dict[str, Q
 def with_body(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressure]) -> Outcome:
     """Return the outcome with the results of the body: pressures, stiffness, adhesion energy and Tabor parameter.
 
-    "central_pressure", "peak_pressure" and "mean_pressure" [FU/LU²], "contact_stiffness" [FU/LU], "adhesion_energy"
-    [FU·LU] and "tabor_parameter", as far as there are any; unchanged where the run represents no body.
+    Added, as far as there are any, are "central_pressure", "peak_pressure" and, where the run has none, "mean_pressure"
+    [FU/LU²], "contact_stiffness" [FU/LU], "adhesion_energy" [FU·LU] and "tabor_parameter"; pressures are those of the
+    first of the states "deepest", "final", "zero_load". The outcome is returned as it is where the run represents no
+    axisymmetric body.
 
     Args:
         scene: the scene of the run.
@@ -219,18 +257,19 @@ def with_body(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressu
 
 
 def reported_state(outcome: Outcome) -> list[str]:
-    """Return a list of the one state whose pressures are results: "deepest", "final" or "zero_load".
+    """Return a list of one name, that of the state whose pressures are results; [] where the outcome has no such state.
 
-    Empty without these.
+    It is the first of "deepest", "final" and "zero_load" among the marked states of the outcome.
     """
     return [name for name in REPORTED if name in outcome.profiles][:1]
 
 
 def _contact_results(scene: Scene, results: Mapping[str, Quantity]) -> dict[str, Quantity]:
-    """Return F/πa² [FU/LU²], where the experiment has none, and dF/dd = 2E*a [FU/LU] of elastic bodies, by name.
+    """Return "mean_pressure", F/πa² [FU/LU²], where `results` have none, and "contact_stiffness" dF/dd [FU/LU].
 
-    "mean_pressure" and "contact_stiffness", without the latter for an interaction. {} without a force, or a radius
-    above 0.
+    F is "force", else "largest_force", a "contact_radius", else "largest_radius". The stiffness 2ca, c the stiffness of
+    the layer per length, is left out with an interaction, adhesion, viscoelasticity, springs between neighbours, or
+    noise. {} without such a force, or where that a is missing or 0.
     """
     force = first_of(results, "force", "largest_force")
     radius = first_of(results, "contact_radius", "largest_radius")
@@ -246,15 +285,19 @@ def _contact_results(scene: Scene, results: Mapping[str, Quantity]) -> dict[str,
 
 
 def _tabor(scene: Scene, results: Mapping[str, Quantity]) -> dict[str, Quantity]:
-    """Return {"tabor_parameter": µ} of a body with a radius of curvature, where the attraction has a range; else {}."""
+    """Return {"tabor_parameter": µ}, dimensionless, with the uncertainty 0, for [adhesion] with a given range; else {}.
+
+    {} also for [interaction], and where the profile has no effective radius of curvature.
+    """
     mu = tabor(Case(scene, results)) if scene.work_of_adhesion else None
     return {} if mu is None else {"tabor_parameter": Quantity(mu, 0.0, NUMBER)}
 
 
 def _adhesion_energy(scene: Scene, results: Mapping[str, Quantity]) -> dict[str, Quantity]:
-    """Return {"adhesion_energy": …} [FU·LU]: πa²W on a plane with adhesion, 2a w/s with an interaction.
+    """Return {"adhesion_energy": energy [FU·LU] ≥ 0}: πa²W for [adhesion] without a range, 2a w/s with an interaction.
 
-    {} without a radius or an adhesion; with a range most of the energy is that of the cohesive zone.
+    w/s is the result "separation_energy", a "zero_load_radius", else "contact_radius". {} without such a radius,
+    without adhesion or an attraction, and for [adhesion] with a range: most of its energy is that of the cohesive zone.
     """
     a, line = first_of(results, "zero_load_radius", "contact_radius"), results.get("separation_energy")
     # With a range most of the energy is that of the cohesive zone.

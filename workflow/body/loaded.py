@@ -38,64 +38,88 @@ class LoadedState:
 
     @cached_property
     def image_ratio(self) -> float:
-        """Width of the image over that of the body (dimensionless): 2 for the paper's spheres, else 1."""
+        """Width of the contact in the particle model over that of the body, dimensionless; cached.
+
+        It is 2 where results are those of two equal spheres (the reduction of Geike and Popov, chosen against the
+        default, of a parabola or a circle), else 1.
+        """
         return WIDER_THAN_SPHERES if stands_for_spheres(self.scene) else 1.0
 
     @property
     def shape(self) -> Shape:
-        """The profile of the body."""
+        """The profile of the upper body as the scene gives it, a `Shape`, without the transform of the reduction."""
         return self.scene.bodies.profile
 
     @property
     def zone(self) -> ZonedProfile | None:
-        """The profile of a contact whose law gives the edge; None where it does not."""
+        """The profile of the state if the contact law has computed its edge; else None.
+
+        So it is of adhesion with a range. The edge of a viscoelastic body and of one with a rate-dependent adhesion is
+        computed as well; that of JKR, of springs and of an interaction is not.
+        """
         return self.profile if isinstance(self.profile, ZonedProfile) else None
 
     def has_kinks(self, shape: Shape) -> bool:
-        """Whether a body of this shape has kinks inside the contact."""
+        """Return whether the slope of this shape jumps off the axis, nearer than the contact radius of the state."""
         return any(kink < self.radius.value for kink in shape.kinks)
 
     @property
     def is_uncoupled(self) -> bool:
-        """Whether particles on a plane are uncoupled, so that their load is a function of the body's height."""
+        """Whether the lower body is a rigid plane and the scene has no springs between neighbours.
+
+        Then the force of a particle is a function of the height of the body above it, as far as it has no memory.
+        """
         return self.scene.bodies.lower == "rigid_plane" and self.scene.neighbours is None
 
     @property
     def is_elastic(self) -> bool:
-        """Whether the particles are uncoupled linear springs, so that their load is linear in the body's height."""
+        """Whether, on a rigid plane without springs between neighbours, particles in contact are linear springs.
+
+        Then the line load inside the contact is linear in the height of the body. False of a viscoelastic body and with
+        noise; True with adhesion or friction.
+        """
         return self.is_uncoupled and self.scene.keeps_springs
 
     @cached_property
     def x(self) -> Array:
-        """Positions of the particles along the body, rising, (n,) [LU].
+        """Positions of the particles along the body, rising, 0 at the axis, (n,) [LU]; cached.
 
-        Half those of the image for the paper's spheres.
+        Half of those in the particle model where the results are those of two equal spheres.
         """
         return self.profile.x / self.image_ratio
 
     @property
     def layer(self) -> float:
-        """Stiffness of the springs per length [FU/LU²]."""
+        """Stiffness per length [FU/LU²] of the springs of one chain: that of a particle to its bulk, over the spacing.
+
+        It is not that of two chains in series.
+        """
         return self.scene.bulk_stiffness / self.scene.bodies.spacing
 
     def heights(self, x: Array, shape: Shape | None = None) -> Array:
-        """Return c h(x) [FU/LU] of the body, or of another shape, at positions x (n,) [LU], (n,).
+        """Return c h(x), (n,) [FU/LU], at positions x (n,) [LU], of the body or of another `shape` in its place.
 
-        C is the stiffness per length.
+        c is the stiffness of the springs per length, h the height of the shape above its apex under the reduction of
+        the scene (with the MDR the transformed one). Positions are taken as they are, also where the image is twice as
+        wide as the body.
         """
         bodies = self.scene.bodies
         return self.layer * (bodies if shape is None else bodies.model_copy(update={"profile": shape})).height(x)
 
     @cached_property
     def edge(self) -> float | None:
-        """Half-width of the line load [LU]; None with an interaction of a body without an edge, whose load decays."""
+        """Half-width of the line load [LU], that is the contact radius of the body; cached.
+
+        None with an interaction, unless the body has an edge: such a load decays without an end.
+        """
         return None if self.scene.interaction and not self.shape.has_edge else self.radius.value / self.image_ratio
 
     @cached_property
     def jump(self) -> float | None:
-        """The line load just inside the edge [FU/LU], compression positive; None where particles determine it.
+        """The line load just inside the edge less that just outside [FU/LU], compression positive; cached.
 
-        These are the end of a body, and JKR.
+        It is the law's own where the law computes the edge; else 0, of a load that falls to 0 at its edge, or of an
+        interaction. None where only the particles show it: at the edge of a flat punch, and of JKR.
         """
         if self.zone:
             return self.zone.jump
@@ -103,9 +127,11 @@ class LoadedState:
 
     @cached_property
     def load(self) -> Array:
-        """The line load q of the particles, (n,) [FU/LU], compression positive.
+        """The line load q of the particles, (n,) [FU/LU], compression positive; cached.
 
-        Of linear springs with a known edge it follows from the jump there, and is 0 outside.
+        It is the force of a particle over the spacing (of a cell at JKR's edge over its part inside), multiplied by
+        `image_ratio`. Of linear springs whose edge the law computes it is instead the jump there plus c h(edge) − c
+        h(x), and 0 from the edge on.
         """
         if self.zone and self.is_elastic:
             edge = self.heights(np.asarray([self.zone.edge]))
@@ -114,9 +140,12 @@ class LoadedState:
 
     @cached_property
     def body(self) -> Callable[[Array], Array] | None:
-        """Function κ h(x) [FU/LU] of positions (n,) [LU], κ = −dq/dh at the axis.
+        """Function of positions (n,) [LU] that returns κ h(x), (n,) [FU/LU], h the height under the reduction; cached.
 
-        None where the shape is uncertain or has an edge, springs are coupled, or too few particles touch.
+        κ is the stiffness per length for linear springs, else −dq/dh at the axis, q the line load, or that stiffness if
+        h does not rise there. None where particles are coupled, or the lower body is no rigid plane; where the shape
+        has an edge, or is uncertain (a table or a scan); and where springs are not linear and fewer than 3 particles on
+        a side carry a load.
         """
         if not self.is_uncoupled or self.shape.has_edge or self.shape.alternatives or self.shape.deviations:
             return None
@@ -131,15 +160,25 @@ class LoadedState:
         return lambda x: slope * self.heights(x)
 
     def through(self, load: Array, stride: int, first: int = 0) -> LineLoad | None:
-        """Return the line load through every `stride`-th particle from number `first` on, on both sides.
+        """Return the line load through every `stride`-th particle on both sides, counted from the middle of the chain.
 
-        None of too few. `load`: of all particles, (n,) [FU/LU].
+        None where that leaves fewer than 3 on a side, or positions that differ between both sides.
+
+        Args:
+            load: line load at all particles, (n,) [FU/LU].
+            stride: every how many particles on a side are used.
+            first: number, from 0 at the middle, of the first one on a side.
         """
         # A known shape is resolved to round-off, one that particles show to a part of a spacing.
         apex = has_apex(self.scene) if self.body is None else has_apex(self.scene, 1e-9)
 
         def load_of(chosen: Array) -> LineLoad:
-            """Return the line load through particles of the chosen numbers."""
+            """Return the line load through the particles of the `chosen` numbers, rising along the chain.
+
+            Raises:
+                ValueError: fewer than 3 positions on a side within the edge, or positions that differ between both
+                    sides.
+            """
             kinks = *self.shape.kinks, self.shape.reach
             return line_load(self.x[chosen], load[chosen], self.edge, self.jump, apex, self.body, kinks)
 
@@ -147,24 +186,25 @@ class LoadedState:
 
 
 def has_apex(scene: Scene, off: float = 1e-3) -> bool:
-    """Whether the profile has a tip, with a singular pressure, by its slope up to `off` spacings from the axis.
+    """Return whether the profile under the reduction has a tip, as a cone, so that the pressure is singular there.
 
-    At a tip that slope is more than half of the slope up to one spacing.
+    It has one if its mean slope up to `off` spacings from the axis is more than half of that up to one spacing.
     """
     tip, neighbour = scene.bodies.height(np.array([off, 1.0]) * scene.bodies.spacing)
     return bool(tip > 0.5 * off * neighbour)
 
 
 def through(size: int, stride: int, load: Callable[[Array], LineLoad], first: int = 0) -> LineLoad | None:
-    """Return the line load through every `stride`-th particle on either side.
+    """Return the line load through every `stride`-th particle on either side of the middle of a chain.
 
-    None where these are too few or not symmetric.
+    None where there are fewer than 3 on a side, or where `load` raises ValueError (positions that are not symmetric,
+    too few within the edge).
 
     Args:
-        size: number of particles of the chain.
+        size: number of particles of the chain; a particle in the middle is used once.
         stride: every how many particles on a side are chosen.
-        load: returns the line load through particles of given numbers.
-        first: number, from the middle, of the first chosen particle on a side.
+        load: returns the line load through particles of given numbers, (k,), rising.
+        first: number, from 0 at the middle, of the first chosen particle on a side.
     """
     right = np.arange(size // 2 + first, size)[::stride]
     left = size - 1 - right[::-1]

@@ -19,7 +19,11 @@ IMAGE = "image_"
 
 
 def _is_image(scene: Scene) -> bool:
-    """Whether lengths of the run are those of the image; units that follow from F_A and a₀ make a₀ the body's."""
+    """Return whether the lengths of a run are those of the plane image of Geike and Popov, and not those of the body.
+
+    So it is where the scene chooses "geike_popov" although the default is the MDR. False of a flat or flat-punch
+    profile, for which both reductions are the same, and where the units follow from `material.surface_energy`.
+    """
     bodies = scene.bodies
     by_run = scene.material is not None and scene.material.surface_energy is not None
     by_default = default_reduction(scene.material is not None, bodies.lower, bodies.profile.kind)
@@ -27,16 +31,21 @@ def _is_image(scene: Scene) -> bool:
 
 
 def stands_for_spheres(scene: Scene) -> bool:
-    """Whether the results are those of the paper's two equal spheres, and lengths of the image are reported as well."""
+    """Return whether the results are those of two equal spheres, and the lengths of their image are reported as well.
+
+    So it is for a parabola or a circle where the scene chooses "geike_popov" although the default is the MDR, and the
+    units do not follow from `material.surface_energy`.
+    """
     return _is_image(scene) and scene.bodies.profile.kind in SPHERES
 
 
 def of_the_body(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Quantity]:
-    """Return the quantities of a run by names that state the body to which they belong.
+    """Return a new dict of the quantities of a run, by names that state the body to which they belong.
 
-    Unchanged where that is the image's. Lengths of the image have the prefix "image_"; of the paper's spheres there are
-    a contact radius of half, and a mean pressure of four times, those of the image; a mean pressure of other bodies is
-    left out.
+    Where the scene chooses "geike_popov" although the default is the MDR, a name that ends in "radius" gets the prefix
+    "image_". For a parabola or a circle (two equal spheres) the name without the prefix is added with half of the
+    value, and "mean_pressure" is four times that of the image; for other profiles "mean_pressure" is left out.
+    Everything else, and all quantities of other scenes, stay as they are.
     """
     if not _is_image(scene):
         return dict(quantities)
@@ -56,9 +65,11 @@ def of_the_body(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Q
 
 
 def doubt_of_the_image(scene: Scene) -> dict[str, str]:
-    """Return {"reduction": warning}: the body for which the results hold, and the factors for another one.
+    """Return {"reduction": warning} where a scene chooses "geike_popov" although the default is the MDR; else {}.
 
-    {} where the results are those of the body.
+    The warning names the body for which the results hold, and where known the factors of contact radius and mean
+    pressure for one body on a plane. {} also of a flat or flat-punch profile, and where the units follow from
+    `material.surface_energy`.
     """
     if not _is_image(scene):
         return {}
@@ -80,7 +91,11 @@ def doubt_of_the_image(scene: Scene) -> dict[str, str]:
 
 
 def product(factor: float, unit: str, *powers: tuple[Quantity, float]) -> Quantity:
-    """Return `factor` times the product of quantities, each to its power, in `unit`; their uncertainties add up."""
+    """Return `factor` times the product of quantities, each to its power, as a quantity in `unit`.
+
+    The unit is taken as given, not computed. The uncertainty is, to first order, the sum of the absolute changes due to
+    each quantity.
+    """
     value, spread = factor, 0.0
     for quantity, power in powers:
         part = quantity.value**power

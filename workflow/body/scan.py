@@ -14,13 +14,18 @@ from contact1d.workflow.units import LENGTH, Scales
 
 
 def scan_entry(scene: Scene, scales: Scales) -> dict[str, Any]:
-    """Return {"scan": entry of results.json}, lengths in SI where the units are known; {} without a scan."""
+    """Return {"scan": entry of results.json} with the evaluation of a measured scan; {} where the profile is no scan.
+
+    The entry has "text", "shape" (of the fitted curve), "points" (their number), "centre", "offset", "tilt" [°],
+    "noise", "correlation_length", "patches" and, of a fitted parabola or circle, "radius". Lengths are {"value",
+    "uncertainty", "unit"}, in SI where the scales are known, else in LU.
+    """
     taken = scene.bodies.profile.taken
     if taken is None:
         return {}
 
     def length(value: float, uncertainty: float = 0.0) -> Mapping[str, object]:
-        """Return {"value", "uncertainty", "unit"} of a length with its uncertainty [LU], in SI where this is known."""
+        """Return {"value", "uncertainty", "unit"} of a length [LU]: in metres where the scales are known, else LU."""
         if scales.known:
             return scales.in_si(value, uncertainty, LENGTH)
         return {"value": value, "uncertainty": uncertainty, "unit": LENGTH}
@@ -43,7 +48,11 @@ def scan_entry(scene: Scene, scales: Scales) -> dict[str, Any]:
 
 
 def misfit(scene: Scene) -> dict[str, str]:
-    """Return {"scan_fit": warning} where a scan is not the shape that was fitted to it; else {}."""
+    """Return {"scan_fit": warning} where the shape fitted to a scan misses it by more than the noise; else {}.
+
+    {} also for a smooth curve through a scan, and where the profile is no scan. The warning has the RMS difference
+    [LU].
+    """
     taken = scene.bodies.profile.taken
     if taken is None or not taken.missed:
         return {}
@@ -58,13 +67,17 @@ CURVED = ("parabola", "circle")
 
 
 def _radius(taken: Taken) -> tuple[float, float]:
-    """Return (R, its uncertainty) [LU] of a fitted parabola or circle, from the parameter 1/R."""
+    """Return (R, its uncertainty at 95 %) [LU] of a fitted parabola or circle, whose one parameter is 1/R."""
     curvature = float(taken.parameters[0])
     return 1.0 / curvature, 0.5 * float(abs(np.diff(taken.deviations[1, :, 0])[0])) / curvature**2
 
 
 def in_words(taken: Taken) -> str:
-    """Return the evaluation of a scan as a sentence without a full stop, lengths in LU."""
+    """Return the evaluation of a scan as a sentence without a full stop, lengths in LU.
+
+    It names the number of points, apex, offset and tilt (where it was fitted) that were removed, the fitted curve,
+    noise and correlation length, and in how many patches a plane would touch the measured surface.
+    """
     removed = [f"apex at {_length_text(*taken.centre)}", f"offset {taken.offset[0]:.4g} LU"]
     if taken.tilt[1] > 0.0:
         angle, spread = (math.degrees(math.atan(slope)) for slope in taken.tilt)
@@ -85,7 +98,11 @@ def in_words(taken: Taken) -> str:
 
 
 def _length_text(value: float, uncertainty: float) -> str:
-    """Return a length [LU] as text, with its uncertainty where that is not 0: "12.3 LU ± 0.1 LU"."""
+    """Return a length [LU] as text, with ± its uncertainty where that is not 0: "12.3 LU ± 0.1 LU".
+
+    The length has as many digits as two digits of the uncertainty require, 3 at least; 4 without an uncertainty, or
+    where the length is 0.
+    """
     spread = f" ± {uncertainty:.2g} LU" if uncertainty else ""
     digits = max(3, 2 + math.floor(math.log10(abs(value) / uncertainty))) if value and uncertainty else 4
     return f"{value:.{digits}g} LU{spread}"

@@ -58,12 +58,16 @@ class ClosedForm:
 
 
 def applying(case: Case) -> list[ClosedForm]:
-    """Return the closed forms that hold for a case, in the order of the families of its law; [] for none."""
+    """Return the closed forms whose conditions hold for a case, in the order of its law's families; [] for none."""
     return _applying(case, case.law.closed_forms)
 
 
 def exact(case: Case) -> list[ClosedForm]:
-    """Return the closed forms that are exact for a case: for springs on a plane by the MDR; [] for any other."""
+    """Return the closed forms that solve the model of a case exactly, and whose conditions hold; [] without any.
+
+    [] for any other run than a quasi-static one on a rigid plane with the MDR, all of whose effects the reduced model
+    has.
+    """
     scene = case.scene
     by_mdr = scene.bodies.lower == "rigid_plane" and scene.bodies.reduction == "mdr"
     known = by_mdr and scene.is_modelled and scene.is_stepped
@@ -71,23 +75,35 @@ def exact(case: Case) -> list[ClosedForm]:
 
 
 def _applying(case: Case, families: Sequence[str]) -> list[ClosedForm]:
-    """Return the closed forms of the families, in their order, that hold for a case."""
+    """Return the closed forms of the named families, in this order, whose conditions hold for a case; [] for none.
+
+    Raises:
+        KeyError: there is no family of a name.
+    """
     return [form for family in families for form in FORMS[family] if form.applies(case)]
 
 
 def theory(scene: Scene, quantities: Mapping[str, Quantity], scales: Scales) -> list[dict[str, Any]]:
-    """Return the entry `theory` of results.json: a list of closed forms with their values; [] where none holds.
+    """Return the entry `theory` of results.json: an entry for each closed form that holds; [] where none does.
 
-    `quantities`: results of the body, in units of the model; `scales`: those of the run.
+    Each has "name", "source", "applies" (why it holds), "tabor" where the values depend on it, and "values":
+    prediction, unit and deviation by the name of a result. A prediction of a result that the run lacks is left out.
+
+    Args:
+        scene: the scene of the run.
+        quantities: its results, of the body, by name, in units of the model.
+        scales: sizes of LU and FU in SI.
     """
     case = Case(scene, quantities, scales)
     return [_entry(form, case, scales) for form in applying(case)]
 
 
 def _entry(form: ClosedForm, case: Case, scales: Scales) -> dict[str, Any]:
-    """Return the entry of a closed form in results.json, with the deviations of the run, value over prediction minus 1.
+    """Return the entry of a closed form in results.json: "name", "source", "applies" and "values" by name of a result.
 
-    Predictions of results that the run lacks are left out; the deviation from a prediction of 0 is None.
+    Of each prediction "values" has "value" and "unit" (of the model), "si" with both where the size of the unit is
+    known, and "deviation", the result of the run over it minus 1, None for a prediction of 0. Predictions of results
+    that the run lacks are left out. "tabor" is there where the closed form depends on the Tabor parameter.
     """
     values: dict[str, Any] = {}
     for name, value in form.values(case).items():
@@ -106,11 +122,17 @@ def _entry(form: ClosedForm, case: Case, scales: Scales) -> dict[str, Any]:
 def in_words(results: Mapping[str, Any], name: str) -> Iterator[str]:
     """Yield the prediction of each closed form for a result, with the deviation: `Hertz 110.37 µm (+0.001 %)`.
 
-    `results`: the content of results.json; `name`: of the result. Nothing is yielded where no closed form has it.
+    The deviation is that of the run from the prediction. Numbers are in SI with a prefix where the units are known,
+    else in units of the model; the deviation is left out for a prediction of 0. Nothing is yielded where no closed form
+    has the result.
+
+    Args:
+        results: the content of results.json.
+        name: of the result.
     """
 
     def named(form: Mapping[str, Any]) -> str:
-        """Return the name of a closed form, with the Tabor parameter if it depends on it."""
+        """Return the name of a closed form, with the Tabor parameter in brackets if its entry has that."""
         return f"{form['name']} (μ = {form['tabor']:.3g})" if "tabor" in form else str(form["name"])
 
     for form in results.get("theory", ()):
@@ -128,9 +150,9 @@ def in_words(results: Mapping[str, Any], name: str) -> Iterator[str]:
 def _without_adhesion(kind: str, body: str) -> Callable[[Case], str]:
     """Return a function of a case: "<body>, pressed without adhesion" where such a closed form holds, else "".
 
-    It holds where the profile is of this kind, the contact has linear springs alone and no attraction, the run has a
-    force or a given displacement (an impact has neither), and the reduction is "mdr", or the paper's for a parabola or
-    a circle without [interaction].
+    It holds where the profile is of this kind, particles are pressed as linear springs (no attraction, viscoelasticity,
+    springs between neighbours, or noise), the run has a force or a given displacement (an impact has neither), and the
+    reduction is "mdr", or the paper's for a parabola or a circle without [interaction].
 
     Args:
         kind: of the profile, as in a scene: "cone".
@@ -138,7 +160,7 @@ def _without_adhesion(kind: str, body: str) -> Callable[[Case], str]:
     """
 
     def applies(case: Case) -> str:
-        """Return the body and its load in words; "" where the closed form does not hold."""
+        """Return "<body>, pressed without adhesion"; "" where the closed form does not hold."""
         kept = case.scene.bodies.reduction == "mdr" or (case.radius is not None and case.scene.interaction is None)
         pressed = case.force is not None or case.displacement is not None
         holds = case.kind == kind and kept and pressed and case.is_elastic
@@ -148,10 +170,17 @@ def _without_adhesion(kind: str, body: str) -> Callable[[Case], str]:
 
 
 def _contact(case: Case, a: float, d: float, force: float) -> Values:
-    """Return the predictions of a contact with a [LU], d [LU], F [FU], without F or d where the scene gives it.
+    """Return the predictions of a contact by the names of results, from its radius a, displacement d and force F.
 
-    By the names of results: lengths [LU], forces [FU], "contact_stiffness" [FU/LU], and where a > 0 "mean_pressure"
-    [FU/LU²].
+    "contact_radius", "largest_radius" and "displacement" [LU], "force" and "largest_force" [FU], "contact_stiffness"
+    [FU/LU], and where a > 0 "mean_pressure" [FU/LU²]. "force" is left out where the force of the case is known, else
+    "displacement".
+
+    Args:
+        case: the case, whose contact modulus gives the stiffness 2E*a.
+        a: contact radius [LU].
+        d: displacement [LU].
+        force: normal force [FU], compression positive.
     """
     values = {
         "displacement": d, "force": force, "contact_radius": a, "largest_force": force, "largest_radius": a,
@@ -164,9 +193,11 @@ def _contact(case: Case, a: float, d: float, force: float) -> Values:
 
 
 def _elastic_values(case: Case) -> Values:
-    """Return the predictions of a body without adhesion by name, "central_pressure" and "peak_pressure" where finite.
+    """Return the predictions of a body pressed without adhesion, by the names of results.
 
-    In units of the model: lengths [LU], forces [FU], stiffness [FU/LU], pressures [FU/LU²].
+    "contact_radius", "largest_radius" [LU], "displacement" [LU] under a known force, else "force" [FU], "largest_force"
+    [FU], "contact_stiffness" [FU/LU], "mean_pressure" for a contact radius above 0, and where finite "central_pressure"
+    and "peak_pressure" [FU/LU²]: a cone has neither, a power with an exponent above 2 no peak.
     """
     body, a = case.body, case.contact_radius
     pressures = {"central_pressure": body.central_pressure(a), "peak_pressure": body.peak_pressure(a)}
@@ -175,16 +206,24 @@ def _elastic_values(case: Case) -> Values:
 
 
 def _pressure(case: Case, r: Array) -> Array:
-    """Return p(r) [FU/LU²], compression positive, of a paraboloid or a cone at radii r (n,) [LU], (n,)."""
+    """Return p(r), (n,) [FU/LU²], compression positive, of a paraboloid or a cone in the reported state, r (n,) [LU].
+
+    By Hertz, Sneddon, or with adhesion JKR: tension at the edge; 0 from the edge on. Infinite at a cone's tip.
+
+    Raises:
+        AssertionError: the body is an ellipsoid, a circle or a flat punch.
+        ValueError: the body is a power with an exponent other than 1 and 2.
+    """
     body = case.body
     assert isinstance(body, PowerLaw)
     return body.pressure(r, case.contact_radius)
 
 
 def _punch_values(case: Case) -> Values:
-    """Return the predictions of a flat punch by name, p(0) = E*d/πa [FU/LU²] among them, without its radius.
+    """Return the predictions of a flat punch without adhesion by name, p(0) = E*d/πa as "central_pressure" [FU/LU²].
 
-    The pressure at the edge is singular.
+    Also "mean_pressure" [FU/LU²], "contact_stiffness" [FU/LU], "largest_force" [FU], and "displacement" [LU] under a
+    known force, else "force" [FU]. No radius is among them, and no largest pressure, which is singular at the edge.
     """
     punch, d = case.punch
     values = _contact(case, punch.radius, d, punch.stiffness * d)
@@ -193,7 +232,10 @@ def _punch_values(case: Case) -> Values:
 
 
 def _punch_pressure(case: Case, r: Array) -> Array:
-    """Return p(r) [FU/LU²], compression positive, of a flat punch at radii r (n,) [LU], (n,)."""
+    """Return p(r), (n,) [FU/LU²], compression positive, of a flat punch without adhesion, at radii r < a, (n,) [LU].
+
+    The pressure is infinite at the edge r = a.
+    """
     punch, d = case.punch
     return punch.pressure(r, d)
 
@@ -202,15 +244,24 @@ def _punch_pressure(case: Case, r: Array) -> Array:
 
 
 def _adhesive(kind: str, body: str) -> Callable[[Case], str]:
-    """Return the condition of a kind of profile on a plane with a work of adhesion: a function of a case.
+    """Return a function of a case: "<body> that adheres, without a range" for a profile of this kind, else "".
 
-    It returns text, "" where it does not hold. `body`: name of the body in the text.
+    That the case has adhesion is not checked: only laws with [adhesion] have such closed forms.
+
+    Args:
+        kind: of the profile, as in a scene: "cone".
+        body: its name in the text: "a cone".
     """
     return lambda case: f"{body} that adheres, without a range" if case.kind == kind else ""
 
 
 def _marks(case: Case, contact: Contact) -> Values:
-    """Return F_A [FU] > 0, a_cr and a₀ [LU], and a and d [LU] under a given load that the contact sustains, by name."""
+    """Return the predictions of an adhesive contact by the names of results.
+
+    "adhesion_force", the pull-off force F_A [FU] as a positive tension; "critical_radius" and "zero_load_radius", the
+    contact radii there and at F = 0 [LU]; and under a known force that is no larger tension than F_A "contact_radius"
+    and "displacement" [LU].
+    """
     values = {
         "adhesion_force": contact.pull_off_force(), "critical_radius": contact.critical_radius(),
         "zero_load_radius": contact.zero_load_radius(),
@@ -222,15 +273,24 @@ def _marks(case: Case, contact: Contact) -> Values:
 
 
 def _jkr_values(case: Case) -> Values:
-    """Return the predictions of JKR for a sphere with an interaction, by name: forces [FU], lengths [LU]."""
+    """Return the predictions of JKR for a sphere with an interaction, by the names of results.
+
+    "adhesion_force" [FU], a positive tension, "critical_radius" and "zero_load_radius" [LU], and under a known force
+    that the contact sustains "contact_radius" and "displacement" [LU].
+    """
     return _marks(case, case.body)
 
 
 def _adhesive_values(case: Case) -> Values:
-    """Return the predictions of JKR and its extensions for a body on a plane, by name in units of the model.
+    """Return the predictions of JKR, or its extension to the profile, for a body on a plane, by the names of results.
 
-    Those of `_marks`, "fixed_grips_displacement" [LU], "adhesion_energy" [FU·LU], and of a paraboloid in contact and
-    under a force also pressures [FU/LU²].
+    "adhesion_force" [FU], a positive tension, "critical_radius", "zero_load_radius" and "fixed_grips_displacement"
+    (where the contact is lost under displacement control) [LU], "adhesion_energy" πa²W [FU·LU], and under a known force
+    that the contact sustains "contact_radius" and "displacement" [LU] and, if it is in contact, "mean_pressure"
+    [FU/LU²]. Of a paraboloid in contact also "central_pressure" and "peak_pressure", both p(0) [FU/LU²].
+
+    The radius a of "adhesion_energy" is that under the force; without a known force that at the displacement of the
+    run, or if the run has no such result at F = 0; 0 beyond pull-off.
     """
     body, values = case.body, _marks(case, case.body)
     values["fixed_grips_displacement"] = body.displacement(body.fixed_grips_radius())
@@ -245,28 +305,33 @@ def _adhesive_values(case: Case) -> Values:
 
 
 def _adhesive_punch_values(case: Case) -> Values:
-    """Return F_A = √(8πE*Wa³) [FU] of a flat punch, and d = F/2E*a [LU] under a given force, by name."""
+    """Return "adhesion_force", F_A = √(8πE*Wa³) [FU], a positive tension, of an adhesive flat punch of radius a.
+
+    Under a known force F [FU], compression positive, also "displacement", d = F/2E*a [LU].
+    """
     punch, d = case.punch
     values = {"adhesion_force": punch.pull_off_force()}
     return values if case.force is None else values | {"displacement": d}
 
 
 def tabor(case: Case) -> float | None:
-    """Return the Tabor parameter µ = (R W²/E*² h₀³)^{1/3} (dimensionless) of a sphere with a range.
+    """Return the Tabor parameter µ = (R W²/E*² h₀³)^{1/3} (dimensionless) of an adhesive contact.
 
-    None for anything else.
+    R is the effective radius and h₀ the range of the attraction; for JKR, which has none, 0.3 nm is assumed. None where
+    the profile has no effective radius, W is 0, there is no attraction, or JKR's LU is unknown in metres.
     """
     return None if case.with_range is None else case.with_range.tabor
 
 
 def _with_a_range(of_any: bool) -> Callable[[Case], str]:
-    """Return the condition of a paraboloid with a range on a plane, where JKR does not hold or `of_any` µ.
+    """Return a function of a case: text on the Tabor parameter of an adhesive paraboloid, or "".
 
-    It is a function of a case: text, "" where it does not hold.
+    It is "" for another profile, without a Tabor parameter, and, unless `of_any`, where that is one of JKR, above 5.
+    The range may be an assumed one.
     """
 
     def applies(case: Case) -> str:
-        """Return the Tabor parameter and its theory in words; "" where the closed form does not hold."""
+        """Return text with the Tabor parameter and the theory that holds there; "" where the form does not hold."""
         mu = tabor(case)
         if mu is None or case.kind != "parabola" or (of_tabor(mu) is Theory.JKR and not of_any):
             return ""
@@ -276,14 +341,15 @@ def _with_a_range(of_any: bool) -> Callable[[Case], str]:
 
 
 def _by_tabor(theory: Theory) -> Callable[[Case], str]:
-    """Return the condition of a paraboloid with an interaction alone, at Tabor parameters where `theory` holds.
+    """Return a function of a case with an interaction: text with its Tabor parameter where `theory` holds, or "".
 
-    It is a function of a case: text, "" where it does not hold. The reduction is the MDR, so that E* and R are the
-    body's.
+    It is "" for another profile than a parabola, another reduction than the MDR (with which E* and R are the body's),
+    with springs between neighbours, with noise, and where the Tabor parameter is one of another theory (JKR above 5,
+    DMT below 0.1, else Maugis and Dugdale).
     """
 
     def applies(case: Case) -> str:
-        """Return the Tabor parameter in words; "" where the closed form does not hold."""
+        """Return text with the Tabor parameter of the interaction; "" where the closed form does not hold."""
         scene, mu = case.scene, tabor(case)
         sphere = case.kind == "parabola" and scene.bodies.reduction == "mdr"
         if mu is None or not sphere or scene.neighbours or scene.noise or of_tabor(mu) is not theory:
@@ -294,9 +360,11 @@ def _by_tabor(theory: Theory) -> Callable[[Case], str]:
 
 
 def _maugis_values(case: Case) -> Values:
-    """Return the predictions of Maugis and Dugdale for a sphere with a range, by name: forces [FU], lengths [LU].
+    """Return the predictions of Maugis and Dugdale for a sphere with a range, by the names of results.
 
-    Without "displacement" for an interaction, which has another origin.
+    "adhesion_force" [FU], a positive tension, "critical_radius" and "zero_load_radius" [LU], and under a known force
+    that the contact sustains "contact_radius" and "displacement" [LU]. For an interaction "displacement" is left out:
+    there it has another origin.
     """
     values = _marks(case, MaugisDugdale(*case.sphere, case.range))
     if case.scene.interaction:  # its displacement has another origin
@@ -305,7 +373,11 @@ def _maugis_values(case: Case) -> Values:
 
 
 def _dmt_values(case: Case) -> Values:
-    """Return the predictions of DMT for a sphere, by name, without a critical radius: forces [FU], lengths [LU]."""
+    """Return the predictions of DMT for a sphere, by the names of results, without a critical radius.
+
+    "adhesion_force" [FU], a positive tension, "zero_load_radius" [LU], and under a known force that the contact
+    sustains "contact_radius" and "displacement" [LU].
+    """
     values = _marks(case, Dmt(*case.sphere))
     del values["critical_radius"]
     return values
@@ -316,7 +388,11 @@ def _dmt_values(case: Case) -> Values:
 
 
 def drawn_along(case: Case) -> str:
-    """Return the condition of Cattaneo and Mindlin in words: a paraboloid under a constant load; "" where it fails."""
+    """Return text that states the condition of Cattaneo and Mindlin; "" where it does not hold.
+
+    It holds in a tangential experiment with a parabola, a coefficient of friction other than 0, and the same normal
+    force, or normal displacement, above 0 in all load steps, but for round-off.
+    """
     experiment: Any = case.scene.experiment
     if not experiment.goes_along or case.kind != "parabola" or case.scene.the(Friction).coefficient == 0.0:
         return ""
@@ -327,7 +403,11 @@ def drawn_along(case: Case) -> str:
 
 
 def sliding_contact(case: Case) -> tuple[float, float, float, float]:
-    """Return (N [FU], μ, u* [LU], a [LU]) of a case that meets `drawn_along`; u* is that of full sliding."""
+    """Return (N [FU], μ, u* [LU], a [LU]) of a paraboloid displaced tangentially under a constant load, in closed form.
+
+    N is the normal force, compression positive, u* the tangential displacement at which full sliding begins, a the
+    contact radius. The case must be a tangential experiment with friction and a parabola.
+    """
     experiment: Any = case.scene.experiment
     scene, body, loads = case.scene, case.body, experiment.normal_forces()
     edge = body.contact_radius(loads[0]) if loads else body.radius_at(experiment.places()[0])
@@ -336,10 +416,12 @@ def sliding_contact(case: Case) -> tuple[float, float, float, float]:
 
 
 def _mindlin_values(case: Case) -> Values:
-    """Return the predictions of Cattaneo and Mindlin at the end of the path and of a cycle, by name.
+    """Return the predictions of Cattaneo and Mindlin at the end of the path, by the names of results.
 
-    N unless it is given. "tangential_force" and "normal_force" [FU], "contact_radius" and "stick_radius" [LU],
-    "dissipated_energy_per_cycle" [FU·LU].
+    "tangential_force" [FU], with the sign of the displacement in loading, "contact_radius" and "stick_radius" [LU] and,
+    where the scene prescribes the normal displacement, "normal_force" [FU], compression positive.
+    "dissipated_energy_per_cycle" [FU·LU] ≥ 0 is that of a closed cycle with the largest tangential displacement as its
+    amplitude, also of a path without cycles.
     """
     experiment: Any = case.scene.experiment
     *contact, edge = sliding_contact(case)
@@ -357,9 +439,13 @@ def _mindlin_values(case: Case) -> Values:
 
 
 def indented(case: Case) -> Indented | None:
-    """Return the indentation of a viscoelastic paraboloid, cone or power by a given displacement; else None.
+    """Return the history of an indentation by given displacements, for Ting's theory; None where it does not hold.
 
-    None also with more than one indentation.
+    It holds for a viscoelastic parabola, cone or power. None for another profile, without a Prony series (also of
+    dashpots), without given displacements, and where these begin above 0 or have more than one maximum.
+
+    Raises:
+        ValueError: the largest displacement is below 0.
     """
     given: Any = case.scene.experiment
     exponents = {"parabola": 2.0, "cone": 1.0}
@@ -375,14 +461,21 @@ def indented(case: Case) -> Indented | None:
 
 
 def _relaxes(case: Case) -> str:
-    """Return the condition of Ting in words; "" where it fails: a viscoelastic body, pressed once by a displacement."""
+    """Return "a body that relaxes, pressed once by a given displacement" where Ting's theory holds; else "".
+
+    It holds of a viscoelastic parabola, cone or power with a Prony series whose given displacements have one maximum.
+    """
     return "a body that relaxes, pressed once by a given displacement" if indented(case) else ""
 
 
 def _ting_values(case: Case) -> Values:
-    """Return the predictions of Ting: "peak_force" and "force" [FU], and where it separates "contact_time" [TU].
+    """Return the predictions of Ting: "peak_force" and, at the end of the history, "force" [FU], compression positive.
 
-    The largest force is that at 200 times and the corners of the history.
+    Where the bodies separate before the end also "contact_time" [TU], from first touch to separation. The peak is the
+    largest force at 200 times and at the corners of the history.
+
+    Raises:
+        AssertionError: the case is no single indentation of a viscoelastic parabola, cone or power.
     """
     history = indented(case)
     assert history is not None

@@ -89,9 +89,10 @@ class BodyShear:
 
 
 def is_of_a_body(scene: Scene) -> bool:
-    """Whether the line load of a run is that of an axisymmetric body, in equilibrium without noise.
+    """Return whether a run has pressures p(r) of an axisymmetric body, in equilibrium or over a prescribed history.
 
-    So that it has pressures p(r). A slide has none.
+    False with noise, in a slide, for a flat profile, on a rigid chain, and with the reduction of Geike and Popov,
+    unless it was chosen against the default for a parabola or a circle: two equal spheres then stand for it.
     """
     bodies = scene.bodies
     represents_body = bodies.reduction == "mdr" or stands_for_spheres(scene)
@@ -106,14 +107,21 @@ def body_pressures(
     of_all: float,
     given: Mapping[str, float],
 ) -> dict[str, BodyPressure]:
-    """Return p(r) of the reported states with a contact radius, by name; {} where the run represents no body.
+    """Return p(r) of the given states by name; {} where the run represents no axisymmetric body.
+
+    A state without a contact radius above 0, or with too few particles in contact, is left out.
 
     Args:
         scene: the scene of the run.
         profiles: the profiles of the reported states, by name.
-        of_radius: relative uncertainty of each contact radius, of which pressures under elastic springs are functions.
-        of_all: sum of the relative uncertainties of all results, for the pressure under other springs.
+        of_radius: relative uncertainty of each contact radius, of which pressures under linear springs are functions.
+        of_all: sum of the relative uncertainties of all results, for the pressure under other springs; added to `doubt`
+            of each pressure.
         given: relative uncertainty of the pressures of each state by the uncertain numbers of the scene.
+
+    Raises:
+        KeyError: `of_radius` or `given` lacks a state in contact.
+        ValueError: no radius can be read off a profile: too few particles, or tension where the law has none.
     """
     if not is_of_a_body(scene):
         return {}
@@ -132,13 +140,15 @@ def body_pressures(
 def _pressure(state: LoadedState, share: float, given: float, most: int = 1000) -> BodyPressure | None:
     """Return p(r) [FU/LU²], compression positive, of the axisymmetric body from the line load of a state.
 
-    With its uncertainty; None where too few particles touch, or they are not symmetric.
+    With its uncertainty, integrals and stiffness; r goes from 0, or under a tip from the first particle off the axis,
+    to the last particle inside the edge. None where fewer than 3 particles on a side are inside, or they are not
+    symmetric.
 
     Args:
         state: the line load of the state.
-        share: relative error of the results, which changes p by `_edge_sensitivity`.
+        share: relative error of the results; it is multiplied by the change of p with the relative contact radius.
         given: relative error of p by the uncertain numbers of the scene.
-        most: particles on a side that are used, and radii of p; of more, every second, third …
+        most: particles on a side that are used at most; of more, every second, third …
     """
     scene, x, zone = state.scene, state.x, state.zone
     stride = -(-(x.size - x.size // 2) // most)
@@ -185,11 +195,13 @@ def _pressure(state: LoadedState, share: float, given: float, most: int = 1000) 
 def _with_discretisation(
     state: LoadedState, stride: int, spread: Array, levels: Sequence[Array], pressure: Callable[[LineLoad], Array]
 ) -> Array:
-    """Return the error of p with the discretisation error, (n,) [FU/LU²], by differences between levels of particles.
+    """Return the error of p with the discretisation error added to `spread`, (n,) [FU/LU²].
 
-    A known shape has none: where the particles are too few to show it, its edge alone is uncertain. Where the shape is
-    not known, the error is 2.5 times the largest one at seven radii around; measured with rings that come into contact
-    again, between whose particles a slope jumps.
+    Added is the difference of p between levels of particles, for a single level |p|, but nothing for a single level of
+    a shape given by a formula: its edge alone is uncertain. On a plane under springs that are not linear, the error is
+    at least the change with the other half of the particles, |p|/(2m)² with m particles inside is added for a single
+    level of a shape given by a formula, and the error is 2.5 times the largest at seven radii around: that was measured
+    with rings that come into contact again, between whose particles a slope jumps.
 
     Args:
         state: the line load of the state.
@@ -215,9 +227,10 @@ def _with_discretisation(
 
 
 def _sum_error(state: LoadedState) -> float:
-    """Return the largest error [FU] of the sum for ∫ q dx: Δ²/12 of each change of slope (Euler, Maclaurin).
+    """Return the largest error [FU] ≥ 0 of the sum over particles for ∫ q dx: Δ²/12 of each change of slope.
 
-    0 where the line load ends by a jump, known or not.
+    Δ is the distance of particles along the body (Euler, Maclaurin). 0 where the line load ends by a jump, known or
+    not.
     """
     if state.jump != 0.0:
         return 0.0
@@ -226,10 +239,11 @@ def _sum_error(state: LoadedState) -> float:
 
 
 def _stiffness(state: LoadedState, share: float) -> Quantity | None:
-    """Return dF/dd = −∫ (dq/dh) dx [FU/LU] of springs whose forces are functions of d − h; 2E*a of linear ones.
+    """Return dF/dd = −∫ (dq/dh) dx [FU/LU] of springs whose forces are functions of d − h; with the MDR 2E*a if linear.
 
-    Between two particles the slope is that of a straight line; `share` is the relative error of the results. None of
-    coupled springs, of a body with an edge, and of a load that has no edge or jumps there.
+    Between two particles the slope is that of a straight line; `share` is the relative error of the results. The
+    uncertainty is the change with every second particle, and that share. None of coupled springs or two chains, of a
+    body with an edge, and of a load that has no edge, or may jump there.
     """
     edge = state.edge
     if not state.is_uncoupled or edge is None or state.jump != 0.0 or state.shape.has_edge:
@@ -250,17 +264,24 @@ def _stiffness(state: LoadedState, share: float) -> Quantity | None:
 def _shape_error(
     state: LoadedState, stride: int, r: Array, p: Array, attraction: Callable[[Array], Array]
 ) -> Callable[[Callable[[Array], Any]], Any]:
-    """Return a function of a reader of p(r): the change of its reading for the possible shapes, in its unit.
+    """Return a function of a reader of p(r): the change, ≥ 0, of its reading for the possible shapes, in its unit.
 
-    Changes with independent shapes are added in squares, those with coarser ones as they are. The reader takes p (n,)
-    at the radii r.
+    A reader takes p at the radii r, (n,), and returns a number or an array. Changes with independent shapes are added
+    in squares, those with coarser ones as they are; 0 for a shape given by a formula.
+
+    Args:
+        state: the line load of the state.
+        stride: every how many particles are used.
+        r: radii, (n,) [LU].
+        p: pressure there of the shape itself, (n,) [FU/LU²].
+        attraction: tension inside by an attraction beyond the edge, ≥ 0 [FU/LU²], of radii.
     """
     shape, x = state.shape, state.x if state.edge is None else np.clip(state.x, -state.edge, state.edge)
 
     def pressures_of(shapes: Sequence[Shape]) -> list[Array]:
-        """Return p(r) [FU/LU²] of other shapes under the same displacement, (n,) each.
+        """Return a list of p(r), (n,) [FU/LU²], of other shapes under the same displacement.
 
-        Those with too few particles are left out.
+        Shapes under which too few particles are in contact are left out.
         """
         changes = [state.heights(x) - state.heights(x, alternative) for alternative in shapes]
         lines = [state.through(state.load + change - change[0], stride) for change in changes]
@@ -269,7 +290,10 @@ def _shape_error(
     coarser, deviations = pressures_of(shape.coarser), [pressures_of(pair) for pair in shape.deviations]
 
     def change(read: Callable[[Array], Any]) -> Any:
-        """Return the change of a reading, in its unit: of coarser shapes the sum, of independent ones by squares."""
+        """Return the change ≥ 0 of a reading, in its unit: of coarser shapes the sum, of independent ones by squares.
+
+        Of the two shapes of a pair the larger change counts.
+        """
         independent = [[abs(read(varied) - read(p)) for varied in pair] for pair in deviations if pair]
         return sum(abs(read(varied) - read(p)) for varied in coarser) + np.sqrt(
             sum(np.max(pair, axis=0) ** 2 for pair in independent)
@@ -281,10 +305,21 @@ def _shape_error(
 def _bounded_pressures(
     state: LoadedState, fine: LineLoad, r: Array, levels: Sequence[Array], pressure: Callable[[Array], Array]
 ) -> dict[str, tuple[Quantity, int, Callable[[Array], Any]]]:
-    """Return p(0) and the largest pressure [FU/LU²] where bounded, by name, with its index in r and its reader of p.
+    """Return "central_pressure" p(0) and "peak_pressure" [FU/LU²], each with its index in r and its reader of p.
 
-    An uncertainty of 0 is determined later by these; it is infinite where nothing shows that the pressure is bounded.
-    "peak_pressure" is the vertex between radii. One that is singular is left out.
+    Both are left out under a tip, and the peak where it is singular (at an edge or a kink), not above 0, or off the
+    axis of a contact too narrow for three levels. A pressure that does not converge over the levels is left out, or if
+    the shape is uncertain (a table or a scan) has an infinite uncertainty; that of a peak is infinite, too, where
+    another possible shape has a kink inside the contact. Else the uncertainty is 0, for the caller to fill in by index
+    and reader. "peak_pressure" is that of the vertex between radii.
+
+    Args:
+        state: the line load of the state.
+        fine: line load through the finest level of particles.
+        r: radii, (n,) [LU].
+        levels: p through every, every second and every fourth particle, as far as the contact is wide enough, (n,)
+            each.
+        pressure: p at other radii.
     """
     scene, shape, p = state.scene, state.shape, levels[0] if levels else pressure(r)
     # Smaller differences, relative to the pressure, are those of the minimiser.
@@ -310,10 +345,17 @@ def _bounded_pressures(
 
 
 def _is_bounded(state: LoadedState, fine: LineLoad, top: int, noise: float) -> bool:
-    """Whether the largest pressure is bounded: a jump at the edge is a pole, a kink inside a logarithmic singularity.
+    """Return whether the largest pressure is bounded: no jump above 0 of the line load at the edge, no kink inside.
 
-    A jump that the law gives counts however small it is, one that the particles show if it exceeds their errors. `top`:
-    index of the largest pressure; `noise`: error of a pressure [FU/LU²].
+    A jump is a pole, a kink a logarithmic singularity. A jump that the law gives with the edge counts however small it
+    is, any other if it exceeds the errors; where only particles show one (JKR), it does not count if p is largest on
+    the axis. False of a body with an edge.
+
+    Args:
+        state: the line load of the state.
+        fine: line load through the finest level of particles.
+        top: index of the largest pressure; 0 is on the axis.
+        noise: error of a pressure [FU/LU²].
     """
     if state.shape.has_edge or state.has_kinks(state.shape):
         return False
@@ -322,7 +364,9 @@ def _is_bounded(state: LoadedState, fine: LineLoad, top: int, noise: float) -> b
 
 
 def _nodes(state: LoadedState, edge: float, angles: int) -> tuple[Array, Array]:
-    """Return radii r = a sin θ [LU] for the quadrature of p(r) over the contact, and the area of each [LU²], (k,) each.
+    """Return (radii r = a sin θ [LU], area of the ring of each [LU²]), (k,) each, for the quadrature of p(r).
+
+    Both edges r = 0 and r = a are left out; the areas add up to πa².
 
     Args:
         state: the line load of the state.
@@ -345,10 +389,15 @@ def _nodes(state: LoadedState, edge: float, angles: int) -> tuple[Array, Array]:
 
 
 def _attraction(scene: Scene, zone: ZonedProfile | None, growth: float = 0.0) -> tuple[float, Callable[[Array], Array]]:
-    """Return (force [FU] ≤ 0 of the attraction beyond the edge, tension [FU/LU²] that it causes inside at radii [LU]).
+    """Return (force [FU] ≤ 0 of the attraction beyond the edge, tension ≥ 0 [FU/LU²] that it causes inside).
 
-    The force is that of `Law.cohesive_load`, the tension a function of radii (n,); 0 and zeros without a zone. Edge and
-    reach are larger by a share `growth`.
+    The tension is a function of radii (n,) [LU], (n,). 0 and zeros without a zone, and for laws without such an
+    attraction.
+
+    Args:
+        scene: whose attraction it is.
+        zone: the profile with the edges of contact and attraction; None: the law has computed none.
+        growth: share by which edge and reach are larger than those of the profile, relative to the edge.
     """
     if zone is None:
         return 0.0, np.zeros_like
@@ -357,10 +406,17 @@ def _attraction(scene: Scene, zone: ZonedProfile | None, growth: float = 0.0) ->
 
 
 def _edge_sensitivity(load: LineLoad, body: Callable[[Array], Array], r: Array, sign: float) -> Array:
-    """Return |a ∂p/∂a| [FU/LU²] under springs on a plane at most, without the J/2a of a growing jump, (n,).
+    """Return a ∂p/∂a, (n,) [FU/LU²], at radii inside the edge a, under springs on a plane, of either sign.
 
-    `body`: function of a position that returns E* g [FU/LU]; r: radii inside the edge, (n,) [LU]. `sign` of the jump's
-    part is −1 where both parts are known to have the same edge, else 1.
+    That is [E* a g′(a) + `sign` J a²/(a² − r²)]/π√(a² − r²), with J the jump of the line load at the edge; the change
+    of p by the growth of the jump, J/2a, is left out.
+
+    Args:
+        load: the line load, with edge and jump.
+        body: function of a position that returns E* g [FU/LU].
+        r: radii inside the edge, (n,) [LU].
+        sign: −1 where both parts are known to have the same edge, else 1: the sum of their magnitudes for a jump above
+            0.
     """
     square = (load.edge - r) * (load.edge + r)
     rise = np.diff(body(load.edge * np.asarray([1.0, 1.0 + STEP]))) / STEP
@@ -368,11 +424,14 @@ def _edge_sensitivity(load: LineLoad, body: Callable[[Array], Array], r: Array, 
 
 
 def _converges(levels: Sequence[float], noise: float, ratio: float = 0.45) -> bool:
-    """Whether a value through every, every second and every fourth particle converges.
+    """Return whether a value through every, every second and every fourth particle converges; True with fewer levels.
 
-    True with fewer of these `levels`. |p₁ − p₂|/|p₁ − p₄| is 1/(1 + 2ᵖ) for an order of convergence p, ½ for a
-    logarithm, and more for a pole. `noise`: relative change that is none; `ratio`: largest quotient that counts as
-    convergence.
+    |p₁ − p₂|/|p₁ − p₄| is 1/(1 + 2ᵖ) for an order of convergence p, ½ for a logarithm, and more for a pole.
+
+    Args:
+        levels: the values p₁, p₂ and p₄, all in one unit.
+        noise: change over |p₁| up to which p₁ and p₂ count as equal.
+        ratio: the quotient must be below this.
     """
     if len(levels) < 3:
         return True
@@ -382,10 +441,11 @@ def _converges(levels: Sequence[float], noise: float, ratio: float = 0.45) -> bo
 
 
 def _level_difference(values: Array, *coarser: Array) -> Array:
-    """Return |fine − coarse| and a quarter of the next difference, (n,).
+    """Return |fine − coarse| and a quarter of the next difference, added, (n,) in the unit of the values.
 
-    Where there is no coarser one, the magnitude of the value. The first difference may be small by accident where a
-    kink lies between particles; a quarter of the next one is as large at an order of convergence of 2.
+    Without a coarser level, and where the sum is not finite, it is the magnitude of the value. The first difference may
+    be small by accident where a kink lies between particles; a quarter of the next one is as large at an order of
+    convergence of 2.
     """
     levels = (values, *(coarser or (0.0,)))
     pairs = zip((1.0, 0.25), levels, levels[1:], strict=False)
@@ -396,15 +456,16 @@ def _level_difference(values: Array, *coarser: Array) -> Array:
 def body_shears(
     scene: Scene, profiles: Mapping[str, Profile], columns: Mapping[str, Array], contact_radii: Array
 ) -> dict[str, BodyShear]:
-    """Return q(r) of the reported states with a contact radius, by name; {} where the run represents no body.
+    """Return the shear traction q(r) of the reported states of a tangential experiment, by name; else {}.
 
-    A flat punch has none: the shear at its edge is as singular as the pressure. Nor has the paper's reduction.
+    {} also with the reduction of Geike and Popov, and of a body with an edge, where the shear is as singular as the
+    pressure. A state without a contact radius above 0, or with too few particles in contact, is left out.
 
     Args:
         scene: the scene of the run.
         profiles: profiles of the reported states, "final" or the farthest one.
-        columns: columns of curve.csv, as in `Run.friction`.
-        contact_radii: a of each load step [LU], NaN where the bodies do not touch.
+        columns: columns of curve.csv by name, among them "stick_radius" and "tangential_displacement" [LU], (m,).
+        contact_radii: a of each load step, (m,) [LU], NaN where the bodies do not touch.
     """
     if not scene.experiment.goes_along or scene.bodies.reduction != "mdr" or scene.bodies.profile.has_edge:
         return {}
@@ -419,13 +480,20 @@ def body_shears(
 
 
 def row_of(state: str, columns: Mapping[str, Array]) -> int:
-    """Return the number of the load step of a reported state: of "final" the last, else the first farthest along x."""
+    """Return the index, from 0 on, of the load step of a reported state in a tangential experiment.
+
+    Of "final" it is the last one; of any other name the first with the largest magnitude of the column
+    "tangential_displacement".
+    """
     positions = columns["tangential_displacement"]
     return len(positions) - 1 if state == "final" else int(np.argmax(np.abs(positions)))
 
 
 def _shear(scene: Scene, profile: Profile, edge: float, kinks: Sequence[float], stick: float) -> BodyShear | None:
-    """Return q(r) of a state, at 100 radii and the kinks; None where too few particles touch.
+    """Return q(r) of a state, at 100 radii from 0 to the contact radius and the kinks.
+
+    r = 0 is left out under a tip, where q is singular. None where fewer than 3 particles on a side are in contact, or
+    they are not symmetric. The uncertainty is the difference from every second particle, without enough of these |q|.
 
     Args:
         scene: the scene of the run.
@@ -436,7 +504,11 @@ def _shear(scene: Scene, profile: Profile, edge: float, kinks: Sequence[float], 
     """
 
     def load(chosen: Array) -> LineLoad:
-        """Return the line shear through particles of the chosen numbers."""
+        """Return the line shear through particles of the chosen numbers, positive against a move to the right [FU/LU].
+
+        Raises:
+            ValueError: fewer than 3 positions on a side within the edge, or positions that differ between both sides.
+        """
         return shear_load(profile.x[chosen], -profile.shear[chosen], edge, kinks, has_apex(scene))
 
     levels = [level for stride in (1, 2) if (level := through(profile.x.size, stride, load))]

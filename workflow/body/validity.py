@@ -54,15 +54,25 @@ class Check:
     message: str
 
     def entry(self) -> dict[str, Any]:
-        """Return the entry of the check in results.json, without its message; an infinite value is None."""
+        """Return "name", "quantity", "value", "limit" and "holds" of the check, as results.json has it.
+
+        The message is left out. A value that is not finite is None.
+        """
         value = self.value if math.isfinite(self.value) else None
         return {"name": self.name, "quantity": self.quantity, "value": value, "limit": self.limit, "holds": self.holds}
 
 
 def checks(scene: Scene, outcome: Outcome, quantities: Mapping[str, Quantity], scales: Scales) -> list[Check]:
-    """Return the checks of a run at its widest state; [] where it represents no body, or the bodies do not touch.
+    """Return the checks of a run at its widest state, in the order slope, half-width, Tabor parameter, yield.
 
-    `quantities`: its results, of the body, by name; `scales`: those of the run.
+    Each is left out where it does not apply. [] where the run represents no axisymmetric body, or no state and no
+    result has a contact radius above 0.
+
+    Args:
+        scene: the scene of the run.
+        outcome: its outcome.
+        quantities: its results, of the body, by name.
+        scales: sizes of LU and FU in SI.
     """
     if not is_of_a_body(scene):
         return []
@@ -76,9 +86,10 @@ def checks(scene: Scene, outcome: Outcome, quantities: Mapping[str, Quantity], s
 
 
 def _slope(case: Case, radius: float, limit: float = 0.1) -> Iterator[Check]:
-    """Yield the check of the slope at the contact edge, radius [LU].
+    """Yield one check of the slope of the profile (dimensionless, not transformed) at a contact radius [LU].
 
-    Nothing of a body with an edge, which is plane there. The limit is a convention.
+    Nothing of a body with an edge, which is plane there. Of two curved bodies it is the slope of the steeper one;
+    beyond the end of the body that at its end. The limit is a convention; the message is "" where the check holds.
     """
     profile = case.scene.bodies.profile.steepest
     if profile.has_edge:  # it is plane at the edge
@@ -99,7 +110,8 @@ def _slope(case: Case, radius: float, limit: float = 0.1) -> Iterator[Check]:
 def _difference_of_ball(case: Case, radius: float) -> str:
     """Return in words how the contact radius of a ball differs from a paraboloid's under the same force.
 
-    "" for other profiles, and for two balls.
+    The force is that of the paraboloid at the contact radius [LU], 0 at least. "" for other profiles than a parabola,
+    and for one with a counter_radius.
     """
     profile = case.scene.bodies.profile
     if profile.kind != "parabola" or profile.counter_radius is not None:  # two balls are no profile here
@@ -114,9 +126,10 @@ def _difference_of_ball(case: Case, radius: float) -> str:
 
 
 def _half_width(case: Case, radius: float, limit: float = 0.5) -> Iterator[Check]:
-    """Yield the check of the contact radius [LU] over the half-width of the body.
+    """Yield one check of a contact radius [LU] over the half-width of the body, dimensionless.
 
-    Nothing where that has none, or an edge. The limit is a convention.
+    The half-width of an unbounded body is its radius of curvature. Nothing for an unbounded body without one, as a
+    cone, and for a body with an edge. The limit is a convention; the message is there also where the check holds.
     """
     profile = case.scene.bodies.profile
     width = profile.reach if math.isfinite(profile.reach) else profile.curvature_radius  # of a paraboloid its ball's
@@ -132,7 +145,11 @@ def _half_width(case: Case, radius: float, limit: float = 0.5) -> Iterator[Check
 
 
 def beyond_jkr(sphere: MaugisDugdale, assumed: bool) -> str:
-    """Return a message with the error of JKR for a sphere with a range, given or `assumed`; "" where JKR holds."""
+    """Return a message with the error of JKR's pull-off force for a sphere with a range; "" where JKR holds.
+
+    JKR holds for a Tabor parameter above 5. `assumed`: whether the range is an assumed one, 0.3 nm, which the message
+    then says.
+    """
     valid = of_tabor(sphere.tabor)
     if valid is Theory.JKR:
         return ""
@@ -147,10 +164,11 @@ def beyond_jkr(sphere: MaugisDugdale, assumed: bool) -> str:
 
 
 def _tabor(case: Case) -> Iterator[Check]:
-    """Yield the check that the Tabor parameter of an adhesive sphere is one of JKR.
+    """Yield one check that the Tabor parameter of a scene with [adhesion] is one of JKR, above 5.
 
-    Nothing without a sphere or adhesion. Without a range in the scene that of a typical attraction is assumed, and the
-    check may fail; a law with a range holds for any Tabor parameter.
+    Nothing for a profile without an effective radius, or without [adhesion]. With a range in the scene the check always
+    holds, as its law is right for any Tabor parameter; without one 0.3 nm is assumed, or nothing is yielded where the
+    size of LU is unknown.
     """
     sphere = case.with_range
     if sphere is not None and case.scene.work_of_adhesion:
@@ -159,9 +177,12 @@ def _tabor(case: Case) -> Iterator[Check]:
 
 
 def _yield(case: Case, outcome: Outcome, limit: float = 1.6) -> Iterator[Check]:
-    """Yield the check of the largest pressure over the yield strength; a ball yields below the surface at `limit`.
+    """Yield one check of the largest pressure over the yield strength, dimensionless; a ball yields from `limit` on.
 
-    Nothing where no yield strength is given, or the units are unknown.
+    The strength is that of the weaker body, the pressure the largest of the results, of the state of the largest force,
+    and in closed form of a preload. Of a cone and a flat punch the value is infinite, and the check fails. Nothing
+    where no yield strength is given, or the size of the units in SI is unknown. The message is there also where the
+    check holds.
     """
     material, scales = case.scene.material, case.scales
     bodies = () if material is None else material.elastic.values()

@@ -43,7 +43,7 @@ app = typer.Typer(
 
 
 def _version(wanted: bool) -> None:
-    """Print the version and end the program, if it is `wanted`."""
+    """Print the version and end the program by typer.Exit, if it is `wanted`; else do nothing."""
     if wanted:
         from importlib.metadata import version
 
@@ -52,7 +52,7 @@ def _version(wanted: bool) -> None:
 
 
 def _cite(wanted: bool) -> None:
-    """Print what to cite, in BibTeX, and end the program, if it is `wanted`."""
+    """Print what to cite, in BibTeX, and end the program by typer.Exit, if it is `wanted`; else do nothing."""
     if wanted:
         typer.echo(Path(__file__).with_name("citation.bib").read_text(encoding="utf-8"), nl=False)
         raise typer.Exit
@@ -78,7 +78,8 @@ def contact1d(
 def scene_files(incomplete: str) -> list[str]:
     """Return the *.toml files and the folders, ending in "/", whose paths begin with `incomplete`, for completion.
 
-    Where that is a single folder and no file, it is what is in that folder.
+    Files come first, both are sorted. Where that is a single folder and no file, it is what is in that folder, and so
+    on; empty without any.
     """
     paths = sorted(glob(f"{escape(incomplete)}*"))
     files = [path for path in paths if path.endswith(".toml")]
@@ -87,7 +88,7 @@ def scene_files(incomplete: str) -> list[str]:
 
 
 def effect_names(incomplete: str) -> list[str]:
-    """Return the names of the effects that begin with `incomplete`, for completion; all for ""."""
+    """Return the names of the effects that begin with `incomplete`, for completion; all for "", [] for none."""
     from contact1d.workflow.scene import EFFECTS
 
     return [name for name in EFFECTS if name.startswith(incomplete)]
@@ -143,7 +144,11 @@ def run(
     ranks: Annotated[int, typer.Option(min=1, help="MPI ranks (processors) that share one large contact.")] = 1,
     quiet: Quiet = False,
 ) -> None:
-    """Run a scene and print its numbers, each with its uncertainty."""
+    """Run a scene and print its numbers, each with its uncertainty.
+
+    Leaves a folder with numbers, tables, figures and the LAMMPS deck. Warnings are printed on standard error. Of a
+    wrong scene nothing is written (exit code 2); a run that failed has exit code 3.
+    """
     folder = out or Path("runs") / scene.stem
     with command("the run", folder, "no numbers were written", quiet) as progress:
         from contact1d.workflow.engine.process import start_ahead
@@ -153,6 +158,10 @@ def run(
         checked = read(scene, set_, without, progress)
 
         def printed(finished: Run) -> None:
+            """Close the progress and print the results and warnings of a run.
+
+            Unless `quiet` its line load and its folder follow.
+            """
             progress.close()
             from contact1d.workflow.cli.summary import line_load, quantities
 
@@ -172,8 +181,8 @@ def deck(
 ) -> None:
     """Write the LAMMPS deck of a scene without running it.
 
-    Where a run searches (load, pull_off), the deck has an estimated schedule; the deck in the folder of a finished run
-    has the final one.
+    Prints the folder. An earlier run or deck in it is replaced. Where a run searches (load, pull_off), the deck has an
+    estimated schedule; the deck in the folder of a finished run has the final one.
     """
     with command("writing the deck", out, quiet=True):
         folder = api.write_deck(read(scene, set_, without), out)
@@ -181,7 +190,10 @@ def deck(
 
 
 def doctor() -> None:
-    """Check the installation: packages, MPI library, LAMMPS and its styles."""
+    """Check the installation: packages, MPI library, LAMMPS and its styles.
+
+    Prints a line for each check, with a suggested fix where it failed. Exit code 1: a check failed.
+    """
     from contact1d.workflow.cli.doctor import checks
 
     failed = 0
@@ -216,7 +228,8 @@ def sweep(
     """Run a scene at each point of a sweep; one table, results.csv, has all results.
 
     The file names a base scene and [[axes]], each with a key of the scene and its values. After an interruption the
-    same command continues with the missing points. Exit code 3: a point failed or can't be run; the table says why.
+    same command continues with the missing points. Prints the number of points by status and the path of the table.
+    Exit code 3: a point failed or can't be run; the table says why.
     """
     folder = out or Path("sweeps") / file.stem
     kept = f"finished runs are kept in {folder}, and the same command continues"
@@ -299,7 +312,10 @@ def report(
     ],
     out: Annotated[Path, typer.Option(help="HTML file to write.")] = Path("report.html"),
 ) -> None:
-    """Write a page of runs or of a sweep, with interactive figures; it needs no network and no other file."""
+    """Write a page of runs or of a sweep, with interactive figures; it needs no network and no other file.
+
+    Prints the path. An earlier page is replaced, any other file is not (exit code 2).
+    """
     with command("the report", quiet=True):
         from contact1d.workflow.report.report import report as write
 
@@ -317,8 +333,8 @@ def animate(
 ) -> None:
     """Write an animation of the loading history of a run: bodies and springs, particles coloured by pressure, force.
 
-    It has the states that the run kept: those of its curve, thinned where they are many; or, in states.lammpstrj, too,
-    all of them with `[output] states = "all"` in the scene.
+    Prints the path; an existing file is replaced. It has the states that the run kept: those of its curve, thinned
+    where they are many; or, in states.lammpstrj, too, all of them with `[output] states = "all"` in the scene.
     """
     with command("the animation", quiet=True):
         from contact1d.workflow.report.animation import animate as write
@@ -343,7 +359,10 @@ def new(
         typer.Option(metavar="UPPER/LOWER", help="Of `contact1d materials`.", show_default="steel/glass"),
     ] = None,
 ) -> None:
-    """Write a scene file in SI to start from: it runs as it is, with every key explained and its allowed values."""
+    """Write a scene file in SI to start from: it runs as it is, with every key explained and its allowed values.
+
+    An existing file is not overwritten, and its folder must exist (exit code 2).
+    """
     if name.name in ("", ".."):
         stop(f"{name} is a folder; give the file a name", CALL_IS_WRONG)
     path = name if name.suffix == ".toml" else name.with_name(name.name + ".toml")
@@ -354,7 +373,7 @@ def new(
 
 
 def materials() -> None:
-    """List the named materials: Young's modulus, Poisson's ratio, and where they are from."""
+    """List the named materials, a line each: Young's modulus, Poisson's ratio, and where they are from."""
     from contact1d.workflow.scene.materials import MATERIALS
 
     for name, material in MATERIALS.items():
@@ -365,6 +384,8 @@ def schema(
     out: Annotated[Path | None, typer.Option(help="Write it to this new file.", show_default="printed")] = None,
 ) -> None:
     """Print the JSON schema of scene files, with which an editor completes keys, explains them and marks mistakes.
+
+    With `--out` it is written to that file instead; an existing file is not overwritten (exit code 2).
 
     For taplo, or Even Better TOML in VS Code: `contact1d schema --out scene.schema.json` beside your scenes, and in
     each of them the first line `#:schema scene.schema.json`.
@@ -379,9 +400,15 @@ def schema(
 
 
 def _write(path: Path, text: str, instead: str) -> None:
-    """Write a new file.
+    """Write a new file in UTF-8, complete or not at all.
 
-    A file or folder that is in the way ends the program with a message, and nothing is replaced.
+    A file or folder that is in the way, or a missing parent folder, ends the program by SystemExit with exit code 2 and
+    a message, and nothing is replaced. Other errors of the system are raised.
+
+    Args:
+        path: of the file.
+        text: its content.
+        instead: what to do where the file exists, for the message.
     """
     if path.parent.is_file():
         stop(f"{path.parent} is a file; a folder is needed", CALL_IS_WRONG)
@@ -402,7 +429,10 @@ for function in (new, run, sweep, fit, report, animate, deck, cost, identify, ma
 
 
 def main() -> None:
-    """Entry point of the command `contact1d`."""
+    """Run the command of sys.argv, as the entry point of `contact1d`; it ends by SystemExit with the exit code.
+
+    For speed it changes the garbage collection of this process, and keeps pydantic from loading plugins.
+    """
     gc.set_threshold(300_000)  # more objects than a run with figures makes; at 700, garbage collection is a tenth of it
     atexit.register(gc.freeze)  # the system takes back all memory at once
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # pydantic searches every installed package for them

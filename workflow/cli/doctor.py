@@ -76,7 +76,10 @@ class Check:
 
 
 def checks() -> list[Check]:
-    """Return all checks, in the order in which failures should be fixed; LAMMPS starts once, in a temporary folder."""
+    """Return all checks, in the order in which failures should be fixed; LAMMPS starts once, in a temporary folder.
+
+    Where LAMMPS cannot be started or fails, a check "LAMMPS runs", not passed, stands for those of LAMMPS.
+    """
     results = [*_python(), *_machine()]
     try:
         from contact1d.workflow.engine.session import Engine
@@ -93,10 +96,10 @@ def checks() -> list[Check]:
 def listening_sockets(pid: int) -> list[str]:
     """Return the local addresses (as the kernel writes them, hexadecimal) at which process `pid` accepts connections.
 
-    Empty where it accepts none.
+    They are TCP addresses with port, of IPv4, then of IPv6. Empty where it accepts none.
 
     Raises:
-        OSError: this system has no /proc, or the process belongs to another user.
+        OSError: this system has no /proc, there is no such process, or it belongs to another user.
     """
     links = set()
     for link in Path(f"/proc/{pid}/fd").iterdir():
@@ -111,7 +114,11 @@ def listening_sockets(pid: int) -> list[str]:
 
 
 def _python() -> Iterator[Check]:
-    """Yield the checks of Python, and of the packages that this distribution requires."""
+    """Yield the checks of Python, 3.11 or newer, and of the packages that this distribution requires.
+
+    Their detail is the version. Optional packages are left out. Where the distribution is not installed, one failed
+    check stands for all packages.
+    """
     yield Check("Python", sys.version_info >= (3, 11), sys.version.split()[0], "use Python 3.11 or newer")
     try:
         lines = importlib.metadata.requires(DISTRIBUTION) or []
@@ -130,7 +137,10 @@ def _python() -> Iterator[Check]:
 
 
 def _machine() -> Iterator[Check]:
-    """Yield the checks of this machine: whether its current and temporary folder can be written to; its cores."""
+    """Yield the checks of this machine: whether its current and temporary folder can be written to; its cores.
+
+    The last one always passes.
+    """
     for name, folder in (("current folder", Path.cwd()), ("temporary folder", Path(tempfile.gettempdir()))):
         try:
             with tempfile.TemporaryFile(dir=folder) as file:
@@ -144,7 +154,10 @@ def _machine() -> Iterator[Check]:
 
 
 def _lammps(session: Session) -> Iterator[Check]:
-    """Yield the checks of LAMMPS: its packages and styles, a run of two atoms, and that it accepts no connections."""
+    """Yield the checks of LAMMPS: its packages and styles, a run of two atoms, and that it accepts no connections.
+
+    The first two, of the version and the MPI library, always pass, and the last one where it cannot be checked.
+    """
     installation = session.about(STYLES)
     yield Check("LAMMPS starts", True, f"version {installation.version}")
     yield Check("MPI library", True, installation.mpi or "found by the system")

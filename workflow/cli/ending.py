@@ -39,19 +39,26 @@ class Commands(typer.core.TyperGroup):
     """All commands, with the errors of their options reported in the same form as others."""
 
     def invoke(self, ctx: Any) -> Any:
-        """Run a command and return its value; errors of its options end the program with a message, like all others."""
+        """Run a command and return its value.
+
+        An error, in its options or later, ends the program by SystemExit with a message and an exit code; a defect of
+        the program is raised.
+        """
         with command(ctx.info_name, quiet=True):
             return super().invoke(ctx)
 
 
 def stop(message: str, code: int) -> NoReturn:
-    """Print an error message to standard error and end the program with an exit code; nothing is returned."""
+    """Print an error message to standard error and end the program by SystemExit with an exit code."""
     typer.secho(message, err=True, fg="red")
     raise SystemExit(code)
 
 
 def show(text: str) -> None:
-    """Print to standard output; where its reader has ended (`| head`), the command goes on and prints no more."""
+    """Print a text and a line end to standard output.
+
+    Where its reader has ended (`| head`), the command goes on, and this and all later output is dropped.
+    """
     try:
         typer.echo(text)
     except BrokenPipeError:
@@ -59,7 +66,10 @@ def show(text: str) -> None:
 
 
 def print_lines(lines: Iterable[str], warnings: Mapping[str, str], path: object = None) -> None:
-    """Print lines, then warnings, by name, on standard error, and the path of the files, unless that is None."""
+    """Print lines, then warnings, by name, on standard error, and the path of the files, unless that is None.
+
+    The path has an empty line before it; lines and path are on standard output.
+    """
     show("\n".join(lines))
     for name, message in warnings.items():
         typer.secho(f"warning {name}: {message}", err=True, fg="yellow")
@@ -68,7 +78,7 @@ def print_lines(lines: Iterable[str], warnings: Mapping[str, str], path: object 
 
 
 def print_counts(counts: Mapping[str, int], table: Path) -> None:
-    """Print the number of points by status, and the path of their table.
+    """Print the number of points by status, sorted by the name of the status, and the path of their table.
 
     Raises:
         typer.Exit: exit code 3, if any point is not done, or there is none.
@@ -79,12 +89,14 @@ def print_counts(counts: Mapping[str, int], table: Path) -> None:
 
 
 def read(path: Path, overrides: list[str] | None, without: list[str] | None, progress: Progress | None = None) -> Scene:
-    """Return the scene in a file with the changes of the options; report all problems and end if there are any.
+    """Return the scene in a file with the changes of the options; print all problems and end if there are any.
+
+    It ends by SystemExit with exit code 2.
 
     Args:
         path: of the scene file.
-        overrides: texts `key=value`.
-        without: effects to leave out.
+        overrides: texts `key=value`; None: no changes.
+        without: effects to leave out; None: none.
         progress: informed of the trial of a suggested fix, whose outcome is reported; None: no fix is tried.
     """
     from contact1d.workflow.scene import SceneError, read_scene
@@ -101,9 +113,9 @@ def read(path: Path, overrides: list[str] | None, without: list[str] | None, pro
 
 
 def problems_in(where: str, error: Exception) -> str:
-    """Return the number of problems of the file `where` and a line for each.
+    """Return the number of problems of the file `where`, with its name, and a line for each, indented.
 
-    Of an error without problems its message.
+    Of an error that is no list of problems its message alone, from the second line on indented.
     """
     count = len(getattr(error, "problems", ()))
     head = [f"{where}: {count} problem{'s' if count > 1 else ''}"] if count else []
@@ -115,6 +127,10 @@ def command(
     task: str, folder: Path | None = None, kept: str = "", quiet: bool = False, source: str = "the scene"
 ) -> Iterator[Progress]:
     """Provide the progress of a command, and end it at any error with a message and the exit code of that error.
+
+    It ends by SystemExit: 2 for a wrong scene, call or path, 3 for a failed run, a full disk or memory, 1 for a missing
+    package, 130 for an interruption. typer.Exit and defects of the program are raised as they are. The progress is
+    closed at the end of the block.
 
     Args:
         task: subject of the message "… failed".
@@ -143,7 +159,10 @@ def command(
 
 
 def _ending(error: BaseException, task: str, left: Iterable[str], folder: str, source: str) -> tuple[str, int] | None:
-    """Return message and exit code of an error; None for a defect of the program.
+    """Return message and exit code of an error; None for a defect of the program, and for a closed output pipe.
+
+    The code is 2 for a wrong scene, call or path, 3 for a failed run, a full disk or memory, a killed process or
+    another error of the system, and 1 for a missing package.
 
     Args:
         error: that ended the command.
@@ -178,7 +197,11 @@ def _ending(error: BaseException, task: str, left: Iterable[str], folder: str, s
 
 
 def _path_error(error: OSError, folder: str) -> str:
-    """Return the message of an error in a path that the caller chose; "" for any other error."""
+    """Return the message of an error in a path that the caller chose; "" for any other error.
+
+    The path is that of the error, without one the `folder`. It is a file where a folder is needed, or cannot be
+    written, as without permission.
+    """
     path = os.fsdecode(error.filename) if isinstance(error.filename, str | bytes) else folder
     if error.errno in (errno.EEXIST, errno.ENOTDIR) and os.path.isfile(path):
         return f"{path} is a file; a folder is needed"

@@ -13,7 +13,7 @@ from contact1d.workflow.cli.ending import CALL_IS_WRONG, command, print_lines, s
 
 
 def _number(unit: str, meaning: str) -> Any:
-    """Return an option whose value is a number in this unit."""
+    """Return a typer option, without a default shown, whose value is a number; `unit` stands for it in the help."""
     return typer.Option(metavar=unit, help=meaning, show_default=False)
 
 
@@ -58,6 +58,8 @@ def identify(
     With `--run`: the length and force unit, in metres and newtons, with which a finished pull_off is JKR's contact of
     the material (Eq. 9, Table 1). With `--radius`: a scene whose interaction has JKR's F_A and a_0 of that sphere, or
     measured ones, found by a solver and verified by a run, which stays in the folder.
+
+    Exactly one of the three is given. Options that exclude or lack one another end with exit code 2.
     """
     options = {
         "contact-modulus": contact_modulus, "surface-energy": surface_energy, "radius": radius,
@@ -77,7 +79,11 @@ def identify(
 def _mistakes(given: Mapping[str, Any], material: Path | None) -> list[str]:
     """Return the messages about options with a wrong value, or that exclude or lack one another.
 
-    Empty if all is right.
+    Empty if all is right. With MATERIAL any other option is wrong. Numbers must be positive and finite.
+
+    Args:
+        given: values of the options that are given, by name, in SI; "run" is a path.
+        material: the file; None without one.
     """
     if material is not None:
         names = ", ".join(f"--{name}" for name in given)
@@ -111,6 +117,9 @@ def _units_of_run(folder: Path, contact_modulus: float, surface_energy: float) -
         folder: of the run.
         contact_modulus: E* [Pa].
         surface_energy: γ of one side [J/m²].
+
+    Raises:
+        IdentifyError: the folder has no finished run with F_A and a₀ of a sphere.
     """
     from contact1d.workflow.cli.summary import quantities
     from contact1d.workflow.identify.interaction import scales_of_run
@@ -123,7 +132,14 @@ def _units_of_run(folder: Path, contact_modulus: float, surface_energy: float) -
 
 
 def _from_material(file: Path, out: Path) -> None:
-    """Run the contact of a material file and print its results with the predictions of the theories."""
+    """Run the contact of a material file and print its results with the predictions of the theories.
+
+    Warnings follow, and the path of the scene. An error ends the program by SystemExit, with a message.
+
+    Args:
+        file: of the material (TOML).
+        out: run folder.
+    """
     with command("the run", out, source=str(file)) as progress:
         done = api.from_material(file, out, progress)
     from contact1d.workflow.cli.summary import quantities, regime, theory_table
@@ -134,6 +150,8 @@ def _from_material(file: Path, out: Path) -> None:
 
 def _scene_of_sphere(given: Mapping[str, float], tolerance: float, out: Path) -> None:
     """Find the interaction of a sphere, and print its parameters [FU·LU] and [LU], deviations, and results of the run.
+
+    An error ends the program by SystemExit, with a message.
 
     Args:
         given: options by name, in SI: E* and R, and γ or F_A with a₀.

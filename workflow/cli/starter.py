@@ -27,15 +27,17 @@ DATA: dict[str, Any] = tomllib.loads(Path(__file__).with_name("starter.toml").re
 
 
 def starter_scene(kind: str, profile: str | None = None, material: str | None = None) -> dict[str, Any]:
-    """Return the tables of a scene of an experiment, to start from.
+    """Return the tables of a scene of an experiment, to start from, by name; values are as in a scene file.
 
     Args:
         kind: experiment.
         profile: profile of the upper body; None: a parabola.
-        material: upper and lower body, such as "steel/glass", or one name for both; None: steel on glass.
+        material: upper and lower body, such as "steel/glass", or one name for both; None: steel on glass. It is not
+            checked.
 
     Raises:
         SceneError: the bodies of this experiment are fixed, and a profile or a material is given.
+        KeyError: there is no such experiment or profile.
     """
     scene = dict(DATA["scenes"][kind])
     bodies = scene.get("bodies", {})
@@ -58,7 +60,9 @@ def starter(kind: str, profile: str | None = None, material: str | None = None) 
         material: upper and lower body, such as "steel/glass", or one name for both; None: steel on glass.
 
     Raises:
-        SceneError: the bodies of this experiment are fixed, or a material has no such name.
+        SceneError: the bodies of this experiment are fixed, and a profile or a material is given, or a material has no
+            such name.
+        KeyError: there is no such experiment or profile.
     """
     scene, keys = starter_scene(kind, profile, material), keys_of(Scene)
     read_scene({"title": kind, **scene})  # so that a material without a name is reported before there is a file
@@ -73,7 +77,14 @@ def starter(kind: str, profile: str | None = None, material: str | None = None) 
 
 
 def _table(name: str, table: type[Table], given: Mapping[str, Any] | None, allowed: Allowed) -> Iterator[str]:
-    """Yield the lines of a table with all its keys; those that are not given behind #."""
+    """Yield the lines of a table of a scene file with all its keys, each after its meaning; those not given behind #.
+
+    Args:
+        name: of the table in the file.
+        table: its class.
+        given: its values; None: the whole table is behind #.
+        allowed: what the scene allows in its place.
+    """
     yield from _comment((table.__doc__ or "").strip().splitlines()[0])
     yield from _other_kinds(allowed, table)
     yield f"[{name}]" if given is not None else f"#[{name}]"
@@ -87,7 +98,11 @@ def _table(name: str, table: type[Table], given: Mapping[str, Any] | None, allow
 
 
 def _inside(allowed: Allowed, given: object) -> Iterator[str]:
-    """Yield the comments of an inline table: its keys, and the other kinds of table that may stand there."""
+    """Yield the comments of an inline table: its keys, and the other kinds of table that may stand there.
+
+    Nothing for a key that allows no table. Where `given` has a kind, only the keys of that kind; else those of all
+    kinds.
+    """
     for kind, table in allowed.tables.items():
         if isinstance(given, Mapping) and kind not in ("", given.get("kind")):
             continue
@@ -98,7 +113,10 @@ def _inside(allowed: Allowed, given: object) -> Iterator[str]:
 
 
 def _other_kinds(allowed: Allowed, chosen: type[Table], begin: str = "# ") -> Iterator[str]:
-    """Yield the comments on the other kinds of table that may stand in place of the `chosen` one, with their keys."""
+    """Yield the comments on the other kinds of table that may stand in place of the `chosen` one, with their keys.
+
+    Nothing where there is one kind only.
+    """
     for kind, table in allowed.kinds.items():
         if table is not chosen:
             keys = keys_of(table)
@@ -108,5 +126,8 @@ def _other_kinds(allowed: Allowed, chosen: type[Table], begin: str = "# ") -> It
 
 
 def _comment(text: str, begin: str = "# ", width: int = 118) -> list[str]:
-    """Return a text as lines of a comment, wrapped to `width` characters, the first of which begins with `begin`."""
+    """Return a text as lines of a comment, wrapped to `width` characters, the first of which begins with `begin`.
+
+    The others begin with # and are indented further. [] for an empty text.
+    """
     return textwrap.wrap(text, width, initial_indent=begin, subsequent_indent="#" + " " * (len(begin) + 1))

@@ -36,10 +36,11 @@ NAMES = {
 
 
 def quantities(results: Mapping[str, Any]) -> list[str]:
-    """Return a line with the reduction, and a line for each result: name, value ± uncertainty, unit, closed forms.
+    """Return a line with the reduction to one dimension, and one for each result: name, value ± uncertainty, theory.
 
-    Results are in SI where the units are known, and LU and FU are printed where they are not 1 m and 1 N. A result too
-    uncertain is "not reported". Lines on a scan and on uncertain inputs are added where there are any.
+    Values have their unit: in SI where the units are known, and LU and FU are printed where they are not 1 m and 1 N. A
+    result too uncertain is "not reported". Lines on a scan and on uncertain inputs are added where there are any, and
+    the first line is left out where `results`, the content of results.json, has no reduction.
     """
     lines = [f"  {'reduction':<31} {_reduction(results)}"] if "reduction" in results else []
     if scan := results.get("scan"):
@@ -56,7 +57,12 @@ def quantities(results: Mapping[str, Any]) -> list[str]:
 
 
 def _reduction(results: Mapping[str, Any]) -> str:
-    """Return the name of the reduction in results.json, and the body to which radii and pressures belong, as text."""
+    """Return how the contact was reduced to one dimension, and to which body radii and pressures belong, as one text.
+
+    By the method of dimensionality reduction ("mdr") it is the body itself. Of two equal spheres it is these, and
+    results named `image_…` belong to their plane image; of other plane models all radii are those of the image. Of a
+    flat body there is no difference.
+    """
     reduction = str(results["reduction"])
     if results.get("scene", {}).get("bodies", {}).get("profile", {}).get("kind") == "flat":
         return f"{reduction}: the same for a flat body"
@@ -68,9 +74,9 @@ def _reduction(results: Mapping[str, Any]) -> str:
 
 
 def line_load(run: Run) -> list[str]:
-    """Return a plot of the line load of the state that is reported first, as lines of text.
+    """Return a plot of the line load of the state that is reported first, as lines of text, with a title.
 
-    The run needs its outcome.
+    In SI where the units are known. The run needs its outcome: AssertionError for one that was read from its folder.
     """
     assert run.outcome is not None
     name, profile = next(iter(run.outcome.profiles.items()))
@@ -85,7 +91,9 @@ def pressure_plot(
 ) -> list[str]:
     """Return a plot of the line load over x as lines of text, compression up, marks at ±a below; in SI by `scales`.
 
-    A line without pressure anywhere says so; a radius of 0 or wider than the plot has no marks.
+    Without pressure anywhere it is one line that says so; a radius of 0 or wider than the plot has no marks. The marks
+    are about the centre of the contact, where that was displaced by more than a spacing. The last line has the units
+    and the width, which has all |p| above 1 % of the largest.
 
     Args:
         profile: line load [FU/LU] over x [LU].
@@ -125,7 +133,10 @@ LABELS = {**NAMES, "loaded_radius": "radius under load"}
 
 
 def regime(done: MaterialRun) -> Iterator[str]:
-    """Yield lines with the parameters of a contact, the theory that holds, and the model."""
+    """Yield lines with the parameters of a contact in SI, the theory that holds, and the model.
+
+    The second of the three is absent for a contact that is no adhesive sphere.
+    """
     contact, theories = done.contact, done.theories
     parameters = [f"E* = {prefixed(contact.contact_modulus, 'Pa')}"]
     if contact.work_of_adhesion:
@@ -144,9 +155,10 @@ def regime(done: MaterialRun) -> Iterator[str]:
 
 
 def theory_table(done: MaterialRun, width: int = 18) -> Iterator[str]:
-    """Yield the lines of a table with the predictions of each theory [m], [N].
+    """Yield the lines of a table with the predictions of each theory [m], [N], with prefixes.
 
-    None without theories of an adhesive sphere.
+    The theory that holds is marked by *. A quantity that one of the theories lacks is left out. No lines without
+    theories of an adhesive sphere.
 
     Args:
         done: the run of the contact.

@@ -47,36 +47,66 @@ class Branch(ContactBranch):
     """
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
-        """Prepare a contact under displacement control; `meanwhile` is called while LAMMPS reads the bodies."""
+        """Prepare a contact under displacement control; LAMMPS starts with the `with` statement.
+
+        `meanwhile` is called while LAMMPS reads the bodies.
+        """
         super().__init__(context, meanwhile)
         self.tolerance = 0.3 * self.settings.tolerance  # the share of a search
         self._expected = cache(self.model.displacement_at)
 
     @property
     def unloading(self) -> Trace:
-        """The trace of the states of the leg under way that are in contact, by falling displacement."""
+        """The states since the loading last turned, as a trace by falling displacement.
+
+        Of several at the same displacement it has the latest. Only those above the limit point of the reduced model,
+        below which the contact is lost, are in it.
+
+        Raises:
+            IndexError: there are no states yet.
+        """
         return of_states(self.leg, self.model).falling()
 
     @property
     def peak(self) -> Peak:
-        """The force maximum of the leg under way, tension positive [FU], with its position [LU]."""
+        """The force maximum (largest tension) since the loading last turned: its tension, position and errors.
+
+        Tension [FU] is positive, below 0 where all states are under compression; the position is a displacement [LU].
+
+        Raises:
+            IndexError: there are no states yet.
+        """
         return peak_of(self.unloading)
 
     def visit(self, positions: Sequence[float] | Array, along: Sequence[float] | None = None) -> None:
-        """Run load steps at displacements [LU] that are known beforehand, in one direction; `along` is ignored."""
+        """Run a load step at each displacement [LU] of `positions`, in order, and keep its state; `along` is ignored.
+
+        They go in one direction: the last of them decides whether the loading turns. Compression is positive.
+
+        Raises:
+            UntrustedError: a state is not at rest, bodies went through each other, or the contact reaches the
+                chain's end.
+            EngineError: LAMMPS failed.
+        """
         self._turn(not self.states or positions[-1] >= self._last.displacement)
         self._visit(positions)
         self._record_target(math.nan)
 
     def _visit(self, positions: Sequence[float] | Array) -> None:
-        """Run load steps at displacements [LU] in any order, on the leg under way."""
+        """Run load steps at displacements [LU] in any order, and keep their states without a turn of the loading.
+
+        Raises:
+            UntrustedError: a state is not at rest, bodies went through each other, or the contact reaches the
+                chain's end.
+        """
         self._begin_phase()
         self._append(self.contact.rows(displacements([float(position) for position in positions])))
 
     def hold(self, duration: float, displacement: float | None, force: float | None, approach_steps: int = 20) -> None:
-        """Hold a displacement [LU] for a time [TU], in which particles move; `force` is ignored.
+        """Move to a displacement [LU] in approach steps, then hold it for `duration` [TU]; `force` is ignored.
 
-        Each move of the approach takes `approach_steps` timesteps.
+        Each approach step is at most the longest move and takes `approach_steps` timesteps; its states are kept, too,
+        in a phase "approaching". States need not be at rest; the hold has up to 101. The displacement must not be None.
         """
         assert displacement is not None
         self.moves, name = True, self._phase
@@ -89,19 +119,26 @@ class Branch(ContactBranch):
         self._move([DisplaceInTime(displacement, steps) for steps in self.settings.steps_of(duration)])
 
     def _move(self, rows: Sequence[DisplaceInTime]) -> None:
-        """Run load steps in time on the leg under way; their states need not be at rest."""
+        """Run load steps in time and keep their states, which need not be at rest.
+
+        Raises:
+            UntrustedError: bodies went through each other, or the contact reaches the end of the chain.
+        """
         self._begin_phase()
         self._append(self.contact.rows(rows, moving=True))
 
     # --- a force
 
     def reach(self, force: float, scale: float, accuracy: float = 1e-3) -> None:
-        """Go on until the contact carries a force [FU], compression positive.
+        """Search for the state in which the contact carries an external `force` [FU], compression positive.
 
-        The accuracy is a share `accuracy` of the tolerance of `scale` [FU], half of that where the force is smooth.
+        Load steps go on from the last state, and keep theirs, until the force differs by at most `accuracy` times the
+        relative tolerance times `scale` [FU], by half of that where F(d) is smooth.
 
         Raises:
-            UntrustedError: a state is no result (`require_trust`); the force cannot be reached, or not held.
+            UntrustedError: a state is not at rest, bodies went through each other, the force lies before the first
+                state, in a jump of F(d), or beyond 10 000 load steps.
+            TensionError: the bodies separate before they have this tension.
         """
         # Where pairs snap the force at a displacement is less accurate.
         near = (0.5 if self.settings.is_smooth else 1.0) * accuracy * self.settings.tolerance * scale
@@ -111,7 +148,10 @@ class Branch(ContactBranch):
         self._load_step(self._last.displacement if self.states else 0.0)
 
         def goes_beyond(state: State) -> bool:
-            """Return whether a state carries more than the force in loading, or less in unloading."""
+            """Return whether a state carries more than the required force in loading, or less in unloading.
+
+            Compression is positive; False where it carries just the force.
+            """
             return state.carried > force if rises else state.carried < force
 
         before: State | None = None
@@ -138,15 +178,16 @@ class Branch(ContactBranch):
     def _next_displacement(
         self, before: State, beyond: State | None, force: float, step: float, margin: float = 0.05
     ) -> float:
-        """Return the next displacement [LU], by a secant of d over that of the model, which is nearly straight.
+        """Return the next displacement [LU] of a search for a force, by a secant of d over that of the reduced model.
 
-        It is kept within a step, or inside the bracket, off its ends by a share `margin` of it unless the search
-        converges by a factor of ten.
+        Without a state beyond the force, it is within one `step` from `before`, at the whole step where the secant
+        points back. Else it is between both, off the ends by a share `margin` of their distance, unless the last step
+        came nearer to the force by a factor of ten.
 
         Args:
             before: state before the force is reached.
             beyond: state beyond it; None where it is not known.
-            force: that is searched for [FU].
+            force: that is searched for [FU], compression positive.
             step: longest increment, with the sign of the loading [LU].
             margin: relative distance from the ends of the bracket.
         """
@@ -165,11 +206,18 @@ class Branch(ContactBranch):
         return before.displacement + min(max(part, margin), 1.0 - margin) * (beyond.displacement - before.displacement)
 
     def _require_within_reach(self, force: float, rises: bool, before: State, beyond: State | None) -> None:
-        """Refuse a force [FU] that the branch jumps past, never reaches, or does not reach in a practicable time.
+        """Refuse a force [FU] that F(d) jumps past, that is never reached, or that takes more than 10 000 load steps.
+
+        Args:
+            force: that is searched for, compression positive.
+            rises: whether the contact is loaded, and not unloaded.
+            before: state before the force is reached.
+            beyond: state beyond it; None where it is not known.
 
         Raises:
-            TensionError: the bodies are beyond the cutoff, and no state had the tension.
-            UntrustedError: an instability, or too many load steps.
+            TensionError: in unloading, the bodies are beyond the cutoff, and no state had the tension.
+            UntrustedError: both states are at the same displacement (an instability), or there are too many load
+                steps.
         """
         states = self.leg
         if beyond is not None and self._is_same(before, beyond):
@@ -189,23 +237,25 @@ class Branch(ContactBranch):
             )
 
     def _is_same(self, before: State, beyond: State) -> bool:
-        """Return whether two states are at the same displacement, within 1e-12 of the spacing."""
+        """Return whether two states are at the same displacement, within 1e-12 of the spacing of the lower chain."""
         return abs(before.displacement - beyond.displacement) < SAME * self.scene.bodies.spacing
 
     # --- the force maximum
 
     def maximum(self, most_refinements: int = 60, most_halvings: int = 2) -> None:
-        """Find the force maximum of the unloading; the last state is then at it.
+        """Unload to the force maximum (largest tension); the last state is then at it.
 
-        Load steps pass it, go back to it, and halve the distance on both sides until the maximum converges. Just below
-        snapping F(d) has a maximum for each pair that separates: each that may be the highest is examined.
+        Load steps pass it, go back to it, and halve the distance on both sides until the maximum converges; all their
+        states are kept. Just below snapping F(d) has a maximum for each pair that separates: each that may be the
+        highest is examined. The error of the search [FU] is recorded in `searches`.
 
         Args:
             most_refinements: of the maximum; each may halve the increment, as a sharp maximum requires.
             most_halvings: of the increment for the contact radius at the maximum.
 
         Raises:
-            UntrustedError: a state is no result (`require_trust`), or the search does not converge.
+            UntrustedError: a state is not at rest or bodies went through each other; no maximum is passed, or the
+                search does not converge.
         """
         increment = self._pass_maximum()
         expected, halvings, changed = self.peak, 0, math.inf
@@ -236,9 +286,11 @@ class Branch(ContactBranch):
     def open(self) -> None:
         """Pull the bodies apart until the tension is, and remains, below 2 % of its maximum.
 
+        It also ends where the bodies are beyond the cutoff of the interaction.
+
         Raises:
-            SecondMaximumError: the tension rises above the maximum that was found.
-            UntrustedError: the bodies do not separate.
+            SecondMaximumError: the tension rises above the maximum that was found, by more than the tolerance.
+            UntrustedError: the bodies do not separate within 10 000 load steps, or a state is not at rest.
         """
         before = self.peak
         # On from the last position, yet in a move no longer than that of the search beyond the maximum.
@@ -252,9 +304,11 @@ class Branch(ContactBranch):
             )
 
     def _pass_maximum(self) -> float:
-        """Unload until the force maximum is passed, of several all that may exceed it; return the increment [LU] > 0.
+        """Unload in equal increments until the force maximum is passed; return the increment [LU] > 0.
 
-        Each maximum has four load steps, of up to 400 maxima: of more, each is a small part of the force.
+        Passed means that three load steps lie beyond the largest tension. Where there may be several maxima, or a
+        search has found a second one, it goes on until no higher tension is possible, with four load steps for each of
+        up to 400 maxima; else it skips the positions long before the maximum of the reduced model.
 
         Raises:
             UntrustedError: the maximum is not passed within 10 000 load steps.
@@ -277,9 +331,10 @@ class Branch(ContactBranch):
         return step
 
     def _halve(self, positions: tuple[float, float]) -> float:
-        """Visit positions [LU] on both sides of the force maximum; return the error of their interpolation [FU], ≥ 0.
+        """Visit two positions [LU] about the force maximum; return the error of their interpolation [FU] ≥ 0.
 
-        Infinite where there were too few load steps for an interpolation.
+        It is the larger difference of the measured tension from the one that the states before let expect; infinite
+        where there were too few states, or these too near to each other, for an interpolation.
         """
         expected = promised(*self.unloading.lists, positions)
         surprise = 0.0
@@ -289,10 +344,10 @@ class Branch(ContactBranch):
         return surprise
 
     def _examine_rivals(self, allowed: float, most: int = 200) -> float:
-        """Visit positions near maxima that may be higher than the highest load step by more than `allowed` [FU].
+        """Visit positions on both sides of other maxima that may exceed the highest one by more than `allowed` [FU].
 
-        Return by how much a maximum may still be higher [FU], 0 where none may; more than `allowed` only after `most`
-        rounds.
+        In each round it is the maximum that may be the highest. Return by how much a maximum may still be higher [FU],
+        0 where none may; more than `allowed` only after `most` rounds.
         """
         excess = 0.0
         for _ in range(most):
@@ -307,42 +362,66 @@ class Branch(ContactBranch):
         return excess
 
     def _has_radius_of(self, peak: Peak) -> bool:
-        """Return whether the last state has the contact radius of the maximum, within `_radius_limit`."""
+        """Return whether the last state is so near to the force maximum that its contact radius is the one there.
+
+        The difference of displacement times |da/dd| must be within the tolerance of the radius, or within half the
+        radius's own uncertainty where that is larger.
+        """
         return abs(self._radius_rate(self._last) * (peak.position - self._last.displacement)) <= self._radius_limit(
             self._last
         )
 
     def _is_located(self, peak: Peak) -> bool:
-        """Return whether the position of the maximum is accurate enough for the radius there (`_radius_limit`)."""
+        """Return whether the position of the force maximum is accurate enough for the contact radius there.
+
+        Twice its error times |da/dd| must be within the tolerance of the last state's radius, or within half the
+        radius's own uncertainty where that is larger.
+        """
         return POSITION_FACTOR * abs(self._radius_rate(self._last)) * peak.misplaced <= self._radius_limit(self._last)
 
     def _radius_rate(self, state: State) -> float:
-        """Return da/dd [LU/LU] at a state of the leg under way, from its nearest neighbour; 0 where there is none."""
+        """Return da/dd [LU/LU] at a state since the last turn of the loading, from the nearest other one.
+
+        0 where there is no other one. A state that is no longer in contact counts as the nearest one that is.
+        """
         trace = self.unloading
         return radius_rate(trace, int(np.argmin(np.abs(trace.displacement - state.displacement))))
 
     def _radius_limit(self, state: State) -> float:
-        """Return the allowed error of a contact radius [LU]: its tolerance or, if larger, half its uncertainty."""
+        """Return the allowed error of the contact radius of a state [LU] ≥ 0.
+
+        It is the tolerance of the search times the radius or, if larger, half the uncertainty of the radius. Without
+        contact the radius counts as 0 ± 1.5 spacings.
+        """
         radius = state.radius_or_spot
         return max(self.tolerance * radius.value, 0.5 * radius.uncertainty)
 
     # --- moves
 
     def _load_step(self, displacement: float) -> State:
-        """Run one load step at a displacement [LU], add its state to the leg under way, and return it."""
+        """Run one load step at a displacement [LU], keep its state, and return it.
+
+        Raises:
+            UntrustedError: it is not at rest, bodies went through each other, or the contact reaches the end of the
+                chain.
+        """
         self._begin_phase()
         state = self.contact.row(Displace(displacement))
         self._append([state])
         return state
 
     def _record_maximum(self, error: float) -> None:
-        """Record the error [FU] of the search for the force maximum of the leg under way, as a sampling error."""
+        """Record the error [FU] ≥ 0 of the search for the latest force maximum, as "sampling".
+
+        An earlier record of the same search is replaced.
+        """
         self.searches[self._number] = Search({"sampling": error})
 
     def _revisit(self, displacement: float) -> None:
-        """Visit a displacement [LU]; bodies approach by half the smallest distance of their particles at a time.
+        """Go to a displacement [LU] and keep the states on the way, the last of them at it.
 
-        But by no less than the longest move of the settings.
+        Bodies approach in moves of half the smallest distance of their particles, or of the longest move of the
+        settings where that is larger; they separate in one.
         """
         while displacement - self._last.displacement > (longest := 0.5 * self._last.smallest_distance):
             longest = max(longest, self.settings.increments.longest_move)
@@ -350,13 +429,13 @@ class Branch(ContactBranch):
         self._load_step(displacement)
 
     def _separate(self, start: float, share: float = 0.02) -> None:
-        """Unload from `start` [LU] until the tension is, and remains, below a share of its maximum.
+        """Unload from `start` [LU], keeping the states, until the tension is, and stays, below `share` of its maximum.
 
-        Or until the bodies are beyond the cutoff of the interaction. Increments grow where the tension is below half
-        its maximum.
+        It also ends where the bodies are beyond the cutoff of the interaction. Increments grow where the tension is
+        below half its maximum.
 
         Raises:
-            UntrustedError: the bodies do not separate within 10 000 load steps.
+            UntrustedError: the bodies do not separate within 10 000 load steps, or a state is not at rest.
         """
         largest = max((-s.force for s in self.leg), default=0.0)
         self._load_step(start)
@@ -375,13 +454,17 @@ class Branch(ContactBranch):
         raise UntrustedError(f"the bodies did not separate within {MOST_INCREMENTS} increments of the displacement")
 
     def _growth(self, state: State, largest: float) -> float:
-        """Return the factor of successive increments beyond the `largest` tension [FU] (dimensionless)."""
+        """Return 1.6, the factor of successive increments beyond the force maximum; both arguments are ignored.
+
+        `largest`: the largest tension so far [FU].
+        """
         return 1.6
 
     def _unloading_step(self, start: float, most: float = 1_000.0) -> float:
-        """Return the first increment [LU] > 0 of an unloading from `start` [LU], which takes `most` load steps at most.
+        """Return the first increment [LU] > 0 of an unloading from `start` [LU] until bodies are apart.
 
-        Soft springs follow the attraction farther than they were pressed.
+        It is that of a search, or longer, so that there are `most` equal load steps at most. Soft springs follow the
+        attraction farther than they were pressed.
         """
         distance = start - self.settings.forces.rest + float(self.settings.law.gap[-1])
         return max(self.settings.increment(), distance / most)
@@ -389,8 +472,8 @@ class Branch(ContactBranch):
     def _remaining_tension(self, state: State) -> float:
         """Return the largest tension [FU] ≥ 0 that bodies which move apart can have from this state on.
 
-        The tension of a particle beyond the force maximum of its law only falls; any other particle may still reach
-        that maximum.
+        It is the sum over upper particles: one beyond the force maximum of a pair keeps its tension at most, any nearer
+        one may still reach that maximum. Compression counts as 0.
         """
         profile, (distance, largest) = state.profile, self.settings.strongest
         held = self.scene.bodies.spacing * np.maximum(0.0, -profile.pressure)
@@ -403,7 +486,10 @@ class SecondMaximumError(UntrustedError):
 
 
 def _is_passed(states: Sequence[State]) -> bool:
-    """Return whether three load steps or more lie beyond the largest tension of all, which is > 0."""
+    """Return whether three states or more follow the first one of the largest tension, and that is above 0.
+
+    `states`: one at least.
+    """
     tension = [-s.force for s in states]
     largest = max(tension)
     return largest > 0.0 and tension.index(largest) < len(tension) - ROWS_BEYOND_PEAK

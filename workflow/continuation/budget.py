@@ -41,12 +41,13 @@ def curve_errors(
 ) -> dict[str, Values]:
     """Return the errors of the points of curve.csv, (m,), by column and source: "force" [FU] and "displacement" [LU].
 
-    A prescribed displacement has none. Under a load, an error of the force moves the body: only "solver" and the
-    sources of `repeated` remain at the force, and all others are multiplied by 1/stiffness and stand at the
-    displacement.
+    At prescribed displacements there is only "force". Under a load an error of the force moves the body: only "solver"
+    and the sources of `repeated` remain at the force; all others stand, over the stiffness, at the displacement, where
+    these two have errors of their own, too. Under forces over time and in free motion both columns have their own
+    errors. Those of `repeated` are the differences of the traces, summed, times 1.25.
 
     Args:
-        case: scene, settings, script and reader.
+        case: the experiment on the reduced model of the scene.
         trace: of all states that were passed.
         solver: error of the force of each state, (m,) [FU].
         repeated: traces of repeated measurements, by the source of the error that they show: "time" of a motion.
@@ -74,7 +75,7 @@ def curve_errors(
 
 
 def of_rows(errors: Mapping[str, Values], chosen: NDArray[np.bool_]) -> dict[str, Values]:
-    """Return the errors of the points that are reported, by column and source, in the units of `errors`.
+    """Return a copy of errors with only the points that are reported, by column and source, in the units of `errors`.
 
     `chosen`: (m,), true for a point that is reported.
     """
@@ -82,9 +83,10 @@ def of_rows(errors: Mapping[str, Values], chosen: NDArray[np.bool_]) -> dict[str
 
 
 def _differences(trace: Trace, repetition: Trace, name: str) -> Array:
-    """Return the absolute differences of a column of a repeated trace from that of `trace`, (m,), in the column's unit.
+    """Return |difference| ≥ 0 of a column of a repeated trace from that of `trace`, (m,), in the column's unit.
 
-    `name`: "force" [FU] or "displacement" [LU]. They are taken at the same times, without times state by state.
+    `name`: "force" [FU] or "displacement" [LU]. Where `trace` has times they are taken at the same times, by linear
+    interpolation; else state by state.
     """
     values = getattr(repetition, name)
     expected = np.interp(trace.time, repetition.time, values) if trace.time.any() else values
@@ -92,7 +94,7 @@ def _differences(trace: Trace, repetition: Trace, name: str) -> Array:
 
 
 def _above_neighbours(errors: Array, share: float = 0.5) -> Array:
-    """Return errors (m,) of at least a `share` of those of their neighbours, in the same unit; an error of 0 stays 0.
+    """Return errors, (m,), raised to at least a `share` of their larger neighbour, in the same unit; 0 stays 0.
 
     An error is small where its sign changes.
     """
@@ -101,11 +103,12 @@ def _above_neighbours(errors: Array, share: float = 0.5) -> Array:
 
 
 def sampling_errors(case: Reduction, trace: Trace, fewest: int = 200) -> Values:
-    """Return the sampling error of each result, by name in its unit, where the scene gives the steps.
+    """Return the sampling error of each result, ≥ 0, by name in its unit, for displacements that the scene gives.
 
-    It is the change of the reduced model with dense steps, times a margin. Where the model is no copy of the deck, the
-    largest change of four shifts of the steps counts. The lattice is made coarser where there are too many forces, down
-    to `fewest` particles: steps miss as much on any lattice.
+    It is the change of the result on the reduced model from these load steps to dense ones, times 1.25 where the model
+    has the same particles as LAMMPS, on a rigid plane, else 1.5; then the largest change of four shifts of the steps
+    counts. A result that one of both lacks counts as 0 there. On a rigid plane the spacing is doubled where there are
+    too many forces, down to about `fewest` particles: steps miss as much on any spacing.
     """
     model, errors = case.model, dict[str, float]()
     step = float(np.median(np.abs(np.diff(trace.displacement)))) if len(trace) > 1 else 0.0
@@ -143,7 +146,12 @@ class ForceErrors:
 def force_errors(
     scene: Scene, settings: Settings, states: Sequence[State], marked: Collection[State], left: float | None = None
 ) -> ForceErrors:
-    """Return the errors of the forces of states, (m,) [FU], interpolated over displacement between the `marked` ones.
+    """Return the errors of the contact forces of states [FU], ≥ 0.
+
+    `common`, (m,), of the interaction or plane plus the sum of residual forces, is known for the `marked` states,
+    interpolated over displacement between them and constant beyond. `turning`, (m,), is √N times the residual force of
+    each state, of N upper particles. `law` is the largest error of the interaction or plane of a marked state, `anchor`
+    the displacement [LU] of the last one.
 
     Args:
         scene: of the run.
@@ -173,14 +181,17 @@ def budgeted(
     length: float = 0.0,
     repeated: Mapping[str, Sequence[Trace]] | None = None,
 ) -> dict[str, Result]:
-    """Return the results by name, each with its errors by source, in its own unit.
+    """Return the results of a trace by name, each with its errors by source, in its own unit.
+
+    Every result has "solver" and "discretisation"; "time", "sampling", "input" and others stand where they apply.
 
     Args:
-        case: scene, settings, script and reader.
+        case: the experiment on the reduced model of the scene, with the function that reads results.
         trace: of the measured states.
         force_error: error ε of the force of each state [FU].
-        sampled: whether the scene gives the steps.
-        length: displacement from the anchor [LU] at which a tilt of the force reaches ε; 0 for no tilt.
+        sampled: whether the scene gives the load steps.
+        length: displacement [LU] from the last marked state at which an error that changes sign there reaches ε; 0:
+            no such error.
         repeated: traces of repeated measurements, by the source of the error that they show: "time" of a motion.
     """
     readings = case.read(trace)
@@ -212,9 +223,11 @@ def budgeted(
 def _repetition_errors(
     case: Reduction, trace: Trace, values: Values, repeated: Mapping[str, Sequence[Trace]]
 ) -> dict[str, Values]:
-    """Return the errors that repeated traces show, by source and result in its unit.
+    """Return the errors that repeated traces show, ≥ 0, by source and result, in its unit.
 
-    A result that a repetition lacks counts as 0. Of a free body, "time" is also the error of its detachment at least.
+    It is the sum over the repetitions of the changes of a result, times 1.25; a result that a repetition lacks counts
+    as 0 there. {} without repetitions, but of a free motion there is always "time": at least the change, times 1.25, if
+    the position after separation is wrong by that of a timestep.
     """
     errors = dict[str, Values]()
     for source, traces in repeated.items():
@@ -228,11 +241,12 @@ def _repetition_errors(
 
 
 def _perturbed(case: Reduction, trace: Trace, force_error: ForceErrors, sampled: bool, length: float) -> list[Trace]:
-    """Return traces with forces changed by ±ε, or by a part of it that changes its sign along the path.
+    """Return traces that differ from `trace` by the errors of its forces, each in both directions.
 
-    ε, tilted about the anchor over `length` [LU] (none where that is 0), and where the scene gives the steps
-    (`sampled`) the part that turns with the loading; also with radii wider and narrower by the relative error of the
-    interaction.
+    First all forces are changed by ε; where `length` [LU] > 0, then by ε times the distance in displacement from the
+    last marked state over it, at most ±1; where `sampled`, then by the part that turns with the loading. States that
+    were to carry a force move along. Where forces have an error by the interaction, radii are also wider and narrower
+    by it, relative to the pull-off force, or without attraction to the largest force.
     """
     shapes = [force_error.common]
     if length > 0.0:
@@ -249,19 +263,21 @@ def _perturbed(case: Reduction, trace: Trace, force_error: ForceErrors, sampled:
 
 
 def misread(trace: Trace) -> list[Trace]:
-    """Return two traces with radii increased by their uncertainties: all of them, and with alternating sign.
+    """Return two traces with contact radii increased by their uncertainties: all of them, and with alternating sign.
 
-    Results change with radii to first order: smaller radii change them by as much.
+    In the second, the first state has the plus sign. Results change with radii to first order: smaller radii change
+    them by as much.
     """
     alternating = np.asarray((-1.0) ** np.arange(len(trace)), dtype=np.float64)
     return [trace.perturbed(radius_shift=shift) for shift in (1.0, alternating)]
 
 
 def _detachment_errors(case: Reduction, trace: Trace) -> Array:
-    """Return the error [LU] of the position of a free body, (m,), whose contact is lost within a timestep.
+    """Return the error [LU] ≥ 0 of the position of a free body, (m,), whose contact is lost within a timestep.
 
-    ½ ΔF Δt/M (t − t₀), with ΔF the force at the limit point and t₀ the last time in contact; 0 up to t₀, and everywhere
-    without a limit point. The change with another timestep may vanish, since the contact is lost elsewhere in it.
+    ½ ΔF Δt/M (t − t₀), with ΔF the force at the limit point, the timestep Δt, the mass M of the body and t₀ the last
+    time with a force; 0 up to t₀, and everywhere without a limit point. The change with another timestep may vanish,
+    since the contact is lost elsewhere in it.
     """
     model, motion = case.model, case.settings.motion
     if not model.limits:
@@ -272,15 +288,16 @@ def _detachment_errors(case: Reduction, trace: Trace) -> Array:
 
 
 def _short_step(model: Particles) -> float:
-    """Return a step [LU] of a thousandth of the path of the model, from apart to its largest displacement."""
+    """Return a thousandth of the displacement [LU] of the model from separation to the largest one that is expected."""
     return 1e-3 * (model.deepest - model.apart)
 
 
 def _target_errors(case: Reduction, trace: Trace, error: Array, margin: float = 1.1) -> Array:
-    """Return how far [LU] states are, at most, from the displacement of the force that they were to carry, (m,).
+    """Return how far [LU] ≥ 0 states may be from the displacement of the force that they were to carry, (m,).
 
-    0 for all others. `error`: of the force of each state, (m,) [FU]. `margin` is the factor over the distance to first
-    order, for nothing else may be in error.
+    0 for states that were to carry none. Each is the distance for the difference from that force plus `error`, under a
+    load for the larger of both, times `margin`, since the distance is of first order and nothing else may be in error.
+    `error`: of the force of each state, (m,) [FU].
     """
     distances = np.zeros(len(trace))
     for i, wanted in trace.wanted.items():
@@ -293,9 +310,10 @@ def _target_errors(case: Reduction, trace: Trace, error: Array, margin: float = 
 
 
 def _stiffness(case: Reduction, displacement: Array) -> Array:
-    """Return dF/dd [FU/LU] > 0 of the model in unloading at displacements (m,) [LU], at least that of a particle.
+    """Return dF/dd [FU/LU] > 0 of the reduced model in unloading at displacements (m,) [LU], one for each.
 
-    Where the force has several maxima, that of all pairs in contact at the largest displacement, everywhere.
+    It is at least the contact stiffness of one particle. Where the force has several maxima, it is that of all pairs in
+    contact at the largest expected displacement, everywhere.
     """
     settings, model = case.settings, case.model
     if settings.has_several_maxima:
@@ -306,9 +324,9 @@ def _stiffness(case: Reduction, displacement: Array) -> Array:
 
 
 def _changes(read: Reader, values: Values, perturbed: list[Trace], missing: bool = False) -> Values:
-    """Return the largest absolute change of each value over the perturbed traces, by name in its unit.
+    """Return the largest |change| of each value over the perturbed traces, by name in its unit; 0 without traces.
 
-    A value that a perturbed reader lacks has not changed, or with `missing` is 0 there.
+    Where a perturbed trace gives no such result, it has not changed, or with `missing` counts as 0 there.
     """
     changes = dict.fromkeys(values, 0.0)
     for trace in perturbed:

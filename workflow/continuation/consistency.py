@@ -29,11 +29,11 @@ AT_REST = 1e-8
 
 
 def plan(scene: Scene, states: Sequence[State], forces: Array) -> dict[str, Agreement]:
-    """Return {"plan": `Agreement`} of the forces of LAMMPS and of the model, (m,) [FU], of all load steps in order.
+    """Return {"plan": agreement} of the forces of LAMMPS and of the model, (m,) [FU], of all load steps in order.
 
     A difference below the round-off error of the loaded particles does not count. The remaining difference is divided
-    by the sum of all loads in its step, to which a share of the largest sum of the run is added, for an unloaded step;
-    the load step with the largest quotient counts, and 1e-9 is allowed.
+    by the sum of the absolute forces of the particles in its step, to which 1e-5 of the largest sum of the run is
+    added, for an unloaded step. The load step with the largest quotient counts; 1e-9 is allowed.
     """
     allowed, share = 1e-9, 1e-5  # differences of right runs are 4e-14 to 8e-11
     sizes = np.asarray([_load_sum(scene, state) for state in states])
@@ -49,10 +49,11 @@ def plan(scene: Scene, states: Sequence[State], forces: Array) -> dict[str, Agre
 
 
 def asked(scene: Scene, pairs: Sequence[tuple[float, float]], states: Sequence[State]) -> dict[str, Agreement]:
-    """Return {"asked": `Agreement`} of pairs of forces [FU], (required by the scene, carried by its state).
+    """Return {"asked": agreement} of pairs of forces [FU], (required by the scene, carried by its state).
 
-    {} without pairs. The largest difference counts, less round-off, over the largest sum of loads of a state or the
-    largest required force. A search may differ by the tolerance of the scene, a plan by 1e-8.
+    {} without pairs. The largest difference counts, less the largest round-off error of a state, over the largest
+    required force or sum of absolute forces of particles of a state, whichever is larger. Allowed are 1e-8 for planned
+    load steps on a rigid plane, else the tolerance of the scene.
     """
     if not pairs:
         return {}
@@ -65,19 +66,23 @@ def asked(scene: Scene, pairs: Sequence[tuple[float, float]], states: Sequence[S
 
 
 def _load_sum(scene: Scene, state: State) -> float:
-    """Return the sum of the absolute loads of a state [FU], compressive and tensile: a force of 0 has a scale, too."""
+    """Return the sum of the absolute forces of a state's upper particles [FU] ≥ 0, compressive and tensile.
+
+    It is a scale also where the contact force is 0.
+    """
     return scene.bodies.own_spacing * float(np.abs(state.profile.pressure).sum())
 
 
 def _round_off(state: State) -> float:
-    """Return the residual force of a state times the number of its loaded particles [FU]."""
+    """Return the residual force of a state times the number of its loaded particles [FU]: 0 without a loaded one."""
     return state.residual * np.count_nonzero(state.profile.pressure)
 
 
 def balance(scene: Scene, states: Sequence[State]) -> dict[str, Agreement]:
-    """Return {"balance": `Agreement`} of the contact's force on the plate with that which LAMMPS adds up.
+    """Return {"balance": agreement} of the contact force with the forces that LAMMPS adds up on the plate.
 
-    {} where it does not. The largest difference counts, less residual forces, over the largest sum of loads of a state.
+    {} where no state has this sum. The largest difference counts, less the residual forces of all upper particles, over
+    the largest sum of the absolute forces of particles of a state. Allowed are 1e-8 in equilibrium, 1e-4 in time.
     """
     missing = [
         (max(abs(state.missing) - state.profile.x.size * state.residual, 0.0), state)
@@ -112,11 +117,12 @@ class Work:
 
 
 def energy(case: Reduction, work: Work, doubt: float = 0.0) -> dict[str, Agreement]:
-    """Return {"energy": `Agreement`} of the work with the energy that is stored and lost.
+    """Return {"energy": agreement} of the work of the plate with the energy that is stored and lost.
 
     {} where the model has no energies. The difference is relative to the energy lost where that exceeds 5 % of all
     work, else to all work, and to the energy stored where that is larger; of a free body, to its first kinetic energy.
-    `doubt`: the relative uncertainty of the energy that the run reports, which is allowed in addition.
+    Allowed are 1e-3 plus `doubt`, the relative uncertainty of the energy that the run reports; where the difference
+    exceeds 1e-3, also four times what smaller steps and half the spacing change.
     """
     checked = _missing(case.model, work, 1)
     if checked is None:
@@ -134,10 +140,11 @@ def energy(case: Reduction, work: Work, doubt: float = 0.0) -> dict[str, Agreeme
 
 
 def _missing(model: Particles, work: Work, finer: int) -> tuple[float, float, float, float] | None:
-    """Return (work neither stored nor lost, work, energy stored and lost, their scale), all [FU·LU].
+    """Return (work neither stored nor lost, work, energy stored and lost, the scale of all), all [FU·LU].
 
-    None without energies. `finer`: factor on the number of states of the path. The model has no energies where its law
-    has no expression for them.
+    None where the contact law has no expression for its energies. The scale is all work ∫ |F| |dd|, tangential
+    included, or the energy lost where that exceeds 5 % of it, but at least the energy stored; of a free body its first
+    kinetic energy. `finer`: factor on the number of states of the path; without effect on a free motion.
     """
     path = work.path if work.kinetic else model.checked(work.path, finer)
     if (energies := model.energies(path)) is None:
@@ -162,9 +169,10 @@ def _missing(model: Particles, work: Work, finer: int) -> tuple[float, float, fl
 
 
 def _denser(case: Reduction, work: Work, dense: int = 4) -> Work:
-    """Return the work along the path with `dense` load steps for each: twice as many may miss as much by chance.
+    """Return the work along the path of the same experiment on the model with `dense` load steps for each, no forces.
 
-    Unchanged are a free motion, and a path of equilibria, which gets its states from the model.
+    Twice as many may miss as much by chance. Returned unchanged are a free motion, and a path of equilibria, which gets
+    its states from the model.
     """
     if work.kinetic or case.model.checked(work.path, 1) is not work.path:
         return work

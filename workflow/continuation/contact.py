@@ -53,7 +53,13 @@ class Contact:
     """
 
     def __init__(self, deck: Deck, session: Session, meanwhile: Callable[[], object] | None = None) -> None:
-        """Run the head of a deck, and call `meanwhile` while LAMMPS reads the bodies."""
+        """Set up the bodies in the LAMMPS session, by the first commands of the deck.
+
+        `meanwhile` is called while LAMMPS reads the bodies.
+
+        Raises:
+            EngineError: LAMMPS failed.
+        """
         self.deck, self.scene, self.settings, self.session = deck, deck.scene, deck.settings, session
         self.rows_seconds = 0.0  # wall time of the rows in LAMMPS
         self._phases: list[Phase] = []
@@ -70,13 +76,14 @@ class Contact:
 
     @property
     def phases(self) -> tuple[Phase, ...]:
-        """The schedule of the load steps so far: named phases of rows; () before the first phase."""
+        """The load steps so far as named phases, in order, the current one included; () before the first phase."""
         return tuple(self._phases)
 
     def begin(self, name: str, fragments: tuple[str, ...] = (), expected_steps: int | None = None) -> None:
-        """Begin a phase of load steps, with fragments that are run first.
+        """Begin a phase of load steps; its `fragments`, files of LAMMPS commands, run with its first load step.
 
-        `expected_steps`: timesteps of the whole phase, shown as progress; None where unknown.
+        `expected_steps`: timesteps of the whole phase, shown as progress; None where unknown. The `name` is used as it
+        is.
         """
         end = "variable        row_phase delete\n" if self._phases else ""
         self._phases.append(Phase(name, (), begin=fragments))
@@ -85,25 +92,29 @@ class Contact:
         self.session.execute("", phase=name, expected_steps=expected_steps)
 
     def row(self, row: Row, trusted: bool = True) -> State:
-        """Run one load step of the current phase and return its measured state; where `trusted`, one that is a result.
+        """Run one load step of the current phase and return its measured state.
+
+        `trusted`: whether the state must be a result, and is checked.
 
         Raises:
             EngineError: LAMMPS failed, or lost particles.
-            UntrustedError: bodies went through each other, particles are not at rest, or the chain is too short.
+            UntrustedError: where `trusted`: bodies went through each other, particles are not at rest (unless there
+                is a plate or noise), or the contact reaches the end of the chain.
         """
         return self.rows((row,), trusted)[0]
 
     def rows(self, rows: Sequence[Row], trusted: bool = True, moving: bool = False) -> list[State]:
-        """Run load steps of the current phase, which are known beforehand, and return the measured state of each.
+        """Run load steps of the current phase, known beforehand, and return the measured state of each, in order.
 
         Args:
-            rows: of one kind.
-            trusted: whether each state is a result; one before equilibrium is not.
+            rows: of one kind; [] for none.
+            trusted: whether each state must be a result, and is checked; one before equilibrium is not.
             moving: whether the motion itself is examined, so that nothing has to be at rest.
 
         Raises:
             EngineError: LAMMPS failed, or lost particles.
-            UntrustedError: bodies went through each other, particles are not at rest, or the chain is too short.
+            UntrustedError: where `trusted`: bodies went through each other, particles are not at rest (unless
+                `moving`, with a plate or noise), or the contact reaches the end of the chain.
         """
         states, size = list[State](), BATCH
         if self.deck.stepped:
@@ -126,13 +137,16 @@ class Contact:
         return states
 
     def write_state(self) -> None:
-        """Write the atoms of the last load step to states.lammpstrj; the phase then ends with this state."""
+        """Have the atoms of the last load step written to states.lammpstrj, at the latest by `finish`.
+
+        The phase ends with this state.
+        """
         self._phases[-1] = replace(self._phases[-1], state=True)
         self._unfinished += self.deck.state(first=not self._written)
         self._written = True
 
     def finish(self) -> None:
-        """Run the remaining text of the last load step, whose states are not kept, and delete the file of frames."""
+        """Run the LAMMPS commands that remain after the last load step, and delete the file of frames, if any."""
         self.session.execute(self._unfinished, phase=self._phases[-1].name)
         self._unfinished = ""
         (self.session.folder / FRAMES).unlink(missing_ok=True)
@@ -140,17 +154,18 @@ class Contact:
     def replay(
         self, phases: Sequence[Phase], relaxed: bool = False, meanwhile: Callable[[], object] | None = None
     ) -> list[State]:
-        """Run a whole schedule, and return one state for each load step.
+        """Run all load steps of `phases`, finish the contact, and return one state for each load step, in order.
 
         Args:
-            phases: with load steps, the first of the contact.
-            relaxed: whether a load step in time is repeated until at rest.
+            phases: one at least, with load steps, the first of the contact.
+            relaxed: whether a load step in time is repeated until at rest; its last state is returned. Ignored
+                where all load steps are one run (quasi-static on a rigid plane).
             meanwhile: called while LAMMPS runs, where all load steps are one run; else ignored.
 
         Raises:
             EngineError: LAMMPS failed, or lost particles.
-            UntrustedError: a state is no result; not checked where all load steps are one run, nor with noise unless
-                `relaxed`.
+            UntrustedError: a state is no result; not checked where all load steps are one run, nor with noise
+                unless `relaxed`.
         """
         if self.deck.stepped:
             self._phases, rows = [*phases], [(phase.name, row) for phase in phases for row in phase.rows]
@@ -174,12 +189,14 @@ class Contact:
         return states
 
     def _relaxed(self, row: Row, most: int = 200) -> State:
-        """Repeat a load step until it is relaxed, `most` times at the most, and return its last state.
+        """Run a load step, repeat it until it is relaxed, `most` times at the most, and return its last state.
 
-        Near an instability the motion slows without bound.
+        Relaxed means that no particle's residual force exceeds a tenth of the tolerance. Near an instability the motion
+        slows without bound.
 
         Raises:
-            UntrustedError: the last state is no result.
+            EngineError: LAMMPS failed, or lost particles.
+            UntrustedError: the last state is no result; without plate and noise also where it is not relaxed.
         """
         state, repeats = self.row(row, trusted=False), 0
         while not is_converged(self.settings, state) and repeats < most:
@@ -188,9 +205,12 @@ class Contact:
         return state
 
     def _measured(self, rows: Sequence[Row], first: int) -> list[State]:
-        """Run load steps one by one and return the state of each, in units of the scene.
+        """Run load steps one by one and return the state of each, in order, in units of the scene; nothing is checked.
 
         `first`: number of the first one over all phases.
+
+        Raises:
+            EngineError: LAMMPS failed, or lost particles.
         """
         texts = []
         for row in rows:
@@ -213,19 +233,22 @@ class Contact:
 
     @property
     def _at_once(self) -> int:
-        """The number of frames that are read at a time, one at least, to bound the memory."""
+        """The number of load steps whose frames are read at a time: 10⁶ over the number of particles, one at least."""
         return max(1, MOST_NUMBERS // len(self._x))
 
     def _states_of_run(
         self, text: str, rows: Sequence[tuple[str, Row]], first: int, meanwhile: Callable[[], object] | None
     ) -> list[State]:
-        """Return the states of load steps, each a timestep of one run without relaxation.
+        """Run load steps that are one run on a rigid plane, a timestep each without relaxation; return their states.
 
         Args:
-            text: commands of the run.
+            text: LAMMPS commands of the run.
             rows: the load steps, each with the name of its phase.
             first: number of the first one over all phases.
             meanwhile: called while LAMMPS runs.
+
+        Raises:
+            EngineError: LAMMPS failed, particles were lost, or a number is not finite.
         """
         began = self.session.timestep
         self.session.measure(text, meanwhile=meanwhile)
@@ -247,9 +270,10 @@ class Contact:
         return states
 
     def _profiles(self, count: int, part: slice) -> tuple[list[Profile], int]:
-        """Return (profiles of a part of the last `count` load steps, bytes of the file of frames read so far).
+        """Return (pressure profiles of a part of the last `count` load steps, bytes of the file of frames read so far).
 
-        x is from the middle of the body. The surface of a loaded particle is on the plane, at 0.
+        x [LU] is from the middle of the body. Surfaces of particles are at their heights [LU], of loaded ones at 0, on
+        the plane; shear is 0 unless the scene prescribes positions along x. Pressure and shear are in FU/LU.
 
         Raises:
             EngineError: particles were lost, or a number is not finite.
@@ -271,13 +295,20 @@ class Contact:
         return [Profile(self._x, none, z, p, q) for z, p, q in zip(surfaces, pressures, shears, strict=True)], end
 
     def _compute_radii(self) -> None:
-        """Compute the radii of the previous load steps, which their states keep, while LAMMPS runs the next ones."""
+        """Compute and cache the contact radii of the latest load steps, while LAMMPS runs the next ones.
+
+        A radius that cannot be read is left out; the error comes where it is used.
+        """
         for state in self._latest:
             with suppress(ValueError):  # reported where the radius is asked for
                 _ = state.radius
 
     def _values(self) -> dict[str, str]:
-        """Return the quantities that are measured besides those of atoms: LAMMPS names, with the units of the scene."""
+        """Return the LAMMPS names of the numbers that are measured, besides those of atoms, with their units.
+
+        Units are those of the scene. Always the plate's displacement and the timestep; with a plate, a cantilever, heat
+        baths or other effects theirs, too.
+        """
         names = {"plate_displacement": "LU", "step": "1"}
         if self.scene.plate:
             names |= {"plate_velocity": "LU/TU", "plate_force": "FU"}
@@ -288,11 +319,14 @@ class Contact:
         return names | dict.fromkeys(self._pushes, "FU")
 
     def _lost(self, message: str, step: int) -> EngineError:
-        """Return the error of this message at a timestep, with the phase and the folder of the run."""
+        """Return (not raise) the error of this message at a timestep, with the phase and the folder of the run."""
         return EngineError(message, self._phases[-1].name, step, self.session.folder, "")
 
     def _state(self, phase: str, numbers: dict[str, float], atoms: dict[str, Array], number: int) -> State:
         """Return the state of a load step, in units of the scene.
+
+        On a rigid plane the surface of a particle that lies below it is at the particle, and the depth 0; where
+        particles are fixed in the upper body, that of a loaded particle is on the plane and the residual 0.
 
         Args:
             phase: its name.
@@ -348,9 +382,10 @@ class Contact:
         )
 
     def _missing(self, atoms: dict[str, Array], upper: NDArray[np.bool_]) -> float | None:
-        """Return the sum of contact and spring forces on the upper particles [FU], 0 in equilibrium.
+        """Return the sum of contact and spring forces on the upper particles along z [FU], 0 in equilibrium.
 
-        None where it may differ from 0: without springs, in time, and with long bonds.
+        Compression of the contact is positive. None where it may differ from 0 or is unknown: without springs of the
+        upper particles, in time, and with long bonds.
         """
         springs = atoms["type"] == ANCHORS["upper"]
         if not springs.any() or self.scene.method != "quasistatic" or self.settings.chains.far:
@@ -359,9 +394,9 @@ class Contact:
         return float(atoms["v_opposite_z"][upper].sum()) + self.settings.forces.bulk_stiffness * stretch
 
     def _surface(self, x: Array, z: Array) -> tuple[Array, Array]:
-        """Return positions x and heights z [LU] of the lower particles, (k,) each, of a periodic chain with its images.
+        """Return positions x and heights z of the lower particles [LU], (k,) each; (3k,) of a periodic chain.
 
-        These are its copies on both sides, so that there are three times as many.
+        Those of a periodic chain are followed by their copies on both sides: x less a period, x, x plus a period.
         """
         if not self.scene.bodies.periodic:
             return x, z

@@ -47,20 +47,20 @@ class Clock:
     """
 
     def __init__(self) -> None:
-        """Begin with no time and no timesteps."""
+        """Begin with no time and no timesteps; a lock makes additions from several threads safe."""
         self.lammps_seconds = self.lammps_cpu_seconds = self.rows_seconds = 0.0
         self.steps = 0
         self._lock = threading.Lock()
 
     @property
     def taken(self) -> tuple[float, float, float, int]:
-        """Time in LAMMPS, on its processors and in load steps [s], and number of timesteps: the arguments of `add`."""
+        """(Time in LAMMPS, on its processors, in load steps [s], number of timesteps): the arguments of `add`."""
         return self.lammps_seconds, self.lammps_cpu_seconds, self.rows_seconds, self.steps
 
     def add(self, lammps: float, cpu: float, rows: float, steps: int) -> None:
-        """Add the times [s] in LAMMPS, on its processors and in load steps, and the timesteps of a contact.
+        """Add the times [s] in LAMMPS, on its processors and in load steps, and the timesteps of a contact to the sums.
 
-        Safe with threads.
+        Threads may add at the same time.
         """
         with self._lock:
             self.lammps_seconds += lammps
@@ -102,10 +102,13 @@ class RunContext:
 
     @contextmanager
     def contact(self, purpose: str = "", meanwhile: Callable[[], object] | None = None) -> Iterator[Contact]:
-        """Open a contact at displacement 0 in a new LAMMPS instance, which is closed at the end.
+        """Yield a contact at displacement 0 in a new LAMMPS instance, which is closed at the end of the `with` block.
 
-        Its time is added to `clock`. `purpose` is shown to the user. `meanwhile` is called while LAMMPS reads the
-        bodies.
+        Its time is then added to `clock`, and its last phase and timestep are kept, also after an error. `purpose` is
+        shown to the user, "" is not. `meanwhile` is called while LAMMPS reads the bodies.
+
+        Raises:
+            EngineError: LAMMPS failed.
         """
         if purpose:
             self.progress.note(purpose)
@@ -121,9 +124,10 @@ class RunContext:
 
     @contextmanager
     def aside(self, deck: Deck) -> Iterator[RunContext]:
-        """Open a context of another deck in a temporary folder, which is deleted at the end.
+        """Yield a context of another deck in the folder ".aside" of the run folder, which is deleted at the end.
 
-        Its time is added to `clock`.
+        An earlier folder of this name is deleted first. Time limit, workers and ranks are those of this context; the
+        time of its contacts is added to `clock` at the end, also after an error.
         """
         folder = self.folder / ASIDE
         shutil.rmtree(folder, ignore_errors=True)
@@ -137,7 +141,7 @@ class RunContext:
             shutil.rmtree(folder, ignore_errors=True)
 
     def add_time_of(self, context: RunContext) -> None:
-        """Add the time used by another context, possibly in another thread, to `clock`."""
+        """Add the time used so far by another context, possibly in another thread, to `clock`."""
         self.clock.add(*context.clock.taken)
 
 
@@ -162,7 +166,10 @@ class ContactBranch:
     """
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
-        """Prepare a contact; `meanwhile` is called while LAMMPS reads the bodies."""
+        """Prepare a contact without states; LAMMPS starts with the `with` statement.
+
+        `meanwhile` is called while LAMMPS reads the bodies. The reduced model is made here.
+        """
         self.context, self._meanwhile = context, meanwhile
         self.scene, self.settings = context.deck.scene, context.deck.settings
         self.model: Particles = reduced(self.scene, self.settings)
@@ -178,68 +185,84 @@ class ContactBranch:
         self._open = ExitStack()
 
     def __enter__(self) -> Self:
-        """Open the contact in a LAMMPS instance."""
+        """Open the contact in a new LAMMPS instance, and return this object.
+
+        Raises:
+            EngineError: LAMMPS failed.
+        """
         self.contact: Contact = self._open.enter_context(self.context.contact(meanwhile=self._meanwhile))
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
-        """Close the contact and its LAMMPS instance."""
+        """Close the contact and its LAMMPS instance; an error of the `with` block goes on."""
         self._open.__exit__(kind, error, traceback)
 
     @property
     def phases(self) -> tuple[Phase, ...]:
-        """The schedule of the load steps so far: named phases of rows."""
+        """The load steps so far as named phases, in order; () before the first one."""
         return self.contact.phases
 
     @property
     def leg(self) -> list[State]:
-        """The states of the leg under way, in order; empty before the first load step."""
+        """The states since the loading last turned, in order, as a new list; empty before the first load step."""
         return [state for state, leg in zip(self.states, self.legs, strict=True) if leg == self._number]
 
     @property
     def scale(self) -> float:
-        """The expected force maximum (largest tension) [FU], positive; 0 without attraction."""
+        """The expected force maximum (largest tension) by the contact law [FU], positive; 0 without attraction."""
         return self.settings.law.pull_off_force()
 
     def checks(self, case: Reduction, doubt: float) -> dict[str, Agreement]:
-        """Return {"balance": `Agreement`}: relative difference of contact force and LAMMPS's sum, and its limit.
+        """Return {"balance": agreement} of the contact force with the forces that LAMMPS adds up on the plate.
 
-        {} where the deck has no such sum. `case` and `doubt`, the relative uncertainty of energies, are used by
-        contacts with further checks.
+        {} where LAMMPS has no such sum. `case`, the experiment on the reduced model, and `doubt`, the relative
+        uncertainty of energies, are ignored here; a contact that is planned on a rigid plane has further checks.
         """
         return consistency.balance(self.scene, self.states)
 
     def trace(self) -> Trace:
-        """Return the trace of all states, for a reader; its times [TU] are 0 of equilibria."""
+        """Return all states with displacements [LU], forces [FU] and times [TU], from which results are read.
+
+        Times are 0 of equilibria; in time, the number of the LAMMPS timestep times the timestep.
+
+        Raises:
+            IndexError: there are no states.
+        """
         step = self.settings.motion.time_step if self.moves else 0.0
         trace = of_states(self.states, self.model, self.legs, self.searches, step)
         return replace(trace, wanted=self.wanted, given=self.given)
 
     def begin(self, name: str) -> None:
-        """Begin a phase of this name with the next load step; a repeated name gets a number, "loading_2"."""
+        """Begin a phase of this name with the next load step; where the name is taken it gets a number, "loading_2"."""
         self._phase = name
 
     def visit(self, positions: Sequence[float] | Array, along: Sequence[float] | None = None) -> None:
-        """Raise UntrustedError: under load control no displacement is prescribed."""
+        """Raise UntrustedError, always: under load control no displacement is prescribed.
+
+        Other branches override it.
+        """
         raise UntrustedError('a plate under a load has no prescribed displacement: use method = "quasistatic"')
 
     def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
-        """Raise UntrustedError: quasi-static load steps take no time."""
+        """Raise UntrustedError, always: quasi-static load steps take no time. Searches and load control override it."""
         raise UntrustedError('a load step at rest takes no time: use method = "dynamic"')
 
     def follow(self, history: History) -> None:
-        """Raise UntrustedError: these load steps are not planned on a rigid plane."""
+        """Raise UntrustedError, always: these load steps are not planned on a rigid plane, where it is overridden."""
         raise UntrustedError('a history needs springs on a rigid plane: use lower = "rigid_plane"')
 
     def fly(self, velocity: float, longest: int = 100) -> None:
-        """Move freely with an impact velocity [LU/TU] until the bodies separate or stick, in equal stretches of time.
+        """Move freely from displacement 0 with an impact velocity [LU/TU], positive in approach, up to the rebound.
 
-        It adds a leg of states in time, in the phases "touching" and "impact".
+        It ends when the bodies have separated, or when the body moves down again. The states, at equal intervals of
+        time, 60 in the time of a free motion to the largest expected displacement, are kept in the phases "touching"
+        (the first) and "impact".
 
         Raises:
-            UntrustedError: they do neither in `longest` times the time of a fall to the deepest displacement.
+            UntrustedError: neither happens in `longest` times that time, bodies went through each other, or the
+                contact reaches the end of the chain.
         """
         self.moves, self.given, steps = True, "", stretch(self.settings, velocity)
         self._turn(rises=True)
@@ -253,28 +276,33 @@ class ContactBranch:
             self._append(self.contact.rows([Fly(steps)] * FLIGHT, moving=True))
 
     def mark(self, name: str) -> None:
-        """Report the last state under a name, and write its atoms to states.lammpstrj."""
+        """Report the last state under a name, and have its atoms written to states.lammpstrj.
+
+        Raises:
+            IndexError: there are no states.
+        """
         self.marked[name] = self.states[-1]
         self.contact.write_state()
 
     def finish(self) -> None:
-        """Run the remaining commands of the last load step; the schedule ends."""
+        """Run the LAMMPS commands that remain after the last load step; no further load steps follow."""
         self.contact.finish()
 
     @property
     def _number(self) -> int:
-        """The number of the leg under way; −1 before the first load step."""
+        """How often the loading has turned before the last state, from 0 on; −1 before the first load step."""
         return self.legs[-1] if self.legs else -1
 
     @property
     def _last(self) -> State:
-        """The last state, which there must be."""
+        """The state of the last load step; IndexError where there is none."""
         return self.states[-1]
 
     def _turn(self, rises: bool) -> bool:
-        """Begin a leg with the next load step where the direction of the loading changes; return whether it does.
+        """Record the direction of the next load steps; return whether it differs from the one before, True at first.
 
-        `rises`: whether the displacement, or the load, rises next.
+        Where it differs, the next state begins a new part of the path. `rises`: whether the displacement, or the load,
+        rises next.
         """
         direction = 1 if rises else -1
         turned, self._direction = direction != self._direction, direction
@@ -282,21 +310,21 @@ class ContactBranch:
         return turned
 
     def _append(self, states: Sequence[State]) -> None:
-        """Add states, which follow the ones before, to the leg under way, or to the one that begins."""
+        """Add states to those so far; after a turn of the loading they begin a new part of the path."""
         self.legs += [self._number + self._turned] * len(states)
         self.states += states
         self._turned = False
 
     def _record_target(self, force: float) -> None:
-        """Record in `wanted` the force [FU] that the last state was to carry.
-
-        NaN, for a displacement, is not recorded.
-        """
+        """Record in `wanted` the force [FU], compression positive, that the last state was to carry; not NaN."""
         if not math.isnan(force):
             self.wanted[len(self.states) - 1] = force
 
     def _begin_phase(self) -> None:
-        """Begin the phase that the script has named, before its first load step; do nothing where it has named none."""
+        """Begin in LAMMPS the phase that was named since the last load step, numbered where the name is taken.
+
+        Nothing where none was named since.
+        """
         if self._phase:
             name, self._phase = self._phase, ""
             self.contact.begin(numbered(name, [phase.name for phase in self.contact.phases]))

@@ -56,14 +56,15 @@ class Held:
 
     @property
     def last(self) -> State:
-        """The last state under the load."""
+        """The last measured state under the load, at rest where `held`, else of a contact that is lost."""
         return self.states[-1]
 
 
 def stiffness_under(settings: Settings, load: float) -> float:
     """Return the contact stiffness dF/dd [FU/LU] under a load [FU], compression positive.
 
-    Where pairs separate one by one, whatever the load, that of all pairs in contact at the largest displacement.
+    A tension counts as 0.998 of the force maximum at most, since the stiffness is 0 there. Where the tension has
+    several maxima, the result is that of all pairs in contact at the largest expected displacement, whatever the load.
     """
     if settings.has_several_maxima:
         return settings.law.stuck_stiffness(settings.largest_displacement)
@@ -73,8 +74,9 @@ def stiffness_under(settings: Settings, load: float) -> float:
 def damping_under(settings: Settings, load: float) -> float:
     """Return the damping coefficient of a particle [FU·TU/LU] under a load [FU], compression positive.
 
-    That of the scene; an automatic one is critical for the contact stiffness under the load. In a search that restarts,
-    the damping under a compressive load is critical for each particle, too.
+    The usual one where the scene gives it, and in a slide. An automatic one is critical for the contact stiffness under
+    the load, at most √(1/0.6) times the usual one. In a search that restarted in smaller steps, under a compressive
+    load or none, it is the settling damping instead.
     """
     if settings.motion.damped_stiffness == 0.0:
         return settings.motion.damping
@@ -85,10 +87,11 @@ def damping_under(settings: Settings, load: float) -> float:
 
 
 def overshoot(settings: Settings, mass: float, load: float, next_load: float) -> float:
-    """Return the largest overshoot of a plate that goes from rest under `load` to `next_load` [FU], over its path.
+    """Return by how much of its path a plate overshoots that goes from rest under `load` to `next_load` [FU].
 
-    exp(−πζ/√(1 − ζ²)), dimensionless, of a linear oscillator with the stiffness under `load`, the largest one under
-    tension, and the drag under `next_load`; 0 where it does not oscillate. `mass`: of a particle [MU].
+    exp(−πζ/√(1 − ζ²)), 0 … 1, of a linear oscillator with the stiffness under `load`, the largest one under tension,
+    and the drag under `next_load`; 0 where it does not oscillate. Loads are positive in compression; `mass`: of a
+    particle [MU].
     """
     moving = settings.motion.plate_mass + settings.chains.upper * mass
     drag = settings.drag(damping_under(settings, next_load))
@@ -97,11 +100,12 @@ def overshoot(settings: Settings, mass: float, load: float, next_load: float) ->
 
 
 def hold_row(scene: Scene, settings: Settings, load: float, scale: float, start: Start) -> Hold:
-    """Return a `hold` step of a load [FU], which ends where the contact force is within `at_rest` of the load.
+    """Return a load step that holds a load [FU], compression positive, until LAMMPS finds the plate at rest.
 
-    With M the mass of the plate, N m that of the particles that move with it and c the drag on both, the contact force
-    differs from the load by (M + N m) Z″ + c Z′; LAMMPS has M Z″ and Z′. `scale`: force [FU] to which the tolerance is
-    relative; `start`: the position at which the load is applied.
+    It is at rest where the contact force is within a tenth of the tolerance of `scale` [FU] of the load: with M the
+    mass of the plate, N m that of the particles that move with it and c the drag on both, that force differs from the
+    load by (M + N m) Z″ + c Z′; LAMMPS has M Z″ and Z′. LAMMPS also stops where the bodies have separated or went
+    through each other, and after ten settling times. `start`: the position at which the load is applied.
     """
     damping = damping_under(settings, load)
     inertia = _inertia(scene, settings)
@@ -117,29 +121,32 @@ def hold_row(scene: Scene, settings: Settings, load: float, scale: float, start:
 def held_phase(
     name: str, scene: Scene, settings: Settings, loads: Sequence[float], scale: float, state: bool = False
 ) -> Phase:
-    """Return a planned phase that holds loads [FU] one after the other; with `state` the last state is written.
+    """Return a planned phase that holds loads [FU], compression positive, one after the other, a load step each.
 
-    `scale`: force [FU] to which the tolerance of equilibrium is relative.
+    `scale`: force [FU] to which the tolerance of equilibrium is relative; `state`: whether the last state is written.
     """
     return Phase(name, tuple(hold_row(scene, settings, load, scale, Start.KEPT) for load in loads), state)
 
 
 def at_rest(settings: Settings, scale: float, share: float = 0.1) -> float:
-    """Return the unbalanced force [FU] below which a contact is at rest: a share of the tolerance of `scale` [FU]."""
+    """Return the unbalanced force [FU] below which a contact is at rest: `share` of the tolerance of `scale` [FU]."""
     return share * settings.tolerance * scale
 
 
 def hold(
     contact: Contact, load: float, scale: float, start: Start = Start.KEPT, settings: Settings | None = None
 ) -> Held:
-    """Apply a load [FU] in a `hold` phase and run until the contact holds it at rest, or is lost (`held` is false).
+    """Apply a load [FU], compression positive, until the contact holds it at rest or is lost; return the outcome.
 
-    At rest means that the force of the contact balances the load, compression positive, within a tenth of the tolerance
-    of `scale` [FU], and that the motion of the plate keeps it there. `settings` replace those of the contact, with
-    another drag; `start`: the position at which the load is applied.
+    At rest means that the contact force balances the load within a tenth of the tolerance of `scale` [FU], and that
+    drag and motion of the plate are as small. The outcome of a lost contact has `held` False; nothing is raised then.
+    The phase of the contact must have begun. `start`: the position at which the load is applied; `settings` replace
+    those of the contact, with another drag.
 
     Raises:
-        UntrustedError: the contact neither comes to rest nor is lost, or bodies went through each other.
+        RestlessError: neither happens within 50 load steps.
+        ThroughError: the bodies went through each other.
+        UntrustedError: a state at rest is no result.
     """
     settings = settings or contact.settings
     near = at_rest(settings, scale)
@@ -172,9 +179,10 @@ def hold(
 
 
 def press(contact: Contact, load: float, scale: float) -> Held:
-    """Hold a load ≥ 0 [FU] at once, as in the paper, or in the smaller steps of a search that restarts.
+    """Hold a load ≥ 0 [FU], compression positive, at once or in the equal parts of a search in smaller steps.
 
-    Keep all states. Where the contact is lost on the way, the outcome is that of the load under which it was.
+    Return the outcome of the last part, with the states of all. Where the contact is lost on the way, it is the outcome
+    of the part under which it was, with `held` False.
 
     Raises:
         UntrustedError: the contact neither comes to rest nor is lost, or bodies went through each other.
@@ -190,28 +198,35 @@ def press(contact: Contact, load: float, scale: float) -> Held:
 
 
 def _inertia(scene: Scene, settings: Settings) -> float:
-    """Return the total moving mass over that of the plate in LAMMPS (dimensionless), ≥ 1.
+    """Return the moving mass, plate and upper particles, over the mass of the plate (dimensionless), ≥ 1.
 
-    Particles move with the plate; where they are part of it, it is 1.
+    1 where particles are fixed in the plate's body, on a rigid plane.
     """
     return 1.0 if scene.stands else 1.0 + settings.chains.upper * scene.bodies.mass / settings.motion.plate_mass
 
 
 def _separated_displacement(settings: Settings) -> float:
-    """Return the displacement [LU] at which the bodies are certainly beyond the cutoff of their interaction."""
+    """Return a displacement [LU], compression positive, at which bodies are beyond the cutoff of their interaction.
+
+    It is r₀ less the cutoff and a spacing; without an interaction, a spacing before touch.
+    """
     return settings.forces.rest - settings.forces.cutoff - settings.law.spacing
 
 
 def _passed_displacement(settings: Settings) -> float:
-    """Return the displacement [LU] that an undamped plate does not reach: beyond it bodies went through each other."""
+    """Return a displacement [LU], compression positive, that an undamped plate on its contact does not reach.
+
+    Beyond it bodies went through each other.
+    """
     distance = settings.largest_displacement - settings.forces.rest + settings.forces.cutoff
     return settings.largest_displacement + 2.0 * max(distance, settings.law.spacing)
 
 
 def _lost(contact: Contact, state: State, load: float, share: float = 0.7) -> bool:
-    """Return whether a contact is beyond the cutoff, or moves apart with a tension below a share of the load.
+    """Return whether a contact is beyond the cutoff, or moves apart with a tension below `share` of a tensile load.
 
-    `load`: compression positive [FU]; without a cutoff, and under a compressive load, False.
+    `load`: compression positive [FU]. Without a cutoff (on a rigid plane) only the second counts; under a compressive
+    load or none only the first.
     """
     if 0.0 < contact.settings.forces.cutoff < state.smallest_distance:
         return True

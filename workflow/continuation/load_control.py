@@ -52,16 +52,22 @@ class LoadSearch:
 
     @property
     def best(self) -> float:
-        """The largest tensile force that was sustained [FU], positive."""
+        """The largest tensile force that was sustained [FU], the last one in `held`: positive, 0 after F = 0."""
         return -self.held[-1].load
 
     @property
     def done(self) -> bool:
-        """Whether the bracket of the tension, from `best` to `broken`, is as narrow as the tolerance."""
+        """Whether the bracket of the pull-off force, from `best` to `broken`, is at most `tolerance` times `best`.
+
+        False while no tension has broken the contact.
+        """
         return self.broken - self.best <= self.tolerance * self.best
 
     def learn(self, result: Held) -> None:
-        """Record the outcome of the latest tensile load, in `held` or else in `lost` and `broken`."""
+        """Record the outcome of the latest tensile load: in `held`, or else lower `lost` and `broken` to it.
+
+        `lost` is the smallest tension that was not held; `broken` is raised by the overshoot of the plate from `best`.
+        """
         if result.held:
             self.held.append(result)
             return
@@ -69,9 +75,11 @@ class LoadSearch:
         self.broken = min(self.broken, -result.load + self.overshoot(self.best) * (-result.load - self.best))
 
     def next(self, largest_share: float = 0.8, growth: float = 0.25) -> float:
-        """Return the tension to try next, positive [FU].
+        """Return the tension to try next, positive [FU], above `best`.
 
-        The momentum of the plate must not carry it past the pull-off force.
+        It is just below the expected pull-off force, less where the momentum of the plate would carry it past that;
+        else just above. Where neither is clearly between `best` and the smallest tension that was not held, it is
+        inside the bracket, or while no tension has broken the contact (1 + `growth`) times `best`.
 
         Args:
             largest_share: of the distance to the expected pull-off force, so that the last states lie near it.
@@ -87,10 +95,10 @@ class LoadSearch:
         return low + 0.5 * (high - low) / (1.0 + past) if high < math.inf else (1.0 + growth) * low
 
     def _expected(self) -> float:
-        """Return the expected pull-off force, positive [FU]: the guess while it is in the bracket, or of few states.
+        """Return the expected pull-off force, positive [FU]: the first guess, while it is in the bracket.
 
-        After three that hold, with the guess out of the bracket, it is that of the parabola through the last three
-        states, or the guess where this has no maximum nearby.
+        Out of the bracket it is, after three tensions that hold, that of the parabola through the last three states,
+        and the guess where this has no maximum nearby or there are fewer states.
         """
         if len(self.held) < 3 or self.best < self.guess < self.broken:
             return self.guess
@@ -108,15 +116,20 @@ class LoadBranch(ContactBranch):
     """
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
-        """Prepare a contact under load control; `meanwhile` is called while LAMMPS reads the bodies."""
+        """Prepare a contact under load control, without states; LAMMPS starts with the `with` statement.
+
+        `meanwhile` is called while LAMMPS reads the bodies.
+        """
         super().__init__(context, meanwhile)
         self.unbalance, self.given = 0.0, "load"
         self._held: Held | None = None
 
     def reach(self, force: float, scale: float) -> None:
-        """Hold a force [FU], compression positive, to a share of the tolerance of `scale` [FU].
+        """Hold a force [FU], compression positive, at rest within a tenth of the tolerance of `scale` [FU].
 
-        A tension is approached from F = 0 in steps so small that the momentum of the plate breaks no pair.
+        Of the states only the last one under each load is kept. A compressive force is applied at once, in a search
+        that restarted in smaller steps in equal parts; a tension is approached from the last load, or after a loading
+        from 0, in steps so small that the momentum of the plate breaks no pair.
 
         Raises:
             UntrustedError: the contact does not hold the force, does not come to rest, or bodies went through each
@@ -142,9 +155,10 @@ class LoadBranch(ContactBranch):
         self._record_target(force + self._last.pushed)
 
     def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
-        """Hold a force [FU], compression positive, for a time [TU].
+        """Hold a force [FU], compression positive, for a time [TU]; states need not be at rest.
 
-        A tension is applied at F = 0. `displacement` is ignored.
+        A tension is applied to a contact at rest at F = 0, whose state is kept in a phase "approaching". `displacement`
+        is ignored; `force` must not be None.
         """
         assert force is not None
         self.moves, name = True, self._phase
@@ -160,9 +174,10 @@ class LoadBranch(ContactBranch):
     def holds_more(self, force: float, doubtful_share: float = 0.9) -> bool:
         """Return whether a tension larger by two tolerances than that of `force` [FU] < 0 is sustained, too.
 
-        It is tried on a new contact. A contact at rest balances its load within a share of the tolerance, and near the
-        limit point it creeps: on which side of it a load is cannot be resolved further. True, without a trial, of a
-        tension below `doubtful_share` of the expected pull-off force.
+        It is tried on a new contact; this one is not changed. False also where that contact does not come to rest.
+        True, without a trial, of a tension below `doubtful_share` of the expected pull-off force. A contact at rest
+        balances its load within a share of the tolerance, and near the limit point it creeps: on which side of it a
+        load is cannot be resolved further.
 
         Raises:
             ThroughError: the bodies went through each other.
@@ -181,16 +196,15 @@ class LoadBranch(ContactBranch):
         return True
 
     def maximum(self, most_loads: int = 60) -> None:
-        """Try rising tensions until the bracket of the pull-off force is within the tolerance, then hold its lower end
-        again.
+        """Try rising tensions until the pull-off force is bracketed within the tolerance; hold the lower end again.
 
         A force must have been reached before (`reach`). Tensions that the contact carries add states; the last state is
-        that at the lower end, in the phase "critical". `searches` of the leg gets the bracket [FU], both positive: the
-        largest tension that was carried, and the smallest that was not, raised by the momentum of the plate.
+        that at the lower end, in the phase "critical". `searches` gets the bracket [FU], both positive: the largest
+        tension that was carried, and the smallest that was not, raised by the momentum of the plate.
 
         Raises:
-            UntrustedError: the bracket is still too wide after `most_loads` tensions; the lower end is not held again;
-                a load does not come to rest, or bodies went through each other.
+            UntrustedError: the bracket is still too wide after `most_loads` tensions; the lower end is not held
+                again; a load does not come to rest, or bodies went through each other.
         """
         self._begin_phase()
         search = LoadSearch(self.settings.tolerance, self.scale, partial(_overshoot, self), [self._latest])
@@ -222,12 +236,13 @@ class LoadBranch(ContactBranch):
         self.searches[self._number] = Search(doubt, (search.best, search.broken))
 
     def open(self) -> None:
-        """Do nothing: a tension that was not held has separated the bodies."""
+        """Do nothing: the bodies stay in contact, and the last state stays that of the pull-off force."""
 
     def _missed_maxima(self, search: LoadSearch) -> float:
-        """Return the tension [FU] that an oscillating plate may miss, where pairs separate one at each contact edge.
+        """Return the tension [FU] ≥ 0 that an oscillating plate may miss, where pairs separate one by one; else 0.
 
-        Else 0.
+        It is twice the tension that a pair loses, one at each contact edge, times the overshoot of the plate from the
+        largest tension that was carried.
         """
         settings = self.settings
         lost = (settings.law.snap[1] or settings.strongest[1]) if settings.has_several_maxima else 0.0
@@ -235,27 +250,34 @@ class LoadBranch(ContactBranch):
 
     @property
     def _latest(self) -> Held:
-        """The outcome of the latest load, which there must be."""
+        """The outcome of the latest load; AssertionError where there was none."""
         assert self._held is not None
         return self._held
 
     def _take(self, held: Held) -> None:
-        """Keep an outcome as the latest, and add its last state to the leg under way."""
+        """Keep an outcome as the latest, with its unbalanced force, and add only its last state to the states."""
         self._held, self.unbalance = held, held.unbalance
         self._append([held.last])
 
 
 def _overshoot(branch: LoadBranch, tension: float) -> float:
-    """Return the overshoot, over its path, of a plate that goes from a tension [FU] to the expected pull-off force."""
+    """Return by how much of its path a plate overshoots from rest under a tension to the expected pull-off force.
+
+    `tension`: positive [FU]; the result is 0 … 1 (dimensionless), 0 where the plate does not oscillate.
+    """
     return overshoot(branch.settings, branch.scene.bodies.mass, -tension, -branch.scale)
 
 
 def top_of(displacement: Array, force: Array, longest: float = 5.0) -> tuple[float, float] | None:
-    """Return (displacement [LU], tension [FU]) of the force maximum of the polynomial through states at rest.
+    """Return (displacement [LU], tension [FU]) of the force maximum of the polynomial through all states at rest.
 
-    None where it has none within `longest` times the width of the states, or where these are too near to each other.
-    The forces of the states, (m,) [FU], compression positive, count, not the loads that they balance within a
-    threshold.
+    None where it has none within `longest` times the width of the states from the last one, or where two of these are
+    nearer than 1e-5 of that width.
+
+    Args:
+        displacement: of the states, (m,) [LU].
+        force: of the contact, not the load that it balances, (m,) [FU], compression positive.
+        longest: largest distance of the maximum from the last state over the width of the states.
     """
     if not are_apart(displacement):
         return None

@@ -36,10 +36,11 @@ _top, _crossed = lru_cache(maxsize=4)(largest_tension), lru_cache(maxsize=4)(smo
 def unloading(branch: Trace, settings: Settings) -> dict[str, Reading]:
     """Return the results of a branch of falling displacement by name, with their errors; those it lacks are left out.
 
-    "adhesion_force" F_A [FU] is the force maximum, as a positive tension, at the vertex of a smooth curve or at the
-    last load step before a jump; "critical_radius" a_cr [LU] the radius there; "zero_load_radius" a₀ and
-    "cohesive_radius" c [LU] the radii where the force crosses 0; "work_of_separation" [FU·LU] the work from there until
-    the bodies are apart. A force maximum at an end of the branch counts only at the limit point of the contact.
+    "adhesion_force" [FU] is the force maximum, as a positive tension, at the vertex of a smooth curve or at the last
+    load step before a jump; "critical_radius" [LU] the contact radius there; "zero_load_radius" and "cohesive_radius"
+    [LU], with an attraction that has a range, the radii where the force crosses 0; "work_of_separation" [FU·LU] the
+    work from there until the bodies are apart. A force maximum at an end of the branch counts only at the limit point,
+    where the contact is lost.
     """
     readings: dict[str, Reading] = {}
     peak, last = peak_of(branch), len(branch) - 1
@@ -56,11 +57,13 @@ def unloading(branch: Trace, settings: Settings) -> dict[str, Reading]:
 
 
 def _separation(branch: Trace, peak: Peak, separated: float = 0.02, nodes: int = 128) -> dict[str, Reading]:
-    """Return {"work_of_separation": ∫ −F dd [FU·LU]} from F = 0 until the bodies part; {} where the branch ends before.
+    """Return {"work_of_separation": ∫ −F dd [FU·LU]} from F = 0 until the bodies part.
 
-    The reduced model has the curve between the states, to which their interpolated difference is added, and the curve
-    below the share `separated` of the force maximum. The error, "sampling", is the change with half the `nodes` of the
-    quadrature and every second state. Where the contact ends at no fixed displacement the states alone are integrated.
+    {} where the branch ends before: still in contact, not at the limit point, and with more than `separated` of the
+    maximum, or without a state between F = 0 and separation. The reduced model has the curve between the states, to
+    which their interpolated difference is added, and the curve below the last one. The error, "sampling", is the change
+    with half the `nodes` of the quadrature and every second state. Where the contact ends at no fixed displacement
+    (forces that depend on time) the states alone are integrated.
     """
     model = branch.model
     d, force = branch.lists
@@ -79,7 +82,7 @@ def _separation(branch: Trace, peak: Peak, separated: float = 0.02, nodes: int =
     positions, forces = np.asarray([*held, (start, 0.0)]).T
 
     def work(nodes: int, every: int) -> float:
-        """Return the work [FU·LU] by so many nodes and `every` second, third … state.
+        """Return the work [FU·LU] by so many nodes and one of `every` so many states; the law's own where it has one.
 
         By Gauss's quadrature over u, d = d_end + (d₀ − d_end) u²: a limit point has an infinite slope.
         """
@@ -99,15 +102,16 @@ def _separation(branch: Trace, peak: Peak, separated: float = 0.02, nodes: int =
 
 
 def _every_second(count: int) -> list[int]:
-    """Return the indices 0, 2, 4, … of `count` states, and the last one."""
+    """Return the indices 0, 2, 4, … below the last of `count` states, and the last one; [−1] for 0 states."""
     return [*range(0, count - 1, 2), count - 1]
 
 
 def _critical_radius(branch: Trace, peak: Peak, settings: Settings, missed: float) -> Reading:
-    """Return the contact radius at the force maximum [LU]; errors: "sampling" and, where pairs snap, "instability".
+    """Return the contact radius at the force maximum [LU]; errors: "sampling", and where pairs snap "instability".
 
-    Another maximum that is lower by up to `missed` [FU] may be the highest: the radius there gives the latter. A jump
-    comes anywhere before the next load step, after which there may be no contact radius.
+    The latter is the largest difference from the radius at another maximum, lower by at most `missed` [FU], that may be
+    the highest. Before a jump the radius is that of the last load step, and may change up to the next one; of a smooth
+    curve it is interpolated. Where a state has no contact radius, 0 ± 1.5 spacings counts.
     """
     d, i = branch.displacement, peak.index
     jumps = i + 1 < len(d) and peak.position == d[i]
@@ -136,10 +140,11 @@ def _critical_radius(branch: Trace, peak: Peak, settings: Settings, missed: floa
 
 
 def _zero_load(branch: Trace) -> dict[str, Reading]:
-    """Return the contact radius where the force crosses 0, "zero_load_radius" [LU], by a parabola through three states.
+    """Return {"zero_load_radius": contact radius [LU] where the force crosses 0}, by a parabola through three states.
 
-    Also the outer radius c of a cohesive zone there, "cohesive_radius" [LU], where there is one. The error, "sampling",
-    is the difference from a straight line. {} where the force never crosses 0, or only as the contact is lost.
+    With "cohesive_radius" [LU], the outer radius of a cohesive zone there, where there is one. The error, "sampling",
+    is the difference from a straight line. {} where the force never crosses 0, or only as the contact is lost. Of
+    several crossings the first counts.
     """
     d, force = branch.lists
     try:
@@ -151,7 +156,10 @@ def _zero_load(branch: Trace) -> dict[str, Reading]:
         return {}
 
     def at_zero(length: Callable[[int], float]) -> Reading:
-        """Return a length of states [LU] where the force crosses 0, with its sampling error."""
+        """Return a length of states [LU] ≥ 0 where the force crosses 0, with its sampling error.
+
+        `length`: function of a state's number [LU].
+        """
         line = float(np.interp(position, [d[after], d[index]], [length(after), length(index)]))
         value = _through_nearest(branch, _crossed(d, force, 0.0), length)
         return Reading(value, LENGTH, {"sampling": abs(value - line)})
@@ -163,7 +171,7 @@ def _zero_load(branch: Trace) -> dict[str, Reading]:
 
 
 def early_detachment(branch: Trace, peak: Peak, settings: Settings) -> float:
-    """Return the displacement [LU] by which the load step after the force maximum may separate a pair before its limit.
+    """Return by how much [LU] ≥ 0 the load step after the force maximum may separate a pair before its limit point.
 
     0 where no pair snaps.
     """
@@ -172,11 +180,12 @@ def early_detachment(branch: Trace, peak: Peak, settings: Settings) -> float:
 
 
 def missed_tension(branch: Trace, peak: Peak, settings: Settings, positions: int = 200) -> float:
-    """Return the tension [FU] ≥ 0 that premature detachment misses; 0 where the maximum is the first or the last state.
+    """Return the tension [FU] ≥ 0 that premature detachment misses at the force maximum `peak` of a branch.
 
-    It is the slope before the maximum times `early_detachment`, where pairs snap at least by how much the model exceeds
-    the states at so many `positions` between the load steps around the maximum: just before a pair separates, its force
-    may have passed its maximum.
+    It is the slope before the maximum times the displacement by which the next load step may separate a pair early;
+    where pairs snap, at least by how much the reduced model exceeds the states at so many `positions` between the load
+    steps around the maximum: just before a pair separates, its force may have passed its maximum. 0 where the maximum
+    is the first or the last state.
     """
     d, force, i = branch.displacement, branch.force, peak.index
     if not 0 < i < len(d) - 1:
@@ -190,19 +199,19 @@ def missed_tension(branch: Trace, peak: Peak, settings: Settings, positions: int
 
 
 def _distance_from_limit(branch: Trace) -> float:
-    """Return the distance of the last state from the limit point, relative to the width of the branch.
+    """Return |distance| of the last state from the limit point over the width of the branch in displacement.
 
-    Infinite without one.
+    Infinite without a limit point of the reduced model below the first state.
     """
     return abs(float(branch.displacement[-1]) - branch.limit) / max(float(np.ptp(branch.displacement)), TINY)
 
 
 def peak_of(trace: Trace) -> Peak:
-    """Return the force maximum of a trace of falling displacement, as a positive tension.
+    """Return the force maximum (largest tension) of a trace of falling displacement, as a positive tension.
 
-    Where the branch ends at the limit point (within 1e-6 of its width), at which the contact is lost, it is that of the
-    last load step; its uncertainty is by how much the force there may exceed that: the change of the model over the
-    same distance before.
+    Its tension is below 0 where all states are under compression. Where the maximum is the last state, and this is at
+    the limit point (within 1e-6 of the width of the branch), at which the contact is lost, its uncertainty is by how
+    much the force there may exceed it: the change of the reduced model over the same distance before.
     """
     peak = _top(*trace.lists)
     last = len(trace) - 1
@@ -216,14 +225,19 @@ def peak_of(trace: Trace) -> Peak:
 
 
 def radius_rate(trace: Trace, state: int, least: float = 0.0) -> float:
-    """Return da/dd at a state [LU/LU], from the nearest one beyond a share `least` of the path; 0 where none is."""
+    """Return da/dd at a state [LU/LU], from the nearest one beyond a share `least` of the distance of the farthest.
+
+    0 where there is none. A state without contact radius counts with 0.
+    """
     return slope(trace.displacement, state, trace.radius_or_spot, least)
 
 
 def radius_at(trace: Trace, position: float) -> float:
     """Return the contact radius [LU] ≥ 0 at a displacement [LU] of a sorted trace, by a parabola through three states.
 
-    At the displacement of a state, its radius; where the three radii are equal, as of a body with an edge, this one.
+    They are the nearest one and its neighbours; beyond the ends of the trace it is extrapolated. At the displacement of
+    a state, its radius; where the three radii are equal, as of a body with an edge, this one. A state without contact
+    radius counts with 0.
     """
     return _through_nearest(trace, position, trace.radius_or_spot)
 
@@ -231,7 +245,8 @@ def radius_at(trace: Trace, position: float) -> float:
 def _through_nearest(trace: Trace, position: float, length: Callable[[int], float]) -> float:
     """Return a length [LU] ≥ 0 at a displacement [LU] of a sorted trace, by a parabola through three states.
 
-    `length`: function of a state's number [LU]. At the displacement of a state, its own length.
+    They are the nearest one and its neighbours, fewer where the trace has fewer. `length`: function of a state's number
+    [LU]. At the displacement of a state it is its own length, where all three are equal that one.
     """
     near = int(np.argmin(np.abs(trace.displacement - position)))
     first = min(max(near - 1, 0), max(len(trace) - 3, 0))
@@ -249,8 +264,8 @@ def _through_nearest(trace: Trace, position: float, length: Callable[[int], floa
 def displacement_under(trace: Trace, state: int, force: float, expected: float) -> float:
     """Return the displacement [LU] at which the curve through a state carries a force [FU] near that of the state.
 
-    x with S x + K x²/2 = ΔF: towards the force maximum the stiffness S = dF/dd falls with K = dS/dd, and x grows as a
-    square root, up to √(2 |ΔF|/K). S and K are those of a parabola through up to two neighbours of the state, at
+    d + x, with S x + K x²/2 = ΔF: towards the force maximum the stiffness S = dF/dd falls with K = dS/dd, and x grows
+    as a square root, up to √(2 |ΔF|/K). S and K are those of a parabola through two neighbours of the state, at
     distances that differ by a factor of two at least; S is at most the `expected` stiffness [FU/LU]. With fewer
     neighbours the step is straight, with the smaller of that and the one known slope.
     """
@@ -271,10 +286,10 @@ def displacement_under(trace: Trace, state: int, force: float, expected: float) 
 
 
 def _neighbours(trace: Trace, state: int) -> tuple[list[float], list[float]]:
-    """Return (signed distances [LU], dF/dd [FU/LU] from the state to each) of up to two neighbours of a state.
+    """Return (signed distances [LU], mean dF/dd [FU/LU] from the state to each) of up to two neighbours of a state.
 
-    The second is at least twice as far as the first. Neighbours nearer than 2 % of the farthest state are left out:
-    there a change is smaller than its error. Both lists are empty where there are none.
+    The nearest comes first; the second is at least twice as far. Neighbours nearer than 2 % of the farthest state are
+    left out: there a change is smaller than its error. Both lists are empty where there are none.
     """
     displacements = trace.displacement - trace.displacement[state]
     least = BRANCH_DISTANCE * float(np.abs(displacements).max())

@@ -55,7 +55,10 @@ class ModelBranch:
     """
 
     def __init__(self, scene: Scene, settings: Settings, model: Particles, dense: int, shift: float) -> None:
-        """Begin with no states and the bodies apart."""
+        """Begin with no states and the bodies apart.
+
+        `dense`: positions for each step that the scene gives; `shift`: of the displacements that it gives [LU].
+        """
         self.scene, self.settings, self.model, self.dense, self.shift = scene, settings, model, dense, shift
         self._phase, self._leg = "", -1
         self._rises: bool | None = None
@@ -66,17 +69,19 @@ class ModelBranch:
 
     @property
     def scale(self) -> float:
-        """The expected force maximum (largest tension) [FU], positive; 0 without attraction."""
+        """The expected force maximum (largest tension) by the contact law [FU], positive; 0 without attraction."""
         return self.settings.law.pull_off_force()
 
     def begin(self, name: str) -> None:
-        """Begin a phase of this name with the next load step; a repeated name stays as it is."""
+        """Begin a phase of this name with the next state; a repeated name gets no number here."""
         self._phase = name
 
     def visit(self, positions: Sequence[float] | Array, along: Sequence[float] | Array | None = None) -> None:
-        """Go to displacements [LU] plus `shift`, with dense positions between them, all at x = 0.
+        """Go to displacements [LU] plus `shift`, compression positive, with dense positions between them, all at x = 0.
 
-        Where the model has one position for each step, it goes to positions `along` x [LU] as well.
+        With one position for each step, also where denser ones would need more than 2·10⁶ forces, it goes to positions
+        `along` x [LU] as well. Without earlier states the path begins at the first displacement. The loading turns
+        where the last displacement lies on the other side of the state before.
         """
         wanted = np.asarray(positions, dtype=np.float64) + self.shift
         before = self._rows[-1].displacement if self._rows else float(wanted[0])
@@ -98,9 +103,10 @@ class ModelBranch:
         self._add(dense)
 
     def _between(self, ends: Array, count: int) -> tuple[Array, int]:
-        """Return (positions [LU], count of those before the end of the first step) of steps between the `ends` [LU].
+        """Return (displacements [LU], number of those before the end of the first step) for steps between `ends` [LU].
 
-        There are `count` positions in each step, to its end, and one on either side of each jump of the force.
+        There are `count` equal parts in each step, to its end, and one displacement on either side of each jump of the
+        force that it passes; the first end is not among them.
         """
         near = 1e-6 * self.model.law.spacing  # the distance from a jump
         jumps = np.asarray([jump + side for jump in self.model.jumps for side in (-near, near)])
@@ -113,9 +119,11 @@ class ModelBranch:
         return np.interp(shares, steps, ends), int(np.count_nonzero(shares < 1.0))
 
     def reach(self, force: float, scale: float, steps: int = 8) -> None:
-        """Go to the displacement at which the model carries a force [FU], compression positive, in so many `steps`.
+        """Go in `steps` equal steps to the displacement at which the model carries a force [FU], compression positive.
 
-        `scale` is ignored: the model needs no tolerance. A tension that it never carries leads to its force maximum.
+        It is the largest such displacement in unloading. A tension that is never carried leads to the force maximum,
+        too large a force to the end of the search, a tenth beyond the largest expected displacement. `scale` is
+        ignored: the model needs no tolerance. A first call begins at displacement 0.
         """
         end, begun = self.model.displacement_at(force), bool(self._rows)
         start = self._rows[-1].displacement if begun else 0.0
@@ -125,8 +133,10 @@ class ModelBranch:
     def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
         """Hold a displacement [LU], or a force [FU] on a free plate, for a time [TU]: add the first and the last state.
 
-        A transient is that of plate and particles under the force of the contact (`free.swing`). A tension is applied
-        at F = 0.
+        Their times are 0 and `duration`; under a displacement both are at it. Under a force (compression positive) they
+        are after the first timestep, from rest, and after the time, of plate and particles on the reduced model; a
+        compressive force is applied at displacement 0, a tension at F = 0, to which load steps lead. Nothing is added
+        where both are None; the displacement has priority.
         """
         if displacement is not None:
             self._add(np.asarray([displacement, displacement]), time=(0.0, duration))
@@ -138,9 +148,9 @@ class ModelBranch:
             self._add(swing(self.scene, self.settings, self.model, start, force, duration), time=(0.0, duration))
 
     def follow(self, history: History) -> None:
-        """Go through displacements or forces over time, with dense steps, on a leg of its own.
+        """Go through the displacements or forces of a history over time, with dense steps, as one part of the path.
 
-        Mark the ends of its phases.
+        Mark the last state of each phase that has a mark.
         """
         history = history.denser(self.dense)
         self._leg += 1
@@ -151,20 +161,25 @@ class ModelBranch:
                 self.marks.setdefault(i, []).append(history.marks[phase])
 
     def fly(self, velocity: float) -> None:
-        """Move freely with an impact velocity [LU/TU] until the bodies separate or stick, on a leg of its own."""
+        """Move freely from displacement 0 with an impact velocity [LU/TU], positive in approach, up to the rebound.
+
+        The states are added in a phase "impact". They end when the bodies have separated, when the body moves down
+        again, or after 20 000 states.
+        """
         path = impact(self.scene, self.settings, self.model, velocity, self.dense)
         self._leg += 1
         self._add_path(["impact"] * path.time.size, path)
 
     def maximum(self, coarse: int = 24, dense: int = 100, nearest: int = 3) -> None:
-        """Go to the force maximum, with dense positions about it, so that the last state is at it.
+        """Unload to the force maximum (largest tension), with dense positions about it; the last state is at it.
 
-        `open` continues from there.
+        The positions beyond it are kept for `open`. There must be a state before.
 
         Args:
             coarse: positions of the unloading for a contact without a range of the interaction.
             dense: for one with a range; twice as many where pairs snap.
-            nearest: last states before a limit point; that with the largest tension is the force maximum.
+            nearest: number of last states before a limit point, of which that with the largest tension is the
+                maximum.
         """
         self._turn(False)
         zero, apart = self._rows[-1].displacement, self.model.apart
@@ -189,10 +204,10 @@ class ModelBranch:
     def _peak(self, positions: Array, end: float, zooms: int = 2, fine: int = 30) -> tuple[float, float]:
         """Return (displacement of the force maximum, distance of dense positions about it), both [LU].
 
-        It is sought among `fine` positions between the neighbours of the highest one, and again between those of the
-        new one. Not where the curve is smooth: forces of the model are linear between the points of a grid, whose
-        corners would move the maximum. Where the law knows it, it is that, between `end` and the first of the positions
-        [LU].
+        Where the law knows the former, it is that, within `end` [LU] and the first of the falling `positions` [LU].
+        Else it is the position of the largest tension, and where the curve is not smooth the best of `fine` ones
+        between its neighbours, `zooms` times. A smooth curve is not refined, since forces of the model are linear
+        between the points of a grid, whose corners would move the maximum.
         """
         zero, top = float(positions[0]), int(np.argmin(self.model.held(positions)))
         low, high = float(positions[min(top + 1, positions.size - 1)]), float(positions[max(top - 1, 0)])
@@ -206,46 +221,66 @@ class ModelBranch:
         return peak, step
 
     def mark(self, name: str) -> None:
-        """Report the last state under a name; a state may have several."""
+        """Report the last state under a name; a state may have several names."""
         self.marks.setdefault(self.last, []).append(name)
 
     def open(self) -> None:
-        """Pull the bodies apart: add the states beyond the force maximum, and two beyond the end of the contact."""
+        """Pull the bodies apart: add the states beyond the force maximum, and two of separated bodies.
+
+        Those beyond the maximum are the positions that `maximum` has left, none without it. There must be a state
+        before.
+        """
         apart, deepest = self.model.apart, max(row.displacement for row in self._rows)
         self._add(np.append(self._beyond, apart - np.asarray([1e-4, 0.05]) * (deepest - apart)))
         self._beyond = np.empty(0)
 
     @property
     def last(self) -> int:
-        """The number of the last state, from 0 on; −1 without states."""
+        """The number of the last state, from 0 on, over all states; −1 without states."""
         return len(self._rows) - 1
 
     @property
     def held(self) -> float:
-        """The force [FU], compression positive, of an unloading at the displacement of the last state."""
+        """The force [FU], compression positive, of a contact in unloading at the displacement of the last state.
+
+        Raises:
+            IndexError: there are no states.
+        """
         return float(self.model.held(np.asarray([self._rows[-1].displacement]))[0])
 
     @property
     def phases(self) -> list[str]:
-        """The names of the phases of all states, "" for those that are not read."""
+        """The name of the phase of each state, in order; "" for states that lead to the first one and are not read."""
         return [row.phase for row in self._rows]
 
     @property
     def legs(self) -> list[int]:
-        """The number of the leg of each state, from 0 on."""
+        """How often the loading has turned before each state, in order, from 0 on.
+
+        It is −1 for a hold without a move before.
+        """
         return [row.leg for row in self._rows]
 
     @property
     def path(self) -> Path:
-        """The path of all states, also of those that are not read; without velocities where one is unknown."""
+        """The path of all states, also of those that are not read: displacements, positions along x [LU], times [TU].
+
+        Velocities [LU/TU] are None where that of any state is unknown.
+
+        Raises:
+            ValueError: there are no states.
+        """
         columns = list(zip(*self._rows, strict=True))[2:]
         d, along, time, velocity = (np.asarray(column, dtype=np.float64) for column in columns)
         return Path(d, along, time, None if np.isnan(velocity).any() else velocity)
 
     def trace(self, whole: bool = False) -> Trace:
-        """Return the trace of all states for a reader.
+        """Return the states with forces and contact radii of the reduced model, from which results are read.
 
-        Without `whole` those that lead to its first one are left out.
+        Without `whole`, states that lead to the first one of the scene are left out. Forces are computed at each call.
+
+        Raises:
+            ValueError: there are no states.
         """
         phases, legs, path = self.phases, self.legs, self.path
         rule = radius_rule(self.scene, self.settings.tolerance)
@@ -254,23 +289,29 @@ class ModelBranch:
         return trace if whole else trace.chosen([i for i, name in enumerate(phases) if name != UNSEEN])
 
     def _turn(self, rises: bool) -> None:
-        """Begin a leg where the loading turns; `rises`: whether the displacement rises next."""
+        """Record whether the displacement rises next; where that changes, a new part of the path begins.
+
+        So it does at the first call.
+        """
         self._leg += rises != self._rises
         self._rises = rises
 
     def _add(
         self, positions: Array, along: Sequence[float] | Array | None = None, time: Sequence[float] | None = None
     ) -> None:
-        """Add states of the phase and leg under way at displacements [LU].
+        """Add states at displacements [LU], in the current phase and direction of loading.
 
-        Positions along x [LU] and times [TU] are else 0.
+        `along`: positions along x [LU], `time` [TU], one for each; None: 0.
         """
         none = np.zeros(len(positions))
         columns = (none if column is None else np.asarray(column) for column in (along, time))
         self._add_path([self._phase] * none.size, Path(positions, *columns))
 
     def _add_path(self, phases: Sequence[str], path: Path) -> None:
-        """Add the states of a path to the leg under way, each with the name of its phase."""
+        """Add the states of a path, in the current direction of loading, each with the name of its phase.
+
+        Where the path has no velocities they are NaN.
+        """
         unknown = np.full(path.time.size, math.nan)
         columns = path.displacement, path.along, path.time, unknown if path.velocity is None else path.velocity
         rows = zip(*(column.tolist() for column in columns), strict=True)

@@ -74,7 +74,7 @@ class Result:
     given: float = 0.0
 
     def __post_init__(self) -> None:
-        """Raise ValueError for a result without errors, or with one from a source that is not in SOURCES."""
+        """Raise ValueError for a result without errors, or with an error from a source that is not in SOURCES."""
         if not self.errors or set(self.errors) - set(SOURCES):
             raise ValueError(f"a result needs errors by source ({', '.join(SOURCES)}), got {dict(self.errors)}")
 
@@ -85,12 +85,15 @@ class Result:
 
     @property
     def size(self) -> float:
-        """The scale that the uncertainty is compared with, in `unit`: |value|, unless a `scale` is given."""
+        """What the uncertainty is compared with, in `unit`: `scale` where that is given, else |value|; may be 0."""
         return abs(self.value) if self.scale is None else self.scale
 
     @property
     def share(self) -> float:
-        """The relative uncertainty, `uncertainty` over `size`; infinite where that is 0."""
+        """The relative uncertainty: the sum of errors over `scale`, or |value| without one; infinite where that is 0.
+
+        It is infinite also where the errors are 0.
+        """
         return self.uncertainty / self.size if self.size else inf
 
 
@@ -110,7 +113,7 @@ class Agreement:
 
     @property
     def holds(self) -> bool:
-        """Whether the difference is within what is allowed; False where it is NaN."""
+        """Whether the difference is at most what is allowed; False where either is NaN."""
         return self.difference <= self.allowed
 
 
@@ -130,9 +133,10 @@ class Move:
 
 
 def in_squares(moves: Iterable[Move], name: str) -> Any:
-    """Return √(Σ change²) of a result, or of points (m,), in its unit: the uncertainty due to independent inputs.
+    """Return √(Σ change²) ≥ 0 of a result, or of points (m,), in its unit: the uncertainty due to independent inputs.
 
-    Of the moves of one input the largest change counts. 0 without moves, or where none changes a result of this `name`.
+    Of the moves of one input the largest |change| counts. 0.0 without moves, or where none changes a result of this
+    `name`.
     """
     changes = dict[str, Any]()
     for move in moves:
@@ -181,12 +185,15 @@ class Outcome:
 
     @property
     def quantities(self) -> dict[str, Quantity]:
-        """The results by name, each with its value, uncertainty and unit of the model."""
+        """The results by name, each with its value and uncertainty in its unit of the model."""
         return {name: Quantity(result.value, result.uncertainty, result.unit) for name, result in self.results.items()}
 
     @property
     def exact(self) -> dict[str, Quantity]:
-        """The results by name, with the uncertainties that they would have if the scene were known exactly."""
+        """The results by name, with the uncertainties that they would have if the scene were known exactly.
+
+        These are without the part of "input" by numbers with ± and a noisy profile. Units are those of the model.
+        """
         return {
             name: Quantity(result.value, result.uncertainty - result.given, result.unit)
             for name, result in self.results.items()
@@ -195,8 +202,9 @@ class Outcome:
     def made(self, scene: Scene, make: Callable[[Scene, Mapping[str, Quantity]], dict[str, Quantity]]) -> Made:
         """Return quantities that `make` computes from a scene and its results, by name, and their input uncertainties.
 
-        The quantity has the uncertainty of an exactly known scene; the second number, in its unit, is due to the
-        uncertain inputs: `make` is called again at each end of each of them.
+        {name: (quantity, second number)}: the quantity has the uncertainty of an exactly known scene; the second
+        number, ≥ 0 in its unit, is due to the uncertain inputs, 0 without any: `make` is called again at each end of
+        each of them. A quantity that `make` does not return there has no change.
         """
         exact = self.exact
         made, moves = make(scene, exact), []
@@ -209,19 +217,23 @@ class Outcome:
 
     @property
     def profiles(self) -> dict[str, Profile]:
-        """The pressure profiles of the marked states, by name."""
+        """The pressure profiles [FU/LU] over x [LU] of the states that are reported with their profiles, by name."""
         return {name: state.profile for name, state in self.marked.items()}
 
     @property
     def radii(self) -> dict[str, float]:
-        """The contact radius of each marked state [LU], by name; NaN where the bodies do not touch."""
+        """The contact radius [LU] of each state that is reported with its profile; NaN where bodies do not touch.
+
+        Raises:
+            ValueError: a radius cannot be read off a profile.
+        """
         return {name: nan if state.radius is None else state.radius.value for name, state in self.marked.items()}
 
 
 def in_words(shares: Mapping[str, float], tolerance: float) -> str:
-    """Return a text of relative uncertainties above the tolerance: "critical_radius 3.1e-04, …"; "" for no `shares`.
+    """Return a text of relative uncertainties: "critical_radius 3.1e-04, …", all of `shares` in order; "" for none.
 
-    Each has so many digits that it differs from the `tolerance`.
+    Each has as many digits, two at least, as show that it differs from the `tolerance`.
     """
     return ", ".join(f"{name} {share:.{digits_apart(share, tolerance, 2) - 1}e}" for name, share in shares.items())
 
@@ -229,12 +241,14 @@ def in_words(shares: Mapping[str, float], tolerance: float) -> str:
 def unmet(results: Mapping[str, Result], tolerance: float, without: Iterable[str] = ()) -> dict[str, float]:
     """Return the relative uncertainties that exceed the tolerance, by name, without the part that the scene gives.
 
-    Left out are prescribed results and those of size 0; infinite is the share of a radius of size 0.
+    Left out are prescribed results and those whose scale (|value| without a `scale`) is 0, but for radii: their share
+    is then infinite. {} where all are met.
 
     Args:
         results: by name.
         tolerance: relative.
-        without: sources of errors that are left out of the uncertainty.
+        without: sources of errors that are left out of the uncertainty; of "discretisation" the part by
+            interpolation between particles remains.
     """
     shares = {}
     for name, result in results.items():

@@ -55,17 +55,23 @@ class Plan:
 
     @classmethod
     def of(cls, deck: Deck, branch: ModelBranch) -> Plan:
-        """Return the plan of the path on which a script has driven the model."""
+        """Return the plan of all load steps of a branch of the reduced model, with its marked states."""
         return cls(deck, branch.model, branch.path, branch.phases, branch.marks)
 
     @cached_property
     def _columns(self) -> dict[str, Array]:
-        """The numbers that LAMMPS reads for each load step, (m,), by name, in units of the scene."""
+        """The numbers that LAMMPS reads for each load step, (m,), by name, in units of the scene, to 15 digits; cached.
+
+        Names are those of the law, "displacement" [LU] always.
+        """
         return self.deck.as_read(self.model.prescribed(self.path))
 
     @cached_property
     def phases(self) -> tuple[Phase, ...]:
-        """The schedule of the load steps: named phases of rows, numbered where a name is repeated."""
+        """The load steps as named phases, in order, numbered where a name is repeated ("loading_2"); cached.
+
+        A phase also ends at each marked load step, whose state is written; the rest then has the same name.
+        """
         rows, phases = swept(self._columns), list[Phase]()
         begins = [0, *(i for i, (before, name) in enumerate(pairwise(self.names), 1) if before != name)]
         ends = sorted({*begins, *(mark + 1 for mark in self.marks), len(rows)})
@@ -76,14 +82,15 @@ class Plan:
 
     @cached_property
     def followed(self) -> Followed:
-        """The forces of the model in the load steps, with the numbers that LAMMPS reads."""
+        """The forces of the reduced model in the load steps, with the numbers that LAMMPS reads; cached."""
         return self.model.carried(self._columns)
 
     def checks(self, case: Reduction, states: Sequence[State], doubt: float = 0.0) -> dict[str, Agreement]:
         """Return {"plan": …, "energy": …}: the agreement of forces with the model, and of its work with its energies.
 
-        {} where the model lacks an effect of the scene, without "energy" where it has no energies. `doubt`: the
-        relative uncertainty of the energy that the run reports.
+        {} where the model lacks an effect of the scene, without "energy" where it has no energies. `case`: the
+        experiment on the reduced model; `states`: of all load steps; `doubt`: the relative uncertainty of the energy
+        that the run reports.
         """
         if not self.deck.scene.is_modelled:
             return {}
@@ -92,7 +99,10 @@ class Plan:
         return checks | consistency.energy(case, consistency.Work(self.path, forces), doubt)
 
     def measured(self, contact: Contact) -> list[State]:
-        """Return the states that LAMMPS has measured, with the contact edges that the law of the contact gives.
+        """Run all load steps in LAMMPS and return a state for each, in order.
+
+        The law's contact edges, the round-off errors that it adds to residuals, and times [TU] of the path are put in,
+        where it has them.
 
         Raises:
             EngineError: LAMMPS failed.
@@ -115,10 +125,11 @@ class Plan:
 
 
 def _zoned(bodies: Bodies, spring: float, state: State, edge: float, reach: float, *further: float) -> Profile:
-    """Return the profile of a state with its contact edge and the `reach` of the attraction [LU].
+    """Return the profile of a state with its contact edge and the outer radius of the attraction, `reach` [LU].
 
-    Inside the edge its upper surface is on the plane, beyond it at the height of the body on its springs. `spring`: of
-    a particle [FU/LU]; `further`: data of a `ZonedProfile`.
+    Where the attraction reaches beyond the edge, upper surfaces inside it are on the plane, others at the height of the
+    body on its springs, but not below the plane; else they stay. `spring`: stiffness of a particle [FU/LU]; `further`:
+    jump of the line load at the edge [FU/LU], uncertainty of the edge [LU], rise of the line load inside it [FU/LU].
     """
     profile = state.profile
     if reach > edge:
@@ -140,7 +151,7 @@ class PlannedBranch(ContactBranch):
     plan: Plan
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
-        """Prepare a contact whose load steps are planned on the model.
+        """Prepare a contact whose load steps are planned on the reduced model; LAMMPS starts with the `with` statement.
 
         `meanwhile` is called while LAMMPS reads the bodies.
         """
@@ -149,18 +160,24 @@ class PlannedBranch(ContactBranch):
         self._largest: float | None = None
 
     def begin(self, name: str) -> None:
-        """Begin a phase of the plan with the next load step."""
+        """Begin a phase of this name with the next planned load step; the plan numbers a repeated name."""
         self._driven.begin(name)
 
     def visit(self, positions: Sequence[float] | Array, along: Sequence[float] | None = None) -> None:
-        """Plan load steps at displacements [LU] and positions `along` x [LU], by default 0."""
+        """Plan load steps at displacements [LU], compression positive, and positions `along` x [LU]; None: 0.
+
+        LAMMPS does not run yet, and there are no states.
+        """
         self._driven.visit(positions, along)
 
     def reach(self, force: float, scale: float) -> None:
         """Plan load steps until the model carries a force [FU], compression positive; `scale` is ignored.
 
+        LAMMPS does not run yet.
+
         Raises:
-            TensionError: no contact holds the force.
+            TensionError: a tension that exceeds the force maximum of the model, by more than the relative
+                tolerance.
         """
         self._driven.reach(force, scale)
         if force < 0.0 and self._driven.held > (1.0 - self.settings.tolerance) * force:
@@ -168,16 +185,16 @@ class PlannedBranch(ContactBranch):
         self.wanted[self._driven.last] = force
 
     def maximum(self) -> None:
-        """Plan load steps to the force maximum of the model, its largest tension."""
+        """Plan load steps to the force maximum of the model, its largest tension; the last of them is at it."""
         self._driven.maximum()
         self._largest = max(self._largest or 0.0, -self._driven.held)
 
     def open(self) -> None:
-        """Plan load steps until the bodies are apart."""
+        """Plan load steps beyond the force maximum, until the bodies are apart."""
         self._driven.open()
 
     def follow(self, history: History) -> None:
-        """Plan a history of displacements or forces over time.
+        """Plan the load steps of a history of displacements [LU] or forces [FU] over time [TU].
 
         Of forces, the load steps are at the displacements at which the model carries them.
         """
@@ -185,18 +202,19 @@ class PlannedBranch(ContactBranch):
         self.given = "force" if history.by_force else self.given
 
     def mark(self, name: str) -> None:
-        """Report the last state of the plan under a name, once LAMMPS has run."""
+        """Report the last planned load step under a name; its state is there once LAMMPS has run."""
         self._driven.mark(name)
 
     def checks(self, case: Reduction, doubt: float) -> dict[str, Agreement]:
-        """Return the checks "balance", "plan" and "energy" of the states, by name, as far as they apply.
+        """Return the checks of the states by name, as far as they apply: "balance", "plan" and "energy".
 
-        `doubt`: the relative uncertainty of the energy that the run reports.
+        They compare the contact force with the sum on the plate, with the reduced model, and work with energy. `case`:
+        the experiment on the reduced model; `doubt`: the relative uncertainty of the energy that the run reports.
         """
         return super().checks(case, doubt) | self.plan.checks(case, self.states, doubt)
 
     def finish(self) -> None:
-        """Run all planned load steps in LAMMPS, and keep their states, legs and marks.
+        """Run all planned load steps in LAMMPS, and only then set `plan`, `states`, `legs` and `marked`.
 
         Raises:
             EngineError: LAMMPS failed.
@@ -208,10 +226,13 @@ class PlannedBranch(ContactBranch):
         self._require_digits()
 
     def _require_digits(self) -> None:
-        """Refuse a force maximum of the plan that is below the round-off error of the contact force.
+        """Refuse a force maximum of the plan that is at most the round-off error of the contact force.
+
+        That is the residual of the last state times the number of upper particles. Without a search for a maximum
+        nothing is refused.
 
         Raises:
-            DigitsError: names both.
+            DigitsError: names both [FU].
         """
         digits = self.states[-1].residual * self.settings.chains.upper
         if self._largest is not None and self._largest <= digits:

@@ -62,31 +62,36 @@ class Reduction:
     passed: Trace | None = None
 
     def along(self, trace: Trace) -> Reduction:
-        """Return the reduction with a value for each state of a trace, (m,) by column, and the models of this one."""
+        """Return a copy whose results are values for each state of a trace, (m,) by column, on the model of this one.
+
+        Columns are "force" [FU] or "displacement" [LU], those that are not prescribed. Model and lattices of this one
+        are shared; copies for other scenes have values for the same states.
+        """
         reduction = replace(self, passed=trace, of=lambda *case: replace(self.of(*case), passed=trace))
         vars(reduction).update(model=self.model, _lattices=self._lattices)
         return reduction
 
     def values(self, model: Particles, dense: int = 1, shift: float = 0.0) -> Values:
-        """Return the results of a model by name, or the columns for `passed` states that are not prescribed.
+        """Return the results of a model by name, in their units, or with `passed` states columns (m,) by name.
 
-        `dense`: positions for each step that the scene gives; `shift`: added to the displacements that it gives [LU].
-        Both are without effect for passed states.
+        The columns are those not prescribed, "force" [FU] or "displacement" [LU], recomputed for these states. `dense`:
+        positions for each step that the scene gives; `shift`: added to the displacements that it gives [LU]; both are
+        ignored with `passed` states.
         """
         if self.passed:
             return self.passed.recomputed(self.scene, self.settings, model)
         return values_of(self.read(self.trace(model, dense, shift)))
 
     def trace(self, model: Particles, dense: int = 1, shift: float = 0.0, whole: bool = False) -> Trace:
-        """Return the trace of a model that the script has driven.
+        """Return the states of a model along the whole experiment, by `script`, as a trace.
 
         `dense`: positions for each step that the scene gives; `shift`: added to the displacements that it gives [LU];
-        `whole`: whether positions before the first state of the scene are in it.
+        `whole`: whether states before the first one of the scene are in it.
         """
         return self.driven(model, dense, shift).trace(whole)
 
     def driven(self, model: Particles, dense: int = 1, shift: float = 0.0) -> ModelBranch:
-        """Return the branch of a model that the script has driven, at the end of the script.
+        """Return a new branch of states of a model that has gone through the whole experiment, by `script`.
 
         `dense`: positions for each step that the scene gives; `shift`: added to the displacements that it gives [LU].
         """
@@ -102,35 +107,39 @@ class Reduction:
 
     @cached_property
     def model(self) -> Particles:
-        """The particles of the reduced model, those of the chain that runs in LAMMPS."""
+        """The particles of the reduced model, without their neighbours, on the spacing of the chain; cached."""
         return reduced(self.scene, self.settings)
 
     @cached_property
     def path(self) -> Trace:
-        """The trace of the model that the script has driven, with the scene's own steps."""
+        """The states of the model along the whole experiment, with the scene's own steps; cached.
+
+        States before the first one of the scene are left out.
+        """
         return self._driven.trace()
 
     @cached_property
     def _driven(self) -> ModelBranch:
-        """The branch of the model that the script has driven, with the scene's own steps."""
+        """The branch of states of the model through the whole experiment, with the scene's own steps; cached."""
         return self.driven(self.model)
 
     @cached_property
     def readings(self) -> Mapping[str, Reading]:
-        """The readings of the trace of the model, by name of the result."""
+        """The results of the reduced model, with the errors that their reader determines, by name; cached."""
         return self.read(self.path)
 
     @cached_property
     def results(self) -> Values:
-        """The results of the model by name, each in its own unit; of `passed` states the columns, (m,)."""
+        """The results of the model by name, each in its own unit; of `passed` states the columns, (m,); cached."""
         return self.values(self.model) if self.passed else values_of(self.readings)
 
     @cached_property
     def results_and_pressures(self) -> Values:
-        """The results by name, and where springs are not linear the logarithms of the pressures of reported states.
+        """The results by name, and where springs are not linear ln p(0) of the states that are reported; cached.
 
-        Their names are "ln p " and that of the state, "ln p " alone for the deepest state; one without pressure on
-        the axis is left out.
+        p(0) is the pressure on the axis [FU/LU²] but for a constant factor. The names of the logarithms are "ln p " and
+        that of the state, "ln p " alone for the deepest state; one without pressure on the axis is left out. With
+        `passed` states only the columns, (m,).
         """
         if self.passed or self.scene.keeps_springs:
             return self.results
@@ -141,9 +150,10 @@ class Reduction:
         return self.results | {name: math.log(pressure) for name, pressure in pressures.items() if pressure > 0.0}
 
     def lattice_in_time(self, values: Values, share: float = 0.5) -> Values:
-        """Return the discretisation error of the results in time that `lattice` has as well, by name in their units.
+        """Return the discretisation error ≥ 0 of the results `values` of a motion, by name in their units.
 
-        Where the model differs from the motion by more than a share of the value, it is that difference at least.
+        It is that of the reduced model for each name that this has, too; other names are left out. Where the model
+        differs from the motion by more than `share` of the value, it is that difference at least.
         """
         names = values.keys() & self.lattice.keys()
         off = {name: np.abs(values[name] - self.results.get(name, 0.0)) for name in names}
@@ -154,10 +164,10 @@ class Reduction:
 
     @cached_property
     def _lattices(self) -> tuple[list[Particles], list[Particles]]:
-        """The model with its particles elsewhere, and on finer spacings.
+        """Models of the same body: (with particles elsewhere or on other spacings, on finer spacings); cached.
 
-        Both are empty where the scene gives the particles, unless cells at the contact edge carry a share of their
-        load.
+        The finer spacings are a half and a quarter, where cells at the contact edge carry a share of their load, else
+        there are none. Both lists are empty where the scene gives the particles and cells do not do so.
         """
         bodies = self.scene.bodies
         is_chosen = bodies.particles == "auto" and bodies.own_count is None  # else positions are part of the scene
@@ -168,10 +178,11 @@ class Reduction:
 
     @cached_property
     def lattice(self) -> Values:
-        """The discretisation error of each result, by name in its unit; {} where the scene gives the particles.
+        """The discretisation error ≥ 0 of each result, by name in its unit; cached.
 
-        With given particles there is one still where cells at the contact edge carry a share of their load. A result
-        that another lattice does not have counts as 0 there.
+        {} where the scene gives the particles, unless cells at the contact edge carry a share of their load. It is 1.25
+        times the largest change with other positions of the particles, or times the error that a half and a quarter of
+        the spacing show where that is larger. A result that another lattice does not have counts as 0 there.
         """
         shifted, finer = self._lattices
         if not (shifted or finer):
@@ -186,10 +197,15 @@ class Reduction:
 
     @cached_property
     def moves(self) -> tuple[Move, ...]:
-        """The moves of each number with ± to both ends, and of each pair of bodies half of their difference.
+        """Two moves, to both ends, of each number with ±, and of each pair of bodies that bounds the profile.
 
-        A number with ± below 5 % is moved by 5 %, since the reader has errors; of its changes, scaled to first order,
-        half of the difference counts. A pair of bodies of which one is no contact is left out.
+        Changes are those of the results on the reduced model, relative to the mean of both ends; cached. A number with
+        ± below 5 % is moved by 5 %, since the reader has errors, and its changes are scaled back to first order. From 5
+        % on, and where the wider move is no contact, changes are relative to the scene itself. A pair of bodies of
+        which one is no contact is left out. () where nothing is uncertain.
+
+        Raises:
+            SettingsError: an end of a number with ± is no contact.
         """
         scene, moves = self.scene, list[Move]()
         for key, share in scene.shares.items():
@@ -211,14 +227,17 @@ class Reduction:
     def _changes(
         self, key: str, ends: Sequence[Scene], results: Sequence[Values], times: float, apart: bool
     ) -> list[Move]:
-        """Return the moves of an input to its two ends, with the changes of results over `times`.
+        """Return two moves of an input, to its two ends, with the changes of results over `times`, by name.
+
+        Changes are in the results' units. Only results that the scene itself has are in it, where `apart` those that
+        both ends have; one that is missing at an end has not changed there.
 
         Args:
             key: of the input.
             ends: the scenes at both ends.
             results: at both ends, moved `times` as far.
             times: factor on the uncertainty of the input.
-            apart: whether a change is half of the difference of both ends, and not that from the scene itself.
+            apart: whether changes are from the mean of both ends, and not from the scene itself.
         """
         moves = []
         for end, values, opposite in zip(ends, results, results[::-1], strict=True):
@@ -231,7 +250,10 @@ class Reduction:
         return moves
 
     def _results_of(self, scene: Scene) -> Values:
-        """Return the results and pressures of the model of another scene, by name.
+        """Return the results of the model of another scene by name, in their units.
+
+        Where springs are not linear they include logarithms of pressures on the axis. With `passed` states they are
+        columns (m,).
 
         Raises:
             SettingsError: the scene is no contact.
@@ -240,12 +262,14 @@ class Reduction:
 
     @cached_property
     def inputs(self) -> Values:
-        """The uncertainty due to the inputs, by name in the result's unit.
+        """The uncertainty ≥ 0 due to the inputs, by name in the result's unit; cached.
 
-        Independent moves add in squares, and the changes with other curves through the points of a profile are added.
+        Numbers with ± and pairs of bodies add in squares; to their sum the changes with other curves through the points
+        of a profile are added. 0 where nothing is uncertain.
 
         Raises:
-            SettingsError: most curves through the points of a profile are no contact, so that no error is known.
+            SettingsError: too few curves through the points of a profile are a contact, so that no error is known;
+                an end of a number with ± is no contact.
         """
         profile = self.scene.bodies.profile
         models = [model for shape in profile.alternatives if (model := self._model_of(shape))]
@@ -260,7 +284,7 @@ class Reduction:
         return {name: sum(change[name] for change in changes) + in_squares(self.moves, name) for name in self.results}
 
     def _model_of(self, shape: Shape) -> Particles | None:
-        """Return the particles of the model of another body, under the same settings.
+        """Return the particles of the reduced model of a body of another shape; settings stay but for the contact law.
 
         None where it is no contact, as with a jump of its edge at a corner.
         """
@@ -271,9 +295,9 @@ class Reduction:
             return None
 
     def _largest_changes(self, models: Sequence[Particles]) -> Values:
-        """Return the largest absolute difference of each result over other models, by name in its unit.
+        """Return the largest |difference| of each result over other models, by name in its unit; 0 without models.
 
-        0 without models. A result that another model does not have counts as 0 there.
+        A result that another model does not have counts as 0 there.
         """
         largest = {name: np.zeros_like(value) for name, value in self.results.items()}
         for values in map(self.values, models):
@@ -283,11 +307,14 @@ class Reduction:
 
 
 def values_of(readings: Mapping[str, Reading]) -> Values:
-    """Return the values of readings by name, each in its reading's unit."""
+    """Return the values of readings by name, without their errors, each in its reading's unit."""
     return {name: reading.value for name, reading in readings.items()}
 
 
 def _on_axis(profile: Profile) -> float:
-    """Return the pressure on the axis but for a constant factor, ∫ −dq/x from the first x > 0 on [FU/LU²]."""
+    """Return the pressure on the axis but for a constant factor, ∫ −dq/x from the first x > 0 on [FU/LU²].
+
+    q is the line load, compression positive; 0 where fewer than two particles have x > 0.
+    """
     x, q = profile.x[profile.x > 0.0], profile.pressure[profile.x > 0.0]
     return -float(np.sum(np.diff(q) / (x[1:] + x[:-1])))

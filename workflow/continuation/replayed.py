@@ -49,14 +49,21 @@ class ReplayedBranch(Branch):
     """The states of a contact whose pairs snap."""
 
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
-        """Prepare a contact whose schedule is repeated; `meanwhile` is called while LAMMPS reads the bodies."""
+        """Prepare a contact whose load steps are repeated from the start; LAMMPS starts with the `with` statement.
+
+        `meanwhile` is called while LAMMPS reads the bodies.
+        """
         super().__init__(context, meanwhile)
         self._passed: tuple[Phase, ...] = ()
         self._stretches: list[Stretch] = []
         self._top: Stretch | None = None
 
     def mark(self, name: str) -> None:
-        """Report the last state under a name, after a force maximum the one at it; that one is written already."""
+        """Report the last state under a name, and have its atoms written to states.lammpstrj.
+
+        After the search for a force maximum, and before the loading turns again, it is the state at the maximum, whose
+        atoms are written already.
+        """
         if self._top:
             self.marked[name] = self.states[self._top.last]
             return
@@ -64,17 +71,18 @@ class ReplayedBranch(Branch):
         self._stretches[-1].marks.append(name)
 
     def maximum(self, most_replays: int = 8, zoom: float = 0.25) -> None:
-        """Pull the bodies apart, then repeat the schedule, each time with smaller steps at the force maximum.
+        """Pull the bodies apart, then repeat all load steps from the start, each time smaller ones at the maximum.
 
-        The results are those of the last schedule, which contains the positions of the forces that the script reached
-        and of the force maximum; the search ends when two schedules agree.
+        States, marks and targets become those of the last repetition, which contains the positions of the forces that
+        the script reached and of the force maximum. The search ends when two in succession agree; its error [FU] is
+        recorded in `searches`. The last state is that of separated bodies.
 
         Args:
-            most_replays: of the schedule.
-            zoom: width of the window about the force maximum over that of the schedule before.
+            most_replays: of the load steps.
+            zoom: width of the window about the force maximum over that of the repetition before.
 
         Raises:
-            UntrustedError: no two schedules agree, or a state is no result.
+            UntrustedError: no two repetitions agree, or a state is no result.
         """
         self._turn(rises=False)
         self._separate(self._last.displacement)
@@ -96,27 +104,34 @@ class ReplayedBranch(Branch):
         )
 
     def open(self) -> None:
-        """Do nothing: the repeated schedule has separated the bodies."""
+        """Do nothing: the search for the force maximum has separated the bodies, and ends in that state."""
 
     def _turn(self, rises: bool) -> bool:
-        """Begin a leg where the loading turns, and return whether it does.
+        """Record the direction of the next load steps; return whether it differs from the one before, True at first.
 
-        After a force maximum a new schedule follows the one before.
+        After a force maximum the load steps so far are kept as a fixed beginning, which later repetitions do not
+        change.
         """
         if self._top:
             self._passed, self._stretches, self._top = self.contact.phases, [], None
         return super()._turn(rises)
 
     def _record_target(self, force: float) -> None:
-        """Record the end of a stretch at the last state, and the force [FU] that this was to carry; NaN: none."""
+        """Record that the last state ends a part of the path, at a force [FU] that it was to carry.
+
+        NaN: it ends at a displacement or at the force maximum. The force, compression positive, also goes to `wanted`,
+        NaN does not.
+        """
         super()._record_target(force)
         phase = self._last.phase.partition("_")[0]
         self._stretches.append(Stretch(self._number, phase, len(self.states) - 1, force))
 
     def _about_maximum(self, window: float, first: bool, count: int = 8) -> list[float]:
-        """Return falling displacements [LU] of the last leg, in steps of `window`/`count` [LU] about its force maximum.
+        """Return falling displacements [LU] of the unloading, in steps of `window`/`count` [LU] about its maximum.
 
-        `first`: whether the load steps are those of the first search, on which another maximum may be the highest.
+        The window goes that far, or as far as a pair may separate early, to either side; outside it, the displacements
+        of the present states. None in the window is above the end of an earlier part of the unloading. `first`: whether
+        the states are those of the first search; then all states of at least 95 % of the maximum are in the window.
         """
         trace, peak = self.unloading, self.peak
         d, force = trace.displacement, trace.force
@@ -131,14 +146,15 @@ class ReplayedBranch(Branch):
         return [*d[(d > fine[0]) | (d < fine[-1])].tolist(), *fine.tolist()]
 
     def _end(self, stretch: Stretch) -> float:
-        """Return the displacement [LU], compression positive, at which a stretch ends; −inf for that of the separation.
+        """Return the displacement [LU], compression positive, at which a part of the path ends.
 
-        Of a stretch with a force it is where its leg has that force, interpolated: in the last leg at the first
-        crossing, in another on the line through the two states nearest in force. Without a force (NaN) it is the
-        position of the force maximum for the last stretch, and that of its last state for another.
+        −inf for the separation of the bodies. Of a part with a force it is where F(d) has that force, interpolated:
+        since the last turn of the loading at the first crossing, before it on the line through the two states nearest
+        in force. Without a force (NaN) it is the position of the force maximum for the last part, and that of its last
+        state for another.
 
         Raises:
-            ValueError: the last leg never has the force.
+            ValueError: since the last turn, F(d) never has the force.
         """
         if stretch.phase == SEPARATING:
             return -math.inf
@@ -150,13 +166,20 @@ class ReplayedBranch(Branch):
         return _displacement_of(self._of_leg(stretch.leg), stretch.force)
 
     def _of_leg(self, number: int) -> list[State]:
-        """Return the states of the leg of this number in order; [] where there is no such leg."""
+        """Return the states between two turns of the loading, part `number` of the path from 0 on, in order.
+
+        [] where there is no such part.
+        """
         return [state for state, leg in zip(self.states, self.legs, strict=True) if leg == number]
 
     def _replay(self, falling: list[float]) -> None:
-        """Repeat the schedule in a new contact: each leg goes straight to its ends, the last until the bodies part.
+        """Close the contact and repeat its load steps in a new one, the last unloading at displacements `falling` [LU].
 
-        `falling`: displacements [LU] of the last leg. Replaces the states, and updates legs, marks and targets.
+        Each part of the path goes straight to its end, the last until the bodies part. Replaces the states, and updates
+        marks and targets and the numbers of parts in place.
+
+        Raises:
+            UntrustedError: a state is no result.
         """
         passed, names = sum(len(phase.rows) for phase in self._passed), [phase.name for phase in self._passed]
         start, leg, phases = self.states[passed].displacement, -1, list[Phase]()
@@ -187,9 +210,11 @@ class ReplayedBranch(Branch):
                 self.wanted[stretch.last] = stretch.force
 
     def _agrees(self, before: Peak, critical: State) -> bool:
-        """Return whether two schedules have the same results, and the latest its states at the required positions.
+        """Return whether two repetitions have the same force maximum, and the latest has the required states.
 
-        `before`: the force maximum of the former one; `critical`: the state at that of the latest.
+        Forces may differ by the tolerance of the search, relative, or for a required force of 0 that of the maximum,
+        and the contact radius at the maximum by its tolerance or half its uncertainty. `before`: the maximum of the
+        former repetition; `critical`: the state at that of the latest.
         """
         peak = self.peak
         allowed = self.tolerance * peak.smooth
@@ -208,15 +233,19 @@ class ReplayedBranch(Branch):
     def _growth(self, state: State, largest: float) -> float:
         """Return the factor of successive increments: 1.2 where no maximum can exceed `largest` [FU] any more, else 1.
 
-        Pairs of longer moves detach prematurely.
+        `largest`: the largest tension so far, positive. Pairs of longer moves detach prematurely.
         """
         return 1.2 if self._remaining_tension(state) < largest else 1.0
 
 
 def _displacement_of(states: Sequence[State], force: float) -> float:
-    """Return the displacement [LU] of a force [FU] on a rising branch, by a straight line through two states.
+    """Return the displacement [LU] of a force [FU] on a rising F(d), by a straight line through two states.
 
-    They are those of nearest force. With one state, or where both have the same force, that of the nearest.
+    They are those of nearest force, so that it may be extrapolated. With one state, or where both have the same force,
+    that of the nearest.
+
+    Raises:
+        IndexError: there are no states.
     """
     near = sorted(states, key=lambda s: abs(s.force - force))[:2]
     if len(near) < 2 or near[0].force == near[1].force:

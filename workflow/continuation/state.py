@@ -18,10 +18,12 @@ from contact1d.workflow.scene import Scene
 
 
 def radius_rule(scene: Scene, tolerance: float) -> RadiusRule:
-    """Return the rule that reads the contact radius of a scene off a pressure profile (edge, largest tension, …).
+    """Return the definition of the contact radius for a scene, an object that reads the radius off a pressure profile.
 
-    `tolerance`: relative, of the main results; the calibrated share of it is the pressure, over the largest one, that
-    counts as 0.
+    The contact law and the profile choose it: the half-width of a body with a vertical edge; of bodies that attract
+    each other the radius of the largest tension, for opposite chains, or the edge at which the line load jumps or that
+    the law computes; else that of the compressed particles. `tolerance`: relative, of the main results; its calibrated
+    share of the largest pressure counts as 0.
     """
     return law_of(scene).rule(scene)(scene.bodies, CALIBRATION.residual * tolerance)
 
@@ -71,19 +73,32 @@ class State:
 
     @property
     def carried(self) -> float:
-        """The external load in equilibrium with the state [FU], compression positive: `force` minus `pushed`."""
+        """The external load in equilibrium with the state [FU], compression positive: `force` − `pushed`.
+
+        `pushed` is the force of other effects that presses the bodies together. Of a state in motion, inertia and drag
+        are missing.
+        """
         return self.force - self.pushed
 
     @cached_property
     def radius(self) -> ContactRadius | None:
-        """The contact radius with its edges and uncertainty [LU]; None where the bodies do not touch.
+        """The contact radius with its edges and uncertainty [LU], cached; None where the bodies do not touch.
+
+        That is, without a compressed particle or, where bodies attract each other, without any tension or any force, by
+        the definition of the radius.
 
         Raises:
-            ValueError: the profile has too few particles, or pressures of the wrong sign, for the rule.
+            ValueError: the profile has fewer than 3 particles, or tensions where a radius of compressed particles
+                is read.
         """
         return self.rule.of(self.profile)
 
     @property
     def radius_or_spot(self) -> ContactRadius:
-        """The contact radius with its edges and uncertainty [LU]; where the rule finds none, 0 ± 1.5 spacings."""
+        """The contact radius with its edges and uncertainty [LU]; where bodies do not touch, 0 ± 1.5 spacings.
+
+        Raises:
+            ValueError: the profile has fewer than 3 particles, or tensions where a radius of compressed particles
+                is read.
+        """
         return self.radius or self.rule.or_spot(self.profile)

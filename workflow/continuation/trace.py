@@ -96,24 +96,28 @@ class Trace:
     perturbation: Perturbation = Perturbation()
 
     def __len__(self) -> int:
-        """Return the number of states."""
+        """Return the number m of states; a trace without states is false."""
         return len(self.displacement)
 
     @property
     def lists(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Displacements [LU] and forces [FU] as two tuples of m numbers, as functions that read a curve take them."""
+        """(Displacements [LU], forces [FU]), compression positive: two tuples of m numbers in the states' order."""
         return tuple(self.displacement.tolist()), tuple(self.force.tolist())
 
     @property
     def legs(self) -> list[Trace]:
-        """The legs in order, each a trace of its own: the states that share a number in `leg`."""
+        """The parts of the path between turns of the loading, in order, each a trace of its own; [] without states."""
         return [self.chosen(np.flatnonzero(self.leg == number)) for number in np.unique(self.leg)]
 
     @property
     def search(self) -> Search:
-        """The search for a force maximum on the last leg, empty where there was none.
+        """The uncertainty of the search for a force maximum since the last turn of the loading.
 
-        Its bracket [FU] is shifted as tension by the perturbation of the last state's force.
+        Empty where there was none. Its bracket [FU], positive tensions, None under displacement control, is lowered by
+        the force that a perturbation adds to the last state.
+
+        Raises:
+            IndexError: there are no states.
         """
         search = self.searches.get(int(self.leg[-1]), Search())
         if search.bracket is None:
@@ -123,21 +127,25 @@ class Trace:
 
     @property
     def limit(self) -> float:
-        """The largest displacement [LU] of a limit point of the model below the first state.
+        """The largest displacement [LU] below the first state at which the reduced model's force jumps in unloading.
 
-        −inf where there is none.
+        −inf where there is none. Compression is positive.
         """
         return max((limit for limit in self.model.limits if limit < self.displacement[0]), default=-np.inf)
 
     def radius(self, state: int) -> float | None:
-        """Return the contact radius of a state [LU], with the perturbation; None where the bodies do not touch."""
+        """Return the contact radius of a state [LU] ≥ 0, with the perturbation; None where the bodies do not touch.
+
+        Raises:
+            ValueError: no radius can be read off a measured profile.
+        """
         return self.radius_or_spot(state) if self.contact(state) else None
 
     def radius_or_spot(self, state: int) -> float:
-        """Return the contact radius of a state [LU], with the perturbation; 0 where the rule finds no contact.
+        """Return the contact radius of a state [LU] ≥ 0, with the perturbation; 0 where the bodies do not touch.
 
         The latter is uncertain by 1.5 spacings, so that a perturbation may change it. A radius without uncertainty, of
-        a body that ends at an edge, has no shift and no factor; any other is 0 at least.
+        a body that ends at an edge, is shifted only by a change of displacement.
         """
         radius = self._contact_or_spot(state)
         value = radius.value + self._length_change(state, lambda i: self._contact_or_spot(i).value)
@@ -146,26 +154,30 @@ class Trace:
         return max(0.0, self.perturbation.radius_factor * (value + self.shift_of(state) * radius.uncertainty))
 
     def _contact_or_spot(self, state: int) -> ContactRadius:
-        """Return the unperturbed radius of a state, as read off its profile [LU]; 0 ± 1.5 spacings without contact."""
+        """Return the unperturbed radius of a state [LU] with edges and uncertainty; 0 ± 1.5 spacings where none."""
         return self.contact(state) or self.rule.or_spot(self.profile(state))
 
     def reach(self, state: int) -> float | None:
-        """Return the outer radius of the cohesive zone, c [LU]; None where the attraction ends at the contact edge."""
+        """Return the outer radius c of the attraction around the contact in a state [LU], with the perturbation.
+
+        Only a perturbation of displacements changes it. None where the law computes no contact edge, and where the
+        attraction ends at the edge.
+        """
         profile = self.profile(state)
         if not isinstance(profile, ZonedProfile) or profile.reach <= profile.edge:
             return None
 
         def reach(i: int) -> float:
-            """Return the outer radius of the cohesive zone in a state [LU], 0 where there is none."""
+            """Return the outer radius of the attraction in a state [LU]; 0 where its profile has none."""
             return float(getattr(self.profile(i), "reach", 0.0))
 
         return reach(state) + self._length_change(state, reach)
 
     def _length_change(self, state: int, length: Callable[[int], float]) -> float:
-        """Return the change of a length [LU] by the displacement that a perturbation adds to a state, 0 for none.
+        """Return the change of a length [LU] by the displacement that a perturbation adds to a state; 0 for none.
 
-        `length`: function of a state's number [LU]. Its slope between states is used, or where that is 0 the law's
-        da/dd.
+        It is the displacement times the slope of the length to the nearest state at a sufficient distance, or where
+        that is 0 times da/dd of the contact law. `length`: function of a state's number [LU].
         """
         moved = _value_at(self.perturbation.moved, state)
         if not moved:
@@ -174,17 +186,24 @@ class Trace:
         return moved * (slope(d, state, length) or self.model.law.radius_rate(float(d[state])))
 
     def phases(self, *names: str) -> Trace:
-        """Return the trace of the states of these phases in order; "unloading_2" counts as a phase "unloading"."""
+        """Return the trace of the states of these phases, in order; "unloading_2" counts as a phase "unloading".
+
+        Names are given without numbers; it is empty where no state has one of them.
+        """
         return self.chosen(np.flatnonzero([name.partition("_")[0] in names for name in self.phase]))
 
     def shift_of(self, state: int) -> float:
-        """Return the shift that is added to the radius of a state, in multiples of its uncertainty (dimensionless)."""
+        """Return the shift that a perturbation adds to the radius of a state, over its uncertainty (dimensionless)."""
         return _value_at(self.perturbation.radius_shift, state)
 
     def falling(self) -> Trace:
-        """Return the trace of the states in contact by falling displacement, of several at the same one the last.
+        """Return the trace of the states in contact by falling displacement, of several at the same one the latest.
 
-        In contact are states above the largest limit point of the model that lies below the largest displacement.
+        In contact are states at or above the largest limit point of the reduced model that lies below the largest
+        displacement; without limit points all are.
+
+        Raises:
+            ValueError: there are no states.
         """
         _, last = np.unique(self.displacement[::-1], return_index=True)
         falling = (len(self) - 1 - last)[::-1]
@@ -192,7 +211,10 @@ class Trace:
         return self.chosen(falling[self.displacement[falling] >= limit])
 
     def chosen(self, states: Sequence[int] | NDArray[np.intp]) -> Trace:
-        """Return the trace of the states of these numbers, in this order; `searches` and `wanted` stay as they are."""
+        """Return the trace of the states of these numbers, in this order, with their part of the perturbation.
+
+        `searches` and `wanted` stay as they are, with the numbers of the whole trace.
+        """
         index, perturbation = np.asarray(states, dtype=np.intp), self.perturbation
         parts = perturbation.force, perturbation.radius_shift, perturbation.moved
         force, shift, moved = (part if isinstance(part, float) else part[index] for part in parts)
@@ -212,8 +234,9 @@ class Trace:
     def recomputed(self, scene: Scene, settings: Settings, model: Particles) -> dict[str, Array]:
         """Return the columns that are not prescribed, (m,) each, on another model of the particles.
 
-        "displacement" [LU] under prescribed forces over time, "force" [FU] at prescribed displacements or under a load;
-        of a free motion, which is computed anew and interpolated at the times of the states, both.
+        {"displacement": [LU]} under prescribed forces over time; {"force": [FU]} at prescribed displacements and under
+        a load, at the displacements of this trace; of a free motion, which is computed anew and interpolated at the
+        times of the states, both. Compression is positive.
         """
         if self.given == "force":
             return {"displacement": model.displacements_under(self.time, self.force)[0]}
@@ -231,13 +254,16 @@ class Trace:
         radius_factor: float = 1.0,
         moved: Array | float = 0.0,
     ) -> Trace:
-        """Return a copy with changed forces, radii and displacements; arguments are (m,) or one number for all states.
+        """Return a copy with changed forces, radii and displacements; arguments are (m,) or one float for all states.
+
+        A perturbation that this trace has already stays in its forces and displacements, but no longer changes its
+        radii.
 
         Args:
             force: added to the forces [FU].
             radius_shift: added to each radius, in multiples of its uncertainty.
-            radius_factor: by which radii are multiplied.
-            moved: added to the displacements [LU].
+            radius_factor: by which radii are multiplied, those without uncertainty excepted.
+            moved: added to the displacements [LU]; radii follow with their slope.
         """
         changed = self.force + force
         perturbation = Perturbation(changed - self.force, radius_shift, radius_factor, moved)
@@ -245,14 +271,12 @@ class Trace:
 
 
 def _value_at(values: Array | float, state: int) -> float:
-    """Return the value of a state, from values (m,) or from one number for all states; its unit is theirs."""
+    """Return the value of a state, from values (m,) or from one float for all states; its unit is theirs."""
     return values if isinstance(values, float) else float(values[state])
 
 
 def slope(displacement: Array, state: int, value: Callable[[int], float], least: float = BRANCH_DISTANCE) -> float:
-    """Return dv/dd at a state [unit of `value`/LU], from the nearest state at a sufficient distance.
-
-    0 where there is none.
+    """Return dv/dd at a state [unit of `value`/LU], to the nearest state at a sufficient distance; 0 without one.
 
     Args:
         displacement: of the states, (m,) [LU].
@@ -269,7 +293,7 @@ def slope(displacement: Array, state: int, value: Callable[[int], float], least:
 
 
 def legs_by_phase(phases: Sequence[str]) -> NDArray[np.int64]:
-    """Return the number of the leg of each state, (m,), from 0 on: it rises by 1 where the phase's name changes."""
+    """Return a number for each state, (m,), from 0 on, that rises by 1 where the name of the phase changes."""
     changes = [int(i > 0 and name != phases[i - 1]) for i, name in enumerate(phases)]
     return np.cumsum(changes, dtype=np.int64)
 
@@ -281,14 +305,19 @@ def of_states(
     searches: Mapping[int, Search] | None = None,
     time_step: float = 0.0,
 ) -> Trace:
-    """Return the trace of measured states, which keep their radii; its time is that of a state plus step · `time_step`.
+    """Return the trace of measured states in their order; its times [TU] are their own plus step · `time_step`.
+
+    Profiles and radii are those of the states; x is the position of the plate.
 
     Args:
         states: in order, one at least.
         model: the reduced model of their particles.
-        leg: number of the leg of each; None: each phase is one.
-        searches: for force maxima, by the number of the leg.
+        leg: for each, how often the loading turned before it; None: it turns between phases.
+        searches: for force maxima, by that number.
         time_step: [TU], of a motion in time; 0 for equilibria.
+
+    Raises:
+        IndexError: there are no states.
     """
     phases = tuple(state.phase for state in states)
     return Trace(
@@ -311,11 +340,12 @@ def of_model(
 ) -> Trace:
     """Return the trace of the reduced model along a path, with two unloaded particles on both sides of the contact.
 
-    A radius is read between the last particle that carries a load and the next. The surfaces of its profiles are at 0.
+    A radius is read between the last particle that carries a load and the next, and cached. The surfaces of its
+    profiles are at 0, also of particles out of contact.
 
     Args:
         phase: name of the phase of each state, (m,).
-        leg: number of the leg of each state, (m,).
+        leg: for each state, how often the loading turned before it, (m,).
         path: displacements, positions and times of the states.
         followed: forces of the particles along it.
         rule: reads the contact radius off a profile.
@@ -327,11 +357,14 @@ def of_model(
     none = np.zeros_like(x)
 
     def of_all(forces: Array) -> Array:
-        """Return forces of the particles as pressures [FU/LU], with 0 for the unloaded ones on both sides."""
+        """Return forces of the particles, (n,) [FU], as pressures, (n + 4,) [FU/LU], 0 for two on both sides."""
         return np.pad(forces, margin.size) / spacing
 
     def profile(state: int) -> Profile:
-        """Return pressure and shear of a state, with the edges of its zone where the law has one."""
+        """Return pressure and shear of a state [FU/LU] over x [LU], with the contact edges where the law computes them.
+
+        Shear is 0 without a prescribed tangential path. Each call makes a new object.
+        """
         pressure = of_all(followed.force(state))
         shear = none if followed.shear is None else of_all(followed.shear(state))
         if followed.zone:

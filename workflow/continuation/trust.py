@@ -27,11 +27,15 @@ from contact1d.workflow.scene.remedies import against_passing, longer_chain
 
 
 def require_trust(scene: Scene, settings: Settings, state: State, moving: bool = False) -> None:
-    """Refuse a state that is no result. Without `moving`, a plate or noise it must be at rest.
+    """Refuse a state that is no result; return nothing otherwise.
+
+    Whether particles are at rest counts only without `moving`, a plate and noise.
 
     Raises:
-        UntrustedError: bodies that went through each other, particles not at rest, a contact that reaches the end of a
-            chain.
+        ThroughError: a particle lies below the opposite surface.
+        DigitsError: on a rigid plane without relaxation, the round-off error of positions exceeds the tolerance.
+        UntrustedError: a residual force exceeds a tenth of the tolerance.
+        ChainEndError: the contact reaches the end of the chain.
     """
     where = f"at displacement {state.displacement:.4g} LU (phase {state.phase})"
     if state.depth > 0.0:
@@ -65,7 +69,10 @@ def require_trust(scene: Scene, settings: Settings, state: State, moving: bool =
 
 
 def _against_passing(scene: Scene) -> str:
-    """Return advice on the scene against particles that pass each other, with a comma at its end; "" for none."""
+    """Return advice for a message against particles that pass each other, ", " at its end; "" where there is none.
+
+    A lower temperature with noise, and leaving out [horizontal] where the scene has it, but not in a slide.
+    """
     cooler = f"lower noise.temperature from {scene.temperature:g} FU·LU, " if scene.noise else ""
     if not scene.horizontal or scene.experiment.motion_is_result:  # a slide needs it
         return cooler
@@ -73,7 +80,10 @@ def _against_passing(scene: Scene) -> str:
 
 
 def _more_particles(scene: Scene, settings: Settings) -> str:
-    """Return the advice to increase the number of particles: of the upper chain, where the scene gives that."""
+    """Return the advice, part of a sentence, to take more particles than now, or an automatic number.
+
+    It names bodies.upper_particles where the scene gives that, else bodies.particles.
+    """
     if scene.bodies.upper_particles is not None:
         return f"more bodies.upper_particles than {settings.chains.upper}, or leave it out"
     return f'more bodies.particles than {settings.chains.upper} (or "auto")'
@@ -82,13 +92,16 @@ def _more_particles(scene: Scene, settings: Settings) -> str:
 def residual_limit(settings: Settings, share: float = 0.1) -> float:
     """Return the largest residual force [FU] of a particle in a converged state.
 
-    It is a `share` of the tolerance times the force scale of the settings.
+    It is `share` times the relative tolerance times the force scale of one particle.
     """
     return share * settings.tolerance * settings.forces.scale
 
 
 def is_converged(settings: Settings, state: State) -> bool:
-    """Return whether the residual force on every particle is within a tenth of the tolerance times the force scale."""
+    """Return whether the largest residual force on a particle is at most a tenth of the tolerance of the force scale.
+
+    The force scale is that of one particle.
+    """
     return state.residual <= residual_limit(settings)
 
 
@@ -98,11 +111,11 @@ def require_no_contradiction(settings: Settings, tension: float, uncertainty: fl
     Args:
         settings: of the run.
         tension: the force maximum, tension positive [FU].
-        uncertainty: of it [FU]; the residual forces of a state are added.
-        states: of the curve.
+        uncertainty: of it [FU]; the residual force of a state, times the number of upper particles, is added.
+        states: of the curve; without any, nothing is refused.
 
     Raises:
-        UntrustedError: names the state.
+        UntrustedError: names the first such state.
     """
     for state in states:
         if -state.force > tension + uncertainty + state.residual * settings.chains.upper:
@@ -116,8 +129,8 @@ def require_no_contradiction(settings: Settings, tension: float, uncertainty: fl
 def _chain_end(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[str, str]:
     """Return {"chain_end": warning} where a chain ends too near to its contact, {} where it does not.
 
-    Too near: its end reflects more of a displacement than the tolerance, or the outermost particles carry more than the
-    tolerance of the largest pressure.
+    Too near: its end reflects more of a displacement than the tolerance, or else the outermost particles of any state
+    carry more than the tolerance of its largest pressure. `states`: one at least.
     """
     share = max(end_pressure_share(state.profile) for state in states)
     ends = reflected(scene, settings.law, settings.largest_displacement, settings.chains.upper)
@@ -140,7 +153,9 @@ def _chain_end(scene: Scene, settings: Settings, states: tuple[State, ...]) -> d
 def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[str, str]:
     """Return warnings about what limits the accuracy of states that are results, by name; {} for none.
 
-    Names: "chain_end", "cutoff", "slow", "snaps", "table_core". `states`: one at least.
+    "chain_end": the chain ends near the contact, not checked of a body with an edge; "cutoff": the cutoff, the table or
+    the plane's stiffness; "slow": drag or mass; "snaps": pairs snap, unless the scene prescribes the path;
+    "table_core": particles came nearer than the table was made for. `states`: one at least.
     """
     warnings = _chain_end(scene, settings, states) if states[0].rule.ends_with_chain else {}
     share = settings.forces.share(scene)
@@ -171,9 +186,9 @@ def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[
 
 
 def slowness(scene: Scene, settings: Settings, least: float = 10.0) -> str:
-    """Return why relaxation is at least `least` times slower than with automatic values: seconds become minutes.
+    """Return a warning that relaxation is at least `least` times slower than with automatic mass and drag.
 
-    "" where it is not, without damping, or where the motion itself is studied (a slide).
+    "" where it is not, for a quasi-static scene, without [damping], in a slide, and where mass and drag are automatic.
     """
     if scene.method != "dynamic" or not scene.damping or scene.experiment.motion_is_result:
         return ""
@@ -195,23 +210,23 @@ def slowness(scene: Scene, settings: Settings, least: float = 10.0) -> str:
 
 
 def _mass(scene: Scene, settings: Settings) -> float:
-    """Return the moving mass [MU]: of plate and upper particles together, or without a plate of one particle."""
+    """Return the moving mass [MU]: the plate and all upper particles; without a plate that of one particle."""
     particle = scene.bodies.mass
     return settings.motion.plate_mass + settings.chains.upper * particle if scene.plate else particle
 
 
 def _drag(scene: Scene, settings: Settings) -> float:
-    """Return the drag on the moving mass [FU·TU/LU], on plate and particles together.
-
-    Without a plate, on one particle.
-    """
+    """Return the drag on the moving mass [FU·TU/LU]: on plate and all upper particles, or without a plate on one."""
     return settings.drag() if scene.plate else settings.motion.damping
 
 
 def _steps(scene: Scene, settings: Settings) -> float:
-    """Return the number of timesteps of a relaxation: the longer decay time, 2M/c or c/K, over the timestep.
+    """Return the number of timesteps (not rounded) of a relaxation: the longer decay time over the timestep.
 
-    K follows from the settling time 2π √(M/K).
+    Decay times are 2M/c and c/K, with the moving mass M, its drag c, and K from the settling time 2π √(M/K).
+
+    Raises:
+        ZeroDivisionError: there is no drag.
     """
     mass, drag = _mass(scene, settings), _drag(scene, settings)
     stiffness = mass * (2.0 * math.pi / settings.motion.settle_time) ** 2

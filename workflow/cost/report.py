@@ -34,7 +34,10 @@ class Error(NamedTuple):
     is_bound: bool = False
 
     def __str__(self) -> str:
-        """Return `0.00012`, or for an upper bound `less than 0.00013`, where two digits never round it down."""
+        """Return `0.00012`, or for an upper bound `less than 0.00013`, with two digits.
+
+        The bound is increased by 5 % first, so that the digits never round it down. An infinite error is `inf`.
+        """
         return f"less than {1.05 * self.relative:.2g}" if self.is_bound else f"{self.relative:.2g}"
 
 
@@ -67,13 +70,16 @@ class VariantRuns:
 
     @property
     def change(self) -> tuple[str, str]:
-        """The varied key and its value as text, `accuracy.tolerance` and `0.01`, or "without" and an effect."""
+        """The varied key and its value as text, `accuracy.tolerance` and `0.01`, or "without" and the effect left out.
+
+        Of several varied keys it is the first; without any change the second text is "".
+        """
         setting, value = next(iter(self.edit.values.items()), ("without", "".join(self.edit.without)))
         return setting, str(value)
 
     @property
     def error(self) -> Error:
-        """The largest of the relative errors; infinite if there is none."""
+        """The largest of the relative errors of the results; infinite, and no bound, if there is none."""
         return max(self.errors.values(), default=Error(math.inf))
 
 
@@ -97,19 +103,23 @@ class CostRecord:
 
     @property
     def baseline(self) -> VariantRuns:
-        """The runs of the scene without a change."""
+        """The runs of the scene without a change: the first row that only sets the scene's own tolerance."""
         return next(row for row in self.rows if row.edit.values == {"accuracy.tolerance": self.tolerance})
 
     def new_warnings(self, variant: VariantRuns) -> list[str]:
-        """Return the names of warnings of a variant that the scene without a change does not have; empty for none."""
+        """Return the names of warnings of a variant that the scene without a change does not have, in order.
+
+        [] for none.
+        """
         return [name for name in variant.warnings if name not in self.baseline.warnings]
 
     @property
     def advice(self) -> str:
-        """A sentence with the cheapest variant within the tolerance without new warnings, where it saves enough time.
+        """A sentence with the cheapest change of the scene that is within the tolerance and without new warnings.
 
-        That is 0.1 s and 10 % of the time at least; otherwise it says to keep the scene, and without any such variant
-        that none is known to be within the tolerance.
+        Where the scene itself is within the tolerance, a change must save 0.1 s and 10 % of the time at least;
+        otherwise the sentence says to keep the scene. Where neither the scene nor a variant is within the tolerance it
+        says so.
         """
         # CPU time [s], and its part of that of the scene, which a change saves at least to be recommended.
         saved_s = saved_share = 0.1
@@ -125,15 +135,17 @@ class CostRecord:
 
 
 def write_report(record: CostRecord, folder: Path) -> None:
-    """Write cost.json and cost.png into `folder`."""
+    """Write cost.json and cost.png into `folder`, which must exist; earlier ones are replaced."""
     write_whole(folder / "cost.json", TypeAdapter(CostRecord).dump_json(record, indent=1).decode() + "\n")
     save_figure(cost_figure(record), folder / "cost.png")
 
 
 def table(record: CostRecord) -> list[tuple[str, ...]]:
-    """Return the table of a study as text: a header, then a row for each variant.
+    """Return the table of a study as text: a header of 6 columns, then a row for each variant, in order.
 
-    Cells of one that failed are empty.
+    The columns are the varied key, its value (of the scene itself with "(as it is)"), largest relative error, median
+    CPU time [s], that time over the scene's, and the dominant error with up to two new warnings. Of a variant that
+    failed the three numbers are "", and the last cell has the reason.
     """
     rows: list[tuple[str, ...]] = [("setting", "value", "true error", "CPU time", "of the scene's", "dominant error")]
     baseline = record.baseline
@@ -149,7 +161,7 @@ def table(record: CostRecord) -> list[tuple[str, ...]]:
 
 
 def summary(record: CostRecord) -> list[str]:
-    """Return the lines that a terminal shows of a study: the table, its definitions, the advice."""
+    """Return the lines that a terminal shows of a study: the table, an empty line, what true errors are, the advice."""
     rows = table(record)
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return [
@@ -162,9 +174,10 @@ def summary(record: CostRecord) -> list[str]:
 
 
 def cost_figure(record: CostRecord) -> Figure:
-    """Return the figure of relative error over CPU time [s] of every variant that has errors, labelled with its value.
+    """Return the figure of the largest relative error over CPU time [s] of every variant that has errors.
 
-    Both axes are logarithmic; ↓ marks upper bounds.
+    Each point is labelled with its value; both axes are logarithmic; ↓ marks upper bounds. A star is the scene as it
+    is, a dotted line its tolerance.
     """
     figure = new_figure((7.4, 5.2))
     axes = figure.subplots()

@@ -29,7 +29,8 @@ from contact1d.workflow.scene import Scene
 def run_once(scene: Scene, folder: Path) -> VariantRuns:
     """Return the results, CPU time [s] and warnings of one run of a scene, or the reason why it failed.
 
-    It runs in a folder of this process in `folder`.
+    Warnings are followed by the names of results that miss the tolerance. A failed run, by any Contact1dError, has a
+    `failure` and no results; other errors are raised. It runs in a folder of this process in `folder`.
     """
     began = time.process_time()
     try:
@@ -47,10 +48,12 @@ def measure(
 ) -> list[VariantRuns]:
     """Return the runs of each scene, in order, from rounds in which all run, so that a slow machine slows all of them.
 
+    CPU times are those of all rounds, results and warnings those of the last one.
+
     Args:
         scenes: at least one.
         folder: where run folders are made.
-        repeats: number of rounds.
+        repeats: number of rounds at most.
         workers: runs at a time.
         progress: informed of each run that ends.
         longest_s: CPU time of all runs [s] after which no round begins: such runs are long compared with what disturbs
@@ -70,9 +73,12 @@ def measure(
 def cost_of(scene: Scene, folder: Path, repeats: int, workers: int, progress: Progress) -> CostRecord:
     """Return the true errors and CPU times of a scene and of its variants, from runs of all.
 
+    Variants with a tolerance as small as that of the reference, or smaller, are left out, but not the scene itself. A
+    variant that fails has a row, without errors.
+
     Args:
         scene: the scene of the study.
-        folder: an existing folder, for temporary run folders.
+        folder: an existing folder, for temporary run folders, which are removed.
         repeats: rounds of measurement.
         workers: runs at a time.
         progress: informed of what begins, and of each run that ends.
@@ -130,9 +136,10 @@ def reference_of(
 
 
 def with_errors(runs: VariantRuns, reference: Mapping[str, Result]) -> VariantRuns:
-    """Return the runs of a variant with relative errors against the reference, and the dominant source of the largest.
+    """Return a copy of the runs with relative errors against the reference, and the dominant source of the largest.
 
-    Where the runs lack a result of the reference they have failed, and have no errors.
+    The errors are of the results of the reference, by name; the source is a text, "solver of contact_radius". Where the
+    runs lack a result of the reference they have a `failure` and no errors.
     """
     if missing := [name for name in reference if name not in runs.results]:
         return replace(runs, failure=runs.failure or f"no {missing[0]}")
@@ -145,10 +152,11 @@ def with_errors(runs: VariantRuns, reference: Mapping[str, Result]) -> VariantRu
 
 
 def _error(result: Result, best: Result, largest_share: float = 0.1) -> Error:
-    """Return the relative error of a result against its reference, over the size of the latter.
+    """Return the relative error of a result against its reference, ≥ 0, over the size of the latter.
 
     Where the uncertainty of the reference and the statistical error of the result together exceed `largest_share` of
-    the error, they are added to it, and it is an upper bound.
+    the error, they are added to it, and it is an upper bound. The part of the uncertainty by numbers with ± in the
+    scene does not count.
     """
     error = abs(result.value - best.value)
     uncertainty = best.uncertainty - best.given + result.errors.get("statistics", 0.0)

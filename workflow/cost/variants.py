@@ -42,9 +42,9 @@ class Setting(NamedTuple):
 
 
 def quasistatic(scene: Scene) -> list[SceneEdit]:
-    """Return the edit that makes a motion quasi-static, in a list.
+    """Return the edit that makes a motion quasi-static, without its damping and plate, as the only item of a list.
 
-    Empty where time is physics, or there is no motion.
+    Empty where the scene is not dynamic, or is invalid with that edit, since time is physics.
     """
     edit = SceneEdit({"experiment.method": "quasistatic"}, tuple(sorted({"damping", "plate"} & {*scene.effects})))
     return [edit] if scene.method == "dynamic" and edited(scene, edit) else []
@@ -68,12 +68,18 @@ SETTINGS = {
 
 
 def numbers_of(scene: Scene) -> dict[str, float]:
-    """Return the numbers that a scene gives, by dotted keys, in units of the model."""
+    """Return the numbers that a scene gives, by dotted keys, in units of the model.
+
+    A key that is absent or "auto" is left out.
+    """
     return {place.path: place.value for place in Place(scene.model_dump(by_alias=True), WHOLE) if place.is_number}
 
 
 def settings_of(scene: Scene) -> dict[str, Setting]:
-    """Return the numerical settings that a scene gives as numbers, by dotted keys, the tolerance first."""
+    """Return the numerical settings that a scene gives as numbers, by dotted keys, the tolerance first.
+
+    Left out are those on "auto", absent, or on which the physics of this scene depends.
+    """
     numbers = numbers_of(scene)
     return {key: setting for key, setting in SETTINGS.items() if key in numbers and setting.is_numerical(scene)}
 
@@ -81,7 +87,8 @@ def settings_of(scene: Scene) -> dict[str, Setting]:
 def variants_of(scene: Scene) -> list[tuple[SceneEdit, Scene]]:
     """Return each valid variant of a scene with its edit, in units of SI where LU and FU are known.
 
-    The scene itself is among the tolerances; variants that are no valid scene are left out.
+    They are in the order of the settings and their factors, then a quasi-static motion, then each effect left out. The
+    scene itself is among the tolerances, with the factor 1; variants that are no valid scene are left out.
     """
     edits = [scaled(scene, key, factor) for key, setting in settings_of(scene).items() for factor in setting.factors]
     edits += [*quasistatic(scene), *(SceneEdit(without=(effect,)) for effect in scene.effects)]
@@ -89,7 +96,7 @@ def variants_of(scene: Scene) -> list[tuple[SceneEdit, Scene]]:
 
 
 def edited(scene: Scene, edit: SceneEdit) -> Scene | None:
-    """Return the scene with an edit, or None where the result is no valid scene."""
+    """Return a new scene with an edit, or None where the result is no valid scene."""
     with suppress(SceneError):
         return scene.with_(edit.values, without=edit.without)
     return None
@@ -98,8 +105,9 @@ def edited(scene: Scene, edit: SceneEdit) -> Scene | None:
 def scaled(scene: Scene, key: str, factor: float | None) -> SceneEdit:
     """Return the edit that scales a number of a scene by a factor, or sets it to "auto" if the factor is None.
 
-    A count changes by an even number; with a spacing the numbers of POWERS change, too, each by a power of the factor.
-    A number that is not given is left out.
+    A count changes by an even number. With the spacing h bulk stiffnesses per particle change as h, that of neighbour
+    springs and the number of particles as 1/h. Numbers are rounded to 12 digits. A number that is not given, or 0, is
+    left out, so that the edit may be empty.
     """
     if factor is None:
         return SceneEdit({key: "auto"})
@@ -117,8 +125,8 @@ def scaled(scene: Scene, key: str, factor: float | None) -> SceneEdit:
 def finer(scene: Scene) -> Scene:
     """Return the scene with tolerance, spacing and steps finer, as far as its rules allow.
 
-    An edit they refuse is left out. A motion becomes quasi-static where time is no physics, and noise gets another
-    seed.
+    One after the other: an edit that gives no valid scene is left out. A motion becomes quasi-static where time is no
+    physics, and noise gets another seed. Without any valid edit it is the scene itself.
     """
     settings = settings_of(scene)
     for edit in [*(scaled(scene, key, setting.finer) for key, setting in settings.items()), *quasistatic(scene)]:

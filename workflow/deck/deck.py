@@ -43,22 +43,25 @@ class Deck:
 
     @cached_property
     def units(self) -> DeckUnits:
-        """The units of the text and of system.data."""
+        """The units of length [LU] and force [FU] in which the deck's text and system.data are written; cached."""
         return units_for(self.scene)
 
     @cached_property
     def written(self) -> tuple[Scene, Settings]:
-        """Scene and settings in the units of the deck."""
+        """(scene, settings) in the units of the deck; the original ones where these are those of the scene; cached."""
         return self.units.scene(self.scene), self.units.settings(self.settings)
 
     @cached_property
     def stepped(self) -> bool:
-        """Whether no particle has to relax, so that all rows of a phase are steps of one run."""
+        """Whether no particle has to relax, so that all rows of a phase are steps of one LAMMPS run; cached.
+
+        That is in a quasi-static scene on a rigid plane without [neighbours].
+        """
         return self.scene.is_stepped
 
     @cached_property
     def parts(self) -> tuple[Contribution, ...]:
-        """The parts of bodies, lower body, effects and method, in deck order.
+        """The parts (fragments, variables) of bodies, lower body, effects and method, in deck order; cached.
 
         Raises:
             SettingsError: the box of an interaction has too many bins for LAMMPS.
@@ -74,10 +77,11 @@ class Deck:
 
     @cached_property
     def head(self) -> str:
-        """The LAMMPS text before the schedule, with a title, in units of the deck.
+        """The LAMMPS text before the schedule, with a title as comment, in units of the deck; cached.
 
         Raises:
-            DeckError: if fragments and variables do not fit together.
+            DeckError: fragments and variables do not fit together.
+            SettingsError: the box of an interaction has too many bins for LAMMPS.
         """
         stands = self.scene.stands
         slots = {
@@ -101,20 +105,26 @@ class Deck:
         return title + "\n" + "\n".join(blocks)
 
     def begin(self, phase: str, fragments: Sequence[str] = ()) -> str:
-        """Return the LAMMPS commands before the rows of a phase: its name as a variable, and those of `fragments`."""
+        """Return the LAMMPS commands before the rows of a phase: its name as variable row_phase, and `fragments`."""
         return indexed({"row_phase": phase}) + commands(fragments)
 
     def row(self, kind: type[Row]) -> str:
-        """Return the LAMMPS commands of one row: displacement or load, then measurement.
+        """Return the LAMMPS commands of one row of a kind: displacement or load, then measurement.
 
-        The variables are defined before.
+        Without the commands after a measurement. They use the variables of the row, which must be defined before. Where
+        rows are steps of one run, they are those of the whole run.
         """
         return commands(self._row(kind))
 
     def as_read(self, columns: Mapping[str, NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:
-        """Return numbers of load steps, each of one timestep, as LAMMPS reads them from a list: to 15 digits.
+        """Return numbers of load steps as LAMMPS reads them from a list: rounded to 15 digits in units of the deck.
 
-        Columns (m,) by name, before and after in units of the scene.
+        Args:
+            columns: arrays, (m,), by the name of a field of a row, "displacement" for instance; before and after in
+                units of the scene. They are unchanged.
+
+        Raises:
+            KeyError: no field with a unit has this name.
         """
         return {
             name: np.asarray(
@@ -127,11 +137,14 @@ class Deck:
         }
 
     def in_one_run(self, rows: Sequence[Row], skips: Sequence[int] = ()) -> str:
-        """Return the LAMMPS commands of rows that are positions of the plate, all in one run, with their variables.
+        """Return the LAMMPS commands of rows that are positions of the plate, all in one run.
+
+        The variables of the rows are defined before, and deleted after it.
 
         Args:
             rows: all of one kind, one at least.
-            skips: 1 for each row whose state is not written, 0 for the others; by default all are written.
+            skips: 1 for each row whose state is not written, 0 for the others; by default all are written. It has no
+                effect without `[output]`, where no states are kept.
         """
         columns = zip(*(row.texts(self.units.to_deck) for row in rows), strict=True)
         # A column is one word on one line, as LAMMPS has it.
@@ -144,19 +157,26 @@ class Deck:
     def values(self, row: Row, first: bool) -> str:
         """Return LAMMPS text that defines the variables of one row, in units of the deck.
 
+        Where states are kept and rows are no steps of one run, row_append is among them: every state is written.
+
         `first`: whether no state has been written before it.
         """
         texts = (*row.texts(self.units.to_deck), NEW if first else APPENDED)
         return indexed(dict(zip(self._columns(type(row)), texts, strict=False)))
 
     def row_end(self, kind: type[Row]) -> str:
-        """Return the LAMMPS commands of the end of a row's measurement, and those that delete its variables."""
+        """Return the LAMMPS commands after the measurement of a row of a kind, and those that delete its variables.
+
+        Where rows are steps of one run, only the latter.
+        """
         return commands(self._measured) + deleted(self._columns(kind))
 
     def state(self, first: bool) -> str:
-        """Return the LAMMPS commands that write the state of the last row; "" where rows of one run have written it.
+        """Return the LAMMPS commands that write the state of the last row to states.lammpstrj.
 
-        `first`: whether no state has been written before.
+        "" where that is written already: rows are steps of one run, and the scene has `[output]`.
+
+        `first`: whether no state has been written before, so that the file is begun anew.
         """
         if self.stepped and self.keeps:
             return ""
@@ -168,14 +188,19 @@ class Deck:
         """Return in.lammps: the head and a loop for each phase; phases without rows are left out.
 
         Raises:
-            DeckError: if fragments and variables do not fit together, in the head or in a phase.
+            DeckError: fragments and variables do not fit together, in the head or in a phase.
+            SettingsError: the box of an interaction has too many bins for LAMMPS.
         """
         schedule = [phase for phase in phases if phase.rows]
         self._check_schedule(schedule)
         return f"{self.head}\n{self.schedule(schedule)}"
 
     def schedule(self, phases: Sequence[Phase]) -> str:
-        """Return the LAMMPS text of loops over the rows of phases, each of which must have rows."""
+        """Return the LAMMPS text of loops over the rows of phases, with the states that phases write at their ends.
+
+        Each phase must have rows. Of rows that are steps of one run there is one run for each phase. Nothing is
+        checked.
+        """
         blocks, first = list[str](), True
         for phase in phases:
             loop = self._loop(phase, first)
@@ -186,26 +211,34 @@ class Deck:
 
     @property
     def keeps(self) -> bool:
-        """Whether states of the whole loading history are kept."""
+        """Whether states of the whole loading history are kept: the scene has `[output]`."""
         return self.scene.output is not None
 
     @property
     def _output(self) -> tuple[str, ...]:
-        """The names of the fragments of the output, at the end of the head."""
+        """The names of the fragments at the end of the head that set up the output, in order."""
         if not self.stepped:
             return ("output",)
         return (self._named("output_swept"), *[self._named("output_states")] * self.keeps, "set_up")
 
     def _named(self, fragment: str) -> str:
-        """Return the name of a fragment, with "_in_units" where the deck has units of its own."""
+        """Return the name of a fragment, with "_in_units" behind it where the deck has other units than the scene."""
         return f"{fragment}_in_units" if self.units.are_rescaled else fragment
 
     def _columns(self, kind: type[Row]) -> tuple[str, ...]:
-        """Return the names of the LAMMPS variables that each row of a kind has, in order."""
+        """Return the names of the LAMMPS variables that each row of a kind has, in order.
+
+        "row_append" is the last one where states are kept and rows are no steps of one run.
+        """
         return (*kind.columns(), *["row_append"] * (self.keeps and not self.stepped))
 
     def _row(self, kind: type[Row]) -> tuple[str, ...]:
-        """Return the names of the fragments of a row of this kind up to its measurement, in order."""
+        """Return the names of the fragments of a row of this kind, in order: motion, measurement, line of curve, state.
+
+        Without those after the measurement; the state only where states are kept. Where rows are steps of one run:
+        those of the run, before which one names the rows whose states are kept. A hold with adhesion begins with one
+        that restores the contact.
+        """
         step, kept = kind.step, [self._state] * self.keeps
         if kind is Displace and not self.stepped:
             step += "_gently" * self.settings.gentle or "_snapping" * self.settings.snaps
@@ -216,12 +249,15 @@ class Deck:
 
     @property
     def _state(self) -> str:
-        """The name of the fragment that writes a state."""
+        """The name of the fragment that writes a state: of each row with `[output]`, else of the last row of a phase.
+
+        It converts to LU and FU where the deck has other units.
+        """
         return self._named("steps/kept" if self.keeps else "steps/state")
 
     @property
     def _measuring(self) -> tuple[str, ...]:
-        """The names of the fragments before a measurement; () where rows are steps of one run."""
+        """The names of the fragments before a measurement, in order; () where rows are steps of one run."""
         if self.stepped:
             return ()
         measure = "steps/measuring_energy" if self.scene.cantilever else "steps/measuring"
@@ -229,7 +265,7 @@ class Deck:
 
     @property
     def _measured(self) -> tuple[str, ...]:
-        """The names of the fragments after a measurement; () where rows are steps of one run."""
+        """The names of the fragments after a measurement, in order; () where rows are steps of one run."""
         if self.stepped:
             return ()
         return ("steps/measured", *(name for part in self.parts for name in part.step_end))
@@ -237,7 +273,8 @@ class Deck:
     def _loop(self, phase: Phase, first: bool) -> str:
         """Return the LAMMPS text of a phase: its variables and a loop over its rows, or one run of all.
 
-        `first`: whether no state has been written before.
+        There must be one row at least. The state at the end of the phase is not part of it. `first`: whether no state
+        has been written before.
         """
         title = f"# phase {phase.name}: {len(phase.rows)} rows\n{self.begin(phase.name, phase.begin)}"
         if self.stepped:
@@ -256,10 +293,10 @@ class Deck:
         )
 
     def _check(self) -> dict[str, str]:
-        """Return the part or fragment that defines each name of the head.
+        """Return what defines each name of the head: the name of a fragment, or of a part in brackets, "[plate]".
 
         Every variable is defined once, before it is needed, and used; every ID is defined once; there is one
-        `pair_style` at most, and no group has two integrators.
+        `pair_style` and one `atom_style` at most, and no group has two integrators.
 
         Raises:
             DeckError: one of these does not hold.
@@ -289,10 +326,12 @@ class Deck:
         return owners
 
     def _check_schedule(self, phases: Sequence[Phase]) -> None:
-        """Check that names are defined before a fragment of the schedule needs or redefines them.
+        """Check that names are defined before a fragment of the schedule needs or redefines them; nothing is returned.
+
+        `phases`: each with rows.
 
         Raises:
-            DeckError: one is not, or it is defined twice.
+            DeckError: one is not, or a name is defined twice; or the head does not fit together.
         """
         owners = self._check()
         for phase in phases:
@@ -310,15 +349,20 @@ class Deck:
 
 
 def _define(owners: dict[str, str], name: str, owner: str) -> None:
-    """Add the owner of a name to `owners`. Raises DeckError where the name has another owner already."""
+    """Add the owner of a name to `owners`, in place; nothing where it is there already.
+
+    Raises:
+        DeckError: the name has another owner.
+    """
     if owners.setdefault(name, owner) != owner:
         raise DeckError(f"defined twice: {name}, by {owners[name]} and by {owner}")
 
 
 def _add(owners: dict[str, str], piece: Fragment) -> None:
-    """Add the names that a fragment defines to `owners`. Raises DeckError where it needs an undefined name.
+    """Add the names that a fragment defines to `owners`, in place.
 
-    Or where it redefines one, or defines one that has another owner already.
+    Raises:
+        DeckError: it needs or redefines an undefined name, or defines one that has another owner.
     """
     missing = sorted({*piece.needs, *piece.redefines} - owners.keys())
     if missing:

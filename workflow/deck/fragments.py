@@ -41,19 +41,19 @@ class Fragment:
 
     @cached_property
     def commands(self) -> str:
-        """The LAMMPS text without its comments."""
+        """The LAMMPS text without the lines that begin with #; cached."""
         return "".join(line for line in self.text.splitlines(keepends=True) if not line.startswith("#"))
 
 
 @cache
 def fragment(name: str) -> Fragment:
-    """Return the fragment in `lammps_inputs/fragments/<name>.lmp`, whose header is compared with its text.
+    """Return the fragment in `lammps_inputs/fragments/<name>.lmp`, whose header is compared with its text; cached.
 
     For a fragment that a deck has several times: with the name "<name>:2" ARM in the text becomes 2, and BEFORE 1.
 
     Raises:
         FileNotFoundError: there is no such file.
-        DeckError: if a header line is missing, or a variable is used that is neither needed nor defined, or named as
+        DeckError: a header line is missing, or a variable is used that is neither needed nor defined, or named as
             needed and not used.
     """
     file, _, arm = name.partition(":")
@@ -97,7 +97,12 @@ def deleted(names: Iterable[str]) -> str:
 
 
 def block(name: str, variables: Mapping[str, str]) -> str:
-    """Return the text of a fragment, with lines that define `variables` between its header and its commands."""
+    """Return the text of a fragment, with lines that define `variables` between its header and its commands.
+
+    Raises:
+        FileNotFoundError: there is no such fragment.
+        DeckError: its header and its text do not agree.
+    """
     piece = fragment(name)
     header = len(KEYS) + bool(piece.redefines)
     comments = piece.text[: len(piece.text) - len(piece.text.split("\n", header)[header])]
@@ -105,11 +110,16 @@ def block(name: str, variables: Mapping[str, str]) -> str:
 
 
 def commands(names: Sequence[str]) -> str:
-    """Return the commands of fragments of these names, one after the other and without comments; "" for none."""
+    """Return the commands of fragments of these names, one after the other and without comments; "" for none.
+
+    Raises:
+        FileNotFoundError: there is no such fragment.
+        DeckError: the header and the text of one do not agree.
+    """
     return "".join(fragment(name).commands for name in names)
 
 
 def listed(name: str, texts: Sequence[str], per_line: int = 6) -> str:
-    """Return a LAMMPS line `variable NAME index …` with its values as text, `per_line` of them on each of its lines."""
+    """Return LAMMPS text `variable NAME index …` with its values, `per_line` of them on each line, continued by "&"."""
     lines = [" ".join(texts[start : start + per_line]) for start in range(0, len(texts), per_line)]
     return f"variable        {name} index " + " &\n                ".join(lines) + "\n"

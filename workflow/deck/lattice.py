@@ -43,14 +43,15 @@ class Body:
 
 
 def particle_positions(count: int, spacing: float) -> Array:
-    """Return the positions of `count` particles along x, x_i = (i − (N−1)/2)·spacing [LU], shape (count,)."""
+    """Return the positions of N = `count` particles along x, x_i = (i − (N−1)/2)·spacing [LU], i from 0, (count,)."""
     return np.asarray((np.arange(count) - 0.5 * (count - 1)) * spacing, dtype=np.float64)
 
 
 def neighbour_forces(particles: Array, stiffness: float) -> Array:
     """Return the forces r_i [FU], (N, 3), of zero-length neighbour springs on the chain `particles` (N, 3) [LU].
 
-    `stiffness`: k_n of the springs [FU/LU]. Their sum is 0. A periodic chain has no such forces.
+    The chain is open: its two ends are no neighbours. The sum of the forces is 0. `stiffness`: k_n of the springs
+    [FU/LU].
     """
     pull = stiffness * np.diff(particles, axis=0)
     force = np.zeros_like(particles)
@@ -60,7 +61,12 @@ def neighbour_forces(particles: Array, stiffness: float) -> Array:
 
 
 def bodies(scene: Scene, settings: Settings) -> tuple[Body, ...]:
-    """Return the bodies of a scene at displacement 0, (lower, upper); on a rigid plane (upper,) alone."""
+    """Return the bodies of a scene at displacement 0, (lower, upper); on a rigid plane (upper,) alone.
+
+    Each has the positions of its particles, (N, 3) [LU], of the anchors of their springs, which a rigid chain and a
+    body with fixed particles lack, (0, 3), and of far anchors for springs that are stiffer along x or z. The upper apex
+    is at z = settings.forces.rest, the lower body at z = 0. A periodic body is in the box of one period around 0.
+    """
     x = particle_positions(settings.chains.upper, scene.bodies.own_spacing)
     flat = np.zeros_like(x)
     offset = settings.forces.table.plane_offset if settings.forces.table else 0.0
@@ -79,14 +85,14 @@ def bodies(scene: Scene, settings: Settings) -> tuple[Body, ...]:
 
 
 def period(scene: Scene, settings: Settings) -> float:
-    """Return the length of a period of periodic bodies along x [LU], whether or not they are periodic."""
+    """Return the length of the lower chain along x [LU], particles times spacing: the period of periodic bodies."""
     return settings.chains.lower * scene.bodies.spacing
 
 
 def start_offset(scene: Scene, settings: Settings) -> float:
-    """Return the position of the upper body's middle along x [LU]: as given, in a slide half a spacing at most, else 0.
+    """Return the position of the upper body's middle along x [LU]: as given, else 0, in a slide within half a spacing.
 
-    In a slide particles begin between the opposite ones: on top of them the equilibrium is unstable.
+    In a slide particles begin between those of a lower chain: on top of them the equilibrium is unstable.
     """
     bodies = scene.bodies
     if bodies.upper_offset is not None:
@@ -99,7 +105,11 @@ def start_offset(scene: Scene, settings: Settings) -> float:
 
 
 def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body:
-    """Return a body with its anchors, moved so that neighbour springs have no force on the undeformed chain.
+    """Return a body with anchors, moved so that neighbour springs have no force on the undeformed chain.
+
+    Without anchors where particles are fixed in the body. Far anchors are there only where particles may move along x
+    and springs have another stiffness along x than along z. With a plate what moves with it, particles or anchors of
+    the upper body, is shifted out of the plane of motion by small amounts.
 
     `particles`: positions, (N, 3) [LU].
     """
@@ -127,7 +137,10 @@ def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body
 
 
 def _staggered(particles: Array, scene: Scene) -> Array:
-    """Return the shift of a plate's atoms out of the plane, (N, 3) [LU], of alternating sign; 0 without a plate."""
+    """Return the shift of a plate's atoms along y, out of the plane of motion, (N, 3) [LU]; 0 without a plate.
+
+    Its magnitude is 5e-4 of the chain's length, with + for the first atom and alternating sign.
+    """
     shift = np.zeros_like(particles)
     if scene.plate:
         shift[:, 1] = STAGGER_SHARE * len(particles) * scene.bodies.own_spacing * (-1.0) ** np.arange(len(particles))

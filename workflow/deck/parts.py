@@ -25,7 +25,11 @@ CHOSEN_BINS = ("far_bin", "wide_bin")
 
 
 def rigidly_mounted(scene: Scene, settings: Settings) -> list[Contribution]:
-    """Return the parts of a rigid body over a plane that has its springs: moved in single steps, or in time."""
+    """Return the deck parts (fragments, variables) of an upper body with fixed particles over a rigid plane.
+
+    The plane has the springs of the particles. A list of body, plane, and motion in single steps of one run; in a
+    dynamic scene of body, plane, measured force and clock.
+    """
     if not scene.is_stepped:
         clock = Contribution("dynamic", Stage.MOTION, ("clock",), {"time_step": number(settings.motion.time_step)})
         body = Contribution("bodies", Stage.BODIES, ("standing_plate",))
@@ -37,7 +41,10 @@ def rigidly_mounted(scene: Scene, settings: Settings) -> list[Contribution]:
 
 
 def free_to_move(scene: Scene, settings: Settings) -> list[Contribution]:
-    """Return the parts of bodies whose particles are free to move, each on the spring of its bulk."""
+    """Return the deck parts (fragments, variables) of bodies with free particles, each on the spring of its bulk.
+
+    A list of bodies, guide and method, and as the scene has them the rigid plane, the rigid chain and the periodic box.
+    """
     softer = min(settings.forces.bulk_stiffness, scene.tangential_stiffness)
     coefficient = softer if settings.chains.far else settings.forces.bulk_stiffness
     parts = [
@@ -55,10 +62,11 @@ def free_to_move(scene: Scene, settings: Settings) -> list[Contribution]:
 
 
 def bins(scene: Scene, settings: Settings, parts: Sequence[Contribution], most: int = 4_000_000) -> list[Contribution]:
-    """Return the part that enlarges the bins, so that the box has `most` at most; [] where it has no more anyway.
+    """Return the part that enlarges the bins of LAMMPS's neighbour lists, so that the box has `most` at most; or [].
 
-    Without it the edge of a bin is half the reach of the forces, LAMMPS's choice, or what one of the `parts` has set.
-    By default bins take some 100 MB.
+    [] where it has no more anyway: then the edge of a bin is half the reach of the forces, LAMMPS's choice, or what one
+    of the `parts` has set, if that is larger. Else the edge is doubled until it suffices, but to 50 times the shortest
+    edge of the box at most, so that there may be more than `most`. By default bins take some 100 MB.
 
     Raises:
         SettingsError: the box has too many bins for LAMMPS, even of the largest size.
@@ -69,7 +77,7 @@ def bins(scene: Scene, settings: Settings, parts: Sequence[Contribution], most: 
     default = edge = max([*chosen, 0.5 * reach(scene, settings)])
 
     def exceed(bin_edge: float, limit: float) -> bool:
-        """Return whether the box has more bins of this edge [LU] than the limit."""
+        """Return whether the box has more bins of this edge [LU] than the limit, a number of bins."""
         return bool(np.log(np.maximum(edges / bin_edge, 1.0)).sum() > math.log(limit))  # the number may overflow
 
     while exceed(edge, most):
@@ -86,18 +94,28 @@ def bins(scene: Scene, settings: Settings, parts: Sequence[Contribution], most: 
 
 
 def unit_conversion(units: DeckUnits) -> Contribution:
-    """Return the part with the variables that convert the numbers of a deck with rescaled units to LU and FU."""
+    """Return the part with the variables that convert the numbers of a deck with rescaled units to LU and FU.
+
+    They are one deck unit of length [LU] and of force [FU].
+    """
     variables = {"unit_length": number(units.length), "unit_force": number(units.force)}
     return Contribution("units", Stage.MOTION, ("units",), variables)
 
 
 def plane_depth(scene: Scene, settings: Settings) -> float:
-    """Return the depth of the wall's origin below the plane, positive [LU], far below the deepest displacement."""
+    """Return the depth of the wall's origin below the plane, positive [LU]: 1000 times the largest displacement.
+
+    Or 1000 spacings, where these are more.
+    """
     return 1e3 * max(settings.largest_displacement, scene.bodies.spacing)
 
 
 def _plane(fragment: str, scene: Scene, settings: Settings) -> Contribution:
-    """Return the part of a rigid plane: a one-sided wall with its stiffness, by one of its fragments."""
+    """Return the deck part of a rigid plane: a one-sided wall with its stiffness, by the fragment of this name.
+
+    Positions [LU] and stiffnesses [FU/LU] are in units of `scene` and `settings`. The fragment "rigid_plane" has the
+    whole stiffness besides the half.
+    """
     depth = plane_depth(scene, settings)
     variables = {
         "plane_position": number(-depth),
@@ -110,7 +128,7 @@ def _plane(fragment: str, scene: Scene, settings: Settings) -> Contribution:
 
 
 def _method(scene: Scene, settings: Settings) -> Contribution:
-    """Return the part of a relaxation by the minimiser, or of a motion in time."""
+    """Return the deck part of the method: relaxation by the minimiser in a quasi-static scene, else motion in time."""
     if scene.method == "quasistatic":
         variables = {
             "force_tolerance": number(settings.forces.residual),
@@ -128,7 +146,12 @@ def _method(scene: Scene, settings: Settings) -> Contribution:
 
 
 def margins(scene: Scene, settings: Settings) -> tuple[float, float, float]:
-    """Return the free space along x, y and z [LU] between the bodies and the walls of the box, whole numbers."""
+    """Return the free space along x, y and z [LU] on each side between the bodies and the walls of the box.
+
+    These are whole numbers: 20 spacings and the excursion along x, 1 LU along y; along z ten spacings or cutoffs and
+    twice the largest displacement, ten times as much for a free plate with noise or in a slide, and the largest
+    prescribed separation. More where the box would be thin compared with bins or long bonds.
+    """
     spacing = scene.bodies.spacing
     side = 20.0 * spacing + scene.experiment.excursion
     head = 10.0 * max(spacing, settings.forces.cutoff) + 2 * abs(settings.largest_displacement)
@@ -142,5 +165,5 @@ def margins(scene: Scene, settings: Settings) -> tuple[float, float, float]:
 
 
 def reach(scene: Scene, settings: Settings) -> float:
-    """Return the distance [LU] up to which LAMMPS lists neighbours: cutoff and skin."""
+    """Return the distance [LU] up to which LAMMPS lists neighbours: cutoff and half a spacing as skin."""
     return settings.forces.cutoff + skin(scene)

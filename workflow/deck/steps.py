@@ -38,13 +38,13 @@ class Row:
 
     @classmethod
     def columns(cls) -> tuple[str, ...]:
-        """Return the names of the LAMMPS variables, in order: "row_" and the name of each field."""
+        """Return the names of the LAMMPS variables of such a row, in order: "row_" and the name of each field."""
         return tuple(f"row_{field.name}" for field in fields(cls))
 
     def texts(self, to_deck: Callable[[float, str], float]) -> tuple[str, ...]:
-        """Return the values of the fields as LAMMPS text.
+        """Return the values of the fields as LAMMPS text, in order; whole numbers are not converted.
 
-        `to_deck` converts a value with its unit to that of the deck.
+        `to_deck` converts a value with its unit, "LU" for instance, to that of the deck.
         """
         return tuple(
             str(value) if isinstance(value, int) else number(to_deck(value, UNITS[name]))
@@ -193,7 +193,7 @@ class Phase:
 def numbered(name: str, taken: Sequence[str]) -> str:
     """Return the name of a phase: "loading", and where that is taken, "loading_2", "loading_3", …
 
-    `taken`: names of the phases before it.
+    `taken`: names of the phases before it; each that is `name` alone or with a number counts.
     """
     count = 1 + sum(phase.partition("_")[0] == name for phase in taken)
     return name if count == 1 else f"{name}_{count}"
@@ -204,12 +204,12 @@ SWEPT: tuple[type[Row], ...] = (Displace, Cohere, Spend, Draw)
 
 
 def swept(columns: Mapping[str, NDArray[np.float64]]) -> list[Row]:
-    """Return the rows of load steps on a rigid plane with these columns, (m,), by their names: a row for each element.
+    """Return the rows of load steps on a rigid plane with these columns, (m,), by field name: a row for each element.
 
-    The names choose the kind of row.
+    Names and their order choose the kind of row. Numbers are in units of the scene.
 
     Raises:
-        StopIteration: no kind of row has them.
+        StopIteration: no kind of row has these fields.
     """
     variables = tuple(f"row_{name}" for name in columns)
     kind = next(kind for kind in SWEPT if kind.columns() == variables)
@@ -217,7 +217,7 @@ def swept(columns: Mapping[str, NDArray[np.float64]]) -> list[Row]:
 
 
 def displacements(positions: Sequence[float]) -> tuple[Displace, ...]:
-    """Return rows that set the plate to each of the displacements [LU], in order."""
+    """Return rows that set the plate to each of the displacements [LU], compression positive, in order; () for none."""
     return tuple(Displace(float(position)) for position in positions)
 
 
@@ -230,8 +230,13 @@ NONE, NEW, APPENDED = "none", "no", "yes"
 def chosen(rows: Sequence[int], wanted: int | str, marked: Collection[int] = ()) -> list[int]:
     """Return the numbers of the rows to keep, rising: all, or as many as `wanted`, evenly spaced, with the `marked`.
 
-    Marked rows take the place of the nearest others, but not of the first and the last; of too many there are more than
-    `wanted`. All where that is "all", or there are no more.
+    The first and the last are kept. Marked rows that are among `rows` take the place of the nearest others, but not of
+    the first and the last; of too many there are more than `wanted`. All where that is "all", or there are no more.
+
+    Args:
+        rows: numbers of the rows, rising.
+        wanted: number of rows, 2 at least, or "all".
+        marked: numbers of rows that are kept in any case.
     """
     if wanted == "all" or len(rows) <= int(wanted):
         return list(rows)
@@ -246,13 +251,19 @@ def chosen(rows: Sequence[int], wanted: int | str, marked: Collection[int] = ())
 
 
 def marked_rows(phases: Sequence[Phase]) -> list[int]:
-    """Return the numbers, over all phases from 0 on, of the rows whose state a phase writes at its end."""
+    """Return the numbers of the last rows of phases that write a state at their end, rising, from 0 over all phases.
+
+    Phases without rows are left out.
+    """
     ends = np.cumsum([len(phase.rows) for phase in phases]).tolist()
     return [end - 1 for phase, end in zip(phases, ends, strict=True) if phase.state and phase.rows]
 
 
 def keeping(phases: Sequence[Phase], rows: Collection[int]) -> tuple[Phase, ...]:
-    """Return the phases with `kept` set: true for the rows of these numbers over all phases, false for the others."""
+    """Return copies of the phases with `kept` set: true for the rows of these numbers, false for the others.
+
+    Rows are numbered from 0 over all phases.
+    """
     result, first = [], 0
     for phase in phases:
         result.append(replace(phase, kept=tuple(first + i in rows for i in range(len(phase.rows)))))
@@ -263,8 +274,10 @@ def keeping(phases: Sequence[Phase], rows: Collection[int]) -> tuple[Phase, ...]
 def appended(phase: Phase, in_one_run: bool, first: bool) -> list[str]:
     """Return `row_append` of each row of a phase: "none" writes no state, "no" begins the file, "yes" appends to it.
 
-    `first`: whether no frame has been written before it. Of the last row of a phase with a state the phase writes the
-    frame, unless rows are `in_one_run`.
+    Of the last row of a phase with a state it is "none", since the phase writes that state itself, unless rows are
+    `in_one_run`. The others are written where `phase.kept` has them; without it all are.
+
+    `first`: whether no frame has been written before it.
     """
     wanted = _kept(phase)
     if phase.state and not in_one_run:
@@ -277,12 +290,15 @@ def appended(phase: Phase, in_one_run: bool, first: bool) -> list[str]:
 
 
 def skipped(phase: Phase) -> list[int]:
-    """Return 0 for each row of a phase whose state is kept and 1 for the others, where rows are steps of one run."""
+    """Return 0 for each row of a phase whose state is kept and 1 for the others, where rows are steps of one run.
+
+    Kept are the rows of `phase.kept`, without it all, and the last row where the phase writes its state.
+    """
     return [int(not keep) for keep in _kept(phase)]
 
 
 def _kept(phase: Phase) -> list[bool]:
-    """Return whether the state of each row of a phase is kept.
+    """Return whether the state of each row of a phase is kept, by `phase.kept`; without it all are.
 
     Always of the last one where the phase writes its state.
     """
@@ -293,11 +309,13 @@ def _kept(phase: Phase) -> list[bool]:
 
 
 def leave_out(folder: Path, phases: Sequence[Phase], in_one_run: bool) -> None:
-    """Rewrite the file of states in a folder without the unwanted ones; whole or not at all.
+    """Rewrite states.lammpstrj in a folder without the frames of rows that are not kept; whole or not at all.
 
-    The run has written one frame for each row, and one more where a phase has a state.
+    The run has written one frame for each row, and one more where a phase has a state and rows are not `in_one_run`; of
+    the last row of such a phase the latter is kept.
 
     Raises:
+        FileNotFoundError: there is no such file.
         ValueError: the file has another number of frames.
     """
     wanted: list[bool] = []
@@ -312,7 +330,7 @@ def leave_out(folder: Path, phases: Sequence[Phase], in_one_run: bool) -> None:
 
 
 def _frames(path: Path) -> Iterator[bytes]:
-    """Yield the frames of a dump as bytes, with one in memory at a time."""
+    """Yield the frames of a dump as bytes, in order, with one in memory at a time; none of an empty file."""
     lines: list[bytes] = []
     with path.open("rb") as file:
         for line in file:

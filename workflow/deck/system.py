@@ -64,14 +64,18 @@ def assemble(
     driver: bool = False,
     period: float = 0.0,
 ) -> System:
-    """Return the atoms and bonds of the bodies: numbered (particles first, lower body first) and bonded.
+    """Return the atoms and bonds of the bodies, and the box around them.
+
+    Atoms are numbered from 1, particles first, then anchors, far anchors and driver, each of the lower body first.
+    Particles have bonds to their anchors and far anchors, if they have any. Atoms are points (radius 0). The masses are
+    those of atom types 1 to 4, with far anchors or a driver to 6, with a driver to 7.
 
     Args:
-        bodies: what `workflow.deck.lattice.bodies` returns.
+        bodies: (lower, upper), or on a rigid plane (upper,).
         neighbours: whether neighbouring particles are bonded.
         particle_mass: [MU].
         anchor_mass: [MU]; the plate's mass over its number of anchors.
-        margin: free space along x, y and z [LU] between atoms and the walls of the box.
+        margin: free space along x, y and z [LU] between atoms and the walls of the box, on each side.
         driver: whether the plate has a driver, in the middle of the upper anchors.
         period: length of a periodic box along x [LU]; 0 where the box is not periodic.
     """
@@ -99,7 +103,13 @@ def assemble(
 
 
 def _groups(bodies: Sequence[Body], driver: bool) -> dict[int, NDArray[np.float64]]:
-    """Return the positions [LU] of the atoms by their type, (N, 3) each, in the order of their numbers."""
+    """Return the positions [LU] of the atoms by their type, (N, 3) each, in the order of their numbers.
+
+    A body without anchors has an empty group of them, (0, 3). There are no groups of far anchors where the upper body
+    lacks them.
+
+    `driver`: whether the middle of the upper anchors is a further atom, (1, 3).
+    """
     groups = {PARTICLES[body.name]: body.particles for body in bodies}
     groups |= {ANCHORS[body.name]: body.anchors for body in bodies}
     if len(bodies[-1].far_anchors):
@@ -110,17 +120,17 @@ def _groups(bodies: Sequence[Body], driver: bool) -> dict[int, NDArray[np.float6
 
 
 def _nexts(chain: Integers, periodic: bool) -> tuple[Integers, Integers]:
-    """Return (atom numbers of particles, those of the next ones) of a chain.
+    """Return (atom numbers of particles, those of the next ones) of a chain, (n − 1,) each.
 
-    In a periodic one the first follows the last.
+    In a periodic one the first follows the last, (n,) each.
     """
     return (chain, np.roll(chain, -1)) if periodic else (chain[:-1], chain[1:])
 
 
 def write_data(system: System, title: str, path: Path) -> None:
-    """Write a LAMMPS data file for `atom_style bond`, without bonds `atomic`, or `sphere`; whole or not at all.
+    """Write a LAMMPS data file for `atom_style bond`, without bonds `atomic`, or `sphere` where atoms have a radius.
 
-    `title`: its first line.
+    Whole or not at all; a file that is there is replaced. `title`: its first line, behind "# ".
     """
     with whole(path) as part, part.open("w") as file:
         file.write(f"# {title}\n\n{len(system.types)} atoms\n{len(system.masses)} atom types\n")
@@ -150,19 +160,27 @@ def write_data(system: System, title: str, path: Path) -> None:
 
 
 def _bonds(kind: int, first: Integers, second: Integers) -> Integers:
-    """Return rows (type `kind`, first atom, second atom), (n, 3)."""
+    """Return rows (type `kind`, first atom, second atom), (n, 3), one for each pair of atom numbers."""
     return np.column_stack([np.full(len(first), kind), first, second])
 
 
 def _write_rows(file: TextIO, template: str, *columns: NDArray[np.float64] | Integers, at_once: int = 100_000) -> None:
-    """Write rows of numbers, formatted from lists: several times quicker than numpy.savetxt, which uses arrays."""
+    """Write rows of numbers, one for each element of the columns, (n,) each, by a `template` with % and its line break.
+
+    They are formatted from lists, `at_once` rows at a time: several times quicker than numpy.savetxt, which uses
+    arrays.
+    """
     for start in range(0, len(columns[0]), at_once):
         lists = [column[start : start + at_once].tolist() for column in columns]
         file.write("".join(map(template.__mod__, zip(*lists, strict=True))))
 
 
 def write_system(deck: Deck, folder: Path) -> None:
-    """Write the input files of a deck to a folder: system.data, and interaction.table or the law's file if any."""
+    """Write the input files of a deck to a folder, in units of the deck; each whole or not at all.
+
+    These are system.data, with an interaction interaction.table, and the file of constants of each particle that a
+    contact law needs, such as adhesion.cells, where it has any.
+    """
     scene, settings = deck.written
     particle_mass, plate_mass = inertia(scene, settings)
     anchor_mass = plate_mass / settings.chains.upper if scene.plate else particle_mass
@@ -190,7 +208,7 @@ def write_system(deck: Deck, folder: Path) -> None:
 def _write_columns(columns: Mapping[str, NDArray[np.float64]], path: Path) -> None:
     """Write numbers of each particle, (n,) by name, for `variable atomfile`, the columns below each other.
 
-    Whole or not at all.
+    Each is a block with its name as a comment, its length, and lines "atom number, value". Whole or not at all.
     """
     blocks = []
     for name, column in columns.items():

@@ -41,25 +41,35 @@ class DeckUnits:
 
     @property
     def are_rescaled(self) -> bool:
-        """Whether the units differ from those of the scene."""
+        """Whether the units of the deck differ from those of the scene."""
         return (self.length, self.force) != (1.0, 1.0)
 
     def of(self, unit: str) -> float:
-        """Return one deck unit of this kind, "FU·TU/LU" for instance, in units of the scene (a factor)."""
+        """Return the size of one deck unit of this kind, "FU·TU/LU" for instance, in units of the scene (a factor).
+
+        Raises:
+            KeyError: there is no such unit of the model.
+        """
         return _factor(self.length, self.force, unit)
 
     def to_deck(self, value: float, unit: str) -> float:
-        """Return a number of the scene, whose unit there is `unit`, in deck units."""
+        """Return a number of the scene, whose unit there is `unit`, in deck units; unchanged if nothing is rescaled.
+
+        KeyError for an unknown unit where the deck is rescaled.
+        """
         return value / self.of(unit) if self.are_rescaled else value
 
     def from_deck(self, value: Value, unit: str) -> Value:
-        """Return a number of the deck, or an array of such, in the scene's `unit`."""
+        """Return a number of the deck, or an array of such, in the scene's `unit`; unchanged if nothing is rescaled.
+
+        KeyError for an unknown unit where the deck is rescaled.
+        """
         return value * self.of(unit) if self.are_rescaled else value
 
     def scene(self, scene: Scene) -> Scene:
-        """Return the scene with its numbers in deck units, and with the values that follow from a material.
+        """Return a scene with its numbers in deck units, without [material], with the stiffnesses that follow from it.
 
-        The scene itself where the units are its own.
+        The scene itself where the units are its own. Uncertainties (±) are left out.
         """
         if not self.are_rescaled:
             return scene
@@ -72,7 +82,7 @@ class DeckUnits:
         return Scene.model_validate(data)
 
     def settings(self, settings: Settings) -> Settings:
-        """Return the settings in deck units, except for the predictor, which no deck uses.
+        """Return the settings in deck units, except for the contact law, which keeps those of the scene.
 
         The settings themselves where the units are those of the scene.
         """
@@ -85,7 +95,10 @@ class DeckUnits:
         return replace(converted, forces=replace(converted.forces, table=table))
 
     def _converted(self, record: Any) -> Any:
-        """Return a record, and the records in it, with each field whose `metadata` has a unit in deck units."""
+        """Return a copy of a record of settings with each field that has a unit in deck units, also in records in it.
+
+        The unit is `metadata["unit"]` of the field; fields without one remain as they are.
+        """
         changed: dict[str, Any] = {}
         for field in fields(record):
             value = getattr(record, field.name)
@@ -98,7 +111,7 @@ class DeckUnits:
         return replace(record, **changed)
 
     def _law(self, law: DoubleExponential) -> DoubleExponential:
-        """Return an interaction in deck units."""
+        """Return an interaction in deck units; without attraction where it has none."""
         terms = [
             None if term is None else Exponential(self.to_deck(term.amplitude, "FU·LU"), self.to_deck(term.range, "LU"))
             for term in (law.repulsion, law.attraction)
@@ -109,15 +122,22 @@ class DeckUnits:
 
 @cache
 def _factor(length: float, force: float, unit: str) -> float:
-    """Return one deck unit of the kind `unit` in units of the scene.
+    """Return one deck unit of the kind `unit` in units of the scene; cached for the numbers of all load steps.
 
-    Cached, since each number of each load step needs it. `length` and `force`: one deck unit of these [LU], [FU].
+    `length` and `force`: one deck unit of these [LU], [FU].
+
+    Raises:
+        KeyError: there is no such unit of the model.
     """
     return float(length ** SI[unit].length * force ** SI[unit].force)
 
 
 def units_for(scene: Scene) -> DeckUnits:
-    """Return the units of a deck: the scene's own where these suit LAMMPS, else powers of ten for numbers near 1."""
+    """Return the units of a deck: the scene's own where these suit LAMMPS, else powers of ten.
+
+    Length: where the spacing, or with an interaction the range of its repulsion, is not 0.01 to 100 LU. Force: where
+    the stiffness of a particle's bulk spring times that length is not 1e-4 to 1e4 FU.
+    """
     terms = scene.interaction
     shortest = scene.bodies.spacing if terms is None else terms.repulsion.range
     length = force = 1.0

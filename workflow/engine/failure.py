@@ -37,19 +37,22 @@ class EngineError(Contact1dError, RuntimeError):
     exit_code = 3
 
     def __init__(self, message: str, phase: str, step: int, folder: Path, log_tail: str) -> None:
-        """Keep the attributes; all of them are arguments, so that the error can be pickled."""
+        """Store the attributes; all of them are arguments of the exception, so that it can be pickled."""
         super().__init__(message, phase, step, folder, log_tail)
         self.message, self.phase, self.step, self.folder, self.log_tail = message, phase, step, folder, log_tail
 
     def __str__(self) -> str:
-        """Return one sentence: phase, step, cause, and where the files are."""
+        """Return one line: "phase 'name', step n: message (files kept in folder)"."""
         return f"phase {self.phase!r}, step {self.step}: {self.message} (files kept in {self.folder})"
 
 
 def plain_message(raw: str, log: str = "", commands: str = "") -> str:
-    """Return LAMMPS's error text as one sentence, "LAMMPS stopped: …", that quotes the failed command or formula.
+    """Return LAMMPS's error text as "LAMMPS stopped: …, at: command", without location in the source and pointer to the
+    manual.
 
-    Without the quotation where neither text nor log has it.
+    The command or formula is that which the text quotes, else the last line of the log that is one of `commands`;
+    without any the text ends before ", at:". Of a few known errors, as that of lost atoms, the meaning comes first and
+    LAMMPS's words follow in parentheses.
 
     Args:
         raw: the text of LAMMPS, with its prefix, source location and pointer to the manual.

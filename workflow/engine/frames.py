@@ -18,13 +18,13 @@ def last_frames(
 
     Args:
         path: the dump.
-        frames: number of frames from `start` on.
+        frames: number of frames from `start` to the end of the file.
         atoms, columns: number of atoms and columns in a frame; the first column is the id.
         start: where to begin [bytes].
-        part: the frames that are read.
+        part: indices of consecutive frames that are read.
 
     Raises:
-        ValueError: the file has other frames, or the atoms change their order between them.
+        ValueError: the size of the file does not fit these frames, or the atoms change their order within the part.
     """
     size, numbers = path.stat().st_size - start, 8 * atoms * columns
     if size % frames or size < frames * numbers:

@@ -28,7 +28,10 @@ class RanksError(Contact1dError, RuntimeError):
 
 
 def launcher_of(ranks: int) -> list[str]:
-    """Return the launcher's command for this number of ranks: srun on several nodes of Slurm, else mpiexec.
+    """Return the launcher's command, to which a program is appended, as a list of words, for this number of ranks.
+
+    It is srun within a job of several nodes of Slurm, if there is srun, else mpiexec: that of the Python environment,
+    or the first one on the path.
 
     Raises:
         RanksError: mpi4py or a launcher isn't installed.
@@ -47,7 +50,10 @@ def launcher_of(ranks: int) -> list[str]:
 
 
 def on_one_node(environ: Mapping[str, str]) -> bool:
-    """Return whether ranks that are started here share a node: outside of Slurm, or in a step or job of one node."""
+    """Return whether ranks that are started here share a node, by the variables of Slurm in the environment `environ`.
+
+    True outside of Slurm, or in a step or job of one node.
+    """
     return next((environ[key] for key in NODE_COUNTS if key in environ), "1") == "1"
 
 
@@ -63,7 +69,7 @@ class Listener:
         self._socket.settimeout(interval)
 
     def __enter__(self) -> Listener:
-        """Return the socket, which listens already."""
+        """Return this listener, which listens already."""
         return self
 
     def __exit__(self, *error: object) -> None:
@@ -71,9 +77,10 @@ class Listener:
         self._socket.close()
 
     def connection_to(self, process: subprocess.Popen[bytes]) -> Connection:
-        """Return the connection to rank 0; a closed one where the process ended before it connected.
+        """Return the connection to rank 0 of a launcher's process.
 
-        Waits without limit while the process runs.
+        Where the process ended before rank 0 connected, it is one whose other end is closed, so that reading raises
+        EOFError. Waits without limit while the process runs.
         """
         while process.poll() is None:
             try:
@@ -88,9 +95,10 @@ class Listener:
 
 
 def cause_among_ranks(ranks: int, words: str) -> str:
-    """Return why a run of several ranks ended, by the output of ranks and launcher; "" if that is unknown.
+    """Return why a run of several ranks ended, as one clause; "" if that is unknown.
 
-    `words`: that output.
+    The cause is that which a failed rank printed, with its number, or that a rank was killed. `words`: output of ranks
+    and launcher.
     """
     if failure := re.search(r"^failed on rank (\d+): (.*)", words, re.MULTILINE | re.DOTALL):
         text = " ".join(failure[2].partition("\nAbort(")[0].partition("\n====")[0].split())

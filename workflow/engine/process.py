@@ -51,7 +51,8 @@ class OutOfTimeError(WorkerLostError):
 
 
 def worker_environment(environ: Mapping[str, str]) -> dict[str, str]:
-    """Return the environment of a worker: one rank, one thread, no network listener on one node.
+    """Return a new environment for a worker: one thread, without the variables that mpiexec and srun set for their
+    ranks.
 
     Args:
         environ: the environment of the parent, which is not changed. A `UCX_TLS` in it is kept; without one, MPI may
@@ -64,10 +65,12 @@ def worker_environment(environ: Mapping[str, str]) -> dict[str, str]:
 
 
 def receive(connection: Connection) -> Any:
-    """Return the object that `workflow.engine.worker.send` sent, reading each array into its final memory.
+    """Return the object that `workflow.engine.worker.send` sent, reading each array into its final memory; waits for
+    it.
 
     Raises:
         EOFError: the other end is gone.
+        ConnectionError: the connection was lost.
     """
     head, sizes = connection.recv()
     arrays = memoryview(bytearray(sum(sizes)))
@@ -106,7 +109,9 @@ class WorkerProcess:
         self.last_output, self._last_board = "", (0, 0)
 
     def _start(self) -> None:
-        """Start a worker of one rank, which inherits its pipe and its board."""
+        """Start a worker of one rank, which inherits its pipe and the shared memory for the timestep and the steps
+        done.
+        """
         self._connection, worker_end = Pipe()
         with tempfile.TemporaryFile() as file:
             file.truncate(16)
@@ -139,11 +144,14 @@ class WorkerProcess:
 
     @property
     def alive(self) -> bool:
-        """Whether the worker accepts requests."""
+        """Whether the worker accepts requests: its process runs and the connection is open on this side."""
         return not self._connection.closed and self._process.poll() is None
 
     def board(self) -> tuple[int, int]:
-        """Return (timestep, steps of the session), as of the last fifth of a second or of the worker's death."""
+        """Return (timestep, steps of the session), as of the last fifth of a second or of the worker's death.
+
+        Both are 0 before the first session.
+        """
         return self._last_board if self._board_map.closed else (self._board[0], self._board[1])
 
     def ask(
@@ -154,18 +162,18 @@ class WorkerProcess:
         meanwhile: Callable[[], object] | None = None,
         interval: float = 0.2,
     ) -> Any:
-        """Send a request and return the answer; any exception before that kills the worker.
+        """Send a request and return the answer; any exception before that, also of a callback, kills the worker.
 
         Args:
             request: verb and arguments.
             deadline: on the clock `time.monotonic` [s].
-            tick: called every `interval` while waiting.
+            tick: called every `interval` while waiting; not where the answer comes sooner.
             meanwhile: called once, while the worker is busy.
             interval: time between two checks of the deadline [s].
 
         Raises:
             OutOfTimeError: the deadline passed.
-            WorkerLostError: it died.
+            WorkerLostError: it died; the text is the cause.
         """
         try:
             self._connection.send(request)
@@ -212,7 +220,10 @@ class WorkerProcess:
         self._process.kill()
 
     def _release(self) -> None:
-        """Wait for the end of the worker, keep its last output and its board, and release its files and memory."""
+        """Wait for the end of the worker, keep its last output, timestep and steps, and release its files and memory.
+
+        A second call only waits.
+        """
         self._process.wait()
         self._connection.close()
         if not self._board_map.closed:
@@ -224,7 +235,10 @@ class WorkerProcess:
             self._output.close()
 
     def _cause_of_end(self) -> str:
-        """Return why the worker ended, in one clause, and release it; it is killed where it does not end within 5 s."""
+        """Return why the worker ended, in one clause, and release its files and memory.
+
+        It waits for the end, and kills the worker after 5 s.
+        """
         try:
             self._process.wait(5.0)
         except subprocess.TimeoutExpired:
@@ -247,9 +261,9 @@ _lock = threading.Lock()
 
 
 def borrow(ranks: int = 1) -> WorkerProcess:
-    """Return a free worker of this number of ranks: an idle one if it lives, otherwise a new one.
+    """Return a free worker of this number of ranks: the idle one that was used last if it lives, otherwise a new one.
 
-    The caller has it alone until it gives it back.
+    The caller has it alone until it gives it back. Idle ones that died are removed.
 
     Raises:
         RanksError: several ranks, and what they need isn't installed.
@@ -265,7 +279,10 @@ def borrow(ranks: int = 1) -> WorkerProcess:
 
 
 def start_ahead() -> None:
-    """Start the worker of one rank that the next `borrow` returns, so that LAMMPS loads while the caller prepares."""
+    """Start a worker of one rank for the next `borrow`, so that LAMMPS loads while the caller prepares.
+
+    Nothing is started where an idle one lives.
+    """
     give_back(borrow())
 
 
@@ -276,7 +293,7 @@ def give_back(worker: WorkerProcess) -> None:
 
 
 def stop_idle() -> None:
-    """Stop the workers that wait for a session; runs when the interpreter exits."""
+    """Stop all workers that wait for a session, of any number of ranks; also runs when the interpreter exits."""
     with _lock:
         workers, _idle[:] = _idle[:], []
     for worker in workers:
@@ -284,7 +301,7 @@ def stop_idle() -> None:
 
 
 def _forget_idle() -> None:
-    """Forget the idle workers in a forked child, to whose parent they belong, and close their files."""
+    """Remove the idle workers in a forked child and close their files there; they go on, and belong to the parent."""
     global _lock
     _lock = threading.Lock()
     for worker in _idle:

@@ -14,7 +14,10 @@ class Progress(Protocol):
     """A listener to a run."""
 
     def phase(self, name: str, expected_steps: int | None = None, counted: str = "step") -> None:
-        """Begin a phase of `expected_steps` steps, or whatever is `counted`; None where the number is unknown."""
+        """Begin a phase called `name`, of `expected_steps` steps; None where the number is unknown.
+
+        `counted`: singular noun for what is counted in place of steps.
+        """
 
     def advance(self, steps: int) -> None:
         """Note that this number of further steps of the phase is done."""
@@ -23,7 +26,7 @@ class Progress(Protocol):
         """Show one line of text."""
 
     def close(self) -> None:
-        """End; further calls do nothing."""
+        """End the display of the run."""
 
 
 class Silent:
@@ -59,13 +62,18 @@ class Lines:
     _expected: int | None
 
     def phase(self, name: str, expected_steps: int | None = None, counted: str = "step") -> None:
-        """Write the name and the expected number of steps, if known."""
+        """Write one line at once: the name, and the number of steps if known, "name: 100 steps"; `counted` replaces
+        "step".
+        """
         self._name, self._expected, self._done, self._counted = name, expected_steps, 0, counted
         self._start = self._last = time.monotonic()
         self.note(name if expected_steps is None else f"{name}: {expected_steps} {counted}s")
 
     def advance(self, steps: int) -> None:
-        """Count further steps; write count, rate and expected time left if the last line is old enough."""
+        """Count further steps; write a line if the last one is at least `quiet` seconds old.
+
+        It has the count, and the rate and expected time left where the number of steps is known and not exceeded.
+        """
         self._done += steps
         now = time.monotonic()
         if now - self._last < self._quiet:
@@ -80,11 +88,11 @@ class Lines:
         self.note(f"{self._name}: {self._counted} {self._done}{share}")
 
     def note(self, text: str) -> None:
-        """Write the line at once."""
+        """Write the line at once, however new the last one is."""
         print(text, file=self._stream, flush=True)
 
     def close(self) -> None:
-        """Leave the stream open, as it belongs to the caller."""
+        """Do nothing: the stream stays open, as it belongs to the caller, and later calls still write."""
 
 
 class Bar:
@@ -111,6 +119,7 @@ class Bar:
             """The rate of the counted steps, per second."""
 
             def render(self, task: Any) -> Text:
+                """Return the rate as text, "12.3/s"; empty where it is not known yet."""
                 return Text("" if task.speed is None else f"{task.speed:.3g}/s")
 
         columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), Rate(), TimeRemainingColumn())
@@ -118,7 +127,9 @@ class Bar:
         self._task: Any = None
 
     def phase(self, name: str, expected_steps: int | None = None, counted: str = "step") -> None:
-        """Replace the bar by that of the new phase."""
+        """Replace the bar by that of the new phase; without a known number of steps it has no end. `counted` is not
+        used.
+        """
         self._drop()
         self._rich.start()
         self._task = self._rich.add_task(name, total=expected_steps)
@@ -133,7 +144,7 @@ class Bar:
         self._rich.console.print(text, markup=False, highlight=False)
 
     def close(self) -> None:
-        """Remove the bar and give the terminal back."""
+        """Remove the bar and give the terminal back; a later phase would show a bar again."""
         self._drop()
         self._rich.stop()
 
@@ -145,6 +156,6 @@ class Bar:
 
 
 def choose_progress(stream: TextIO | None = None) -> Progress:
-    """Return a bar if the stream is a terminal, otherwise plain lines; None: standard error."""
+    """Return a `Bar` if the stream is a terminal, otherwise `Lines` of plain text; None stands for standard error."""
     stream = stream or sys.stderr
     return Bar(stream) if stream.isatty() else Lines(stream)

@@ -62,7 +62,7 @@ def main(socket: str, board: str) -> None:
 
 
 def _broadcast(world: Any, request: tuple[Any, ...] | None) -> None:
-    """Send a request to all other ranks; None: they are to leave."""
+    """Send a request, (verb, arguments…), to all other ranks; None: they are to leave."""
     for rank in range(1, world.size):
         world.send(request, rank)
 
@@ -70,7 +70,8 @@ def _broadcast(world: Any, request: tuple[Any, ...] | None) -> None:
 def _follow(world: Any, gone: Callable[[], bool]) -> None:
     """Run the requests of rank 0 on another rank, until rank 0 leaves; never return.
 
-    A failure ends the process and is printed. `gone`: whether the launcher has ended.
+    A request that fails, but for "prepare", is printed and ends the process after a second. `gone`: whether the
+    launcher has ended.
     """
     runner = Runner(memoryview(bytearray(16)).cast("q"), world)
     threading.Thread(target=watch, args=(runner, gone), daemon=True).start()

@@ -21,10 +21,10 @@ class RefusalError(Exception):
 
 
 def read_value(lammps: Any, name: str) -> float:
-    """Return an equal-style variable by its name, or a formula, in units of the deck.
+    """Return an equal-style variable by its name, or else the value of a formula, in units of the LAMMPS input.
 
     Raises:
-        RefusalError: it is not finite.
+        RefusalError: it is None or not finite.
         Exception: LAMMPS cannot evaluate it; quotes the name.
     """
     formula = f"v_{name}" if lammps.has_id("variable", name) else name
@@ -40,10 +40,11 @@ def read_value(lammps: Any, name: str) -> float:
 def read_atoms(lammps: Any, names: Sequence[str], world: Any) -> dict[str, Any]:
     """Return copies of per-atom arrays by name, with "id" and "type", a row for each atom, in the order of the ids.
 
-    In units of the deck; {} on ranks other than 0.
+    In units of the LAMMPS input, (n,) or (n, columns); {} on ranks other than 0.
 
     Raises:
-        RefusalError: there are no atoms, no such array, or a number in it is not finite.
+        RefusalError: there are no atoms at all or none on this rank, there is no such array, or a number in it is not
+            finite.
         Exception: LAMMPS cannot compute it; quotes the name.
     """
     if not lammps.get_natoms():
@@ -66,10 +67,12 @@ def read_atoms(lammps: Any, names: Sequence[str], world: Any) -> dict[str, Any]:
 
 
 def require_finite_positions(lammps: Any, world: Any) -> None:
-    """Refuse to go on with a position that is NaN or infinite: LAMMPS itself runs on with it.
+    """Raise an error for a position that is NaN or infinite: LAMMPS itself runs on with it.
+
+    Nothing without atoms. Only rank 0 raises, for the atoms of all ranks.
 
     Raises:
-        RefusalError: a position is not finite.
+        RefusalError: a position is not finite; names the first such atom.
     """
     count, invalid = lammps.extract_setting("nlocal"), None
     if count:
@@ -81,10 +84,12 @@ def require_finite_positions(lammps: Any, world: Any) -> None:
 
 
 def _require_finite(name: str, rows: Any, identity: Any) -> None:
-    """Refuse an array with a number that is NaN or infinite; `identity`: the ids of its atoms, (n,).
+    """Raise an error for an array with a number that is NaN or infinite.
+
+    `rows`: (n,) or (n, columns); `identity`: the ids of its atoms, (n,).
 
     Raises:
-        RefusalError: names the first such atom.
+        RefusalError: names the atom with the least id among these, and how many more there are.
     """
     if not np.isfinite(rows).all():
         bad = np.sort(identity[~np.isfinite(rows.reshape(len(rows), -1)).all(axis=1)])
@@ -93,10 +98,14 @@ def _require_finite(name: str, rows: Any, identity: Any) -> None:
 
 
 def _rows(lammps: Any, name: str, count: int) -> Any:
-    """Return the first `count` rows of the per-atom array `name`, as LAMMPS orders them (a view: copy it).
+    """Return the first `count` rows of the per-atom array `name`, as LAMMPS orders them; columns of "x[2]" count from
+    1.
+
+    They may be a view of LAMMPS's memory, which the caller has to copy. `name`: a property as "x", or "c_", "f_", "v_"
+    with the name of a compute, fix or atom-style variable.
 
     Raises:
-        RefusalError: there is no such array.
+        RefusalError: there is no such array, or it is "mass", which is by type.
         Exception: LAMMPS cannot compute it; quotes the name.
     """
     match = INDEXED.fullmatch(name)
@@ -110,9 +119,14 @@ def _rows(lammps: Any, name: str, count: int) -> Any:
 
 
 def _styled_rows(lammps: Any, kind: str, base: str, column: str | None) -> Any:
-    """Return the per-atom data of compute, fix or variable `base`, one column of it (from 1) if asked, None if unknown.
+    """Return the per-atom data of a compute, fix or variable `base`, (n,) or (n, columns); None if there is none.
 
-    `kind`: c, f or v.
+    Args:
+        lammps: the instance.
+        kind: c, f or v.
+        base: its name.
+        column: number from 1 on, as text, of the one column that is returned; None for all. A variable has only one,
+            and the number is not used.
     """
     category = CATEGORIES[kind]
     if not lammps.has_id(category, base):
@@ -131,6 +145,9 @@ def _variable_rows(lammps: Any, base: str) -> Any:
     """Return an atom-style variable of the atoms of this rank, (n,), a copy.
 
     It is copied at once: `lammps.extract_variable` takes 130 ns for each number of it.
+
+    Raises:
+        Exception: LAMMPS cannot compute it.
     """
     extract = lammps.lib.lammps_extract_variable
     extract.restype = ctypes.POINTER(ctypes.c_double)
@@ -144,5 +161,7 @@ def _variable_rows(lammps: Any, base: str) -> Any:
 
 
 def _quoting(error: Exception, request: str) -> Exception:
-    """Return an error in the form of LAMMPS's other errors, which quote the failed command; to be raised."""
+    """Return an error, to be raised, with the text of `error` and the line "Last input line: `request`", as LAMMPS's
+    own have.
+    """
     return Exception(f"{error}\nLast input line: {request}")

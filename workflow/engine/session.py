@@ -67,7 +67,13 @@ class Session:
     """
 
     def __init__(self, worker: WorkerProcess, folder: Path, time_limit: float, progress: Progress) -> None:
-        """Open a fresh instance in the folder. Use `Engine.session`, which also closes it."""
+        """Open a fresh instance in the folder. Use `Engine.session`, which also closes it.
+
+        `time_limit`: wall time from now on after which LAMMPS is killed [s].
+
+        Raises:
+            EngineError: LAMMPS does not start.
+        """
         self.folder, self.pid, self.phase = folder, worker.pid, "start"
         self.timestep = self.steps = 0
         self.lammps_seconds = self.lammps_cpu_seconds = 0.0
@@ -89,10 +95,11 @@ class Session:
             text: any number of lines; `&` continues one, triple quotes may span several. "": begin the phase only.
             phase: name of what they do, for errors and progress; kept until the next one. None: as before.
             expected_steps: steps of the whole phase, for the progress; None where unknown.
-            meanwhile: called while LAMMPS runs, and takes no further time where LAMMPS takes longer.
+            meanwhile: called once while LAMMPS runs, and takes no further time where LAMMPS takes longer; not for a
+                text "".
 
         Raises:
-            EngineError: LAMMPS failed, ran out of time or left a position that is not finite.
+            EngineError: LAMMPS failed, ran out of time or left a position that is not finite, or the session is over.
         """
         self._enter(phase, expected_steps)
         if text:
@@ -101,10 +108,12 @@ class Session:
     def run_file(self, name: str, phase: str | None = None, expected_steps: int | None = None) -> None:
         """Run the LAMMPS file `name` of the folder, in which `label`, `next` and `jump SELF` work.
 
-        `phase` and `expected_steps` as those of `execute`.
+        `phase`: name of what it does, for errors and progress, None: as before; `expected_steps`: steps of the whole
+        phase, for the progress, None where unknown.
 
         Raises:
-            EngineError: LAMMPS failed, ran out of time or left a position that is not finite; the file cannot be read.
+            EngineError: LAMMPS failed, ran out of time or left a position that is not finite; the file cannot be read;
+                the session is over.
         """
         self._enter(phase, expected_steps)
         path = self.folder / name
@@ -112,32 +121,36 @@ class Session:
         self._ask("measure", "", name, (), ())
 
     def value(self, name: str) -> float:
-        """Return one number in units of the deck: an equal-style variable by its name, or a LAMMPS formula.
+        """Return one number in units of the LAMMPS input: an equal-style variable by its name, or a LAMMPS formula.
 
         A formula is "f_hold[3]" or "pe", for instance.
 
         Raises:
-            EngineError: it is unknown or not finite.
+            EngineError: it is unknown or not finite, or the session is over.
         """
         return self.measure("", (name,)).values[0]
 
     def values(self, *names: str) -> tuple[float, ...]:
-        """Return several numbers (n,), in units of the deck, in one round trip: each as `value` returns it.
+        """Return several numbers, in the order of `names`, in units of the LAMMPS input, in one round trip.
+
+        A name is that of an equal-style variable, or a LAMMPS formula.
 
         Raises:
-            EngineError: one is unknown or not finite.
+            EngineError: one is unknown or not finite, or the session is over.
         """
         return self.measure("", names).values
 
     def atoms(self, *names: str) -> dict[str, Array]:
-        """Return copies of per-atom arrays by name, rows in the order of the ids; "id" and "type" are always there.
+        """Return copies of per-atom arrays by name, (n,) or (n, columns), rows in the order of the ids.
+
+        They are in units of the LAMMPS input; "id" and "type" are always among them.
 
         Args:
             names: properties ("x", "v", "f", "molecule"), computes ("c_opposite", "c_opposite[1]"), fixes ("f_…") and
                 atom-style variables ("v_…").
 
         Raises:
-            EngineError: there are no atoms, no such array, or a number in it is not finite.
+            EngineError: there are no atoms, no such array, or a number in it is not finite; the session is over.
         """
         return self.measure("", (), ("id", *names)).atoms
 
@@ -152,12 +165,14 @@ class Session:
 
         Args:
             text: LAMMPS commands; "" for none.
-            values: names of numbers, as `value` takes them.
-            atoms: names of per-atom arrays, as `atoms` takes them; without any, the reading has none.
-            meanwhile: called while LAMMPS runs, and takes no further time where LAMMPS takes longer.
+            values: names of equal-style variables, or LAMMPS formulas.
+            atoms: names of per-atom arrays, "x" or "c_opposite[1]" for instance; "id" and "type" come with any, and
+                without any the reading has none.
+            meanwhile: called once while LAMMPS runs, and takes no further time where LAMMPS takes longer.
 
         Raises:
-            EngineError: LAMMPS failed or ran out of time, or a number that was requested is unknown or not finite.
+            EngineError: LAMMPS failed, ran out of time or left a position that is not finite; a number or array that
+                was requested is unknown or not finite; the session is over.
         """
         self._commands = text
         numbers, arrays = self._ask("measure", text, "", tuple(values), tuple(atoms), meanwhile=meanwhile)
@@ -170,27 +185,38 @@ class Session:
         atoms: Sequence[str] = (),
         meanwhile: Callable[[], object] | None = None,
     ) -> list[Reading]:
-        """Return several points of a curve in one round trip: a reading after each text of LAMMPS commands.
+        """Return several points of a curve in one round trip: a reading after each text of LAMMPS commands, in this
+        order.
 
-        `values`, `atoms`: names of numbers and per-atom arrays, the same after each; `meanwhile` is called while LAMMPS
-        runs.
+        `values`, `atoms`: names of numbers and per-atom arrays, the same after each; `meanwhile` is called once while
+        LAMMPS runs.
 
         Raises:
-            EngineError: LAMMPS failed or ran out of time, or a number that was requested is unknown or not finite.
+            EngineError: LAMMPS failed, ran out of time or left a position that is not finite; a number or array that
+                was requested is unknown or not finite; the session is over. No reading is returned then.
         """
         self._commands = "".join(texts)
         answers = self._ask("measure_rows", tuple(texts), tuple(values), tuple(atoms), meanwhile=meanwhile)
         return [Reading(tuple(numbers), arrays) for numbers, arrays in answers]
 
     def about(self, styles: Sequence[tuple[str, str]] = ()) -> Installation:
-        """Return version and packages of LAMMPS, and which of the styles, pairs such as ("fix", "rigid"), it lacks."""
+        """Return version, packages and MPI library of LAMMPS, and which of the `styles` it lacks.
+
+        `styles`: pairs of category and name such as ("fix", "rigid"); by default none are checked.
+
+        Raises:
+            EngineError: LAMMPS failed, or the session is over.
+        """
         facts = self._ask("about", tuple(styles))
         return Installation(facts["version"], tuple(facts["packages"]), facts["mpi"], tuple(facts["missing"]))
 
     def close(self) -> None:
-        """Close the instance and keep the process for the next session.
+        """Close the instance and keep the process for the next session; nothing where the session failed or was closed.
 
-        Nothing where the session failed or was closed.
+        It may take 5 s past the time limit.
+
+        Raises:
+            EngineError: LAMMPS failed while it closed.
         """
         if not self._end_reason:
             self._deadline = max(self._deadline, time.monotonic() + 5.0)  # to close past the time limit, if need be
@@ -199,13 +225,18 @@ class Session:
             give_back(self._worker)
 
     def _enter(self, phase: str | None, expected_steps: int | None) -> None:
-        """Begin a phase of this name, and report it as progress; None: the phase goes on."""
+        """Begin a phase of this name, and report it as progress.
+
+        Nothing for None, and for the name of the phase that goes on without a number of `expected_steps`.
+        """
         if phase is not None and (phase != self.phase or expected_steps is not None):
             self.phase = phase
             self._progress.phase(phase, expected_steps)
 
     def _ask(self, *request: Any, meanwhile: Callable[[], object] | None = None) -> Any:
-        """Send a request to the worker and return its answer; any failure ends the session.
+        """Send a request to the worker and return its answer; any failure ends the session and kills the worker.
+
+        An exception that is raised meanwhile, KeyboardInterrupt for instance, passes on and does the same.
 
         Raises:
             EngineError: LAMMPS failed, the worker died, the time limit passed, or the session is over.
@@ -229,26 +260,33 @@ class Session:
         raise self._failure(plain_message(payload, self._log(), self._commands) if outcome == "lammps" else payload)
 
     def _tick(self) -> None:
-        """Report the steps done so far as progress, while LAMMPS runs."""
+        """Report the steps of the session so far as progress, from the memory that the worker shares, while LAMMPS
+        runs.
+        """
         self._advance(self._worker.board()[1])
 
     def _advance(self, steps: int) -> None:
-        """Report the steps of the session that are not yet reported as progress."""
+        """Report those of `steps`, the steps of the session so far, that are not yet reported as progress; nothing
+        without any.
+        """
         if steps > self._reported_steps:
             self._progress.advance(steps - self._reported_steps)
             self._reported_steps = steps
 
     def _failure(self, message: str, log_lines: int = 25) -> EngineError:
-        """End the session for a reason, and return the error to be raised, with the last `log_lines` of the log."""
+        """End the session for the reason `message`, and return the error to be raised.
+
+        It has the last `log_lines` lines of the log and the last output of the worker.
+        """
         self._end_reason = message
         lines = self._log().splitlines()[-log_lines:] + self._worker.last_output.splitlines()
         tail = "\n".join(lines)
         return EngineError(message, self.phase, self.timestep, self.folder, tail)
 
     def _log(self, longest: int = 1_000_000) -> str:
-        """Return the end of LAMMPS's log, at most `longest` bytes.
+        """Return the end of LAMMPS's log as text, at most `longest` bytes of it.
 
-        "" before the first phase, whose log is an older run's.
+        "" where there is no log, and before the first phase, when the log may be that of an older run.
         """
         log = self.folder / LOG
         if self.phase == "start" or not log.is_file():  # before the start a log is an older run's
@@ -266,7 +304,9 @@ class Engine:
     def session(
         folder: Path, time_limit: float = 3600.0, progress: Progress | None = None, ranks: int = 1
     ) -> Iterator[Session]:
-        """Open a LAMMPS instance in a run folder for the length of a `with` block.
+        """Open a LAMMPS instance in a run folder for the length of a `with` block, which gets the session.
+
+        It is closed at the end, and its process kept for later sessions.
 
         Args:
             folder: an existing folder; LAMMPS writes `log.lammps` there.

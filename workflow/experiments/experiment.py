@@ -45,12 +45,12 @@ class Experiment(ABC, Generic[K]):
     branches: ClassVar[Mapping[str, str]] = {}
 
     def given(self, scene: Scene) -> K:
-        """Return the experiment's table in a scene."""
+        """Return `scene.experiment`, the experiment's table, as it is: its type is not checked."""
         return cast("K", scene.experiment)
 
     @abstractmethod
     def run(self, context: RunContext) -> Outcome:
-        """Run the experiment in a context and return its outcome.
+        """Run the experiment in LAMMPS, in the folder of the context; return its outcome: results, states, schedule.
 
         Raises:
             UntrustedError: the result can't be trusted.
@@ -59,14 +59,25 @@ class Experiment(ABC, Generic[K]):
 
     @abstractmethod
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """Return the schedule of a deck that is written and not run: of a path exact, of a search the expected one."""
+        """Return the schedule of a deck that is written and not run: phases of load steps, in order.
+
+        It is exact of prescribed load steps, as of a path; of a search it is that of the reduced model, in time an
+        expected one.
+        """
 
     def reduction(self, scene: Scene, settings: Settings) -> Reduction | None:
-        """Return the experiment on the reduced model of a scene; None where it has no states at rest."""
+        """Return the experiment on the reduced model of a scene, which predicts its results without LAMMPS.
+
+        Here None, as of a slide, which has no states at rest; all other experiments return a `Reduction`.
+        """
         return None
 
     def advice(self, scene: Scene) -> str:
-        """Return which keys of the scene reduce the uncertainty of a result, as a sentence without a full stop."""
+        """Return which keys of the scene reduce the uncertainty of a result, as a sentence without a full stop.
+
+        Here another method for a dynamic scene, a smaller spacing without [interaction], else "auto" for cutoff and
+        particles; a subclass may give other advice.
+        """
         if scene.method == "dynamic":
             return 'Use method = "quasistatic"'
         if not scene.interaction:
@@ -74,7 +85,11 @@ class Experiment(ABC, Generic[K]):
         return f'Use "auto" for interaction.cutoff and bodies.particles; for a radius also {finer_spacing(scene)}'
 
     def branch(self, phase: str) -> str:
-        """Return the branch name of a phase in curve.csv: by `branches`, else that of the phase, without its number."""
+        """Return the name of the branch in curve.csv to which a phase belongs.
+
+        The number of the phase is left out, "loading" of "loading_2", and `branches` may give another name, "unloading"
+        of "pulling".
+        """
         name = phase.partition("_")[0]
         return self.branches.get(name, name)
 
@@ -83,13 +98,19 @@ class Scripted(Experiment[K]):
     """A script over a branch, and a reader of the resulting trace."""
 
     def is_sampled(self, scene: Scene) -> bool:
-        """Whether the load steps are known beforehand, so that results have a sampling error; here False."""
+        """Return whether the load steps are known beforehand, so that results have a sampling error.
+
+        Here False; True of a history, an impact, and a pull-off at a velocity.
+        """
         return False
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """Return the phases of the script on the reduced model; on a rigid plane these are the load steps that run.
+        """Return the phases of load steps of the script on the reduced model, on a rigid plane the ones that run.
 
-        Of a motion in time, the phases that `expected` gives.
+        For method "dynamic" they are those of `expected`, a motion as far as it is known before the run.
+
+        Raises:
+            NotImplementedError: method "dynamic", of an experiment that has no motion.
         """
         if scene.method == "dynamic":
             return self.expected(scene, settings)
@@ -97,31 +118,45 @@ class Scripted(Experiment[K]):
         return Plan.of(Deck(scene, settings), case.driven(case.model)).phases
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """Return the phases of a motion, as far as they are known before the run.
+        """Return the phases of load steps of a motion in time, as far as they are known before the run.
 
-        Raises:
-            NotImplementedError: an experiment has no motion.
+        Here it raises NotImplementedError; load, pull-off, hold and impact have such phases.
         """
         raise NotImplementedError
 
     @abstractmethod
     def script(self, branch: Driver, scene: Scene) -> None:
-        """Load and unload the contact of a driver; each turn of the loading begins a leg of the trace."""
+        """Load and unload the contact of a driver, LAMMPS or the reduced model, to which states are added.
+
+        Each turn of the loading begins a leg of the trace. States to be reported are marked by a name.
+        """
 
     @abstractmethod
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """Return the results of a trace by name, in units of the scene, with the errors that the reader determines."""
+        """Return the results of a trace by name, in units of the scene, with the errors that the reader determines.
+
+        Other errors are found by perturbing the trace. A result that the states do not give is left out.
+        """
 
     def tables(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Mapping[str, tuple[float, ...]]]:
-        """Return the columns (m,) of further files, by the names of the files and of the columns; here {}."""
+        """Return the columns (m,) of further files, by the names of the files and of the columns.
+
+        Here {}; a pull-off with several cycles has one file.
+        """
         return {}
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """Return the outcome with the warnings and columns of the experiment, or refuse it; here unchanged."""
+        """Return the outcome with the warnings and columns of the experiment; here unchanged.
+
+        A pull-off refuses results that contradict its states (UntrustedError).
+        """
         return outcome
 
     def run(self, context: RunContext) -> Outcome:
         """Run the script on LAMMPS and return the results with their error budget, states, warnings and checks.
+
+        A motion in time is run once or twice more, in longer timesteps and with more mass, for the error that is due to
+        these.
 
         Raises:
             UntrustedError: the result can't be trusted.
@@ -149,20 +184,23 @@ class Scripted(Experiment[K]):
         return self.finish(outcome, scene, settings)
 
     def asked(self, trace: Trace, scene: Scene) -> Sequence[tuple[float, float]]:
-        """Return pairs (force that the scene prescribes, force of its state) [FU]; here none."""
+        """Return pairs (force that the scene prescribes, force of its state) [FU], compression positive.
+
+        Here none, (); a load, a pull-off and a history of forces have some.
+        """
         return ()
 
     def energy(self, case: Reduction, states: Sequence[State], results: Mapping[str, Result]) -> dict[str, Agreement]:
-        """Return the check of the energy of a motion, by name.
+        """Return {"energy": `Agreement`}, the check of the energy of a free motion; here {}, all but an impact.
 
-        Here {}, since drivers on a plane check their load steps.
+        Load steps on a rigid plane have their check of energy without this.
         """
         return {}
 
     def _driven(self, context: RunContext, case: Reduction) -> tuple[ContactBranch, Trace]:
-        """Run the script on a new contact.
+        """Run the script on a new contact in LAMMPS, which is closed at the end; return its driver and its trace.
 
-        Return its driver and its trace. `case`: the reduction, whose lattices are prepared.
+        `case`: the reduction of the same scene, whose other lattices are prepared while LAMMPS starts.
         """
         scene = context.deck.scene
         with driver_of(context, lambda: case.lattice) as branch:
@@ -173,7 +211,8 @@ class Scripted(Experiment[K]):
     def _slower(self, context: RunContext, case: Reduction, trace: Trace) -> dict[str, list[Trace]]:
         """Return {"time": traces of repetitions of a motion}; {} where states are no motion in time.
 
-        They are in longer timesteps, and slower where the program chose inertia or drag.
+        The first is in longer timesteps; the second, with larger masses and drags, is there only where the program
+        chose some of these. Each is run in LAMMPS in a temporary folder.
         """
         if context.deck.scene.method != "dynamic" or not trace.time.any():
             return {}
@@ -185,15 +224,19 @@ class Scripted(Experiment[K]):
 
     @lru_cache(maxsize=1)  # noqa: B019  # what chose the spacing has worked out the lattices of the run
     def reduction(self, scene: Scene, settings: Settings) -> Reduction:
-        """Return script and reader on the reduced model of a scene; the latest one is cached."""
+        """Return the experiment on the reduced model of a scene: script, reader and settings; nothing is computed yet.
+
+        Only the latest one, of all experiments, is cached.
+        """
         script, read = partial(self.script, scene=scene), partial(self.read, scene=scene, settings=settings)
         return Reduction(scene, settings, script, read, self.reduction)
 
 
 def finer_spacing(scene: Scene, size: str = "") -> str:
-    """Return the advice to use a smaller spacing, with the keys of a scene that go with it, as part of a sentence.
+    """Return "a smaller bodies.spacing" and the keys of a scene that must change in proportion, as part of a sentence.
 
-    `size`: text on how small, after "spacing".
+    These are a given `bodies.bulk_stiffness` and the amplitudes of [interaction], where the scene has them. `size`:
+    text on how small, after "spacing".
     """
     keys = ["bodies.bulk_stiffness"] * (scene.bodies.bulk_stiffness != "auto")
     keys += ["the amplitudes of [interaction]"] * (scene.interaction is not None)
@@ -201,9 +244,12 @@ def finer_spacing(scene: Scene, size: str = "") -> str:
 
 
 def driver_of(context: RunContext, meanwhile: Callable[[], object]) -> Branch | LoadBranch | PlannedBranch:
-    """Return a new driver: load control in time, planned on a rigid plane with a known law, else a search.
+    """Return a new driver of a contact in LAMMPS, to be opened by `with`.
 
-    A search repeats the schedule where pairs snap. `meanwhile` is called while LAMMPS starts.
+    Under a prescribed force in time it is load control; on a rigid plane without relaxation, with effects that the
+    reduced model has or a prescribed history, the load steps are planned; else displacements are prescribed, and those
+    of a force or of the force maximum are searched for, with a repeated schedule where pairs snap. `meanwhile` is
+    called while LAMMPS starts.
     """
     scene = context.deck.scene
     if scene.method == "dynamic" and scene.experiment.compression is not None:
@@ -222,20 +268,21 @@ def in_smaller_steps(
     lets the minimiser put one beyond. Where pairs snap together a minimiser moves particles by more than their distance
     whatever the increment: a relaxation then goes downhill in short moves. In time it is a load applied at once that
     drives a plate past its equilibrium, and the energy of a snap that drives a particle through its opposite: loads
-    then come in such parts, with drag.
+    then come in such parts, with drag. The function changes the deck of its context to that of the smaller steps.
 
     Args:
-        run: the experiment; the deck of its context is then the one with the smaller steps, as in.lammps needs it.
+        run: the experiment.
         shares: the smaller increments over those of the settings, in the order in which they are tried.
 
     Raises:
-        ThroughError: they do so in the smallest steps, too, so that the load is the cause and not the path.
+        ThroughError: by the returned function: they do so in the smallest steps, too; at once with noise, in a slide,
+            or where the context allows no retries.
     """
 
     def tried(context: RunContext) -> Outcome:
-        """Run the experiment, once more over the full range where the force has a second maximum.
+        """Run the experiment and return its outcome; where the tension has a second maximum, run it again.
 
-        Return its outcome.
+        The second run is over the full range of the tension, for which `context.through` is set to True.
         """
         try:
             return run(context)
@@ -247,9 +294,10 @@ def in_smaller_steps(
     def searched(context: RunContext) -> Outcome:
         """Run the experiment, in ever smaller steps until no body passes through the other, and return its outcome.
 
+        `context.deck` is then that with the smaller steps; it is the first one again where this fails.
+
         Raises:
-            ThroughError: they do so in the smallest steps, too; at once with noise, in a slide, or where retries are
-                off.
+            ThroughError: in the smallest steps, too; at once with noise, in a slide, or where retries are off.
         """
         deck = context.deck
         try:

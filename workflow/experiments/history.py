@@ -37,17 +37,23 @@ class HistoryExperiment(Scripted[History]):
         return True
 
     def script(self, branch: Driver, scene: Scene) -> None:
-        """Follow the load steps of all legs from the first point of the history on; the end of each leg is marked."""
+        """Follow the load steps of all legs, from the first point of the history on.
+
+        There are further ones on both sides of displacements at which the force jumps. The last state of a phase is
+        marked "after_" and its name, that of the last phase "final".
+        """
         branch.follow(branch.model.refined(_load_steps(scene)))
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
         """Return the results of the last state, the peaks, and those of a whole contact, by name.
 
-        "peak_force", "force" [FU], "peak_displacement", "displacement" [LU]; in contact at the end "contact_radius"
-        [LU] and "mean_pressure" [FU/LU²]; where the last load step separates the bodies "contact_radius" 0, uncertain
-        by that before; after a hold the "relaxation" of the free variable since its start, positive [LU] or [FU];
-        separated at the end "contact_time" [TU], from apart on "dissipated_energy" [FU·LU]; where an unloading begins
-        and the force does not jump "unloading_stiffness" and "creep_corrected_stiffness" [FU/LU].
+        Always "peak_force", "force" [FU] and "peak_displacement", "displacement" [LU]. In contact at the end
+        "contact_radius" [LU] and "mean_pressure" [FU/LU²]; where the last load step separates the bodies
+        "contact_radius" 0, uncertain by that before. Where the history ends with a hold "relaxation", by how much
+        displacement [LU] or force [FU], whichever is not prescribed, has changed since its start, ≥ 0. Separated at the
+        end, after a contact, "contact_time" [TU], and "dissipated_energy" [FU·LU] if they were apart at the beginning,
+        too. Where an unloading begins, three states on each side, "unloading_stiffness" and "creep_corrected_stiffness"
+        [FU/LU], but not of dashpots, whose force jumps there.
         """
         by_force, last = self.given(scene).force is not None, len(trace) - 1
         d, force = trace.displacement, trace.force
@@ -77,9 +83,9 @@ class HistoryExperiment(Scripted[History]):
         return results if law_of(scene).jumps(scene) else results | _slopes(trace)
 
     def asked(self, trace: Trace, scene: Scene) -> Sequence[tuple[float, float]]:
-        """Return pairs (prescribed force, force of the state) [FU], one for each load step.
+        """Return pairs (prescribed force, force of the state) [FU], compression positive, one for each state.
 
-        () of given displacements.
+        There are none, (), where the history prescribes displacements.
         """
         given = self.given(scene)
         if not given.force:
@@ -88,7 +94,11 @@ class HistoryExperiment(Scripted[History]):
         return list(zip(wanted.tolist(), trace.force.tolist(), strict=True))
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """Add the time of each state [TU], and warnings "no_energy", "no_slope" of results that it does not give."""
+        """Return the outcome with the time of each state [TU] as its one column, and warnings of results that it lacks.
+
+        "no_energy": there is no contact time, or no dissipated energy; "no_slope": there are no stiffnesses, since the
+        force of dashpots jumps where an unloading begins.
+        """
         missing, words = {"contact_time", "dissipated_energy"} - outcome.results.keys(), ""
         if len(missing) > 1:
             words = "the bodies touch at the end, or never, so there is neither a contact_time nor a dissipated_energy"
@@ -106,15 +116,17 @@ class HistoryExperiment(Scripted[History]):
         return replace(outcome, warnings={**outcome.warnings, **warnings}, columns={"time": times})
 
     def advice(self, scene: Scene) -> str:
-        """Return the advice to refine load steps and lattice, a sentence without a full stop."""
+        """Return the advice to use more load steps, or a smaller spacing, as a sentence without a full stop."""
         return f"Use more experiment.steps, or {finer_spacing(scene)}"
 
 
 def _load_steps(scene: Scene) -> LoadHistory:
     """Return the load steps of the legs, over times [TU] displacements [LU] or forces [FU], the first state included.
 
-    They are dense behind each corner where the body relaxes. Phases are "loading", "unloading" and "holding", numbered
-    where repeated; the end of each is marked "after_" and its name, that of the last "final".
+    Each leg has `experiment.steps` of them, or by default as many as the tolerance requires; by default they are dense
+    behind each corner where the body relaxes. Phases are "loading", "unloading" and "holding", numbered where repeated;
+    the end of each is marked "after_" and its name, that of the last "final". Two legs in the same direction are one
+    phase.
     """
     given = scene.experiment
     assert isinstance(given, History)
@@ -139,9 +151,9 @@ def _load_steps(scene: Scene) -> LoadHistory:
 
 
 def _numbered(names: list[str]) -> tuple[str, ...]:
-    """Return the names of phases of load steps, one for each: a name that comes again after another gets a number.
+    """Return the names of phases, one for each load step, with a number where a name comes again after another one.
 
-    "loading", "unloading", "loading_2".
+    "loading", "unloading", "loading_2"; load steps in succession with the same name keep one number.
     """
     counts: dict[str, int] = {}
     numbered: list[str] = []
@@ -152,9 +164,10 @@ def _numbered(names: list[str]) -> tuple[str, ...]:
 
 
 def _peak_error(trace: Trace) -> float:
-    """Return how far [LU] the peak of a parabola within a phase lies above the largest displacement of all states.
+    """Return by how much [LU] ≥ 0 the largest displacement may be missed between states.
 
-    0 where this is the first or the last one, or at a corner between phases.
+    It is how far the peak of a parabola through the state of the largest displacement and its neighbours lies above it;
+    0 where that state is the first or the last one, or at a corner between phases.
     """
     d, top = trace.displacement, int(trace.displacement.argmax())
     if len(set(trace.phase[max(top - 1, 0) : top + 2])) > 1 or not 0 < top < len(trace) - 1:
@@ -167,8 +180,8 @@ def _slopes(trace: Trace) -> dict[str, Reading]:
 
     The latter, the elastic stiffness, is the ratio of the jumps of the rates, [Ḟ]/[ḋ], under a held force 1/(1/S +
     ḋ/|Ḟ|): G. Feng, A. H. W. Ngan, J. Mater. Res. 17 (2002) 660. By Oliver and Pharr it is 2 E* a. {} without an
-    unloading, or with fewer than three states on either side of its start; without the one whose change of displacement
-    is 0.
+    unloading, or with fewer than three states on either side of its start, the last one before it on both; the first is
+    left out where the displacement does not change after the corner, the second where its rate does not jump.
     """
     count = 3  # states on each side of the corner, for a parabola whose slope is the rate there
     falls = [name.startswith("unloading") for name in trace.phase]
@@ -200,9 +213,14 @@ def _rate(value: float, error: float = 1e-4) -> Reading:
 def _forces_with_edges(trace: Trace, corner: int, states: Sequence[int]) -> list[float]:
     """Return the forces [FU] of states, one for each, with the part of the contact that whole particles miss.
 
-    A sum over particles misses E* g′(a) y² at the edge, y the distance from the last cell to the edge. Behind the
-    corner (the number of a state) the edge moves with the displacement, y dy/dd = y/g′(a). At the end of a body, and
-    for laws in which a particle may touch in part, nothing is missed.
+    A sum over particles misses E* g′(a) y² at the edge, y the distance from the last cell to the edge. After the corner
+    the edge moves with the displacement, y dy/dd = y/g′(a). Unchanged are the forces of a contact that reaches the end
+    of its body, and of laws in which a particle may touch in part.
+
+    Args:
+        trace: with the states.
+        corner: number of the state at which the unloading begins.
+        states: numbers of the states.
     """
     law, force = trace.model.law, [float(trace.force[i]) for i in states]
     radius, modulus = trace.radius(corner) or 0.0, law.stiffness / law.spacing
@@ -229,14 +247,17 @@ def _work(d: NDArray[np.float64], force: NDArray[np.float64]) -> float:
 
 
 def touches(trace: Trace, round_off: float = 1e-9) -> NDArray[np.bool_]:
-    """Return in which states the bodies touch, (m,): |F| exceeds the share `round_off` of the largest |F|."""
+    """Return in which states the bodies touch, (m,): |F| exceeds the share `round_off` of the largest |F|.
+
+    False in all states where no state has a force.
+    """
     return np.abs(trace.force) > round_off * float(np.abs(trace.force).max())
 
 
 def _first_contact(trace: Trace, by_force: bool) -> float:
     """Return the time of the first contact [TU]: at d = 0, or where forces are given at the last state without one.
 
-    The time of the first state where the history begins in contact.
+    d = 0 is interpolated between two states. It is the time of the first state where the history begins in contact.
     """
     first = int(np.argmax(touches(trace)))
     apart = np.flatnonzero(trace.force[:first] <= 0.0 if by_force else trace.displacement[: first + 1] <= 0.0)
@@ -251,9 +272,10 @@ def _first_contact(trace: Trace, by_force: bool) -> float:
 def contact_time(trace: Trace, touched: float = 0.0) -> Reading:
     """Return the time [TU] from first contact (at `touched` [TU]) to the final separation, with its sampling error.
 
-    The bodies separate at the displacement of the model's separation, or as the pressure on the axis falls to 0, which
-    is extrapolated by two load steps at most; a tension ends somewhere in its load step. The trace needs a state in
-    contact and one after the last of them.
+    The bodies separate at the displacement of the model's separation where there is one. Else, with prescribed forces,
+    at the first state without contact; under a tension halfway to that state; at a corner of the history at the last
+    state in contact; otherwise as the pressure on the axis falls to 0, which is extrapolated by two load steps at most.
+    The trace needs a state in contact and one after the last of them.
     """
     last, parted, d = max(1, int(np.flatnonzero(touches(trace))[-1])), trace.model.parted, trace.displacement
     if parted is not None:  # the particles next to the axis may be lost before
@@ -277,9 +299,9 @@ def contact_time(trace: Trace, touched: float = 0.0) -> Reading:
 def end_of_pressure(trace: Trace, last: int, count: int) -> float:
     """Return the time [TU] at which the pressure on the axis falls to 0, on a line through two states.
 
-    Infinite where the pressure does not fall. The states are the last two of the phase with `count` particles in
-    contact on a side, where the pressure is extrapolated linearly in the height of the two particles next to the axis;
-    else the `last` state in contact and the one before.
+    Infinite where the pressure does not fall. The states are the last two, up to the state `last`, of its phase with
+    `count` particles in contact on a side, where the pressure is extrapolated linearly in the height of the two
+    particles next to the axis; where there are no two, the largest pressures of the state `last` and of the one before.
     """
     shown = []
     for i in range(last, -1, -1):

@@ -25,7 +25,7 @@ class HoldExperiment(Scripted[Hold]):
     main_results = ("displacement", "force", "contact_radius")
 
     def script(self, branch: Driver, scene: Scene) -> None:
-        """Hold displacement or force for the duration, in a phase "holding"; the last state is marked "final"."""
+        """Hold the prescribed displacement or force for its duration, in a phase "holding"; mark the end "final"."""
         held = self.given(scene)
         branch.begin("holding")
         branch.hold(held.duration, held.displacement, held.force)
@@ -34,8 +34,9 @@ class HoldExperiment(Scripted[Hold]):
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
         """Return the results of the last state, and the change of the free variable since the first one, by name.
 
-        "displacement" [LU], "force" [FU], "relaxation", the magnitude of the change [LU] under a force or [FU] at a
-        displacement; in contact "contact_radius" [LU] and "mean_pressure" [FU/LU²].
+        "displacement" [LU], "force" [FU], compression positive, and "relaxation" ≥ 0, the change of the displacement
+        [LU] under a prescribed force, or of the force [FU] at a prescribed displacement; with a contact radius above 0
+        also "contact_radius" [LU] and "mean_pressure" [FU/LU²].
         """
         trace, by_force = trace.phases("holding"), self.given(scene).force is not None
         last = len(trace) - 1
@@ -52,7 +53,10 @@ class HoldExperiment(Scripted[Hold]):
         return results
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """Return the phase "holding" of the load steps that run, without the approach."""
+        """Return one phase, "holding", of the load steps that run.
+
+        An approach to F = 0 before a tension is left out.
+        """
         held = self.given(scene)
         rows: list[Row] = []
         for steps in settings.steps_of(held.duration):
@@ -63,6 +67,6 @@ class HoldExperiment(Scripted[Hold]):
         return (Phase("holding", tuple(rows), state=True),)
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """Add the time of each state [TU] since the start of the LAMMPS run, as a column."""
+        """Return the outcome with one column, the time of each state [TU] since the start of the LAMMPS run."""
         times = tuple(state.step * settings.motion.time_step for state in outcome.states)
         return replace(outcome, columns={"time": times})

@@ -42,15 +42,17 @@ class ImpactExperiment(Scripted[Impact]):
         return True
 
     def script(self, branch: Driver, scene: Scene) -> None:
-        """Let the body hit the plane with its velocity and fly on; the last state is marked "final"."""
+        """Let the body hit the plane and fly on until it separates or sticks; the last state is marked "final"."""
         branch.fly(self.given(scene).velocity)
         branch.mark("final")
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """Return restitution, energy and peaks; a body that does not separate sticks and loses all of its energy.
+        """Return restitution, energy and peaks by name.
 
-        "restitution" v′/v, 0 if it sticks, "dissipated_energy" [FU·LU], "peak_force" [FU], "peak_displacement" and
-        "peak_contact_radius" [LU]; of a body that separates also "contact_time" [TU].
+        A body that does not separate sticks and loses all of its energy. "restitution", the velocity after over that
+        before, ≥ 0, and 0 if it sticks; "dissipated_energy" [FU·LU], "peak_force" [FU], "peak_displacement" and
+        "peak_contact_radius" [LU]; of a body that separates also "contact_time" [TU]. Peaks are those of polynomials
+        through the states, the radius of a viscoelastic body that at the peak displacement.
         """
         velocity, mass = self.given(scene).velocity, scene.the(Plate).mass
         assert mass != "auto"
@@ -71,7 +73,7 @@ class ImpactExperiment(Scripted[Impact]):
         return results | ({"contact_time": contact_time(trace)} if parted else {})
 
     def energy(self, case: Reduction, states: Sequence[State], results: Mapping[str, Result]) -> dict[str, Agreement]:
-        """Return {"energy": …}: the check of the lost kinetic energy against what the contact stores and dissipates.
+        """Return {"energy": `Agreement`} of the lost kinetic energy with what the contact stores and dissipates.
 
         Between two states the path is the cubic of their displacements and velocities, with three points in between. {}
         where the reduced model lacks an effect of the scene, or its law has no energies.
@@ -97,7 +99,7 @@ class ImpactExperiment(Scripted[Impact]):
         return consistency.energy(case, consistency.Work(path, kinetic=(first, first - left)), doubt)
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """Add the time of each state [TU] as a column, and a warning "sticks" where the body does."""
+        """Return the outcome with one column, the time of each state [TU], and a warning "sticks" if the body does."""
         if "contact_time" not in outcome.results:
             words = "the body sticks: it comes down again without having parted, so there is no contact_time"
             outcome = replace(outcome, warnings={**outcome.warnings, "sticks": words})
@@ -105,7 +107,7 @@ class ImpactExperiment(Scripted[Impact]):
         return replace(outcome, columns={"time": times})
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """Return the expected phases "touching" and "impact", as long as the impact of the reduced model."""
+        """Return the expected phases "touching", of one load step, and "impact", as long as on the reduced model."""
         velocity = self.given(scene).velocity
         steps = stretch(settings, velocity)
         count = impact(scene, settings, reduced(scene, settings), velocity).time.size
@@ -113,14 +115,15 @@ class ImpactExperiment(Scripted[Impact]):
         return first, Phase("impact", (Fly(steps),) * (count - 2), state=True)
 
     def advice(self, scene: Scene) -> str:
-        """Return the advice to refine the lattice, a sentence without a full stop."""
+        """Return the advice to use a smaller spacing, as a sentence without a full stop."""
         return f"Use {finer_spacing(scene)}"
 
 
 def _peak(trace: Trace, column: Array, near: int = 2) -> float:
     """Return the maximum of a column in its unit, by a polynomial through `near` states on both sides of the largest.
 
-    At least the largest value; the maximum may be at first touch. Only states from the first force on count.
+    It is at least the largest value. Only states from the first one with a force on count; where the maximum is next to
+    that, the polynomial's value at time 0, the first touch, counts as well. There must be a state with a force.
     """
     first = int(np.flatnonzero(trace.force)[0])
     time, column = trace.time[first:], column[first:]

@@ -12,9 +12,9 @@ from contact1d.workflow.scene import Scene
 
 
 def with_planned_output(scene: Scene, phases: tuple[Phase, ...]) -> tuple[Phase, ...]:
-    """Return a planned schedule that writes the states of `[output]` among its load steps.
+    """Return a planned schedule in which the load steps are marked whose states `[output]` requires.
 
-    Unchanged without `[output]`.
+    They are evenly spaced, with the ends of phases that write a state. The same phases are returned without `[output]`.
     """
     if scene.output is None:
         return phases
@@ -23,9 +23,10 @@ def with_planned_output(scene: Scene, phases: tuple[Phase, ...]) -> tuple[Phase,
 
 
 def with_output(context: RunContext, outcome: Outcome) -> Outcome:
-    """Return the outcome with a schedule that writes the states of `[output]` among the measured ones.
+    """Return the outcome with a schedule in which the load steps are marked whose states `[output]` requires.
 
-    Rewrites the file of states without the others. Unchanged without `[output]`.
+    The file of states in the run folder is rewritten without the others. The same outcome is returned, and no file is
+    changed, without `[output]`.
     """
     scene = context.deck.scene
     if scene.output is None:
@@ -37,7 +38,7 @@ def with_output(context: RunContext, outcome: Outcome) -> Outcome:
 
 
 def kept_states(scene: Scene, outcome: Outcome) -> Sequence[int] | None:
-    """Return the indices of the outcome's states that are written to the file of states.
+    """Return the indices, rising, of the outcome's states that are written to the file of states.
 
     None, for all, without `[output]`.
     """

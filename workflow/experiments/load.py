@@ -32,12 +32,13 @@ class LoadExperiment(Scripted[Load]):
     main_results: ClassVar[tuple[str, ...]] = ("displacement", "force", "contact_radius")
 
     def run(self, context: RunContext) -> Outcome:
-        """Run the script and return the outcome.
+        """Press to the force, or pull to it from F = 0, and return the outcome.
 
-        In time with a warning where a tension is within tolerance of the pull-off.
+        In time it has a warning "near_pull_off" where the contact does not sustain a tension that is larger by two
+        tolerances.
 
         Raises:
-            UntrustedError: the result can't be trusted.
+            UntrustedError: the result can't be trusted, or the contact does not sustain the force.
             EngineError: LAMMPS failed.
         """
         scene, settings = context.deck.scene, context.deck.settings
@@ -55,7 +56,10 @@ class LoadExperiment(Scripted[Load]):
         return replace(outcome, warnings={"near_pull_off": doubt, **outcome.warnings})
 
     def script(self, branch: Driver, scene: Scene) -> None:
-        """Press to the force, or pull to it from F = 0; the last state is marked "final"."""
+        """Press to the force in a phase "loading", or pull to a tension from F = 0 in "unloading".
+
+        The last state is marked "final".
+        """
         force = self.given(scene).force
         scale = max(abs(force), branch.settings.forces.scale)
         branch.begin("loading")
@@ -68,7 +72,7 @@ class LoadExperiment(Scripted[Load]):
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
         """Return the results of the last state, by name.
 
-        "displacement" [LU], "force" [FU], compression positive; where the contact has a radius above 0 also
+        "displacement" [LU] and "force" [FU], both positive in compression; where the contact has a radius above 0 also
         "contact_radius" and, with a cohesive zone, "cohesive_radius" [LU], and "mean_pressure" [FU/LU²].
         """
         force, last = self.given(scene).force, len(trace) - 1
@@ -90,18 +94,18 @@ class LoadExperiment(Scripted[Load]):
         return results
 
     def asked(self, trace: Trace, scene: Scene) -> Sequence[tuple[float, float]]:
-        """Return one pair (load, force nearest to it of all states) [FU]."""
+        """Return one pair (load of the scene, force nearest to it of all states) [FU], compression positive."""
         force = self.given(scene).force
         return [(force, float(trace.force[np.argmin(np.abs(trace.force - force))]))]
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """Return the phase "loading", in which the load is held."""
+        """Return one phase, "loading", of one load step in which the force is held, also if it is a tension."""
         force = self.given(scene).force
         scale = max(abs(force), settings.forces.scale)
         return (held_phase("loading", scene, settings, (force,), scale, state=True),)
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """Add a warning "no_radius" where the contact has no width."""
+        """Return the outcome, with a warning "no_radius" where it has no result "contact_radius"; else unchanged."""
         if "contact_radius" in outcome.results:
             return outcome
         missing = {"no_radius": "the contact has no width, so there is no contact radius"}
@@ -115,10 +119,17 @@ class ThermalLoad(LoadExperiment):
     main_results = ("displacement", "contact_radius")
 
     def run(self, context: RunContext) -> Outcome:
-        """Sample until the standard error of the mean displacement meets the tolerance, and return the outcome."""
+        """Sample until the standard error of the mean displacement meets the tolerance, and return the outcome.
+
+        After 2000 samples at most: then with a warning "statistics" where it does not.
+
+        Raises:
+            UntrustedError: the bodies separate, the mean force misses the load, or a state is no result.
+            EngineError: LAMMPS failed.
+        """
         scene = context.deck.scene
         return self.finish(thermal_load(context, self.given(scene).force), scene, context.deck.settings)
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """Return the phases "settling" of the run-in and "sampling" of the first samples."""
+        """Return the phases "settling" of the run-in and "sampling" of the first 200 samples under the force."""
         return planned_samples(settings, self.given(scene).force)

@@ -55,9 +55,10 @@ class Motion:
 
     @cached_property
     def legs(self) -> list[tuple[float, Series]]:
-        """(Velocity of the drive [LU/TU], records) of each leg that has begun, from its start on.
+        """List of (velocity of the drive [LU/TU], records) of each leg that has a load step at least, in order; cached.
 
-        The velocity has a sign.
+        The records go from the start of the leg to its end, both included, or to the end of the run. The velocity has a
+        sign, and is 0 where the drive rests.
         """
         drive = self.settings.motion.drive
         starts = accumulate((leg.rows for leg in drive), initial=0)
@@ -69,31 +70,49 @@ class Motion:
 
     @property
     def moving(self) -> list[tuple[float, Series]]:
-        """The legs on which the drive moves, each with its velocity [LU/TU]."""
+        """The legs on which the drive moves, each as (velocity [LU/TU], records); [] where it has not moved yet."""
         return [leg for leg in self.legs if leg[0]]
 
     @cached_property
     def slips(self) -> list[friction.Slip]:
-        """The slips of the plate on all legs, in order: their ends [TU], positions and sizes [LU]; [] for none."""
+        """The slips of the plate on the legs on which the drive moves, in order; [] for none; cached.
+
+        Each has the time of its end [TU], the position of the plate at its beginning and its signed size [LU].
+        """
         spacing = self.scene.bodies.spacing
         return list(chain(*(friction.slips(leg["time"], leg["plate_x"], spacing, v) for v, leg in self.moving)))
 
     @property
     def period(self) -> float:
-        """Time [TU] in which the drive passes a spacing on the last leg that moves, which there must be."""
+        """Time [TU] in which the drive passes a spacing of the particles on the last leg on which it moves.
+
+        Raises:
+            IndexError: the drive has not moved.
+        """
         return self.scene.bodies.spacing / abs(self.moving[-1][0])
 
     @cached_property
     def periods(self) -> Series:
-        """Means over whole periods of the last leg that moves: forces [FU], velocity [LU/TU] and its square."""
+        """Means over whole periods of the last leg on which the drive moves, in order; cached.
+
+        The last period ends with the leg. The columns are "friction" and "cantilever_force" [FU], "velocity" [LU/TU] of
+        the plate along x and "square" [LU²/TU²], of its velocity along x and z; they are empty for a leg shorter than a
+        period.
+
+        Raises:
+            IndexError: the drive has not moved.
+        """
         return self.moving[-1][1].periods(self.period)
 
     @cached_property
     def steady(self) -> friction.Mean:
-        """Friction [FU] after the run-in, by the balance of momentum; with noise by the records, if more certain.
+        """Mean friction [FU] with its error, positive against +x, after the run-in of the last leg that moves; cached.
+
+        It is that by the balance of momentum; with noise that of the friction at single times, if its error is smaller.
 
         Raises:
-            ValueError: the leg has too few periods for a mean, under three.
+            ValueError: the leg has fewer than three whole periods.
+            IndexError: the drive has not moved.
         """
         _, leg = self.moving[-1]
         means = [friction.mean_of(self.periods["friction"])]
@@ -103,15 +122,20 @@ class Motion:
 
     @cached_property
     def largest(self) -> dict[str, float]:
-        """Largest |friction| [FU] and |energy| [FU·LU] of the slide, by unit and above 0: scales of results near 0."""
+        """Largest |friction| [FU] and |energy| [FU·LU] of the slide, by "FU" and "FU·LU"; at least 1e-300; cached.
+
+        They are the scales of results near 0.
+        """
         columns = {FORCE: [self.series["friction"]], ENERGY: list(self.energies.values())}
         return {unit: max(1e-300, float(np.abs(values).max())) for unit, values in columns.items()}
 
     @cached_property
     def results(self) -> dict[str, Result]:
-        """The results of the slide, by name, as far as the drive has moved.
+        """The results of the slide by name, as far as the drive has moved, with errors by source; cached.
 
-        "slips" (a number), the energies [FU·LU], mean and static forces [FU], with noise "plate_temperature" [FU·LU].
+        Always "slips" (a number), "cantilever_work", "dissipated_energy" and "stored_energy" [FU·LU]; with three whole
+        periods "mean_friction" and "mean_cantilever_force", on a slide of one moving leg that passes a spacing
+        "static_friction" and "static_cantilever_force" [FU]; with noise "plate_temperature" [FU·LU].
         """
         results = self._energies() | {"slips": Result(float(len(self.slips)), NUMBER, {"statistics": 0.0})}
         if self.moving:
@@ -121,19 +145,19 @@ class Motion:
         return {name: replace(result, scale=self.largest.get(result.unit)) for name, result in results.items()}
 
     def _energies(self) -> dict[str, Result]:
-        """Return work, dissipated and stored energy [FU·LU] at the end.
+        """Return "cantilever_work", "dissipated_energy" and "stored_energy" [FU·LU] of the whole drive up to its end.
 
-        The residual of the balance is the error of each.
+        They are counted from its start. The residual of their balance is the error of each.
         """
         ends = {name: float(values[-1]) for name, values in self.energies.items()}
         errors = {"solver": abs(ends["cantilever_work"] - ends["dissipated_energy"] - ends["stored_energy"])}
         return {name: Result(end, ENERGY, errors, prescribed=name == "stored_energy") for name, end in ends.items()}
 
     def _means(self) -> dict[str, Result]:
-        """Return "mean_friction" and "mean_cantilever_force" [FU], positive against and along the drive.
+        """Return "mean_friction" and "mean_cantilever_force" [FU], positive against and along the motion of the drive.
 
-        They are means over whole periods of the last leg that moves, after its run-in; {} where it has fewer than
-        three.
+        They are means over whole periods of the last leg on which the drive moves, after its run-in; {} where it has
+        fewer than three.
         """
         velocity, leg = self.moving[-1]
         if len(self.periods) < friction.FEWEST_PERIODS:
@@ -146,7 +170,7 @@ class Motion:
             sparse = steady | {"friction": self.steady.blocks + self.steady.missed}
 
         def read(blocks: Series) -> dict[str, Reading]:
-            """Return the mean forces of blocks [FU] by name, with the sign relative to the drive.
+            """Return "mean_friction" and "mean_cantilever_force" of blocks [FU], positive against and along the drive.
 
             Their error is a share of the tolerance.
             """
@@ -158,8 +182,8 @@ class Motion:
     def _static(self) -> dict[str, Result]:
         """Return "static_friction" and "static_cantilever_force" [FU], the largest until the plate moved by a spacing.
 
-        They are positive against and along the drive. {} where more than one leg moves, or the plate has not moved that
-        far.
+        They are positive against and along the motion of the drive. {} where the drive moves on more than one leg, or
+        the plate has moved by less than a spacing at the end.
         """
         (velocity, leg), *later = self.moving
         sign, spacing = math.copysign(1.0, velocity), self.scene.bodies.spacing
@@ -175,13 +199,17 @@ class Motion:
     def _temperature(self) -> dict[str, Result]:
         """Return "plate_temperature", M ⟨(V − ⟨V⟩)²⟩/2 [FU·LU], of the plate's motion along x and z in the last leg.
 
-        Slips are part of it.
+        M is the mass of the plate, V its velocity. Slips are part of it. The last leg may be one on which the drive
+        rests.
         """
         _, leg = self.legs[-1]
         mass, count = self.settings.motion.plate_mass, 20
 
         def read(blocks: Series) -> dict[str, Reading]:
-            """Return the mean energy of a direction of motion [FU·LU], "plate_temperature", of blocks."""
+            """Return {"plate_temperature": mean kinetic energy of the plate [FU·LU] in one direction of motion}.
+
+            `blocks`: means of the plate's velocity along x, and of its squares along x and z together.
+            """
             energy = mass * (blocks.mean("square") - blocks.mean("velocity") ** 2) / 2
             return {"plate_temperature": Reading(float(energy), ENERGY)}
 
@@ -189,9 +217,14 @@ class Motion:
 
     @property
     def unsteady(self) -> str:
-        """Message why the plate does not slide, or not yet steadily, on the one leg that moves; "" where it does.
+        """Message why the plate does not slide, or not yet steadily, on the one leg on which the drive moves.
 
-        There must be exactly one such leg.
+        "" where it does. It does not where the leg has fewer than three periods, the plate has moved along +x by less
+        than a spacing, or its mean velocity after the run-in differs from that of the drive by more than 10 %, or one
+        slip.
+
+        Raises:
+            ValueError: the drive moves on no leg, or on several.
         """
         ((velocity, leg),) = self.moving
         time, position, count = leg["time"], leg["plate_x"], len(self.periods)
@@ -217,7 +250,7 @@ class Motion:
 
     @property
     def _swing(self) -> str:
-        """End of a message: the period of the plate on its cantilever is longer than the slide; "" where it is not."""
+        """End of a message: the period of the plate on its cantilever is as long as the slide; "" if it is shorter."""
         swing, time = cantilever_swing(self.scene, self.settings), self.series["time"][-1]
         if swing < time:
             return ""
@@ -230,9 +263,11 @@ class Motion:
 def motion_of(scene: Scene, settings: Settings, load: float, states: Sequence[State]) -> Motion:
     """Return the motion of a slide from the state at which its drive starts and those of the load steps after it.
 
-    Its series has the columns of friction.csv, (n,): time [TU], positions [LU], forces [FU] and work [FU·LU]; and
-    integrals over time of friction and cantilever force [FU·TU], of the plate's velocity [LU] and its square [LU²/TU].
-    Friction is positive against +x, the normal force in compression.
+    Its series has the columns of friction.csv, (n,): "time" [TU], "drive" and "plate_x" [LU] and "cantilever_work"
+    [FU·LU], counted from the start of the drive, "plate_z" [LU], the displacement with a negative sign, "friction",
+    positive against +x, "normal_force", positive in compression, and "cantilever_force" [FU]. It has integrals over
+    time of friction and cantilever force [FU·TU], of the plate's velocity along x [LU] and of its squared velocity
+    along x and z [LU²/TU].
 
     Args:
         scene: with a cantilever.
@@ -287,7 +322,11 @@ def motion_of(scene: Scene, settings: Settings, load: float, states: Sequence[St
 
 
 def _read(states: Sequence[State], name: str) -> Array:
-    """Return a quantity of the motion of all states, by its name in LAMMPS, (n,), in units of the scene."""
+    """Return a measured quantity of the motion in all states, (n,), by its name in LAMMPS, in units of the scene.
+
+    Raises:
+        KeyError: a state lacks it.
+    """
     return np.asarray([state.motion[name] for state in states])
 
 
@@ -297,12 +336,13 @@ def _summed(parts: Array) -> Array:
 
 
 def _integrals(states: Sequence[State], rows: Sequence[DriveLeg], mean: int, ends: Array) -> Array:
-    """Return the integral over each load step of a mean of LAMMPS, by the trapezoidal rule, (n,) [its unit · TU].
+    """Return the integral over each load step, (n,), of a quantity whose mean LAMMPS measures, in its unit times TU.
 
     Args:
         states: at the start and at the ends of the load steps, (n + 1,).
         rows: the leg of each load step, (n,).
-        mean: number of the column of `cantilever_means` of fragments/cantilever.lmp, a mean over every fifth timestep.
+        mean: number of the quantity in LAMMPS: 1 the cantilever's force, 2 the kinetic energy of the particles, 3 that
+            of the plate; a mean since the start over every fifth timestep.
         ends: the quantity itself at each state, (n + 1,).
     """
     every = 5

@@ -51,7 +51,10 @@ class PathExperiment(Scripted[Path]):
     curve_is_result = True
 
     def run(self, context: RunContext) -> Outcome:
-        """Run the schedule, and return the states of the scene and the results with their error budget.
+        """Run the schedule, and return the states that the scene asks for and the results with their error budget.
+
+        The states "deepest" and "final" are marked. Where particles may move along x the path is run again in half the
+        steps.
 
         Raises:
             UntrustedError: the result can't be trusted.
@@ -84,21 +87,31 @@ class PathExperiment(Scripted[Path]):
         return Outcome(results, reported, ends, phases, warnings, rows=rows, moves=case.moves, consistency=checks)
 
     def _plan(self, deck: Deck, model: Particles) -> Plan:
-        """Return the plan of the load steps on a rigid plane; the state at the end of each phase is written."""
+        """Return the plan of the load steps on a rigid plane, a phase for each part of rising or falling displacement.
+
+        The state at the end of each phase is written.
+        """
         parts = stretches([position for position, _ in positions_of(deck.scene, deck.settings)])
         names = [name for name, stretch in parts for _ in stretch]
         ends = np.cumsum([len(stretch) for _, stretch in parts]) - 1
         return Plan(deck, model, path_of(np.concatenate([stretch for _, stretch in parts])), names, ends.tolist())
 
     def states(self, contact: Contact, positions: Positions) -> list[State]:
-        """Return a state for each of the positions; in time each when its particles are at rest."""
+        """Run the path in LAMMPS and return a state for each of the positions, in order.
+
+        In time each is that in which the particles are at rest.
+
+        Raises:
+            EngineError: LAMMPS failed.
+            UntrustedError: a state is no result.
+        """
         phases = self.planned(contact.scene, contact.settings)
         return contact.replay(phases, relaxed=contact.scene.method == "dynamic")
 
     def rows(self, scene: Scene, settings: Settings, positions: Positions) -> tuple[Row, ...]:
         """Return the load steps at positions, one for each.
 
-        In time each lasts 14 times the slowest decay of a particle.
+        In time each lasts 14 times the relaxation time of a particle.
         """
         if scene.method == "quasistatic":
             return displacements([position for position, _ in positions])
@@ -108,23 +121,27 @@ class PathExperiment(Scripted[Path]):
     def force_errors(
         self, scene: Scene, settings: Settings, states: Sequence[State], marked: Sequence[State]
     ) -> ForceErrors:
-        """Return the errors of the forces of states, (m,) [FU].
+        """Return the errors of the forces of states, (m,) [FU] ≥ 0.
 
-        Residual forces of particles are independent of each other. `marked`: states with profiles, from which the
-        errors of the others are interpolated.
+        `common` is alike at neighbouring states: the error of the interaction and the sum of the residual forces,
+        interpolated over displacement between the `marked` states, which have profiles. `turning` is √N times the
+        residual of each state with N particles, whose residual forces are independent of each other.
         """
         return force_errors(scene, settings, states, marked)
 
     def closes(self, trace: Trace, settings: Settings) -> bool:
-        """Whether a path ends in its first state: in contact or not, displacement, and force within the tolerance."""
+        """Return whether a path ends in its first state: at the same displacement and force, both in contact or apart.
+
+        Displacements may differ by round-off, forces by the tolerance of the larger one.
+        """
         ends = [trace.radius(state) is None for state in (0, len(trace) - 1)]
         return ends[0] == ends[1] and closes(*trace.lists, settings.tolerance)
 
     def _in_half_steps(self, context: RunContext, model: Particles) -> dict[str, list[Trace]]:
-        """Return {"instability": [trace of a second run in half the steps]}.
+        """Return {"instability": [trace of a second run of the path in half the steps]}.
 
-        {} where no particle can move along x, and in time. Chains that may buckle along x jump to another equilibrium
-        between two load steps, and the equilibrium depends on the steps.
+        The trace has the states of the first run alone. {} where no particle can move along x, and in time. Chains that
+        may buckle along x jump to another equilibrium between two load steps, and the equilibrium depends on the steps.
         """
         scene, deck = context.deck.scene, context.deck
         if not scene.horizontal or scene.method != "quasistatic":
@@ -144,7 +161,7 @@ class PathExperiment(Scripted[Path]):
     def script(self, branch: Driver, scene: Scene) -> None:
         """Visit the unevaluated approach, in a phase without a name, and the positions of the scene.
 
-        Where pairs snap, the positions in between as well.
+        Their phases are "loading" and "unloading". Where pairs snap, the positions in between are visited as well.
         """
         settings, passed = branch.settings, 0
         whole = positions_of(scene, settings)
@@ -162,10 +179,10 @@ class PathExperiment(Scripted[Path]):
                     branch.visit(positions)
 
     def _losses(self, trace: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
-        """Return the energy that a path dissipates [FU·LU]: {} where it has too few states or its energy is not known.
+        """Return the energy that a path dissipates [FU·LU], by name; {} with fewer than 3 states, or without a motion.
 
-        "dissipated_energy" of a closed path; of an open one "instability_energy", that of its instabilities, ∫F dd −
-        ΔE.
+        "dissipated_energy", ∫F dd, of a closed path; of an open one "instability_energy", that of its instabilities, ∫F
+        dd − ΔE. The latter is left out where no contact forms or separates, or the law has no energy E.
         """
         closed = self.closes(trace, settings)
         gained = 0.0 if closed else _energy_change(trace, settings)
@@ -181,7 +198,11 @@ class PathExperiment(Scripted[Path]):
         return {"instability_energy": Reading(work.area - gained, ENERGY, errors)}
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """Return the schedule that runs: a phase for each stretch of rising, "loading", or falling displacement."""
+        """Return the schedule that runs: a phase for each part of rising or falling displacement.
+
+        They are "loading" and "unloading", the latter also where the displacement stays. Repeated names have a number,
+        "loading_2". The state at the end of each phase is written.
+        """
         if scene.is_stepped:
             return self._plan(Deck(scene, settings), reduced(scene, settings)).phases
         positions = positions_of(scene, settings)
@@ -193,25 +214,29 @@ class PathExperiment(Scripted[Path]):
         return tuple(phases)
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """Return the results of the last unloading, or without adhesion of the deepest state.
+        """Return the results of the last unloading, or without attraction of the deepest state, and the lost energy.
 
-        And the dissipated energy. "adhesion_force" [FU], as a positive tension, "critical_radius", "zero_load_radius",
-        "cohesive_radius", "fixed_grips_displacement" [LU], "work_of_separation", "dissipated_energy" or
-        "instability_energy" [FU·LU]; "largest_force" [FU] and "largest_radius" [LU] without adhesion. Those that the
-        path does not reach are left out.
+        With attraction "adhesion_force" [FU], a positive tension, "critical_radius", "zero_load_radius",
+        "cohesive_radius", "fixed_grips_displacement" [LU] and "work_of_separation" [FU·LU]; without it "largest_force"
+        [FU], compression positive, and "largest_radius" [LU]. In either case "dissipated_energy" of a closed path, or
+        "instability_energy" [FU·LU]. Those that the path does not reach are left out.
         """
         marks = _adhesion(trace, settings) if settings.law.attracts(scene) else _deepest(trace)
         return marks | self._losses(trace, scene, settings)
 
     def advice(self, scene: Scene) -> str:
-        """Return the advice to refine displacements of the scene, or the lattice, a sentence without a full stop."""
+        """Return the advice to use more displacements, or a smaller spacing, as a sentence without a full stop."""
         finer = finer_spacing(scene)
         return f"Use more steps in experiment.displacements; for a radius or a force in curve.csv also {finer}"
 
     def _missing_results(
         self, results: Mapping[str, Result], case: Reduction, phases: Sequence[Phase]
     ) -> dict[str, str]:
-        """Return warnings of results that the path does not reach, by name; {} without adhesion."""
+        """Return warnings of missing results by name; {} without attraction, or where the path reaches all of them.
+
+        "no_energy": too few load steps for the energy that is lost; "no_peak": no force maximum; "no_zero_load": the
+        force does not cross 0, or the path never unloads.
+        """
         if not case.model.law.attracts(case.scene):
             return {}
         warnings: dict[str, str] = {}
@@ -243,15 +268,23 @@ class ThermalPath(PathExperiment):
     is_statistical = True
 
     def run(self, context: RunContext) -> Outcome:
-        """Run the path; add a table of the mean forces [FU] and their standard errors."""
+        """Run the path and return its outcome, with a table "means" of the mean forces [FU] and their standard errors.
+
+        Raises:
+            UntrustedError: a mean state is no result.
+            EngineError: LAMMPS failed.
+        """
         outcome = super().run(context)
         return replace(outcome, tables={"means": _means(context.deck.settings, outcome.states)})
 
     def states(self, contact: Contact, positions: Positions) -> list[State]:
-        """Return the mean state at each of the positions.
+        """Run the path in LAMMPS and return the mean state at each of the positions that the scene asks for.
+
+        At an intermediate position it is the last state there.
 
         Raises:
             UntrustedError: a mean state is no result.
+            EngineError: LAMMPS failed.
         """
         scene, settings = contact.scene, contact.settings
         states = averaged(contact.replay(self.planned(scene, settings)), positions)
@@ -260,18 +293,23 @@ class ThermalPath(PathExperiment):
         return states
 
     def rows(self, scene: Scene, settings: Settings, positions: Positions) -> tuple[Row, ...]:
-        """Return the load steps of equilibration and samples at each position, several for each."""
+        """Return the load steps at each position: 40 of equilibration, and 200 samples where the scene asks for it."""
         return thermal_rows(settings, _relaxation_time(scene, settings), positions)
 
     def force_errors(
         self, scene: Scene, settings: Settings, states: Sequence[State], marked: Sequence[State]
     ) -> ForceErrors:
-        """Return the errors of the forces of mean states, (m,) [FU], N times the residual for N particles."""
+        """Return the errors of the forces of mean states, (m,) [FU] ≥ 0.
+
+        `common` is alike at neighbouring states, and interpolated over displacement between the `marked` states, which
+        have profiles. `turning` is two standard errors of each mean force, the residual of the state times the number
+        of particles.
+        """
         errors = super().force_errors(scene, settings, states, marked)
         return replace(errors, turning=settings.chains.upper * np.asarray([state.residual for state in states]))
 
     def closes(self, trace: Trace, settings: Settings) -> bool:
-        """Whether a path ends at its first displacement, within round-off, whatever the force.
+        """Return whether a path ends at its first displacement, within round-off, whatever the forces.
 
         Two forces differ by twice the larger at most, which is the tolerance here.
         """
@@ -279,7 +317,11 @@ class ThermalPath(PathExperiment):
 
 
 def _passes_jump(case: Reduction) -> bool:
-    """Whether the path passes a snap-in or a separation at a finite force; False where the law has no jump."""
+    """Return whether the path goes to d > 0 and also passes a displacement at which the force jumps.
+
+    That is a snap-in, where it begins below 0, or a separation at a finite force, where it goes below the lowest jump.
+    False where the law has no jump.
+    """
     positions, jumps = case.scene.experiment.places(), case.model.jumps
     return bool(jumps) and max(positions) > 0.0 and (positions[0] < 0.0 or min(positions) < min(jumps))
 
@@ -287,7 +329,8 @@ def _passes_jump(case: Reduction) -> bool:
 def _buckling(trace: Trace, repeats: Mapping[str, Sequence[Trace]], settings: Settings) -> dict[str, str]:
     """Return {"buckling": warning} where forces of a trace differ from those of its repetition in half steps, else {}.
 
-    They differ by more than the tolerance of the largest force. `repeats`: traces by the source of error; may be empty.
+    They differ by more than the tolerance of the largest |force|. `repeats`: traces by the source of error; may be
+    empty.
     """
     if not repeats:
         return {}
@@ -306,7 +349,10 @@ def _buckling(trace: Trace, repeats: Mapping[str, Sequence[Trace]], settings: Se
 
 
 def _means(settings: Settings, states: Sequence[State]) -> dict[str, tuple[float, ...]]:
-    """Return the columns of means.csv by name, (m,): displacement [LU], mean force and its standard error [FU]."""
+    """Return the columns of means.csv by name, (m,): "displacement" [LU], "force" and "force_standard_error" [FU].
+
+    Forces are means, compression positive.
+    """
     return {
         "displacement": tuple(state.displacement for state in states),
         "force": tuple(state.force for state in states),
@@ -315,7 +361,10 @@ def _means(settings: Settings, states: Sequence[State]) -> dict[str, tuple[float
 
 
 def _deepest(trace: Trace) -> dict[str, Reading]:
-    """Return "largest_force" [FU] and, in contact, "largest_radius" [LU] at the largest displacement."""
+    """Return "largest_force", the force at the largest displacement [FU], and there "largest_radius" [LU] by name.
+
+    The first of several such states counts. The radius is left out where the bodies do not touch.
+    """
     deepest = int(np.argmax(trace.displacement))
     results = {"largest_force": Reading(float(trace.force[deepest]), FORCE)}
     if (radius := trace.radius(deepest)) is not None:
@@ -324,10 +373,11 @@ def _deepest(trace: Trace) -> dict[str, Reading]:
 
 
 def _adhesion(trace: Trace, settings: Settings) -> dict[str, Reading]:
-    """Return the results of the last phase of unloading, by name; where a smooth curve has none, of the last phase.
+    """Return the results of the last phase of unloading, by name; without one, those of the last phase of the trace.
 
-    {} without unloading where pairs snap, or an edge has no range: the tension during loading is that of the snap-in.
-    At a limit point "fixed_grips_displacement" [LU] is added.
+    {} without unloading where pairs snap, or the force of a contact jumps: the tension during loading is that of the
+    snap-in. Where the law has a limit point "fixed_grips_displacement" [LU] is added, if the phase passes the loss of
+    contact.
     """
     unloadings = [name for name in trace.phase if name.startswith("unloading")]
     if not unloadings and (settings.snaps or trace.model.jumps):
@@ -341,15 +391,18 @@ def _adhesion(trace: Trace, settings: Settings) -> dict[str, Reading]:
 
 
 def _is_unstable(trace: Trace) -> bool:
-    """Whether the contact forms or separates along the path: it has a radius in one of two successive states only."""
+    """Return whether the contact forms or separates along the path: of two successive states one has a radius.
+
+    The other one has none. False where all states are in contact, or none is.
+    """
     held = [trace.radius(state) is not None for state in range(len(trace))]
     return any(before != after for before, after in pairwise(held))
 
 
 def _energy_change(trace: Trace, settings: Settings) -> float | None:
-    """Return the energy [FU·LU] of the last state less that of the first.
+    """Return the energy [FU·LU] of the contact in the last state less that in the first.
 
-    None where no contact forms or separates, or the law has no energy.
+    None where no contact forms or separates along the path, or the law has no energy.
     """
     ends = ((float(trace.displacement[i]), trace.radius(i) or 0.0) for i in (0, len(trace) - 1))
     first, last = (settings.law.energy(*end) for end in ends)
@@ -357,9 +410,10 @@ def _energy_change(trace: Trace, settings: Settings) -> float | None:
 
 
 def _fixed_grips(branch: Trace) -> dict[str, Reading]:
-    """Return "fixed_grips_displacement" [LU], of a separation without a range: midway between the states around it.
+    """Return "fixed_grips_displacement" [LU], where the contact is lost under displacement control.
 
-    {} where the branch begins apart or ends in contact.
+    It is midway between the last state in contact and the next, uncertain by half of their distance. {} where the
+    branch begins apart or ends in contact.
     """
     rows = range(len(branch))
     lost = bisect_left(rows, True, key=lambda i: branch.radius(i) is None)
@@ -371,9 +425,12 @@ def _fixed_grips(branch: Trace) -> dict[str, Reading]:
 
 
 def stretches(positions: Sequence[float]) -> list[tuple[str, list[float]]]:
-    """Return (name, displacements [LU]) of stretches of one direction: loading, unloading, loading_2, …
+    """Return (name, displacements [LU]) of stretches of one direction: "loading", "unloading", "loading_2", … in order.
 
-    The first is "loading", if only with the first position.
+    The first is "loading", if only with the first position. A position equal to the one before counts as unloading.
+
+    Raises:
+        IndexError: there are no positions.
     """
     parts: list[tuple[str, list[float]]] = [("loading", [positions[0]])]
     for before, position in pairwise(positions):
@@ -391,9 +448,10 @@ def stretches(positions: Sequence[float]) -> list[tuple[str, list[float]]]:
 
 @lru_cache(maxsize=1)
 def positions_of(scene: Scene, settings: Settings) -> list[tuple[float, bool]]:
-    """Return (displacement [LU], whether the scene asks for it) of all states in order; the others are intermediate.
+    """Return a list of (displacement [LU], whether the scene asks for it) of all states in order.
 
-    Where pairs snap, a path begins before the first snap-in. With `start = "contact"` it then goes to the largest
+    It is cached, and must not be changed. The others are intermediate, no farther apart than the settings allow. Where
+    pairs snap, a path begins before the first snap-in. With `start = "contact"` it then goes to the largest
     displacement before the first one.
     """
     experiment, estimate, before = scene.experiment, settings.law, 0.0
@@ -418,10 +476,11 @@ def positions_of(scene: Scene, settings: Settings) -> list[tuple[float, bool]]:
 def _longest_unloading(settings: Settings) -> float:
     """Return the longest move [LU] of separating bodies without premature detachment of particles; inf if none snaps.
 
-    A move h puts a joined pair h further apart before it relaxes. The pair detaches where that is beyond the unstable
-    equilibrium next to it, which is 2 √(2 e/|G″|) away at a gap e before the fold of G(r): too early by e = h² |G″|/8.
-    With |G″| about the ratio of the stiffnesses over the range b, and a hysteresis about as wide as that ratio times b,
-    h = √(8 tolerance) b leaves an error of a share of `tolerance` of the hysteresis.
+    It is at most the longest move in loading. A move h puts a joined pair h further apart before it relaxes. The pair
+    detaches where that is beyond the unstable equilibrium next to it, which is 2 √(2 e/|G″|) away at a gap e before the
+    fold of G(r): too early by e = h² |G″|/8. With |G″| about the ratio of the stiffnesses over the range b, and a
+    hysteresis about as wide as that ratio times b, h = √(8 tolerance) b leaves an error of a share of `tolerance` of
+    the hysteresis.
     """
     if not settings.snaps:
         return math.inf
@@ -429,6 +488,10 @@ def _longest_unloading(settings: Settings) -> float:
 
 
 def _relaxation_time(scene: Scene, settings: Settings) -> float:
-    """Return the relaxation time [TU] of a particle on its bulk spring, the longer of 2m/γ and, overdamped, γ/k."""
+    """Return the relaxation time [TU] of a particle on its bulk spring, the longer of 2m/γ and, overdamped, γ/k.
+
+    Raises:
+        ZeroDivisionError: the particle has no drag γ.
+    """
     mass, stiffness = scene.bodies.mass, scene.bulk_stiffness
     return max(2.0 * mass / settings.motion.damping, settings.motion.damping / stiffness)

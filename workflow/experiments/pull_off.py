@@ -39,13 +39,17 @@ class PullOffExperiment(Scripted[PullOff]):
     branches = {"pulling": "unloading", "separating": "unloading", "critical": "unloading"}  # noqa: RUF012
 
     def is_sampled(self, scene: Scene) -> bool:
-        """Whether results have a sampling error: they do at a velocity, with load steps that are known beforehand."""
+        """Return whether the scene gives a velocity.
+
+        The load steps are then known beforehand, so that results have a sampling error.
+        """
         return self.given(scene).velocity is not None
 
     def script(self, branch: Driver, scene: Scene) -> None:
         """Compress, unload to F = 0, retract to the force maximum, separate; as many times as there are cycles.
 
-        The states at F = 0 and at the force maximum are marked "zero_load" and "critical".
+        The states at F = 0 and at the force maximum are marked "zero_load" and "critical", of several cycles those of
+        the last. At a given velocity one cycle of planned displacements over time is followed instead.
         """
         given = self.given(scene)
         if given.velocity:
@@ -67,9 +71,9 @@ class PullOffExperiment(Scripted[PullOff]):
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
         """Return the results of the last unloading; of several cycles the force maximum of the first one, too.
 
-        "adhesion_force" and "adhesion_force_first" [FU], as positive tensions, "preload" [FU], compression positive,
-        "critical_radius", "zero_load_radius", "cohesive_radius" [LU] and "work_of_separation" [FU·LU], as far as there
-        are any.
+        "adhesion_force" and "adhesion_force_first" [FU], as positive tensions, "preload" [FU], the force reached in the
+        last compression, "critical_radius", "zero_load_radius", "cohesive_radius" [LU] and "work_of_separation"
+        [FU·LU]; all but the preload as far as there are any.
         """
         preload = float(trace.phases("loading").force[-1])
         given = Reading(preload, FORCE, {"solver": abs(preload - self.given(scene).preload)}, prescribed=True)
@@ -84,7 +88,7 @@ class PullOffExperiment(Scripted[PullOff]):
         return [(self.given(scene).preload, float(leg.force[-1])) for leg in trace.phases("loading").legs]
 
     def tables(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Mapping[str, tuple[float, ...]]]:
-        """Return {"cycles": columns of cycles.csv}: number and force maximum, a positive tension [FU], of each cycle.
+        """Return {"cycles": columns of cycles.csv}, "cycle", from 1 on, and "adhesion_force", a positive tension [FU].
 
         {} of a single cycle.
         """
@@ -97,7 +101,7 @@ class PullOffExperiment(Scripted[PullOff]):
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """Return phases at the preload, at F = 0, and at 12 tensions up to 1.2 times the expected pull-off force.
 
-        "loading", "unloading" and "pulling".
+        Their names are "loading", "unloading" and "pulling"; they are those of one cycle.
         """
         preload, tension = self.given(scene).preload, settings.law.pull_off_force()
         tensions = [float(-t) for t in np.linspace(0.0, 1.2 * tension, 12 + 1)[1:]]
@@ -108,10 +112,10 @@ class PullOffExperiment(Scripted[PullOff]):
         )
 
     def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """Refuse results that contradict the curve of the run; of several cycles add the cycle of each state.
+        """Return the outcome; where the scene gives cycles, with a column "cycle", the cycle of each state from 1 on.
 
         Raises:
-            UntrustedError: a state has more tension than the force maximum.
+            UntrustedError: a state has more tension than the force maximum and its uncertainty.
         """
         force = outcome.results["adhesion_force"]
         require_no_contradiction(settings, force.value, force.uncertainty - force.given, outcome.states)
@@ -121,7 +125,10 @@ class PullOffExperiment(Scripted[PullOff]):
         return replace(outcome, columns={**outcome.columns, "cycle": numbers})
 
     def advice(self, scene: Scene) -> str:
-        """Return the advice, a sentence without a full stop, in time with the limitation of load control."""
+        """Return the advice by the method and the interaction, as a sentence without a full stop.
+
+        In time it ends with the limitation of load control, which never reaches the pull-off itself.
+        """
         since = ", since load control never reaches the pull-off itself" if scene.method == "dynamic" else ""
         return super().advice(scene) + since
 
@@ -130,14 +137,18 @@ def _history_at_velocity(model: Particles, given: PullOff) -> History:
     """Return the history to the preload and back at the velocity, displacements [LU] over times [TU].
 
     In unloading its edge recedes by about equal distances, with load steps at F = 0 and halfway there from the preload.
-    The ends of "unloading" and "pulling" are marked "zero_load" and "critical".
+    Phases are "loading", "unloading" up to F = 0, "pulling" up to the force maximum and "separating"; the ends of
+    "unloading" and "pulling" are marked "zero_load" and "critical". `given` must have a velocity.
     """
     assert given.velocity is not None
     deepest = model.displacement_at(given.preload)
     velocity, down = given.velocity, np.linspace(0.0, 1.0, 25)
 
     def pull(back: NDArray[np.float64]) -> tuple[NDArray[np.float64], Path]:
-        """Return (F [FU] at times `back` after the preload (k,) [TU], the whole path with the loading before)."""
+        """Return (F, (k,) [FU], compression positive, at times `back` after the preload (k,) [TU], the whole path).
+
+        The path has the loading before.
+        """
         time = np.append(deepest / velocity * (down - 1.0), back)
         displacements = np.append(deepest * down, deepest - velocity * back)
         path = Path(displacements, np.zeros_like(displacements), time)
@@ -165,7 +176,12 @@ class ThermalPullOff(PullOffExperiment):
     is_statistical = True
 
     def run(self, context: RunContext) -> Outcome:
-        """Run the pulls of all seeds and return the outcome with their detachment forces."""
+        """Run the pulls of all seeds and return the outcome with the mean detachment force.
+
+        Raises:
+            UntrustedError: the bodies separate before the pull or not at all, or a state is no result.
+            EngineError: LAMMPS failed.
+        """
         return pull_off_thermal(context, self.given(context.deck.scene))
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
@@ -174,15 +190,22 @@ class ThermalPullOff(PullOffExperiment):
 
 
 def _unloadings(trace: Trace) -> list[Trace]:
-    """Return the legs of falling displacement as traces, one for each cycle."""
+    """Return the legs of unloading and separation as traces, one for each cycle in order; [] without unloading."""
     return [leg for leg in trace.phases("unloading", "pulling", "separating", "critical").legs if len(leg)]
 
 
 def _marks(falling: Trace, scene: Scene, settings: Settings, preload: float) -> dict[str, Reading]:
-    """Return "adhesion_force" [FU], "critical_radius" and "zero_load_radius" [LU] of one unloading, if it has them.
+    """Return the force maximum and radii of one unloading by name, those that it has, with their errors.
 
-    Under displacement control there may be more. `preload`: compression positive [FU]. The leg is under load control
-    where it has a bracket, else under displacement control.
+    "adhesion_force" [FU], a positive tension, "critical_radius" and "zero_load_radius" [LU]; under displacement control
+    also "cohesive_radius" [LU] and "work_of_separation" [FU·LU]. Load control is recognised by the bracket of its
+    search.
+
+    Args:
+        falling: trace of the unloading.
+        scene: whose pull-off it is.
+        settings: of the run.
+        preload: compression positive [FU].
     """
     if falling.search.bracket:
         return _marks_by_load(falling, scene, settings, preload)
@@ -190,9 +213,11 @@ def _marks(falling: Trace, scene: Scene, settings: Settings, preload: float) -> 
 
 
 def _marks_by_displacement(falling: Trace, settings: Settings) -> dict[str, Reading]:
-    """Return the results of an unloading under displacement control, by name; forces [FU], radii [LU].
+    """Return the results of an unloading under displacement control, by name, those that it has.
 
-    Where it begins at F = 0 without a preload, "zero_load_radius" is that of the state of least |F| before the maximum.
+    "adhesion_force" [FU], a positive tension, "critical_radius", "zero_load_radius", "cohesive_radius" [LU] and
+    "work_of_separation" [FU·LU]. "zero_load_radius" is always there: where the force does not cross 0, as without a
+    preload, it is that of the state of least |F| before the maximum.
     """
     held = falling.force[: int(falling.force.argmin()) + 1]  # separated bodies have no load either
     marks, least = unloading(falling, settings), int(np.argmin(np.abs(held)))
@@ -202,10 +227,17 @@ def _marks_by_displacement(falling: Trace, settings: Settings) -> dict[str, Read
 
 
 def _marks_by_load(rested: Trace, scene: Scene, settings: Settings, preload: float) -> dict[str, Reading]:
-    """Return F_A in the middle of the bracket [FU], a₀ [LU], and a_cr [LU], which load control never reaches, by name.
+    """Return the results of an unloading under load control, by name, each with its errors.
 
-    a_cr is extrapolated; where there are several maxima, it is that of the last state. `rested`: states at rest under
-    rising tensions, with a bracket; `preload` [FU].
+    "adhesion_force" F_A [FU], a positive tension, is the middle of the bracket of the search; "zero_load_radius" a₀
+    [LU] that of the first state; "critical_radius" a_cr [LU], which load control never reaches, is extrapolated, or
+    where there are several maxima that of the last state.
+
+    Args:
+        rested: states at rest under rising tensions from F = 0 on, with a bracket.
+        scene: whose pull-off it is.
+        settings: of the run.
+        preload: compression positive [FU].
     """
     assert rested.search.bracket is not None
     best, broken = rested.search.bracket
@@ -236,8 +268,8 @@ def _critical_radius(rested: Trace) -> Reading:
     """Return the radius [LU] at the force maximum of a cubic through the last four states, with its sampling error.
 
     The radius is a parabola through the last three states, the error twice the change with a parabola for the force.
-    With fewer states, where a polynomial has no maximum nearby, or without a contact, it is the radius of the last
-    state, uncertain by its whole value.
+    With fewer than four states, where a polynomial has no maximum nearby, or where one of the last three is without a
+    contact, it is the radius of the last state, uncertain by its whole value.
     """
     few, margin = 4, 2.0  # error over the change with one state less
     count = min(few, len(rested))

@@ -43,40 +43,48 @@ class Series:
     smooth: bool = False
 
     def __getitem__(self, name: str) -> Array:
-        """Return the recorded column of a name, (n,), in its own unit."""
+        """Return the recorded column of a name, (n,), in its own unit.
+
+        Raises:
+            KeyError: there is no such column; integrals are not among them.
+        """
         return self.columns[name]
 
     def __len__(self) -> int:
-        """Return the number of records."""
+        """Return the number of records, that of the first column; there must be one."""
         return len(next(iter(self.columns.values())))
 
     def mean(self, name: str) -> Any:
-        """Return the mean of a column in its unit: a number, of a profile an array (particles,)."""
+        """Return the mean of a column over all records in its unit: a number, of a profile an array (particles,)."""
         return self.columns[name].mean(axis=0)
 
     def table(self) -> dict[str, tuple[float, ...]]:
-        """Return the columns as tuples of n numbers, as a file has them, by name."""
+        """Return the columns by name, as tuples of n numbers, as a file has them; integrals are left out."""
         return {name: tuple(values.tolist()) for name, values in self.columns.items()}
 
     def chosen(self, records: Any) -> Series:
-        """Return the series of the records with given indices, a slice or an array, with columns and integrals."""
+        """Return the series of the records with given indices, a slice, an array of numbers or a mask.
+
+        Columns and integrals are those of these records.
+        """
         columns = {name: values[records] for name, values in self.columns.items()}
         integrals = {name: values[records] for name, values in self.integrals.items()}
         return Series(columns, integrals, self.smooth)
 
     def every_second(self) -> Series:
-        """Return the series of every second record, counted from the last, and of the first one."""
+        """Return the series of every second record, counted from the last, and of the first one, in the same order."""
         return self.chosen(np.union1d(0, np.arange(len(self))[::-2]))
 
     def parts(self, count: int) -> Series:
-        """Return the means over `count` parts of about equal length, as a series without integrals."""
+        """Return the means over `count` parts of about equal length, in order, as a series without integrals."""
         split = {name: np.array_split(values, count) for name, values in self.columns.items()}
         return Series({name: np.asarray([part.mean(axis=0) for part in parts]) for name, parts in split.items()})
 
     def periods(self, length: float) -> Series:
-        """Return the means of quantities with integrals over whole periods of a length [TU].
+        """Return the means of quantities with integrals over whole periods of a length [TU], in order, as a series.
 
-        The last period ends with the series. A mean is in the unit of the integral over [TU].
+        The last period ends with the series, a remainder at its beginning is left out; with less than a period the
+        columns are empty. A mean is in the unit of the integral over [TU].
         """
         rates = self.columns if self.smooth else {}
         return Series(
@@ -88,7 +96,7 @@ class Series:
 
 
 def recorded(records: Sequence[object], names: Iterable[str]) -> dict[str, Array]:
-    """Return attributes of n records as columns by name, (n,) each, in their own units."""
+    """Return attributes of n records as columns by name, in their own units: (n,), of an array attribute (n, …)."""
     return {name: np.asarray([getattr(record, name) for record in records]) for name in names}
 
 
@@ -100,13 +108,15 @@ def measured(
 ) -> dict[str, Result]:
     """Return the results of a reader with their errors, by name.
 
-    One that perturbed blocks do not have counts as 0 there.
+    The error "statistics" is that of a jackknife over the blocks, of a single block that of its value. The errors of
+    the reader are kept, and replace those of the same source. A result that is missing without a block, or in a repeat,
+    counts as 0 there.
 
     Args:
         blocks: nearly independent of each other.
         read: the reader: returns readings of a series, by name.
         error: a function of n values that returns the error of their mean.
-        repeats: blocks of other records, by the source of the error that they show.
+        repeats: blocks of other records, by the source of the error that they show: the change of the result.
     """
     readings, count = read(blocks), len(blocks)
     numbers, missing = np.arange(count), Reading(0.0, "")
@@ -125,6 +135,6 @@ def measured(
 
 
 def begin_phase(contact: Contact, phase: Phase) -> Sequence[Row]:
-    """Begin a phase on a contact and return its load steps, which are still to be run."""
+    """Begin a phase on a contact and return its load steps, none of which has been run."""
     contact.begin(phase.name, phase.begin, sum(getattr(row, "steps", 0) for row in phase.rows))
     return phase.rows

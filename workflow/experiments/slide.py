@@ -53,9 +53,12 @@ class SlideExperiment(Experiment[Slide]):
     def run(self, context: RunContext) -> Outcome:
         """Load, then drive leg by leg, and return the outcome.
 
+        From the first load step of the drive on `context.left` has the outcome up to the end, also of a run that fails.
+
         Raises:
-            UntrustedError: the plate does not come to rest under the load, a state is no result (`require_trust`), the
-                plate runs off the lower body, separates, or never slides.
+            UntrustedError: the plate does not come to rest under the load, a state is no result, the plate runs off the
+                lower body, or separates; without a given path, it never slides steadily.
+            EngineError: LAMMPS failed.
         """
         scene, settings = context.deck.scene, context.deck.settings
         load, legs = self.given(scene).normal_force, self.planned(scene, settings)[1:]
@@ -79,7 +82,10 @@ class SlideExperiment(Experiment[Slide]):
         return outcome
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
-        """Return the schedule, "loading" and a phase "sliding" for each leg, without the relaxation in between."""
+        """Return the schedule, "loading" and a phase "sliding" for each leg, numbered from the second on.
+
+        The load steps in which the plate relaxes along x, whose number is not known, are left out.
+        """
         load, phases = self.given(scene).normal_force, list[Phase]()
         for leg in settings.motion.drive:
             name = numbered("sliding", [phase.name for phase in phases])
@@ -89,7 +95,10 @@ class SlideExperiment(Experiment[Slide]):
         return self.loading(scene, settings, load), *phases
 
     def loading(self, scene: Scene, settings: Settings, force: float) -> Phase:
-        """Return the phase in which the normal force [FU], compression positive, is applied, as it is planned."""
+        """Return the phase "loading", as planned, in which the normal force [FU], compression positive, is applied.
+
+        It has one load step with the drag of the loading, and another with the drag of the scene where that differs.
+        """
         scale = abs(force) or settings.forces.scale
         rows = [hold_row(scene, _loading_settings(settings), force, scale, Start.KEPT)]
         if settings.motion.settling_damping != settings.motion.damping:
@@ -97,11 +106,12 @@ class SlideExperiment(Experiment[Slide]):
         return Phase("loading", tuple(rows))
 
     def loaded(self, contact: Contact, force: float) -> State:
-        """Apply the normal force [FU], compression positive, and return the state at rest.
+        """Apply the normal force [FU], compression positive, and return the state at rest, with the drag of the scene.
 
         Raises:
             PartedError: the bodies separate under it.
-            UntrustedError: the plate does not come to rest (`hold`), or oscillates on along x.
+            UntrustedError: the plate does not come to rest along z or along x, or a state on the way is no result.
+            EngineError: LAMMPS failed.
         """
         phase = self.loading(contact.scene, contact.settings, force)
         scale = abs(force) or contact.settings.forces.scale
@@ -117,7 +127,10 @@ class SlideExperiment(Experiment[Slide]):
         return state
 
     def advice(self, scene: Scene) -> str:
-        """Return the advice to average over a longer distance, as text without a full stop."""
+        """Return the advice to average over a longer distance, as text without a full stop.
+
+        It says as well that this does not improve the static friction.
+        """
         leg = "experiment.distance" if self.given(scene).path is None else "last leg of experiment.path that moves"
         return (
             f"Use a longer {leg}, with more whole periods of the spacing; this does not improve static_friction, whose "
@@ -132,17 +145,24 @@ class ThermalSlide(SlideExperiment):
     start = ("steps/drive", HEAT_FRAGMENT)
 
     def loading(self, scene: Scene, settings: Settings, force: float) -> Phase:
-        """Return the phase of the run-in under the normal force [FU], compression positive."""
+        """Return the phase "loading" of the run-in under the normal force [FU], compression positive: 40 load steps."""
         return run_in("loading", settings, force)
 
     def loaded(self, contact: Contact, force: float) -> State:
-        """Run in under the normal force [FU], compression positive, and return the last state, whatever it is."""
+        """Run in under the normal force [FU], compression positive, and return the last state, whether at rest or not.
+
+        Raises:
+            EngineError: LAMMPS failed.
+        """
         phase = self.loading(contact.scene, contact.settings, force)
         return contact.rows(begin_phase(contact, phase), trusted=False)[-1]
 
 
 def outcome_of(motion: Motion, states: list[State], phases: tuple[Phase, ...]) -> Outcome:
-    """Return the outcome of a finished slide, or of the part before a failure, with its tables slips and friction."""
+    """Return the outcome of a finished slide, or of the part before a failure, with its tables "slips" and "friction".
+
+    The last state is marked "final". "friction" has a row for each load step, without the start.
+    """
     tables = {
         "slips": {name: tuple(getattr(slip, name) for slip in motion.slips) for name in ("time", "place", "size")},
         "friction": motion.series.chosen(slice(1, None)).table(),
@@ -152,9 +172,11 @@ def outcome_of(motion: Motion, states: list[State], phases: tuple[Phase, ...]) -
 
 
 def _warnings(motion: Motion) -> dict[str, str]:
-    """Return the warnings of a slide by name, {} for none: "fast", "unsteady", "drag", "energy".
+    """Return the warnings of a slide by name; {} for none.
 
-    Too fast, too short, too much drag, or an energy balance that does not close.
+    "fast": the drive passes a particle in less than its period; "unsteady": the drive moves, and no mean friction
+    results; "drag": the drag at the drive's velocity exceeds the largest friction; "energy": the residual of the energy
+    balance exceeds 0.5 % of its largest term.
     """
     settings, top, work = motion.settings, motion.largest[FORCE], motion.results["cantilever_work"]
     fastest, warnings = max(abs(leg.velocity) for leg in settings.motion.drive), {}
@@ -182,14 +204,21 @@ def _warnings(motion: Motion) -> dict[str, str]:
 
 
 def _loading_settings(settings: Settings) -> Settings:
-    """Return the settings with the drag of the loading, which is critical for the contact, on each particle."""
+    """Return a copy of the settings with the drag of the loading, critical for the contact, on each particle."""
     return replace(settings, motion=replace(settings.motion, damping=settings.motion.settling_damping))
 
 
 def _settled_along_x(contact: Contact, force: float, scale: float, state: State) -> State:
     """Continue from a state until the plate is at rest along x as well, and return the state there.
 
-    `force`: normal force [FU]; `scale`: force [FU] to which the tolerance is relative.
+    At rest the friction equals the pull of the cantilever, and the drag on the moving plate is as small as their
+    difference may be. The state is returned as it is where that holds already.
+
+    Args:
+        contact: the running contact.
+        force: normal force [FU], compression positive.
+        scale: force [FU] to which the tolerance is relative.
+        state: the state to begin with.
 
     Raises:
         RestlessError: it does not come to rest.
@@ -213,11 +242,11 @@ def _settled_along_x(contact: Contact, force: float, scale: float, state: State)
 
 
 def _require_contact(scene: Scene, settings: Settings, state: State) -> None:
-    """Refuse a plate that has left the lower body, along it or off it.
+    """Refuse a plate that has left the lower body, along it or off it; nothing is returned.
 
     Raises:
-        OffEndError: it is beyond the end of the lower body.
-        PartedError: the bodies have separated.
+        OffEndError: the contact is beyond the end of the lower body; not with periodic bodies.
+        PartedError: the bodies have separated: no particle is within the cutoff of the other body.
     """
     if state.smallest_distance > settings.forces.cutoff:
         raise PartedError(

@@ -34,8 +34,12 @@ RADII = ("contact_radius", "stick_radius", "zero_load_radius", "critical_radius"
 def with_spacing(scene: Scene) -> Scene:
     """Return the scene with a number for `bodies.spacing` [LU], unchanged where it has one.
 
+    Else it is the first of up to eight trials, from 30 to 5000 particles in the contact radius, whose discretisation
+    error is below 90 % of the tolerance, or the last one where its error is within the tolerance. An infinite error, of
+    a radius that is 0, is accepted.
+
     Raises:
-        SettingsError: the bodies do not touch, or the tolerance needs more than 5000 particles in the contact radius.
+        SettingsError: the bodies do not touch, or the tolerance is not reached.
     """
     if scene.bodies.given_spacing != "auto":
         return scene
@@ -64,7 +68,7 @@ def spaced_within_tolerance(
     Args:
         scene_of: returns the scene with a number of particles in the contact radius, which is 5000 at most.
         share: of the tolerance.
-        fewest: particles in the contact radius; with 30, F_A and a₀ of JKR are within 3e-3.
+        fewest: particles in the contact radius of the first trial; with 30, F_A and a₀ of JKR are within 3e-3.
     """
     count = fewest
     for _ in range(8):
@@ -79,11 +83,11 @@ def spaced_within_tolerance(
 
 
 def lattice_error(scene: Scene) -> float:
-    """Return the largest relative discretisation error of a result, or of a curve over its largest force.
+    """Return the largest relative discretisation error ≥ 0 of a result, or of a curve over its largest force.
 
     The error of a radius counts twice; prescribed results other than radii, and energy losses with an error above 10 %,
-    do not count. It is 0 where no contact can be predicted: the run reports it. A result of 0 has no relative error; a
-    radius that is 0 here and not on another lattice has an infinite one.
+    do not count. It is 0 where the scene has no settings, and for a slide, which has no prediction: the run reports it.
+    A result of 0 has no relative error; a radius that is 0 here and not on another lattice makes the error infinite.
     """
     try:
         settings = settings_for(scene)
@@ -110,7 +114,10 @@ def lattice_error(scene: Scene) -> float:
 
 
 def _spaced(scene: Scene, radius: float, count: int) -> Scene:
-    """Return the scene with a whole number `count` of particles in a contact radius [LU], as a punch needs."""
+    """Return a copy of the scene with a whole number `count` of particles in a contact radius [LU], as a punch needs.
+
+    Its spacing is radius/count.
+    """
     return scene.model_copy(update={"bodies": scene.bodies.model_copy(update={"given_spacing": radius / count})})
 
 
@@ -119,9 +126,9 @@ def contact_curve(scene: Scene) -> tuple[Array, Array, Array]:
 
         d = g(a) − √(2πaW/E*),    F = 2E* [a d − ∫₀ᵃ g dx],    of a flat punch its one radius
 
-    (V. L. Popov, M. Heß, Method of Dimensionality Reduction, 2015, sections 3.1 and 4.4), E* that of the layer,
-    compression positive. The radii are a geometric progression from 1e-12 LU to 1e12 LU, or to just inside the end of a
-    body.
+    (V. L. Popov, M. Heß, Method of Dimensionality Reduction, 2015, sections 3.1 and 4.4), E* that of the layer per
+    length [FU/LU²], d and F positive in compression, W 0 without [adhesion]. The radii are a geometric progression from
+    1e-12 LU to 1e12 LU, or to just inside the end of a body; those at which g is not finite are left out.
     """
     bodies, modulus = scene.bodies, _spaced(scene, 1.0, 1).bulk_stiffness
     work, reach = scene.work_of_adhesion, bodies.profile.reach
@@ -141,7 +148,8 @@ def contact_radius(scene: Scene) -> float:
     """Return the contact radius [LU] in which particles are counted, by the closed theory of the body, without a run.
 
     It is that under the largest load, at the largest prescribed displacement, where an impact turns, or at F = 0 where
-    an experiment with adhesion finds the pull-off force; beyond the curve of the theory, that of its end.
+    an experiment with adhesion finds the pull-off force; beyond the curve of the theory, that of its end. Of a flat
+    punch it is its radius.
 
     Raises:
         SettingsError: the bodies do not touch.
@@ -170,6 +178,6 @@ def contact_radius(scene: Scene) -> float:
 
 
 def _rounded_up(tolerance: float) -> str:
-    """Return a tolerance 10 to about 20 % larger as text, rounded up to two significant digits."""
+    """Return a tolerance > 0, made 10 to about 20 % larger, as text, rounded up to two significant digits."""
     step = 10.0 ** (math.floor(math.log10(tolerance)) - 1)
     return f"{math.ceil(1.1 * tolerance / step) * step:.2g}"

@@ -55,10 +55,13 @@ class TangentialExperiment(Scripted[Tangential]):
     )  # fmt: skip
 
     def run(self, context: RunContext) -> Outcome:
-        """Run the schedule and return the outcome; refuse forces that are not those of the history of each particle.
+        """Run the schedule and return the outcome, with the states that the scene asks for.
+
+        The last one is marked "final", and "farthest" the first one of the largest |position| along x.
 
         Raises:
-            UntrustedError: the result can't be trusted.
+            UntrustedError: the result can't be trusted, as where tangential forces are not those of each particle's
+                history.
             EngineError: LAMMPS failed.
         """
         scene, settings = context.deck.scene, context.deck.settings
@@ -94,7 +97,7 @@ class TangentialExperiment(Scripted[Tangential]):
         )
 
     def script(self, branch: Driver, scene: Scene) -> None:
-        """Visit the displacements and positions of the scene, without those that change nothing."""
+        """Visit the displacements and positions of the scene on the reduced model, but for those without an effect."""
         model = cast("SlidingSprings", branch.model)
         for name, stretch in stretches(load_steps(scene, model.chain, branch.settings, sparse=True)):
             branch.begin(name)
@@ -104,9 +107,9 @@ class TangentialExperiment(Scripted[Tangential]):
         """Return the results of the last state by name, on the scales of Σ |s_i| and its work.
 
         s_i is the tangential force of a particle. "normal_force", compression positive, and "tangential_force" [FU],
-        "contact_radius" and "stick_radius" [LU], "dissipated_energy" [FU·LU] and, with cycles,
-        "dissipated_energy_per_cycle" of the last one. The round-off of tangential forces adds up along the history, by
-        1e-13 of the largest one in each load step.
+        with which the body resists a move to the right, "contact_radius", 0 without contact, and "stick_radius" [LU],
+        "dissipated_energy" [FU·LU] since the start and, with cycles, "dissipated_energy_per_cycle" of the last one. The
+        round-off of tangential forces adds up along the history, by 1e-13 of the largest Σ |s_i| in each load step.
         """
         rows, round_off = slid_states(trace, scene), 1e-13
         last = rows[-1]
@@ -142,7 +145,10 @@ class TangentialExperiment(Scripted[Tangential]):
         return results
 
     def _plan(self, deck: Deck, model: Particles) -> Plan:
-        """Return the plan: the load in one step, then a phase for each stretch along x, "forward" or "backward"."""
+        """Return the plan of the load steps: the load in one step, "pressing", then a phase for each stretch along x.
+
+        These are named "forward" or "backward", numbered where repeated; the state at the end of each is written.
+        """
         parts = stretches(load_steps(deck.scene, _chain(deck.scene, deck.settings), deck.settings))
         names = [name for name, stretch in parts for _ in stretch]
         ends = np.cumsum([len(stretch) for _, stretch in parts]) - 1
@@ -156,7 +162,7 @@ class TangentialExperiment(Scripted[Tangential]):
         return self._plan(Deck(scene, settings), reduced(scene, settings)).phases
 
     def advice(self, scene: Scene) -> str:
-        """Return the advice to refine the lattice, a sentence without a full stop: the load steps are exact."""
+        """Return the advice to use a smaller spacing, as a sentence without a full stop: the load steps are exact."""
         return f"Use {finer_spacing(scene)}"
 
 
@@ -187,9 +193,10 @@ class SlidState:
 
     @cached_property
     def stick(self) -> ContactRadius:
-        """Half-width c of the stick zone with its uncertainty [LU], 0 where all particles slip.
+        """Half-width c of the stick zone with its uncertainty and edges [LU], 0 where all particles slip; cached.
 
-        A flat punch sticks or slips as a whole: it is its edge or 0.
+        A body with an edge, as a flat punch, sticks or slips as a whole: c is its half-width, or 0 without an
+        uncertainty, also where it does not touch.
         """
         profile, coefficient = self.trace.profile(self.state), self.scene.the(Friction).coefficient
         if self.scene.bodies.own_count is None:
@@ -200,7 +207,10 @@ class SlidState:
 
 
 def slid_states(trace: Trace, scene: Scene) -> list[SlidState]:
-    """Return the friction of each state of a trace, in order; the first one is under the normal load alone."""
+    """Return the friction of each state of a trace, in order; the first one is under the normal load alone.
+
+    The dissipated energy is added up from 0 in the first state. The model of the trace must be one of friction.
+    """
     coefficient, spacing, stiffness, _ = _springs(trace)
     rows: list[SlidState] = []
     dissipated, direction, before, limit = 0.0, 0, np.empty(0), np.empty(0)
@@ -228,11 +238,11 @@ def _springs(trace: Trace) -> tuple[float, float, float, float]:
 
 
 def _energy(rows: Sequence[SlidState], error: float, scene: Scene) -> Reading:
-    """Return the energy [FU·LU] dissipated from the first state to the last, with its errors.
+    """Return the energy [FU·LU] dissipated from the first state of `rows` to the last, with its errors.
 
-    `error`: by the error of tangential forces [FU·LU]. Where no particle slips, `_unseen_slip` dissipates at most force
-    times distance; that counts as 0 below 1e-5 of the work, and is 0 of a body with an edge, which sticks or slips as a
-    whole.
+    Where it is within the `error` due to the error of tangential forces [FU·LU], no particle slips: an annulus between
+    the outermost particles may then slip unseen, and dissipate at most its force times its slip. Below 1e-5 of the work
+    that counts as 0, and it is 0 of a body with an edge, which sticks or slips as a whole.
     """
     dissipated = rows[-1].dissipated - rows[0].dissipated
     if abs(dissipated) > error:
@@ -246,12 +256,12 @@ def _energy(rows: Sequence[SlidState], error: float, scene: Scene) -> Reading:
 
 
 def _unseen_slip(rows: Sequence[SlidState], scene: Scene) -> tuple[float, float]:
-    """Return (force [FU], distance [LU]) at most of the slip between the outermost particles, where none slips.
+    """Return (force [FU], distance [LU]) ≥ 0 at most of the slip between the outermost particles, where none slips.
 
     The annulus that slips is as wide as k_t u/(μ Δf) spacings, with Δf the difference of the normal forces of the two
     outermost particles, and one at most, or three at both edges together; its forces are below k_t u and μ f, and it
-    slips by as much as the sliders are moved beyond what a rising load lets them carry, k_t |Δu| − μ k_n Δd. Of a body
-    with an edge the force is 0.
+    slips by as much as the sliders are moved beyond what a rising load lets them carry, k_t |Δu| − μ k_n Δd. The force
+    is 0 of a body with an edge, and where no state has more than two particles in contact.
     """
     coefficient, spacing, stiffness, normal = _springs(rows[0].trace)
     outer = [np.sort(row.trace.profile(row.state).pressure) for row in rows]
@@ -271,6 +281,13 @@ def _unseen_slip(rows: Sequence[SlidState], scene: Scene) -> tuple[float, float]
 def _require_history(trace: Trace, rows: Sequence[SlidState], tolerance: float = 1e-8) -> None:
     """Refuse tangential forces off those of springs and sliders by more than a share of the largest friction force.
 
+    Nothing is returned.
+
+    Args:
+        trace: of all states.
+        rows: the friction of each of them.
+        tolerance: share of the coefficient of friction times the largest normal force of a particle.
+
     Raises:
         UntrustedError: names the first such state.
     """
@@ -287,7 +304,11 @@ def _require_history(trace: Trace, rows: Sequence[SlidState], tolerance: float =
 
 
 def _columns(rows: Sequence[SlidState]) -> dict[str, tuple[float, ...]]:
-    """Return the additional columns of curve.csv by name, (m,): lengths [LU], forces [FU], energy [FU·LU]."""
+    """Return the additional columns of curve.csv by name, (m,): lengths [LU], forces [FU], energy [FU·LU].
+
+    "tangential_displacement", "tangential_force", "normal_force", compression positive, "stick_radius",
+    "stick_radius_uncertainty" and "dissipated_energy", since the start.
+    """
     return {
         "tangential_displacement": tuple(row.position for row in rows),
         "tangential_force": tuple(row.force for row in rows),
@@ -299,7 +320,7 @@ def _columns(rows: Sequence[SlidState]) -> dict[str, tuple[float, ...]]:
 
 
 def _chain(scene: Scene, settings: Settings) -> JenkinsElements:
-    """Return the springs and sliders of the particles of the chain that runs."""
+    """Return the springs and sliders of the particles of the upper chain, with the friction of the scene."""
     return elements_of(scene, particle_positions(settings.chains.upper, scene.bodies.spacing))
 
 
@@ -308,8 +329,10 @@ def load_steps(
 ) -> list[tuple[Stop, bool]]:
     """Return ((displacement, position) [LU], whether the scene asks for it) of every load step in order.
 
-    The others press the bodies together first, or are where a particle comes into contact or leaves it. With `sparse`,
-    stops of the scene on a straight path at constant displacement are left out.
+    The first presses the bodies together, at position 0; the others that the scene does not ask for are where a
+    particle comes into contact or leaves it on a path along x, evenly chosen where there are more of them between two
+    stops than the inverse of the tolerance. With `sparse`, stops of the scene on a straight path at constant
+    displacement are left out.
     """
     assert isinstance(scene.experiment, Tangential)
     asked = stops(scene.experiment, chain)
@@ -331,7 +354,8 @@ def load_steps(
 def stretches(steps: Sequence[tuple[Stop, bool]]) -> list[tuple[str, list[tuple[Stop, bool]]]]:
     """Return (name, load steps) of stretches of one direction: "pressing" with the first, then "forward", "backward", …
 
-    Load steps that do not move along x belong to the stretch before, and first to that after.
+    A repeated name gets a number, "forward_2". Load steps that do not move along x belong to the stretch before, and
+    those before the first move to the stretch of that move.
     """
     moves = [after[1] - before[1] for (before, _), (after, _) in pairwise(steps)]
     direction = BACKWARD if next((move for move in moves if move), 1.0) < 0.0 else FORWARD
@@ -348,7 +372,7 @@ def stretches(steps: Sequence[tuple[Stop, bool]]) -> list[tuple[str, list[tuple[
 
 
 def _contact_error(scene: Scene, settings: Settings) -> float:
-    """Return the error [FU] of tangential forces by particles that come into contact between two load steps of a deck.
+    """Return the error [FU] ≥ 0 of tangential forces by particles that come into contact between two load steps.
 
     0 where each such particle has a load step.
     """
@@ -362,7 +386,7 @@ def _contact_error(scene: Scene, settings: Settings) -> float:
 
 
 def _most_between(settings: Settings) -> int:
-    """Return how many load steps lie between two of the scene at most: the inverse of the tolerance.
+    """Return how many load steps lie between two of the scene at most: the inverse of the tolerance, 1 at least.
 
     A particle that comes into contact between two of these moves along from the first, an error of one in so many.
     """

@@ -43,18 +43,25 @@ def chunk_steps(settings: Settings) -> int:
 
 
 def run_in(name: str, settings: Settings, load: float) -> Phase:
-    """Return the phase of this name in which a contact under a load [FU], compression positive, forgets its start."""
+    """Return a phase of 40 load steps under a load [FU], compression positive, in which a contact forgets its start.
+
+    `name`: name of the phase.
+    """
     return Phase(name, (UnderLoad(load, chunk_steps(settings)),) * RUN_IN_SAMPLES)
 
 
 def planned_samples(settings: Settings, load: float) -> tuple[Phase, Phase]:
-    """Return the planned phases "settling" and "sampling" of a load [FU], compression positive, under noise."""
+    """Return the phases "settling" (40 load steps) and "sampling" (200) under a load [FU], compression positive."""
     samples = (UnderLoad(load, chunk_steps(settings)),) * SAMPLES
     return run_in("settling", settings, load), Phase("sampling", samples, state=True)
 
 
 def blocks_of(samples: Sequence[State]) -> Series:
-    """Return the means over 20 parts of the samples: displacement [LU], forces [FU] and profiles."""
+    """Return the means over 20 parts of the samples, in order, as a series; 20 samples at least are needed.
+
+    Its columns are "displacement" [LU], "force", that of the contact, and "carried", the load that it balances [FU],
+    and those of the profile, (20, particles).
+    """
     profiles = recorded([sample.profile for sample in samples], PROFILE_COLUMNS)
     return Series(recorded(samples, ("displacement", "force", "carried")) | profiles).parts(BLOCKS)
 
@@ -67,7 +74,8 @@ def mean_profile(blocks: Series) -> Profile:
 def mean_state(samples: Sequence[State]) -> State:
     """Return the mean of samples as a state whose `residual` [FU] is two standard errors of the force over N particles.
 
-    Its smallest distance and depth are the extremes of all samples, all else is that of the last one.
+    Displacement, force and profile are means, the smallest distance is the least and the depth the largest of all
+    samples; all else is that of the last one.
     """
     blocks = blocks_of(samples)
     return replace(
@@ -84,7 +92,8 @@ def mean_state(samples: Sequence[State]) -> State:
 def sample_columns(states: Sequence[State], loads: Sequence[float], settings: Settings) -> dict[str, tuple[float, ...]]:
     """Return the columns of samples.csv by name, (m,): time [TU], load, force [FU], displacement, contact radius [LU].
 
-    The contact radius is NaN where the bodies do not touch.
+    The names are "time", "load", "displacement", "force" and "contact_radius", which is NaN where the bodies do not
+    touch. Forces are positive in compression.
 
     Args:
         states: in order, (m,).
@@ -99,12 +108,15 @@ def sample_columns(states: Sequence[State], loads: Sequence[float], settings: Se
 
 
 def thermal_load(context: RunContext, load: float, most_samples: int = 2_000) -> Outcome:
-    """Return the outcome of a load [FU], compression positive, under noise: means of d, F, a and F/(πa²).
+    """Run a contact under a load [FU], compression positive, with noise, and return the outcome: means of the samples.
 
-    With a warning "statistics" where `most_samples` do not meet the tolerance.
+    Its results are "displacement" [LU], "force" [FU] and, in contact, "contact_radius" [LU] and "mean_pressure"
+    [FU/LU²]. Samples are added, 200 at a time, until the standard error of the displacement meets the tolerance; with a
+    warning "statistics" where `most_samples` do not.
 
     Raises:
-        UntrustedError: the bodies separate, the mean force misses the load, or a state fails `require_trust`.
+        UntrustedError: the bodies separate, the mean force misses the load, or a state is no result.
+        EngineError: LAMMPS failed.
     """
     scene, settings = context.deck.scene, context.deck.settings
     goal = settings.tolerance * max(settings.forces.rest, abs(settings.largest_displacement))
@@ -136,10 +148,11 @@ def thermal_load(context: RunContext, load: float, most_samples: int = 2_000) ->
 
 
 def _sampled_states(contact: Contact, rows: Sequence[Row]) -> list[State]:
-    """Run load steps and return their states, which need not be at rest.
+    """Run load steps and return their states, one for each, which need not be at rest.
 
     Raises:
-        UntrustedError: the bodies are separated: no particle is within the cutoff of the other body.
+        UntrustedError: the bodies are separated: no particle is within the cutoff of the other body. Never on a plane.
+        EngineError: LAMMPS failed.
     """
     states = []
     for row in rows:
@@ -156,8 +169,9 @@ def _sampled_states(contact: Contact, rows: Sequence[Row]) -> list[State]:
 def read(blocks: Series, rule: RadiusRule) -> dict[str, Reading]:
     """Return means of "displacement" [LU] and "force" [FU], "contact_radius" [LU] and "mean_pressure" [FU/LU²].
 
-    The last two are those of the mean profile, and are left out where it shows no contact, or one of no width. The
-    force is the load that the contact carries.
+    The force is the load that the contact carries, compression positive. The last two are those of the mean profile,
+    the pressure its force over πa²; they are left out where it shows no contact, or one of no width. Their errors are
+    those by the interpolation of the radius.
     """
     results = {
         "displacement": Reading(float(blocks.mean("displacement")), LENGTH),
@@ -177,6 +191,8 @@ def read(blocks: Series, rule: RadiusRule) -> dict[str, Reading]:
 def require_balance(force: Result, load: float, most: float = 5.0) -> None:
     """Refuse a mean force that misses its load [FU] by more than `most` of its uncertainties (standard errors).
 
+    Nothing is returned.
+
     Raises:
         UntrustedError: the message has the difference in standard errors.
     """
@@ -191,7 +207,9 @@ def require_balance(force: Result, load: float, most: float = 5.0) -> None:
 def thermal_rows(
     settings: Settings, decay: float, positions: Sequence[tuple[float, bool]]
 ) -> tuple[DisplaceInTime, ...]:
-    """Return the load steps of a path: equilibration at each position, and samples where the scene asks for the state.
+    """Return the load steps of a path: 40 of equilibration at a position, and 200 samples if the scene asks for it.
+
+    They are as long as the time between two samples of a thermal contact, and half of `decay` at least.
 
     Args:
         settings: of the scene.
@@ -206,9 +224,11 @@ def thermal_rows(
 
 
 def averaged(states: Sequence[State], positions: Sequence[tuple[float, bool]]) -> list[State]:
-    """Return one state for each position of a path: the mean of its samples, of an intermediate one the last state.
+    """Return one state for each position of a path: the mean of its 200 samples, of an intermediate one the last state.
 
-    `states`: of all load steps, in order; `positions`: displacement [LU], and whether the scene asks for its state.
+    Args:
+        states: of all load steps, in order.
+        positions: displacement [LU], and whether the scene asks for its state.
     """
     ends = np.cumsum([_steps_at(asked) for _, asked in positions]).tolist()
     return [

@@ -32,26 +32,37 @@ class Segment:
     approaches: bool
 
     def _sides(self, margin: int = 0) -> tuple[Indices, Indices]:
-        """Return the indices in the curve of points (before, after) the jump, without the `margin` points next to it.
+        """Return the rising indices in the curve of the points (before, after) the jump of the force.
 
-        Both are empty without a jump.
+        Points within the jump are in neither; `margin` further points at the jump are left out on each side. Both are
+        empty without a jump.
         """
         before, after = self.jump or (-1, self.points.size)
         return self.points[: max(0, before + 1 - margin)], self.points[after + margin :]
 
     @property
     def held(self) -> Indices:
-        """Indices in the curve of points at which the bodies are certainly in contact; empty without a jump."""
+        """Indices in the curve, rising, of the points certainly in contact: after the snap-in, or before the snap-out.
+
+        Points within the jump of the force are left out. Empty without a jump.
+        """
         return self._sides()[self.approaches]
 
     @property
     def apart(self) -> Indices:
-        """Indices in the curve of points at which the bodies are certainly apart; empty without a jump."""
+        """Indices in the curve, rising, of the points certainly apart: before the snap-in, or after the snap-out.
+
+        Points within the jump of the force are left out. Empty without a jump.
+        """
         return self._sides()[not self.approaches]
 
     @property
     def compared(self) -> Indices:
-        """Indices in the curve of points that a model is compared with: all but the jump and three points beside it."""
+        """Indices in the curve, rising, of the points that a model is compared with.
+
+        All points without a jump of the force; else without those within the jump and the three next to it on each
+        side.
+        """
         return self.points if self.jump is None else np.concatenate(self._sides(BESIDE_JUMP))
 
 
@@ -72,7 +83,11 @@ class ForceCurve:
 
     @cached_property
     def segments(self) -> tuple[Segment, Segment]:
-        """The (approach, retraction) of the curve, each with its jump of the force: a snap-in, a snap-out."""
+        """The (approach, retraction) of the curve, each with its jump, if it has one; cached.
+
+        The jump of the approach is a snap-in, at which the force falls; that of the retraction is a snap-out, at which
+        it rises.
+        """
         approach, retraction = np.split(np.arange(self.positions.size), [self.turn])
         return (
             Segment(approach, self._jump(approach, -1.0), True),
@@ -80,10 +95,14 @@ class ForceCurve:
         )
 
     def _jump(self, points: Indices, sign: float) -> tuple[int, int] | None:
-        """Return positions in `points`: of the last before a jump of the force and of the first after it.
+        """Return positions in `points` of the largest jump of the force: (last point before it, first point after it).
 
-        None without a jump. `sign`: that of the change of the force, −1 for a snap-in and 1 for a snap-out. A jump is
-        more than six times as large as the usual change between neighbours.
+        None without a jump. A jump is a change between neighbouring points that, less the running median of 15 changes,
+        is more than six times 1.4826 times the median of the absolute changes. It may take several points.
+
+        Args:
+            points: indices in the curve, at least two.
+            sign: sign of the change of the force: −1 for a snap-in, 1 for a snap-out.
         """
         change = sign * np.diff(self.forces[points])
         change -= median_filter(change, 15, mode="nearest")  # less the usual change, due to the contact stiffness
@@ -102,14 +121,14 @@ class ForceCurve:
 
     @property
     def depth(self) -> float:
-        """The range of the positions, largest less least [LU]."""
+        """The range of all positions, largest less least [LU]."""
         return float(np.ptp(self.positions))
 
     @cached_property
     def baseline(self) -> float:
-        """The median force [FU] where the bodies are certainly apart, else of the first fifth of the approach.
+        """The median force [FU] of the points certainly apart, those before a snap-in or after a snap-out; cached.
 
-        The latter where fewer than ten points are certainly apart.
+        With fewer than ten of these, it is that of the first fifth of the approach, three points at least.
         """
         apart = np.concatenate([segment.apart for segment in self.segments])
         if apart.size < 10:

@@ -57,10 +57,12 @@ NamedCurve = tuple[str, tuple[float, float] | None, ForceCurve | DataError]
 
 
 def files_of(plan: FitPlan) -> list[Path]:
-    """Return the paths of the files of data: one, all CSV files of a folder, or those of a pattern, sorted by name.
+    """Return the paths of a plan's data files, sorted: one file, all *.csv of a folder, or the matches of a pattern.
+
+    The path or pattern (`*`, `?`, `[`, with `**` for subfolders) is relative to the plan's folder.
 
     Raises:
-        DataError: there is none.
+        DataError: there is no such file, or one of them is no regular file.
     """
     path = plan.folder / plan.fit.data
     if path.is_dir():
@@ -79,10 +81,11 @@ def files_of(plan: FitPlan) -> list[Path]:
 def curves_of(plan: FitPlan) -> Iterator[NamedCurve]:
     """Yield (name, position (x, y) in a map or None, curve or the error of reading it) of all curves of a plan.
 
-    Of a file that cannot be read, its name and the error.
+    Curves are in the order of the sorted files and of their lines. A file that cannot be read as a whole gives one
+    item: its name without suffix, None and the DataError.
 
     Raises:
-        DataError: there is no file.
+        DataError: at the first item; there is no file.
     """
     for file in files_of(plan):
         try:
@@ -92,7 +95,7 @@ def curves_of(plan: FitPlan) -> Iterator[NamedCurve]:
 
 
 def is_series(plan: FitPlan) -> bool:
-    """Return whether the data of a plan are more than one curve, those with errors included.
+    """Return whether the data of a plan are more than one curve; a curve or file that cannot be read counts as one.
 
     Raises:
         DataError: there is no file.
@@ -103,8 +106,12 @@ def is_series(plan: FitPlan) -> bool:
 def curves(path: Path, plan: FitPlan) -> Iterator[NamedCurve]:
     """Yield (name, position (x, y) in a map or None, curve or the error of reading it) of each curve of a file.
 
+    A curve is a sequence of lines with one entry in the column `curve`, whose name it is, in lower case; without that
+    column it is the whole file, with the file's name without suffix. The position has the numbers of its first line as
+    they are, maybe NaN.
+
     Raises:
-        DataError: the file as a whole cannot be read.
+        DataError: at the first item; the file cannot be read, lacks a column or unit, or has z without a stiffness.
     """
     head = _head(path)
     try:
@@ -133,10 +140,10 @@ def curves(path: Path, plan: FitPlan) -> Iterator[NamedCurve]:
 
 
 def _head(path: Path, count: int = 200) -> list[str]:
-    """Return the first `count` lines of a file, among which the names of columns must be.
+    """Return the first `count` lines of a file, or all if there are fewer, without line ends and byte-order mark.
 
     Raises:
-        DataError: the file cannot be read, is too large or no text.
+        DataError: the file cannot be read, has more than 400 MB, or is no UTF-8 text.
     """
     try:
         size = path.stat().st_size
@@ -154,12 +161,19 @@ def _head(path: Path, count: int = 200) -> list[str]:
 
 
 def _table(path: Path, head: list[str]) -> tuple[DataFrame, dict[str, str]]:
-    """Return (columns of the file by their standard names, indexed by the line in the file.
+    """Return (known columns of a file by their standard names, unit of each by name, "" for none).
 
-    Unit of each name, "" for none).
+    Names are z, d, F, segment, curve, x and y, in the order of the file. Rows are indexed by the line in the file, from
+    1; empty ones are left out. Numbers are in the units of the file, not finite only in x and y; `segment` and `curve`
+    are text in lower case.
+
+    Args:
+        path: the file.
+        head: its first lines.
 
     Raises:
-        ValueError: no line has names of columns, or a cell is no number; the message lacks the file's name.
+        ValueError: no line names F and another column, no line is below it, or a cell is empty or no finite number; the
+            message lacks the file's name.
     """
     from pandas import to_numeric
 
@@ -185,17 +199,20 @@ def _table(path: Path, head: list[str]) -> tuple[DataFrame, dict[str, str]]:
 
 
 def _rows(path: Path, head: list[str], names: int, skip: int, columns: list[int]) -> DataFrame:
-    """Return the cells of some columns below a line, indexed by the line in the file.
+    """Return the cells of some columns below a line, in their order, indexed by the line in the file, from 1.
+
+    Comment lines (#) are left out; empty lines are rows of NaN, as are missing cells. Further cells of a line are
+    ignored. Cells of a column that has no numbers alone are texts.
 
     Args:
         path: the file.
         head: its first lines.
-        names: the line with the names of the columns.
-        skip: the last line above the cells.
-        columns: the indices of the columns.
+        names: the line with the names of the columns, from 1.
+        skip: the last line above the cells, from 1.
+        columns: the indices of the columns, from 0.
 
     Raises:
-        DataError: the lines have different numbers of cells, or there is none.
+        DataError: there is no line, or the first one has fewer cells than the names.
     """
     from pandas import read_csv
 
@@ -217,9 +234,10 @@ def _rows(path: Path, head: list[str], names: int, skip: int, columns: list[int]
 
 
 def _indices(cells: list[str]) -> dict[str, int]:
-    """Return the index of each known column among the cells of a line by its standard name; of several the first one.
+    """Return the index, from 0, of each known column among the cells of a line by its standard name.
 
-    {} where the line has no name of a column.
+    Standard names are z, d, F, segment, curve, x and y; of several cells with one name the first counts. {} where no
+    cell is an allowed heading.
     """
     indices: dict[str, int] = {}
     for i, cell in enumerate(cells):
@@ -231,13 +249,20 @@ def _indices(cells: list[str]) -> dict[str, int]:
 
 
 def _curve(table: DataFrame, along: str, units: dict[str, str], plan: FitPlan) -> ForceCurve:
-    """Return the curve in a table of columns, in SI: positions z of the piezo [m] and forces [N].
+    """Return the curve in a table of columns, in SI: positions z of the piezo [m] and forces [N], compression positive.
 
-    `along`: column of the positions, "z" or "d"; an indentation d becomes z = d + F/k_c where the instrument is not
-    rigid. `units`: of the columns.
+    Columns named by `reverse` in the plan change their sign. An indentation d becomes z = d + F/k_c, or z = d for a
+    rigid instrument.
+
+    Args:
+        table: the columns of one curve, in `units`, indexed by the line in the file.
+        along: column of the positions, "z" or "d".
+        units: of the columns.
+        plan: with the instrument.
 
     Raises:
-        DataError: a unit of another kind, too few or too many points, a missing segment, a wrong sign, or gaps.
+        DataError: a unit of another dimension, fewer than 40 or more than 20 000 points, a missing segment, a wrong
+            sign, no contact, a saturated force, or a gap in the positions.
     """
     reverse = plan.fit.reverse or ()
     columns = []
@@ -267,10 +292,17 @@ def _curve(table: DataFrame, along: str, units: dict[str, str], plan: FitPlan) -
 
 
 def _turn(z: Array, segment: Series | None) -> int:
-    """Return the number of points of the approach, which come first: by the column `segment`, else to the largest z.
+    """Return the number of points of the approach, which come first: by the column `segment`, else up to the largest z.
+
+    The point of the largest z counts as approach.
+
+    Args:
+        z: positions, rising towards the sample, (n,).
+        segment: words or numbers of the points; None: no such column.
 
     Raises:
-        DataError: a segment is missing or has too few points, the words are unknown, or z is reversed.
+        DataError: a segment has fewer than ten points, the words are unknown, the retraction comes first, or z is
+            reversed.
     """
     least, most = FEWEST_POINTS // 4, z.size - FEWEST_POINTS // 4
     if segment is not None:
@@ -292,10 +324,11 @@ def _turn(z: Array, segment: Series | None) -> int:
 
 
 def _require_signs(curve: ForceCurve) -> None:
-    """Refuse a curve without a contact, or one whose positions or forces have the opposite sign.
+    """Check that a curve has a contact, and that positions and forces rise towards the sample; nothing is returned.
 
     Raises:
-        DataError: with the key that reverses a column.
+        DataError: a column has the opposite sign, with the key that reverses it; or the force does not exceed its
+            noise.
     """
     z, F = curve.positions, curve.forces
     tenth = curve.turn // 10 + 1
@@ -310,16 +343,18 @@ def _require_signs(curve: ForceCurve) -> None:
 
 
 def _require_whole(curve: ForceCurve, along: str, saturated: int = 6, gap: float = 8.0) -> None:
-    """Refuse a force that is cut at an end of its range, and positions with gaps.
+    """Check that a force is not cut at an end of its range, and that positions have no gaps; nothing is returned.
 
     Args:
         curve: as it was read.
         along: the column of its positions, for the message.
-        saturated: number of points of equal force at an end of its range that are no measurement.
-        gap: distance of neighbouring positions over its median that is a gap.
+        saturated: number of points of equal force, within 1e-4 of the range, at an end of it that are no measurement,
+            unless that end is the baseline.
+        gap: distance of neighbouring positions over its median that is a gap, where it also exceeds a tenth of the
+            range of positions.
 
     Raises:
-        DataError: with the number of points or the line.
+        DataError: with the number of points, or the line before the gap.
     """
     F, span = curve.forces, float(np.ptp(curve.forces))
     for end, name in ((float(F.max()), "largest"), (float(F.min()), "least")):

@@ -36,10 +36,11 @@ class FitResult:
         file: the data.
         fit: the fit of the contact model of the base scene.
         alternatives: the fits of other contact models to the same points, by the name of the model.
-        difference: largest difference [N] between the forces on LAMMPS and those of the contact model.
-        allowed: largest uncertainty [N] of the fitted force.
+        difference: largest difference [N] between the forces on LAMMPS and those of the contact model; NaN without the
+            run.
+        allowed: largest 95 % half-width [N] of the fitted force; NaN without the run.
         warnings: messages, by the name of the warning.
-        seconds: duration of the fit.
+        seconds: duration of the fit [s].
         finished: whether all steps were done.
     """
 
@@ -54,13 +55,19 @@ class FitResult:
 
     @property
     def models(self) -> dict[str, Fitted]:
-        """The fits of all contact models by name, the most likely one (of least criterion) first."""
+        """The fits of all contact models by name, that of the base scene included, in a new dict.
+
+        The most likely one, of least Bayesian information criterion, is first. Models whose fit failed are missing.
+        """
         fits = {self.fit.model: self.fit, **self.alternatives}
         return dict(sorted(fits.items(), key=lambda pair: pair[1].criterion))
 
     @property
     def bracket(self) -> tuple[float, float]:
-        """The positions z [m], rising, between which the contact is lost; (NaN, NaN) where the force does not jump."""
+        """The positions z of the piezo [m], the lower one first, before and after the snap-out of the retraction.
+
+        (NaN, NaN) where the force has no jump there.
+        """
         segment = self.fit.curve.segments[1]
         if segment.jump is None:
             return math.nan, math.nan
@@ -69,7 +76,10 @@ class FitResult:
 
     @property
     def scene(self) -> Scene:
-        """The base scene with the fitted values in place of the first guesses."""
+        """The base scene with the fitted values of its parameters and of its numbers with ±, unchecked.
+
+        Without [adhesion] where the fitted contact model has none.
+        """
         return self.fit.scene
 
 
@@ -82,15 +92,18 @@ def fit(
 ) -> FitResult:
     """Fit a measured force curve, and return the results of all contact models and of a run of the fitted scene.
 
-        contact1d.fit("fit.toml", folder="fits/pdms") contact1d.fit("curve.csv", base,
-            parameters=["adhesion.work_of_adhesion"], instrument={"stiffness": "0.2 N/m"})
+        contact1d.fit("fit.toml", folder="fits/pdms")
+        contact1d.fit("curve.csv", base, parameters=["adhesion.work_of_adhesion"], instrument={"stiffness": "0.2 N/m"})
+
+    A run that fails is a warning, and another contact model that fails is left out. With a folder the results of an
+    interrupted fit are written, too.
 
     Args:
         data: a fit file or its tables; with a `base` the curve's CSV file.
         base: the scene, or its tables without an experiment.
         folder: for fit.json, the tables and the figure; None: nothing is written.
-        progress: informed of phases.
-        keys: of a fit file, such as parameters and instrument.
+        progress: informed of phases; None: nobody is.
+        keys: of a fit file, such as parameters and instrument; they replace those of the file.
 
     Raises:
         SceneError: the fit file or its base scene is wrong.
@@ -124,9 +137,10 @@ def fit(
 
 
 def _steps(plan: FitPlan, file: Path, curve: ForceCurve, progress: Progress) -> Iterator[FitResult]:
-    """Yield the one result of a fit, which grows, after each of its steps, so that an interrupted one is not lost.
+    """Yield one and the same result three times: after the fit, after other contact models, and after a run on LAMMPS.
 
-    The steps are the fit, other contact models, and a run on LAMMPS, whose failure is a warning.
+    It grows in place, so that an interrupted fit is not lost. Other models are those that the base scene has the
+    numbers for and that depend on a parameter; one whose fit fails is left out. A run that fails is the warning "run".
 
     Raises:
         UndeterminedError: the curve does not determine the parameters.
@@ -154,10 +168,11 @@ def _steps(plan: FitPlan, file: Path, curve: ForceCurve, progress: Progress) -> 
 
 
 def _warn_of_fit(result: FitResult, largest_misfit: float = 3.0) -> None:
-    """Add warnings of a wrong snap-out, misfit, contact point outside the curve, and parameters with a ± to the result.
+    """Add warnings to the result, by name: "snap_out", "misfit", "contact_point" and "prior", as far as they apply.
 
-    The reduced χ² of the right model is below 2 where the noise has a memory of 20 in 1000 points: a warning needs more
-    than `largest_misfit`.
+    These are a predicted snap-out outside the measured one, a reduced χ² above `largest_misfit`, a contact point
+    outside the curve, and parameters with a ± in the base scene. The reduced χ² of the right model is below 2 where the
+    noise has a memory of 20 in 1000 points.
     """
     base_fit = result.fit
     segment, snap = base_fit.curve.segments[1], float(base_fit.jumps_at(base_fit.solution.values)[1])
@@ -183,9 +198,11 @@ def _warn_of_fit(result: FitResult, largest_misfit: float = 3.0) -> None:
 
 
 def _warn_of_models(result: FitResult, decisive: float = 10.0) -> None:
-    """Add a warning to the result where another contact model is more likely, or one without adhesion as likely.
+    """Add the warnings "model" and "adhesion" to the result, as far as they apply.
 
-    A difference of criteria of 10 is very strong (R. E. Kass, A. E. Raftery, J. Am. Stat. Assoc. 90 (1995) 773).
+    "model": another contact model has a criterion lower by more than `decisive`. "adhesion": that of Hertz, as an
+    alternative, is not higher by as much. A difference of 10 is very strong (R. E. Kass, A. E. Raftery, J. Am. Stat.
+    Assoc. 90 (1995) 773).
     """
     best, *_ = result.models
     non_adhesive = [fit for fit in result.alternatives.values() if not fit.subject.model.needs]
@@ -205,10 +222,11 @@ def _warn_of_models(result: FitResult, decisive: float = 10.0) -> None:
 def _run(result: FitResult, load_steps: int = 15) -> None:
     """Run the fitted scene on LAMMPS along the displacements of the fit, and compare its forces with the model's.
 
-    Sets `difference` and `allowed` [N] of the result, and adds the warning "run" where the former is larger.
+    The `load_steps` go down from the largest fitted force to just before the instability. Sets `difference` and
+    `allowed` [N] of the result, and adds the warning "run" where the former is larger.
 
     Raises:
-        Contact1dError: the scene does not run.
+        Contact1dError: the scene does not run; both stay as they are.
     """
     base_fit, branch = result.fit, result.fit.branch
     F, d = branch.forces, branch.displacements
@@ -229,10 +247,11 @@ def _run(result: FitResult, load_steps: int = 15) -> None:
 
 
 def fit_folder(folder: Path) -> Path:
-    """Make the folder of a fit, or accept that of an earlier one, and return it.
+    """Make the folder of a fit, or accept an empty one or that of an earlier fit, and return its path as given.
 
     Raises:
-        FolderError: it is a file, or has files of something else.
+        FolderError: it is a file, or has files but neither fit.json nor fits.csv.
+        OSError: it cannot be made.
     """
     if folder.is_file():
         raise FolderError(f"{folder} is a file; a fit needs a folder")

@@ -56,14 +56,16 @@ class Body:
     @classmethod
     @cached
     def of(cls, shape: Shape, depth: float, edges: int = 300, deepest: float = 8.0) -> Body:
-        """Return the body of a profile, with edges from 0 to where it ends or is several times as high as `depth`.
+        """Return the transformed profile at edges from 0 to `deepest` times `depth` in height, or to the body's end.
+
+        It is cached: equal arguments return the same object.
 
         Args:
             shape: the profile.
             depth: range of the measured positions [LU].
             edges: number of edges above 0, in geometric progression over a factor of 500, between which a branch is
                 cubic.
-            deepest: transformed height over `depth` at the last edge, unless the profile ends before.
+            deepest: least transformed height over `depth` at the last edge, unless the profile ends before.
         """
         last = depth
         while last < shape.reach and float(shape.transformed(np.array([last]))[0]) > deepest * depth:
@@ -97,20 +99,23 @@ class Branch:
     forces: Array
 
     def positions(self, stiffness: float) -> Array:
-        """Return z = d + F/k_c [LU] of the states, (n,); `stiffness`: k_c of the instrument [FU/LU], maybe infinite."""
+        """Return the positions z = d + F/k_c [LU] of the piezo for the states, from the contact point, (n,).
+
+        `stiffness`: k_c of the instrument [FU/LU], maybe infinite (z = d).
+        """
         return np.asarray(self.displacements + self.forces / stiffness)
 
     def forces_at(self, positions: Array, stiffness: float, held: bool, pitch: float = 1e-300) -> Array:
-        """Return F [FU], compression positive, at positions z [LU] of the piezo, (m,); the contact point is at 0.
+        """Return F [FU], compression positive, at positions z [LU] of the piezo from the contact point, (m,).
 
-        Beyond the last state it is that of the last state. Below the least z of the branch it is 0, or goes on with a
-        steep slope where the bodies are `held`.
+        Beyond the last state it is that of the last state. Below the least z of the branch the contact is lost: F falls
+        to 0 over `pitch`, centred there. Where the bodies are `held`, F goes on below the least z with three times the
+        slope of the branch's first quarter.
 
         Args:
-            positions: z of the piezo, (m,) [LU].
+            positions: z of the piezo from the contact point, (m,) [LU], in any order.
             stiffness: k_c [FU/LU] of the instrument; infinite: d is prescribed.
-            held: whether the bodies are in contact at all positions, so that the branch is continued below its least z;
-                else the contact is lost there.
+            held: whether the bodies are in contact at all positions.
             pitch: distance of positions [LU] over which a contact is lost: least squares need a finite slope.
         """
         z = self.positions(stiffness)
@@ -127,9 +132,11 @@ class Branch:
         return np.where(below, F[0] + slope * (positions - z[0]), forces)
 
     def snap_out(self, stiffness: float) -> tuple[float, float]:
-        """Return (position z [LU], force [FU]) at which the contact is lost: the least z of the branch.
+        """Return (position z [LU] of the piezo from the contact point, force [FU], compression positive) at snap-out.
 
-        `stiffness`: k_c of the instrument [FU/LU].
+        This is the state of the least z; of Hertz's contact it is (0, 0).
+
+        `stiffness`: k_c of the instrument [FU/LU], maybe infinite.
         """
         z = self.positions(stiffness)
         least = int(np.argmin(z))
@@ -137,10 +144,10 @@ class Branch:
 
 
 def _between(a: Array, z: Array, F: Array, positions: Array) -> Array:
-    """Return F at positions z, (m,), both cubic in a between the states of a branch, (n,); at its ends that of the end.
+    """Return F at positions z, (m,), both cubic in a between the states (n,) of a branch; constant beyond its ends.
 
-    Lengths [LU] and forces [FU]. Straight lines are not smooth enough: under correlated noise the differences of
-    neighbouring points count.
+    Lengths [LU] and forces [FU]; a and z are rising. Straight lines are not smooth enough: under correlated noise the
+    differences of neighbouring points count.
     """
     i = np.clip(np.searchsorted(z, positions) - 1, 0, a.size - 2)
     width = np.diff(a)[i]
@@ -157,16 +164,25 @@ def _between(a: Array, z: Array, F: Array, positions: Array) -> Array:
 
 
 def _cubic(start: Array, end: Array, leaving: Array, arriving: Array) -> tuple[Array, Array, Array, Array]:
-    """Return the coefficients of t⁰, t¹, t², t³ of Hermite's cubic from t = 0 to 1, by its ends and slopes there.
+    """Return the coefficients of t⁰, t¹, t², t³ of the cubic Hermite polynomial from t = 0 to 1.
 
     In the unit of the ends, with the shape of the arguments.
+
+    Args:
+        start: value at t = 0.
+        end: value at t = 1.
+        leaving: slope by t at t = 0.
+        arriving: slope by t at t = 1.
     """
     rise = end - start
     return start, leaving, 3.0 * rise - 2.0 * leaving - arriving, leaving + arriving - 2.0 * rise
 
 
 def jkr(body: Body, modulus: float, work: float, reach: float) -> Branch:
-    """Return the branch of JKR's contact, compression positive, whose adhesion has no range.
+    """Return the states of JKR's contact at the edges a of a body, from a = d = F = 0 on, unstable ones included.
+
+    d = g(a) − √(2πaW/E*) [LU] and F = 2E*(a d − G) [FU], compression positive, with the transform g of the body and its
+    integral G.
 
     `modulus`: E* [FU/LU²]; `work`: W [FU/LU]; `reach` is ignored.
     """
@@ -175,7 +191,10 @@ def jkr(body: Body, modulus: float, work: float, reach: float) -> Branch:
 
 
 def hertz(body: Body, modulus: float, work: float, reach: float) -> Branch:
-    """Return the branch of Hertz's contact, compression positive, which has no adhesion.
+    """Return the states of Hertz's contact, without adhesion, at the edges a of a body, from a = d = F = 0 on.
+
+    d = g(a) [LU] and F = 2E*(a d − G) ≥ 0 [FU], compression positive, with the transform g of the body and its integral
+    G.
 
     `modulus`: E* [FU/LU²]; `work` and `reach` are ignored.
     """
@@ -183,10 +202,13 @@ def hertz(body: Body, modulus: float, work: float, reach: float) -> Branch:
 
 
 def dmt(body: Body, modulus: float, work: float, reach: float) -> Branch:
-    """Return the branch of the DMT contact: a and d [LU] of Hertz, and F = F_Hertz − 2πWR [FU], compression positive.
+    """Return the states of the DMT contact: a and d [LU] of Hertz, and F = F_Hertz − 2πWR [FU], compression positive.
 
-    The body must have a radius of curvature R. `modulus`: E* [FU/LU²]; `work`: W [FU/LU]; `reach` is ignored, since the
-    attraction is outside of the contact.
+    The first state is a = d = 0 with F = −2πWR. `modulus`: E* [FU/LU²]; `work`: W [FU/LU]; `reach` is ignored, since
+    the attraction is outside of the contact.
+
+    Raises:
+        AssertionError: the body has no radius of curvature R at its apex.
     """
     assert body.radius is not None
     branch = hertz(body, modulus, work, reach)
@@ -213,15 +235,21 @@ class CohesiveZone(Dugdale):
     areas: tuple[Array, Array]
 
     def area(self, x: Array) -> Array:
-        """Return G [LU²] at positions x (n,) [LU], (n,), linear between the edges."""
+        """Return G = ∫₀ˣ g dx [LU²] at positions x (n,) [LU], (n,), linear between the edges.
+
+        Beyond the last edge it is that of the last edge.
+        """
         return np.interp(x, *self.areas)
 
 
 def maugis(body: Body, modulus: float, work: float, reach: float) -> Branch:
-    """Return the branch of Maugis and Dugdale's contact: a stress σ₀ = W/h₀ over the range h₀ (`laws.dugdale`).
+    """Return the states of the Maugis–Dugdale contact, by rising extent: an attraction σ₀ = W/h₀ up to the gap h₀.
 
-    `modulus`: E* [FU/LU²]; `work`: W [FU/LU]; `reach`: h₀ [LU]. The states before contact, a = 0, are explicit in c; in
-    contact s = √(c² − a²) is a root for each a, to 1e-9. The radii of the branch are s + a, before contact c.
+    First 40 states before contact, whose `radii` are the radius c of the attraction, explicit in c; then states in
+    contact at a third of the edges of the body, whose `radii` are a + s, s = √(c² − a²) a root to 1e-9. d [LU] and F
+    [FU], compression positive.
+
+    `modulus`: E* [FU/LU²]; `work`: W [FU/LU]; `reach`: h₀ > 0 [LU].
     """
     a = np.concatenate([[0.0], body.edges[1::3]])  # a third of the edges is enough
     profile, surface = (SplineProfile(CubicSpline(body.edges, heights)) for heights in (body.heights, body.surface))
@@ -251,7 +279,10 @@ class ContactModel:
     limits: tuple[str, ...] = ()
 
     def applies(self, scene: Scene) -> bool:
-        """Return whether a scene has what the model needs, each of it not 0."""
+        """Return whether a scene has a nonzero value of each of W, h₀ and R that the model needs; True for Hertz.
+
+        Maugis needs the work of adhesion W and its range h₀, JKR W, DMT W and a radius of curvature R at the apex.
+        """
         given = {
             "W": scene.work_of_adhesion,
             "h₀": law_of(scene).range_of(scene, 0.0),
@@ -260,7 +291,11 @@ class ContactModel:
         return all(given[name] for name in self.needs)
 
     def depends_on(self, key: str) -> bool:
-        """Return whether the forces depend on the number at a dotted key: on all but W and h₀ that the model lacks."""
+        """Return whether the forces of the model depend on the number at a dotted key of a scene.
+
+        False for `adhesion.range` in models without h₀ (all but Maugis) and for other keys of [adhesion] in models
+        without W (Hertz); True for any other key, known or not.
+        """
         return not key.startswith("adhesion.") or ("h₀" if key == RANGE else "W") in self.needs
 
 

@@ -43,13 +43,16 @@ class Fits:
 
 
 def fit_many(source: AnyFit, folder: AnyPath, workers: int | None = None, progress: Progress | None = None) -> Fits:
-    """Fit every curve of a plan's data; fits.csv has a line for each, in their order; return the folder and the counts.
+    """Fit every curve of a plan's data, write fits.csv with a line for each, in order, and return folder and counts.
+
+    A curve that cannot be read or fitted is a line of status "refused". Counts of 0 are left out. If the series is
+    interrupted, the table has the curves so far.
 
     Args:
         source: a fit file, or its tables.
         folder: for fits.csv and the figures.
-        workers: processes; None: as many as there are processors.
-        progress: informed of each curve.
+        workers: processes; None or 0: as many as there are processors.
+        progress: informed of each curve; None: nobody is.
 
     Raises:
         SceneError: the fit file or its base scene is wrong.
@@ -71,10 +74,14 @@ def fit_many(source: AnyFit, folder: AnyPath, workers: int | None = None, progre
 
 
 def attempt(plan: FitPlan, job: NamedCurve) -> dict[str, Any]:
-    """Return the line of a curve in the table: the values and intervals of its parameters in SI, or why it was refused.
+    """Return the line of a curve in fits.csv by column: its fitted values and intervals in SI, or why it was refused.
 
-    "curve", "status", "reason", in a map "x" and "y"; of a fit, with its unit in the name, each parameter, "_low" and
-    "_high" ends of its 95 % interval, "outliers" and "reduced_chi_squared". No error of a fit is raised.
+    "curve", "status" ("done" or "refused") and "reason" ("" if done); in a map "x" and "y" as in the file. Of a fit,
+    with its SI unit in the name, each parameter and the contact point, the "_low" and "_high" ends of its 95 % interval
+    (maybe infinite for the contact point); "outliers", their number, and "reduced_chi_squared". Errors of reading, of
+    the fit and of arithmetic are "refused"; any other is raised.
+
+    `job`: name, position in a map or None, and curve or the error of reading it.
     """
     name, position, curve = job
     row: dict[str, Any] = {"curve": name, "status": "done", "reason": ""}
@@ -95,7 +102,10 @@ def attempt(plan: FitPlan, job: NamedCurve) -> dict[str, Any]:
 
 
 def _write(plan: FitPlan, rows: Sequence[dict[str, Any]], folder: Path) -> None:
-    """Write fits.csv, and the figure of each parameter of which there are at least two values, to a folder."""
+    """Write fits.csv, and a figure of each parameter with at least two values, to a folder; nothing is returned.
+
+    `rows`: the lines of the table in order, as dicts by column; a missing cell is empty.
+    """
     from pandas import DataFrame
 
     table = DataFrame(rows, dtype=object)
@@ -109,9 +119,11 @@ def _write(plan: FitPlan, rows: Sequence[dict[str, Any]], folder: Path) -> None:
 
 
 def _draw(plan: FitPlan, key: str, name: str, done: DataFrame, folder: Path) -> None:
-    """Draw the histogram of a parameter, and its map where the curves have positions, in a file named after the key.
+    """Draw the histogram of a parameter, and its map where the curves have positions, to a PNG file in a folder.
 
-    `name`: its column in the table `done` of the curves that have it.
+    The file has the last part of the dotted `key` as its name. Values have an SI prefix.
+
+    `name`: column of the parameter in the table `done`, whose rows are the curves that have it.
     """
     values = done[name].to_numpy(dtype=float)
     factor, unit = scale_of(float(np.median(values)), name.rpartition("[")[2].rstrip("]"))

@@ -47,7 +47,11 @@ class Noise:
     deviation: Array
 
     def whitened(self, columns: Array) -> Array:
-        """Return columns of the compared points as independent numbers in the same unit, (n,) or (n, m)."""
+        """Return columns of the compared points decorrelated, (n,) or (n, m) as given, in the same unit.
+
+        Each number is the error of its prediction from the points before, over the standard deviation of the prediction
+        for noise of unit variance: noise of standard deviation σ becomes white noise of σ.
+        """
         # x_i = (1 − K_i) φ_i x_{i−1} + K_i y_i is the filter's m after point i, φ_{i+1} x_i its prediction.
         band = np.stack([np.ones_like(self.gain), -np.roll((1.0 - self.gain) * self.decay, -1)])
         filtered = solve_banded((1, 0), band, (self.gain * columns.T).T, check_finite=False).T
@@ -56,12 +60,19 @@ class Noise:
 
     @property
     def log_determinant(self) -> float:
-        """The logarithm of |V|, the determinant of the covariance of unit variance (dimensionless)."""
+        """The natural logarithm of the determinant of the noise's covariance matrix (n, n), of unit variance."""
         return 2.0 * float(np.log(self.deviation).sum())
 
 
 def noises(pairs: Sequence[tuple[float, float]], runs: Sequence[Indices]) -> list[Noise]:
-    """Return the noises of pairs (s, τ) for runs of compared points, each given by the rising indices of its points."""
+    """Return the noise, of unit variance, of each pair (s, τ), in their order, for the compared points of some runs.
+
+    The filter begins anew with each run.
+
+    Args:
+        pairs: s, the share of the variance with a memory, 0 … 1, and the memory τ > 0 [points].
+        runs: the rising indices of the compared points of each run.
+    """
     share, memory = np.array(pairs).T
     gaps = np.concatenate([np.diff(run.astype(np.float64), prepend=-math.inf) for run in runs])
     decay = np.exp(-gaps[:, None] / memory)
@@ -95,10 +106,11 @@ class Estimate:
 
 
 def _estimates(grid: Sequence[Noise], residuals: Array, slopes: Array, prior: Array) -> tuple[list[Estimate], Array]:
-    """Return (the estimate under each of m noises, with weight 0; the logarithms of their likelihoods, (m,)).
+    """Return (the estimate under each of m noises, with weight 0; natural logarithms of their likelihoods, (m,)).
 
-    The residuals (n,) change by −slopes·step, slopes (n, p); `prior` (q, p + 1) has a row for each calibration of the
-    parameters, its last column the misfit, in standard deviations.
+    The likelihoods are restricted ones, but for a common constant. The residuals (n,) change by −slopes·step, slopes
+    (n, p); `prior` (q, p + 1) has a row for each calibration of the parameters, its last column the misfit, in standard
+    deviations.
     """
     columns = np.column_stack([slopes, residuals])
     # R of J = QR has the precision that JᵀJ loses; its last column is Qᵀr, and the norm of the residual of the fit.
@@ -134,20 +146,21 @@ class AveragedEstimate:
 
     @property
     def best(self) -> Estimate:
-        """The estimate under the most likely noise."""
+        """The estimate under the most likely noise, that of the largest weight; the first one of equals."""
         return max(self.estimates, key=lambda estimate: estimate.weight)
 
     def quantile(self, index: int, level: float) -> float:
-        """Return the quantile of a parameter at a probability `level`, in units of u, relative to its best estimate.
+        """Return the value, less its best estimate, below which a parameter is with a probability `level`.
 
-        `index`: of the parameter. The distribution is the average of Student's t under each noise.
+        Its unit is that of the parameters of the least squares: log p of a positive parameter p. The distribution is
+        the average of Student's t under each noise. `index`: of the parameter; `level`: between 0 and 1, exclusive.
         """
         weights = np.array([estimate.weight for estimate in self.estimates])
         centres = np.array([estimate.step[index] for estimate in self.estimates]) - self.best.step[index]
         scales = np.sqrt([estimate.covariance[index, index] for estimate in self.estimates])
 
         def excess(value: float) -> float:
-            """Return the probability of a smaller value less `level`."""
+            """Return the probability of a smaller value less `level`, so that it is 0 at the quantile."""
             return float(weights @ stdtr(self.freedom, (value - centres) / scales)) - level
 
         reach = 60.0 * float(scales.max()) + float(np.abs(centres).max())
@@ -155,7 +168,10 @@ class AveragedEstimate:
 
 
 def averaged(runs: Sequence[Indices], residuals: Array, slopes: Array, prior: Array, looks: int) -> AveragedEstimate:
-    """Return the estimates under all noises of a grid over s and τ, which each further look refines where it is likely.
+    """Return the estimates under all noises of a grid over s and τ, with weights by likelihood whose sum is 1.
+
+    s is the share of the variance with a memory, τ the memory [points]. Each further grid is finer around the likely
+    pairs; the estimates are those of the last one.
 
     Args:
         runs: indices of the compared points of each run; whitening begins anew with each.
@@ -163,7 +179,7 @@ def averaged(runs: Sequence[Indices], residuals: Array, slopes: Array, prior: Ar
         slopes: (n, p), −∂residuals/∂parameters.
         prior: (q, p + 1), a row for each calibration of a parameter; the last column is its misfit in standard
             deviations.
-        looks: number of grids; 1 where the most likely noise is enough.
+        looks: number of grids, at least 1, which is enough for the most likely noise.
     """
     shares: Array = np.array([0.0, 0.05, 0.15, 0.35, 0.6, 0.8, 0.93, 1.0])
     # A memory shorter than 0.7 points is white noise; the variance of one longer than a quarter of a run is unknown.
@@ -183,9 +199,10 @@ def averaged(runs: Sequence[Indices], residuals: Array, slopes: Array, prior: Ar
 
 
 def _finer(likely: Array, grid: Array, spaced: Callable[..., Array]) -> Array:
-    """Return a grid of the same size (n,), made by `spaced`, between the neighbours of the likely points of a grid.
+    """Return a rising grid (n,) as large as `grid`, from the neighbour below to that above its `likely` points.
 
-    The grid itself where it would be no finer.
+    `spaced` makes it from (first, last, n), such as np.linspace. `grid` itself is returned where these neighbours leave
+    out one of its intervals at most.
     """
     low = max(0, int(np.searchsorted(grid, likely.min())) - 1)
     high = min(grid.size - 1, int(np.searchsorted(grid, likely.max())) + 1)

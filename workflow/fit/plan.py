@@ -75,30 +75,39 @@ class FitPlan:
 
     @cached_property
     def numbers(self) -> dict[str, Place]:
-        """The numbers of the scene by dotted key, each with its value and unit."""
+        """The numbers of the base scene other than 0 by dotted key, each with its value, in SI, and unit; cached.
+
+        Numbers with decimals only: no counts, words or lists.
+        """
         tables = Place(self.base.model_dump(by_alias=True, exclude_none=True), WHOLE)
         return {place.path: place for place in tables if place.allowed.quantity and place.is_number}
 
     def unit(self, key: str) -> str:
-        """Return the SI unit of the number at a dotted key of the scene. Raises KeyError where the scene has none."""
+        """Return the SI unit of the number at a dotted key of the base scene, as text: "Pa", "J/m²", "1" for none.
+
+        Raises:
+            KeyError: the scene has no such number, or it is 0.
+        """
         unit = self.numbers[key].unit
         return unit.text[0] if unit.text else in_si(unit.name)
 
     @property
     def stiffness(self) -> float:
-        """The stiffness k_c [N/m] of the instrument; infinite for a rigid one."""
+        """The stiffness k_c [N/m] of the instrument; infinite without an instrument, which is then rigid."""
         return self.fit.instrument.stiffness if self.fit.instrument else float("inf")
 
 
 def read_fit(source: AnyFit, **changes: Any) -> FitPlan:
     """Read the plan of a fit file and return it.
 
+    Paths in it are relative to the folder of the file, or to the current one for tables.
+
     Args:
-        source: the path of the file, or its tables.
+        source: the path of the file, or its tables, which are not changed.
         changes: keys at the top of the file that replace its own.
 
     Raises:
-        SceneError: with every problem of the file and of its base scene.
+        SceneError: with every problem of the file and of its base scene, or that the file cannot be read.
     """
     tables = dict(plain_data(source) if isinstance(source, Mapping) else read_tables(source)) | changes
     folder = Path.cwd() if isinstance(source, Mapping) else Path(source).parent
@@ -128,7 +137,12 @@ def read_fit(source: AnyFit, **changes: Any) -> FitPlan:
 
 
 def _base(base: Mapping[str, Any], folder: Path) -> tuple[Scene | None, list[Problem]]:
-    """Return (base scene with the defaults of a fit, its problems); the scene is None where it cannot be read."""
+    """Return (base scene with the defaults of a fit, its problems), [] for none.
+
+    Defaults are a rigid plane and automatic spacing, and a load of 1 nN. The scene is None where it cannot be read,
+    with all its problems; else the first problem alone is returned: no rigid plane with the MDR, an effect that a fit
+    does not have, or no material in SI. Paths of problems begin with "base.". `folder`: for the file of a profile.
+    """
     bodies = base.get("bodies", {})
     given = {"title": "fit", "experiment": LOAD, **base}
     given["bodies"] = {**BODIES, **bodies} if isinstance(bodies, Mapping) else bodies
@@ -151,7 +165,7 @@ def _base(base: Mapping[str, Any], folder: Path) -> tuple[Scene | None, list[Pro
 
 
 def _of_parameters(plan: FitPlan) -> list[Problem]:
-    """Return the problems of the names of parameters: unknown or named twice; [] for none."""
+    """Return the problems of the names of parameters: unknown, of a number that is 0, or named twice; [] for none."""
     problems, names = [], plan.fit.parameters
     tables = ("bodies.", "material.", "adhesion.")
     unfitted = ("bodies.spacing", "material.length_unit", "material.force_unit")

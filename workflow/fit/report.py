@@ -31,7 +31,10 @@ UNITS = {POINT: "m", OFFSET: "N", STIFFNESS: "N/m"}
 
 
 def write(result: FitResult, folder: Path) -> None:
-    """Write fit.json, curve.csv, scene.toml and fit.png to a folder, each whole or not at all."""
+    """Write fit.json, curve.csv, scene.toml and fit.png to an existing folder, in place of earlier ones.
+
+    Each file is written whole or not at all; all are in SI.
+    """
     from pandas import DataFrame
 
     fit = result.fit
@@ -53,7 +56,11 @@ def write(result: FitResult, folder: Path) -> None:
 
 
 def document(result: FitResult) -> dict[str, Any]:
-    """Return the content of fit.json, in SI; the entry "run" is None before the run."""
+    """Return the content of fit.json, in SI, as far as the fit came; its result is not changed.
+
+    "run" is None before the run on LAMMPS, and has NaN where that failed; the "bracket" of the snap-out is None without
+    a jump, and "tabor_parameter" without adhesion or a radius.
+    """
     fit, plan, curve = result.fit, result.fit.plan, result.fit.curve
     best, kept, outliers = fit.solution.best, fit.solution.problem.kept, fit.solution.outliers
     z, F = curve.positions[kept], curve.forces[kept]
@@ -107,21 +114,31 @@ def document(result: FitResult) -> dict[str, Any]:
 
 
 def entry(fit: Fitted, key: str) -> dict[str, Any]:
-    """Return {"value", "unit", "interval"} of an unknown in SI, as in fit.json.
+    """Return {"value", "unit", "interval"} of an unknown of a fit, in SI: the interval [lower, upper] is that of 95 %.
 
-    Without an interval where it has none.
+    Without "interval" where it has none: a nuisance parameter other than the contact point, or a model that is compared
+    only. `key`: a dotted key of the scene, "contact_point", "force_offset" or "instrument.stiffness".
+
+    Raises:
+        KeyError: the fit has no such unknown.
     """
     table: dict[str, Any] = {"value": fit.values[key], "unit": UNITS.get(key) or fit.plan.unit(key)}
     return table | ({"interval": list(fit.intervals[key])} if key in fit.intervals else {})
 
 
 def entries(fit: Fitted, keys: Iterable[str]) -> dict[str, Any]:
-    """Return the `entry` of each key that is an unknown of a fit, by key; other keys are left out."""
+    """Return {"value", "unit", "interval"} in SI by key, in order, of the keys that are unknowns of a fit.
+
+    Other keys are left out, and "interval" where an unknown has none.
+    """
     return {key: entry(fit, key) for key in keys if key in fit.values}
 
 
 def modulus_words(fit: Fitted) -> str:
-    """Return a sentence on the modulus that is fitted, or that none is, without a full stop."""
+    """Return a sentence, without a full stop, on which modulus is fitted: E*, or E with the assumed ν of its body.
+
+    Of several fitted moduli it is on the first one. Without any it says that the modulus is that of the base scene.
+    """
     key = next((key for key in fit.plan.fit.parameters if key.endswith("_modulus")), None)
     if key is None:
         return "no modulus is fitted: it is that of the base scene"
@@ -132,7 +149,10 @@ def modulus_words(fit: Fitted) -> str:
 
 
 def _modulus(fit: Fitted) -> dict[str, Any]:
-    """Return {"value", "unit"} of E* [Pa], with its "interval" where one number of the material is fitted."""
+    """Return {"value", "unit", "interval"} of the contact modulus E* of the fitted scene [Pa].
+
+    "interval", [lower, upper] of 95 %, is there only if exactly one number of the material has one.
+    """
     keys, scene = [key for key in fit.intervals if key.startswith("material.")], fit.scene
     ends = fit.intervals[keys[0]] if len(keys) == 1 else ()
     interval = sorted(modulus_of(scene.moved(keys[0], end / fit.values[keys[0]])) for end in ends)
@@ -140,9 +160,10 @@ def _modulus(fit: Fitted) -> dict[str, Any]:
 
 
 def _tabor(fit: Fitted) -> dict[str, Any] | None:
-    """Return the Tabor parameter µ = (R W²/(E*² h₀³))^(1/3) with its range h₀ [m]; None without adhesion or a radius R.
+    """Return {"value", "range", "assumed"} of the Tabor parameter µ = (R W²/(E*² h₀³))^(1/3) of the fitted scene.
 
-    {"value", "range", "assumed"}: a scene without a range has an assumed one.
+    The value µ is dimensionless, the range h₀ is in [m]; "assumed" is True where the scene gives no range and 0.3 nm is
+    taken. None without adhesion or a radius R at the apex.
     """
     scene, radius = fit.scene, fit.scene.bodies.profile.curvature_radius
     if not scene.work_of_adhesion or radius is None:
@@ -153,7 +174,11 @@ def _tabor(fit: Fitted) -> dict[str, Any] | None:
 
 
 def chart(result: FitResult) -> Chart:
-    """Return the figure of data and fitted curve [N] over position [m], with the residuals of compared points below."""
+    """Return the figure of data and fitted curve, F less its offset [N] over z from the contact point [m].
+
+    A second panel has the residuals, measured less predicted [N], of compared points. Outliers are marked; a note has
+    the fitted parameters with half their intervals.
+    """
     fit, far = result.fit, result.fit.solution.outliers
     z = fit.curve.positions - fit.values[POINT]
     measured, predicted = fit.curve.forces - fit.values[OFFSET], fit.forces - fit.values[OFFSET]
@@ -180,7 +205,11 @@ def chart(result: FitResult) -> Chart:
 
 
 def lines(result: FitResult) -> list[str]:
-    """Return the lines of a fit's results for a terminal, in SI with prefixes."""
+    """Return the lines of a fit's results for a terminal, in SI with prefixes.
+
+    These are the title, each number that has a 95 % interval, the fitted modulus in words, the noise with reduced χ²
+    and number of outliers, and the contact models by criterion, the most likely first.
+    """
     fit, best = result.fit, result.fit.solution.best
     shown = [fit.plan.fit.title]
     for key, ends in fit.intervals.items():

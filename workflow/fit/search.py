@@ -47,11 +47,11 @@ class Unknown:
     fitted: bool = False
 
     def value(self, u: float) -> float:
-        """Return the parameter p at u, in its unit; a positive one with |u| limited to 50."""
+        """Return the parameter p in its unit: scale·exp(u) of a positive one, with u limited to ±50, else scale·u."""
         return self.scale * (math.exp(min(max(u, -50.0), 50.0)) if self.positive else u)
 
     def slope(self, u: float) -> float:
-        """Return the derivative ∂p/∂u of the parameter at u, in its unit."""
+        """Return the derivative ∂p/∂u of the parameter, in its unit: p itself of a positive one, else its scale."""
         return self.value(u) if self.positive else self.scale
 
 
@@ -77,29 +77,46 @@ class Problem:
 
     @property
     def kept(self) -> Indices:
-        """The indices of all compared points, run after run."""
+        """The indices in the curve of all compared points, run after run, rising in each."""
         return np.concatenate(self.runs)
 
     def without(self, points: Indices) -> Problem:
-        """Return the problem without the points of these indices."""
+        """Return a copy of the problem in which the points of these indices in the curve are not compared."""
         return replace(self, runs=tuple(run[~np.isin(run, points)] for run in self.runs))
 
     def values(self, u: Array) -> list[float]:
-        """Return the values of the unknowns at u (p,), each in its unit."""
+        """Return the values of the unknowns in their order, each in its unit: scale·exp(u) if positive, or scale·u.
+
+        `u`: logarithm of the ratio of each positive unknown to its scale, the ratio of any other, (p,).
+        """
         return [unknown.value(float(x)) for unknown, x in zip(self.unknowns, u, strict=True)]
 
     def residuals(self, u: Array) -> Array:
-        """Return the measured less the predicted force [FU] of the compared points at u, (n,)."""
+        """Return the measured less the predicted force [FU], compression positive, of the compared points, (n,).
+
+        The points are in the order of the runs. `u`: logarithm of the ratio of each positive unknown to its scale, the
+        ratio of any other, (p,).
+        """
         return (self.forces - self.model(self.values(u)))[self.kept]
 
     def slopes(self, u: Array, free: Sequence[int] | None = None) -> Array:
-        """Return ∂(predicted force)/∂u [FU] of the compared points at u, (n, p), for the `free` unknowns or all."""
+        """Return ∂(predicted force)/∂u [FU] of the n compared points, a column for each unknown in `free`.
+
+        By central differences. `u`: logarithm of the ratio of each positive unknown to its scale, the ratio of any
+        other, (p,). `free`: indices of unknowns; None: all.
+        """
         return self.derivative(self.model, u, free)[self.kept]
 
     def derivative(self, of: Model, u: Array, free: Sequence[int] | None = None, step: float = 1e-4) -> Array:
-        """Return ∂/∂u of a function of the unknowns' values, (n, p), by central differences over a step of u.
+        """Return ∂/∂u of a function of the unknowns' values, (n, number of unknowns), by central differences.
 
-        For the `free` unknowns (their indices) or all.
+        Its columns are those of the `free` unknowns, in their order.
+
+        Args:
+            of: function of the values of all unknowns that returns an array (n,).
+            u: logarithm of the ratio of each positive unknown to its scale, the ratio of any other, (p,).
+            free: indices of unknowns, one at least; None: all.
+            step: of u, to both sides.
         """
         steps = step * np.eye(u.size)
         columns = [
@@ -109,7 +126,13 @@ class Problem:
         return np.column_stack(columns)
 
     def prior(self, u: Array) -> Array:
-        """Return a row for each calibration at u, (q, p + 1): ∂p/∂u and, last, its misfit, in standard deviations."""
+        """Return a row for each calibrated unknown, (q, p + 1): derivatives of its value by u and, last, its misfit.
+
+        Both are over the standard deviation of the calibration. The misfit is the calibrated mean less the value at u.
+        Rows are in the order of the unknowns; (0, p + 1) without any.
+
+        `u`: logarithm of the ratio of each positive unknown to its scale, the ratio of any other, (p,).
+        """
         rows = []
         for i, unknown in enumerate(self.unknowns):
             if unknown.known is not None:
@@ -122,7 +145,12 @@ class Problem:
     def least(
         self, u: Array, noise: Noise, deviation: float, fixed: int | None = None, robust: bool = False
     ) -> tuple[Array, float]:
-        """Return (unknowns u of the least sum of squares, that sum), from u on; the unknown of index `fixed` stays.
+        """Return (u of all unknowns (p,) at the least sum of squares, that sum, dimensionless), from a start on.
+
+        u is the logarithm of the ratio of a positive unknown to its scale, the ratio of any other. The sum is that of
+        residuals and of misfits of calibrations in standard deviations; if `robust`, of their soft-L1 loss. Positive
+        unknowns stay within three decades of their scale. After 60 evaluations it is the latest, converged or not. The
+        argument u is not changed.
 
         Args:
             u: start, (p,).
@@ -134,18 +162,18 @@ class Problem:
         free = [i for i in range(u.size) if i != fixed]
 
         def completed(free_u: Array) -> Array:
-            """Return all unknowns u, (p,), from those that are free."""
+            """Return all unknowns u, (p,), a copy of the start with the free ones replaced."""
             full = u.copy()
             full[free] = free_u
             return full
 
         def rows(free_u: Array) -> Array:
-            """Return whitened residuals and misfits of calibrations, in standard deviations, at the free unknowns."""
+            """Return whitened residuals (n,), then misfits of calibrations (q,), in standard deviations, (n + q,)."""
             full = completed(free_u)
             return np.concatenate([noise.whitened(self.residuals(full)) / deviation, self.prior(full)[:, -1]])
 
         def jacobian(free_u: Array) -> Array:
-            """Return the derivatives of `rows` by the free unknowns."""
+            """Return the derivatives of the n residuals and q misfits by the free unknowns, one column for each."""
             full = completed(free_u)
             return -np.concatenate(
                 [noise.whitened(self.slopes(full, free)) / deviation, self.prior(full)[:, :-1][:, free]]
@@ -181,29 +209,30 @@ class Solution:
 
     @property
     def values(self) -> list[float]:
-        """The values of all unknowns, each in its unit."""
+        """The values of all unknowns at the least sum of squares, each in its unit, in the order of the problem."""
         return self.problem.values(self.u)
 
 
 def global_search(
     problem: Problem, sought: Sequence[int], complete: Callable[[Array], Array], generations: int = 40, size: int = 16
 ) -> list[Array]:
-    """Return starts u (p,) of a fit, the best first, from a search over decades of the sought unknowns.
+    """Return starts u (p,) of a fit, four at most and the best first, from a search over the sought unknowns.
 
-    It goes three decades to either side of the values in the scene. The valley of a good fit is some percent wide, in a
-    plane of decades: a population is evolved, which takes some thousand curves, and its best four members are the
-    starts. Where nothing is sought, the one start is `complete` of 0.
+    u is the logarithm of the ratio of a positive unknown to its value in the scene, and is searched over three decades
+    to either side. The valley of a good fit is some percent wide, in a plane of decades: a population is evolved, which
+    takes some thousand curves, and its best members are the starts. Equal arguments give equal starts. Where nothing is
+    sought, the one start is `complete` of 0.
 
     Args:
         problem: what is fitted.
         sought: indices of the unknowns that the search changes.
-        complete: function that sets the unknowns which follow from these.
+        complete: function that returns u with the unknowns set which follow from these.
         generations: most generations of the population.
         size: of the population, for each sought unknown.
     """
 
     def completed(member: Array) -> Array:
-        """Return all unknowns u, (p,), from those that are sought."""
+        """Return all unknowns u, (p,): the sought ones as given, others 0 or as `complete` sets them."""
         u = np.zeros(len(problem.unknowns))
         u[list(sought)] = member
         return complete(u)
@@ -212,7 +241,7 @@ def global_search(
         return [completed(np.zeros(0))]
 
     def misfit(member: Array) -> float:
-        """Return Σ |residual| [FU] for the sought unknowns, 1e100 where it is NaN or larger."""
+        """Return Σ |residual| [FU] of the compared points for the sought unknowns; 1e100 where it is NaN or larger."""
         total = float(np.abs(problem.residuals(completed(member))).sum())
         return total if total < 1e100 else 1e100  # of NaN, too; and the square of it is a number
 
@@ -225,15 +254,16 @@ def global_search(
 
 
 def solved(problem: Problem, starts: Sequence[Array], rejects: bool = True, most_rounds: int = 12) -> Solution:
-    """Return the best of least-squares fits from several starts, under the noise that its residuals have.
+    """Return the least-squares fit from the best of several starts, under the noise that its residuals have.
 
-    After `most_rounds` without convergence it is the latest.
+    The best start has the least Σ |residual| after a robust fit. Noise, outliers and fit then alternate; after
+    `most_rounds` without convergence the latest one is returned.
 
     Args:
         problem: what is fitted.
-        starts: unknowns u of each start.
+        starts: unknowns u (p,) of each start, one at least.
         rejects: whether outliers are excluded.
-        most_rounds: largest number of rounds of noise, outliers and fit.
+        most_rounds: largest number of rounds.
     """
     fits, (white,) = [], noises([(0.0, 1.0)], problem.runs)
     for start in starts:
@@ -257,14 +287,19 @@ def solved(problem: Problem, starts: Sequence[Array], rejects: bool = True, most
 
 
 def _estimate(problem: Problem, u: Array, looks: int = 2) -> AveragedEstimate:
-    """Return the estimates under all noises at u, after so many `looks` at the grid."""
+    """Return the estimates of the parameters from those at u on, under all noises of a grid, with their weights.
+
+    `u`: logarithm of the ratio of each positive unknown to its scale, the ratio of any other, (p,). `looks`: number of
+    grids, each finer around the likely noises; those of the last one are returned.
+    """
     return averaged(problem.runs, problem.residuals(u), problem.slopes(u), problem.prior(u), looks)
 
 
 def _outliers(problem: Problem, u: Array, estimate: Estimate) -> Indices:
-    """Return the indices of compared points with a residual above five standard deviations.
+    """Return the indices in the curve of compared points whose whitened residual exceeds five standard deviations.
 
-    Of near ones only the largest.
+    Of those within two compared points of each other only the largest. Empty without any. `u`: logarithm of the ratio
+    of each positive unknown to its scale, the ratio of any other, (p,).
     """
     white = np.abs(estimate.noise.whitened(problem.residuals(u))) / estimate.deviation
     kept = problem.kept
@@ -275,8 +310,15 @@ def _outliers(problem: Problem, u: Array, estimate: Estimate) -> Indices:
 def interval(solution: Solution, index: int, farthest: float = 4.0) -> tuple[float, float]:
     """Return the (lower, upper) end of the 95 % interval of an unknown, in units of u, by its profile likelihood.
 
-    All other unknowns are fitted again at each value, up to the quantiles of the noise. An end is −∞ or ∞ where the
-    likelihood does not fall far enough within `farthest`. `index`: of the unknown.
+    u is log p of a positive parameter p over its scale, else p over its scale. All other unknowns are fitted again at
+    each value. At an end the root of the rise of the sum of squares is the distance of the 2.5 % or 97.5 % quantile
+    over all noises from the estimate, in standard deviations. An end is −∞ or ∞ where it does not rise so far within
+    `farthest`; after 12 steps it is the latest.
+
+    Args:
+        solution: the converged fit.
+        index: of the unknown.
+        farthest: largest distance from the estimate, in units of u.
     """
     problem, best = solution.problem, solution.best
     spread = math.sqrt(best.covariance[index, index])

@@ -43,8 +43,8 @@ class Fitted:
         curve: the measured curve.
         subject: scene, contact model, instrument and unknowns.
         solution: the converged fit.
-        intervals: of 95 %, (lower, upper) in units of the scene, by the names of the fitted parameters and of the
-            contact point; empty where a model is compared only.
+        intervals: of 95 %, (lower, upper) in SI, by the names of the fitted parameters and of the contact point, where
+            they may be infinite; empty where a model is compared only.
     """
 
     plan: FitPlan
@@ -60,35 +60,49 @@ class Fitted:
 
     @cached_property
     def values(self) -> dict[str, float]:
-        """The values of all unknowns by name, in units of the scene."""
+        """The values of all unknowns by name, in SI; cached.
+
+        Parameters and numbers with ± of the scene have their dotted keys, then come "instrument.stiffness" [N/m],
+        unless it is rigid, "contact_point" [m] and "force_offset" [N].
+        """
         return dict(zip(self.subject.names, self.solution.values, strict=True))
 
     @cached_property
     def scene(self) -> Scene:
-        """The base scene with the fitted values, which are not checked."""
+        """The base scene with the fitted values of its unknown numbers, unchecked; cached.
+
+        Without [adhesion] where the contact model has none.
+        """
         return self.subject.scene_with(self.solution.values)
 
     @cached_property
     def branch(self) -> Branch:
-        """The states of the contact along its rising path, without contact point and offset of the measurement."""
+        """The states of the fitted contact along its rising path: d [m] and F [N], compression positive; cached.
+
+        Contact point and offset of the measurement are left out, so that the bodies touch at 0.
+        """
         return self.subject.parts(self.solution.values)[0]
 
     @cached_property
     def forces(self) -> Array:
-        """The predicted force [FU], compression positive and with the offset, at all points, (n,)."""
+        """The predicted force [N], compression positive and with the offset, at all points of the curve, (n,).
+
+        It is cached.
+        """
         return self.subject.forces(self.solution.values)
 
     @property
     def correlation(self) -> Array:
-        """The correlation matrix of all unknowns, (p, p), −1 … 1."""
+        """The correlation matrix of all unknowns in their order, (p, p), −1 … 1, with a diagonal of 1."""
         covariance = self.solution.best.covariance
         spread = np.sqrt(np.diag(covariance))
         return np.asarray(covariance / np.outer(spread, spread))
 
     @cached_property
     def criterion(self) -> float:
-        """The Bayesian information criterion, −2 log L + p log n, but for a constant: the lower the better.
+        """The Bayesian information criterion, −2 log L + p log n, but for a constant: the lower the better; cached.
 
+        n is the number of compared points, p that of unknowns, and one more where the model uses a given range h₀.
         Unlike in the least squares the positions of both jumps count.
         """
         best, problem = self.solution.best, self.solution.problem
@@ -102,17 +116,17 @@ class Fitted:
         return -2.0 * log + (len(self.subject.names) + given) * math.log(n)
 
     def jumps_at(self, values: Sequence[float]) -> Array:
-        """Return the positions z [m] at which the force begins and the contact is lost, (2,).
+        """Return the positions z of the piezo [m] at which the force begins and at which the contact is lost, (2,).
 
-        `values`: of the unknowns.
+        `values`: of all unknowns, in their order and units.
         """
         branch, stiffness, point, _ = self.subject.parts(values)
         return np.asarray(point + np.array([branch.displacements[0], branch.snap_out(stiffness)[0]]))
 
     def _jumps(self) -> float:
-        """Return log L of the brackets of both jumps, whose predicted positions have the variance of the parameters.
+        """Return the natural logarithm of the likelihood of measured snap-in and snap-out, as intervals of positions.
 
-        0 where the curve has no jump.
+        The predicted positions have the variance of the parameters. A jump that the curve lacks adds 0; 0 without both.
         """
         slopes = self.solution.problem.derivative(self.jumps_at, self.solution.u)
         variances = np.einsum("ki,ij,kj->k", slopes, self.solution.best.covariance, slopes)
@@ -127,9 +141,10 @@ class Fitted:
 
     @cached_property
     def misfit(self) -> float:
-        """The reduced χ² (dimensionless): mean square of the residuals in contact over that of bodies apart.
+        """The reduced χ² (dimensionless): mean square of the residuals in contact over that of bodies apart; cached.
 
-        1 where points of one of these are missing.
+        Of compared points only. Those of a segment without a jump count as apart below the contact point, else as in
+        contact. 1 where there are no points of one kind.
         """
         problem = self.solution.problem
         r = problem.residuals(self.solution.u)
@@ -138,25 +153,38 @@ class Fitted:
         return 1.0 if apart.all() or not apart.any() else float(np.mean(r[~apart] ** 2) / np.mean(r[apart] ** 2))
 
     def spread(self) -> Array:
-        """Return the 95 % half-width [FU] of the predicted force at the compared points, (n,)."""
+        """Return the 95 % half-width [N], ≥ 0, of the predicted force at the compared points, (n,).
+
+        It is that of the parameters by their covariance, without the noise of the points.
+        """
         J = self.solution.problem.slopes(self.solution.u)
         return np.asarray(TWO_SIDED * np.sqrt(np.einsum("ij,jk,ik->i", J, self.solution.best.covariance, J)))
 
     @property
     def contact_stiffness(self) -> float:
-        """The stiffness 2E*a [N/m] of the contact at zero load; without adhesion at the largest load of the curve."""
+        """The stiffness 2E*a [N/m] of the contact at zero load; without adhesion at the largest load of the curve.
+
+        a is the contact radius; of the Maugis model a + √(c² − a²), with the radius c of the attraction.
+        """
         F, least = self.branch.forces, int(np.argmin(self.branch.forces))
         load = 0.0 if F[least] < 0.0 else float(self.curve.forces.max() - self.curve.baseline)
         return 2.0 * modulus_of(self.scene) * float(np.interp(load, F[least:], self.branch.radii[least:]))
 
 
 def model_of(plan: FitPlan) -> ContactModel:
-    """Return the contact model that a base scene means: the first that has all it needs, Maugis, JKR, DMT or Hertz."""
+    """Return the contact model that a base scene means, the first of these that has all it needs.
+
+    Maugis with a range of the adhesion, else JKR with a work of adhesion, else Hertz. DMT is never meant, since it
+    needs more than JKR.
+    """
     return next(model for model in LAWS.values() if model.applies(plan.base))
 
 
 def compared(fit: Fitted, model: ContactModel) -> Fitted:
-    """Return the fit of another contact model to the same points, without outliers of its own and without intervals."""
+    """Return the fit of another contact model to the points of `fit`, with its outliers excluded and no further ones.
+
+    `intervals` is empty, and nothing is checked: the parameters may be undetermined.
+    """
     subject = _subject(fit.plan, fit.curve, model)
     problem = subject.problem.without(fit.solution.outliers)
     solution = solved(problem, _starts(subject, fit.solution.outliers), rejects=False)
@@ -164,9 +192,16 @@ def compared(fit: Fitted, model: ContactModel) -> Fitted:
 
 
 def _starts(subject: Subject, outliers: Indices) -> list[Array]:
-    """Return starts u (p,) of a fit, at most four; of a model between two limits, best fits of these at several ranges.
+    """Return starts (p,) of a fit: for JKR, DMT and Hertz up to four of a global search, the best first.
+
+    For Maugis these are the three best of JKR's and DMT's best fits at several ranges h₀, or both of them where the
+    range is no unknown. A start has the logarithm of the ratio of each positive unknown to its first guess, the ratio
+    of the contact point and of the offset to the range of the data.
 
     `outliers`: indices of points that are left out.
+
+    Raises:
+        AssertionError: for Maugis and a body without a radius of curvature, such as a cone.
     """
     problem = subject.problem.without(outliers)
     if not subject.model.limits:
@@ -183,13 +218,14 @@ def _starts(subject: Subject, outliers: Indices) -> list[Array]:
 
 
 def fitted(plan: FitPlan, curve: ForceCurve, model: ContactModel, widest: float = 1.0) -> Fitted:
-    """Fit a contact model to a curve, and return the fit with its intervals.
+    """Fit a contact model to a curve, and return the fit with the 95 % intervals of parameters and contact point.
 
     Args:
         plan: with the parameters.
         curve: the measured curve.
         model: the contact model.
-        widest: half-width of an interval, in log p, beyond which a parameter is undetermined.
+        widest: distance of an end of an interval from the estimate, in log p, beyond which a parameter p is
+            undetermined; the contact point may be.
 
     Raises:
         UndeterminedError: the curve does not determine the parameters, has too many outliers or too few points in
@@ -219,10 +255,11 @@ def fitted(plan: FitPlan, curve: ForceCurve, model: ContactModel, widest: float 
 
 
 def _subject(plan: FitPlan, curve: ForceCurve, model: ContactModel) -> Subject:
-    """Return scene, instrument and unknowns of a contact model; the scene lacks adhesion where the model has none.
+    """Return the scene, instrument and unknowns of a contact model for a curve; the scene lacks [adhesion] for Hertz.
 
-    The unknowns are the parameters and calibrated numbers that the forces depend on, the instrument's stiffness where
-    it is finite, the contact point and the offset of the force.
+    The unknowns are, in this order, the parameters and then numbers with ± on which the forces depend, the instrument's
+    stiffness where it is finite, the contact point and the offset of the force. A number with ± has a calibration, as
+    has a contact point that is given; a stiffness without ± one of 1e-6.
     """
     scene = plan.base if model.needs else plan.base.model_copy(update={"adhesion": None})
     exact = 1e-6  # ± over the value of a number that is given without one
@@ -245,10 +282,12 @@ def _subject(plan: FitPlan, curve: ForceCurve, model: ContactModel) -> Subject:
 
 
 def require_distinct(subject: Subject, u: Array) -> None:
-    """Refuse parameters that the curve does not depend on, or that trade off against each other, at u (p,).
+    """Check that the curve depends on each unknown, and that they do not trade off; nothing is returned.
+
+    `u`: logarithm of the ratio of each positive unknown to its scale, the ratio of any other, (p,).
 
     Raises:
-        UndeterminedError: with their names.
+        UndeterminedError: it does not, or they do; with their names.
     """
     problem = subject.problem
     J = problem.slopes(u)
@@ -276,7 +315,13 @@ def require_distinct(subject: Subject, u: Array) -> None:
 
 
 def _require_stiff(fit: Fitted) -> None:
-    """Refuse a cantilever softer than 0.4 of the contact. Raises UndeterminedError."""
+    """Check that the cantilever has at least 0.4 of the contact's stiffness; nothing is returned.
+
+    A rigid instrument passes.
+
+    Raises:
+        UndeterminedError: it is softer; with the least stiffness to use.
+    """
     k, contact = fit.values.get(STIFFNESS, math.inf), fit.contact_stiffness
     if k < SOFTEST * contact:
         raise UndeterminedError(
@@ -287,7 +332,14 @@ def _require_stiff(fit: Fitted) -> None:
 
 
 def _require_points(fit: Fitted, fewest: int = 15) -> None:
-    """Refuse a curve with fewer than `fewest` points in contact. Raises UndeterminedError."""
+    """Check that a curve has at least `fewest` points in contact; nothing is returned.
+
+    These are the points after a snap-in and before a snap-out; where the curve has neither, those above the contact
+    point.
+
+    Raises:
+        UndeterminedError: it has fewer.
+    """
     held = int(fit.subject.held.sum()) or int((fit.curve.positions > fit.values[POINT]).sum())
     if held < fewest:
         raise UndeterminedError(
@@ -296,7 +348,11 @@ def _require_points(fit: Fitted, fewest: int = 15) -> None:
 
 
 def _undetermined(fit: Fitted, index: int, low: float, high: float) -> str:
-    """Return the message of an unknown whose interval from `low` to `high`, in u, is too wide or unbounded."""
+    """Return the message on an unknown whose 95 % interval from `low` to `high`, in log p, is too wide or unbounded.
+
+    It names the strongest correlation; for an adhesion without a lower end it says that the noise hides it. `index`: of
+    the unknown.
+    """
     name, correlation = fit.subject.names[index], np.abs(fit.correlation[index])
     if name.startswith("adhesion.") and not math.isfinite(low):
         return (

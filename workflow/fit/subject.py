@@ -49,7 +49,10 @@ class Subject:
     unknowns: tuple[Unknown, ...]
 
     def __post_init__(self) -> None:
-        """Mark the points in contact, those apart, and without a jump the undecided ones, some on the approach."""
+        """Set the attributes that follow from curve and unknowns: names, masks of the points, and pitch.
+
+        Without a jump all points of a segment are undecided. A pitch of 0 becomes 1e-300 LU.
+        """
         self.names = [unknown.name for unknown in self.unknowns]
         n = self.curve.positions.size
         self.held, self.apart, self.undecided, self.approaching = (np.zeros(n, dtype=bool) for _ in range(4))
@@ -63,45 +66,53 @@ class Subject:
 
     @property
     def sought(self) -> list[int]:
-        """The indices of the unknowns that are fitted and that the contact model depends on."""
+        """The indices of the unknowns that are parameters of the fit and on which the contact model depends."""
         return [i for i, number in enumerate(self.unknowns) if number.fitted and self.model.depends_on(number.name)]
 
     @property
     def problem(self) -> Problem:
-        """The least-squares problem of the compared points of approach and retraction."""
+        """The least-squares problem of the compared points, those of the approach before those of the retraction."""
         runs = tuple(segment.compared for segment in self.curve.segments)
         return Problem(self.unknowns, self.forces, self.curve.forces, runs)
 
     def scene_with(self, values: Sequence[float]) -> Scene:
-        """Return the scene with values of its unknowns, (p,) in their units, without checking it."""
+        """Return the scene with values of its unknowns, (p,) in their units and order, without checking it.
+
+        Values of the measurement and the instrument are ignored.
+        """
         return self._moved(self._factors(values))
 
     def _factors(self, values: Sequence[float]) -> Factors:
-        """Return (key of the scene, value over its scale) of each unknown of the scene.
+        """Return (dotted key, value over its first guess) of each unknown of the scene, in their order.
 
-        Those of the measurement are left out.
+        Contact point, offset of the force and stiffness of the instrument are left out.
         """
         numbers = zip(self.unknowns, values, strict=True)
         return tuple((number.name, value / number.scale) for number, value in numbers if number.name not in MEASURED)
 
     def _moved(self, factors: Factors) -> Scene:
-        """Return the scene with the numbers at some keys multiplied by factors, without checking it."""
+        """Return the scene with the numbers at some dotted keys multiplied by factors, without checking it."""
         scene = self.scene
         for key, factor in factors:
             scene = scene.moved(key, factor)
         return scene
 
     def _branch(self, factors: Factors) -> Branch:
-        """Return the states of the contact of the scene whose numbers are multiplied by factors."""
+        """Return the states of the contact of the scene whose numbers at dotted keys are multiplied by factors.
+
+        Displacements [LU] and forces [FU] of the contact model, compression positive, without instrument and offset;
+        not cached.
+        """
         scene = self._moved(factors)
         reach = law_of(scene).range_of(scene, 0.0)
         body = Body.of(scene.bodies.profile, self.curve.depth)
         return self.model.branch(body, modulus_of(scene), scene.work_of_adhesion, reach)
 
     def parts(self, values: Sequence[float]) -> tuple[Branch, float, float, float]:
-        """Return (branch of the contact, k_c [FU/LU], contact point [LU], offset of the force [FU]).
+        """Return (states of the contact, k_c [FU/LU], contact point [LU], offset of the force [FU]).
 
-        `values`: of the unknowns. k_c is infinite where the instrument is no unknown, as a rigid one.
+        `values`: of all unknowns, in their order and units. k_c is infinite where the instrument is no unknown, as a
+        rigid one. The states are cached.
         """
         named = dict(zip(self.names, values, strict=True))
         return self._branches(self._factors(values)), named.get(STIFFNESS, math.inf), named[POINT], named[OFFSET]
@@ -109,7 +120,11 @@ class Subject:
     def forces(self, values: Sequence[float]) -> Array:
         """Return F [FU], compression positive and with the offset, at every measured position, (n,).
 
-        `values`: of the unknowns. Before the bodies touch on the approach, F is the offset.
+        Points certainly apart, or within a jump of the force, have the offset. Those certainly in contact have the
+        force of the contact, continued steeply below its instability. Points of a segment without a jump have the force
+        of the contact, and the offset beyond its instability and, on the approach, before the bodies touch.
+
+        `values`: of all unknowns, in their order and units.
         """
         branch, stiffness, point, offset = self.parts(values)
         z = self.curve.positions - point
@@ -121,9 +136,11 @@ class Subject:
         return np.asarray(forces + offset)
 
     def completed(self, u: Array) -> Array:
-        """Return a copy of u (p,) with offset and contact point by the baseline and the position of the largest force.
+        """Return a copy of u (p,) with the offset of the force and the contact point set from the measured curve.
 
-        A contact point that is given keeps its value.
+        The offset is the baseline; the contact point is the one for which the contact has the largest measured force,
+        less the baseline, at its measured position. A contact point that is given has its value. Both are ratios to the
+        ranges of measured positions and forces, other unknowns logarithms of ratios to their first guess.
         """
         u, index, measured = u.copy(), self.names.index(POINT), self.curve
         point, offset = self.unknowns[index], self.names.index(OFFSET)
@@ -139,7 +156,13 @@ class Subject:
 
 
 def modulus_of(scene: Scene) -> float:
-    """Return E* [FU/LU²] of a scene's contact on a rigid plane: given stiffness over spacing, else of the material."""
+    """Return E* [FU/LU²] of a scene's contact on a rigid plane, of a given bulk stiffness, else of the material.
+
+    A given stiffness is that of a spring, and E* its ratio to the spacing.
+
+    Raises:
+        AssertionError: it has neither a bulk stiffness nor a material.
+    """
     bodies, material = scene.bodies, scene.material
     if bodies.bulk_stiffness != "auto":
         return bodies.bulk_stiffness / bodies.spacing

@@ -55,7 +55,10 @@ class MaterialRun(Choice):
 
 
 def theories_of(contact: AskedContact) -> Theories | None:
-    """Return the theories of an adhesive sphere, in SI; None for any other body, or without attraction."""
+    """Return JKR, DMT and Maugis–Dugdale for an adhesive sphere under its load, in SI.
+
+    None for any other body, or without a work of adhesion. A range that is not given is 0.3 nm.
+    """
     if contact.radius is None or not contact.work_of_adhesion:
         return None
     sphere = MaugisDugdale(contact.radius, contact.contact_modulus, contact.work_of_adhesion, contact.range)
@@ -65,9 +68,13 @@ def theories_of(contact: AskedContact) -> Theories | None:
 def choose(contact: AskedContact) -> Choice:
     """Return the scene that represents a contact, one chain on a rigid plane or two chains, and how it was chosen.
 
+    On the plane, the experiment is a pull-off with the load as preload (0.7 of JKR's pull-off force without one), or
+    without attraction the load. Two chains are chosen only by model = "particles".
+
     Raises:
         IdentifyError: no chain can represent it; the message says why.
         SceneError: the profile is invalid.
+        SettingsError: the bodies do not touch, or the tolerance needs too many particles.
     """
     theories = theories_of(contact)
     doubts = {} if theories is None else limitations(contact, theories)
@@ -83,7 +90,10 @@ def choose(contact: AskedContact) -> Choice:
 
 
 def default_preload(contact: AskedContact) -> float:
-    """Return the preload of a pull-off without a given one [N], > 0: 0.7 of JKR's pull-off force of the body."""
+    """Return the preload of a pull-off without a given one [N], compression positive: 0.7 of JKR's pull-off force.
+
+    This is that of the body's own profile. Without adhesion it is not above 0.
+    """
     return -PRELOAD_SHARE * float(contact_curve(on_plane(contact, {"kind": "load", "force": 1.0}))[2].min())
 
 
@@ -93,7 +103,7 @@ def on_plane(contact: AskedContact, experiment: Any, **tables: Any) -> Scene:
     Args:
         contact: the described contact; one without attraction has no [adhesion].
         experiment: the table of the experiment.
-        tables: further tables by name, in place of those of the description.
+        tables: further tables by name, which replace those of the description as a whole.
 
     Raises:
         SceneError: the tables make no valid scene.
@@ -105,10 +115,12 @@ def on_plane(contact: AskedContact, experiment: Any, **tables: Any) -> Scene:
 
 
 def _particles(contact: AskedContact, theories: Theories | None, doubts: dict[str, str]) -> Choice:
-    """Return the scene of two chains, with JKR's F_A and a₀ as the target of their interaction.
+    """Return the scene of two chains, with JKR's F_A and a₀ as the target of their interaction, and its limitations.
+
+    The interaction in the scene is only a start. The limitation "image" is added to `doubts` in a copy.
 
     Raises:
-        IdentifyError: the contact is no adhesive sphere, or a number of it has an uncertainty.
+        IdentifyError: the contact is no adhesive sphere, a number of it has ±, or no interaction can have the target.
     """
     if contact.scene.shares:
         raise IdentifyError(
@@ -141,6 +153,8 @@ def from_material(source: AnyContact, folder: AnyPath, progress: Progress | None
 
         contact1d.from_material("rubber.toml", "runs/rubber").run.results.adhesion_force
 
+    With model = "particles" several runs identify the interaction, and the last one is returned, without figures.
+
     Args:
         source: a TOML file, by its path, or its tables; docs/identify.md has the keys.
         folder: run folder.
@@ -149,7 +163,9 @@ def from_material(source: AnyContact, folder: AnyPath, progress: Progress | None
     Raises:
         SceneError: all problems of the description.
         IdentifyError: no chain can represent this contact; the message says why.
-        SettingsError, RunError: as `contact1d.run`.
+        SettingsError: the numbers of the scene lead to no computable system.
+        FolderError: the folder holds something else, or another run is active in it.
+        RunError: LAMMPS failed, or the result can't be trusted.
     """
     choice = choose(read_contact(source))
     if choice.target is None:

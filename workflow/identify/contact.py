@@ -77,41 +77,47 @@ class AskedContact:
 
     @property
     def shape(self) -> Shape:
-        """The profile of the upper body."""
+        """The profile of the upper body, lengths in metres; with a counter radius, that of both bodies together."""
         return self.scene.bodies.profile
 
     @property
     def radius(self) -> float | None:
-        """The radius R of a sphere [m]; None for any other body."""
+        """The radius of curvature R [m] of a paraboloid or sphere, the effective one of two; None of other bodies."""
         return self.shape.curvature_radius if self.shape.kind in SPHERES else None
 
     @property
     def contact_modulus(self) -> float:
-        """The contact modulus E* [Pa]."""
+        """The contact modulus E* [Pa] of both bodies, 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂, or as given."""
         assert self.scene.material is not None
         return self.scene.material.effective_modulus()
 
     @property
     def work_of_adhesion(self) -> float:
-        """The work of adhesion W = 2γ [J/m²]; 0: no attraction."""
+        """The work of adhesion W = 2γ [J/m²]; 0 without attraction."""
         return self.scene.work_of_adhesion
 
     @property
     def range(self) -> float:
         """The range h₀ of the attraction [m].
 
-        Where an attraction has none 0.3 nm is assumed, and 0 is that of no attraction.
+        Of an attraction without a given range it is 0.3 nm, and 0 without attraction.
         """
         return law_of(self.scene).range_of(self.scene, ASSUMED_RANGE)
 
     @property
     def load(self) -> float | None:
-        """The load [N], compression positive; None: not given."""
+        """The load [N], compression positive; None where it is not given.
+
+        A load given as the number 0, without a unit, is 1 N, that of the scene by default.
+        """
         return self.scene.experiment.compression if "load" in self.given else None
 
     @property
     def model(self) -> Model:
-        """The model: "plane", a chain on a rigid plane, or "particles", two chains with a fitted interaction."""
+        """The model: "particles", two chains with a fitted interaction, where the description has it, else "plane".
+
+        "plane" is one chain on a rigid plane.
+        """
         return "particles" if self.given.get("model") == "particles" else "plane"
 
 
@@ -119,11 +125,12 @@ def read_contact(source: AnyContact, complete: bool = True) -> AskedContact:
     """Return the contact that a file or its tables describe, read as a scene with 1 LU = 1 m and 1 FU = 1 N.
 
     Args:
-        source: a TOML file, by its path, or its tables.
+        source: a TOML file, by its path, or its tables, which are not changed.
         complete: whether a load or an adhesion is required.
 
     Raises:
-        SceneError: all problems of the description.
+        SceneError: all problems of the description, in the order of its keys; or that the file can't be read or is a
+            scene.
     """
     folder = Path() if isinstance(source, Mapping) else Path(fspath(source)).parent
     data = dict(source) if isinstance(source, Mapping) else read_tables(source)
@@ -145,12 +152,20 @@ def read_contact(source: AnyContact, complete: bool = True) -> AskedContact:
 
 
 def _adheres(data: Mapping[str, Any]) -> bool:
-    """Return whether a description has a surface energy or a work of adhesion other than 0."""
+    """Return whether a description has a surface energy or a work of adhesion; the number 0 counts as none.
+
+    A text such as "0 J/m²" counts as one.
+    """
     return bool(data.get("surface_energy") or data.get("work_of_adhesion"))
 
 
 def _mistakes(data: Mapping[str, Any], complete: bool) -> Iterator[Problem]:
-    """Yield the problems of a description that its scene would not have: unknown, missing and exclusive keys."""
+    """Yield the problems of a description that its scene would not have: unknown, missing and exclusive keys.
+
+    Also two rigid bodies, an unknown model and a negative load.
+
+    `complete`: whether a load or an adhesion is required.
+    """
     for key in (key for key in data if key not in KEYS):
         meant = nearest(key, KEYS)
         hint = f'did you mean "{meant}"?' if meant else f"allowed here: {', '.join(KEYS)}"
@@ -182,9 +197,9 @@ def _mistakes(data: Mapping[str, Any], complete: bool) -> Iterator[Problem]:
 
 
 def _without_unit(data: Mapping[str, Any], folder: Path) -> Iterator[Problem]:
-    """Yield a problem if neither the file of a profile has units nor the profile a scale.
+    """Yield a problem if neither the file of a profile has units nor the profile a `scale` or `units`.
 
-    None for a file that can't be read.
+    None without a file, or for one that can't be read. `folder`: to which the file's path is relative.
     """
     profile = data.get("profile")
     if isinstance(profile, Mapping) and isinstance(profile.get("file"), str) and not {"scale", "units"} & {*profile}:
@@ -195,7 +210,11 @@ def _without_unit(data: Mapping[str, Any], folder: Path) -> Iterator[Problem]:
 
 
 def _as_scene(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the tables of a chain on a rigid plane with the described values, and DEFAULTS for all others."""
+    """Return the tables of a chain on a rigid plane with the described values, and DEFAULTS for all others, unchecked.
+
+    A surface energy, work of adhesion or load of the number 0 counts as absent. Without materials E* is 1 Pa; a missing
+    one of two bodies is rigid.
+    """
     given = {SCENE_KEYS[key]: v for key, v in data.items() if key in SCENE_KEYS and (v or key not in NONE_AT_ZERO)}
     unknown: dict[str, Any] = dict.fromkeys(("material.upper", "material.lower"), RIGID)
     if not unknown.keys() & given.keys():
@@ -208,9 +227,9 @@ def _as_scene(data: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _as_given(problem: Problem, data: Mapping[str, Any]) -> Problem:
-    """Return a problem of the scene with the key of the description in its path.
+    """Return a problem of the scene with the key of the description in its path, as a new `Problem`.
 
-    Unchanged if it belongs to no such key.
+    The path is unchanged if it belongs to no key of the description.
     """
     keys = [key for key in SCENE_KEYS if key in data]
     described = next((key for key in keys if problem.path.startswith(SCENE_KEYS[key])), problem.path)
@@ -219,13 +238,15 @@ def _as_given(problem: Problem, data: Mapping[str, Any]) -> Problem:
 
 
 def _rank(problem: Problem) -> int:
-    """Return the position of a problem's key in KEYS; -1 for an unknown key."""
+    """Return the position of a problem's key among the keys of a description, from 0; -1 for an unknown key."""
     key = problem.path.partition(".")[0]
     return KEYS.index(key) if key in KEYS else -1
 
 
 def _length(data: Mapping[str, Any], key: str, problems: list[Problem]) -> float | None:
-    """Return a length ≥ 0 [m]; None if it is absent or invalid.
+    """Return a length [m]; None if it is absent or no length.
+
+    Of one below 0 or infinite the problem is appended, and the value returned nevertheless.
 
     Args:
         data: the description; a text has a unit, a number is in [m].

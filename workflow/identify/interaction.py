@@ -60,7 +60,7 @@ class Target:
 
 
 def require_reachable(scene: Scene, target: Target) -> None:
-    """Check that springs of the scene's stiffness can reach a target, F_A [FU] and a₀ [LU].
+    """Check that springs of the scene's stiffness can reach a target, F_A [FU] and a₀ [LU]; nothing is returned.
 
     Raises:
         IdentifyError: they cannot; the message has the nearest zero-load radius and the nearest adhesion force. Or the
@@ -75,7 +75,9 @@ def require_reachable(scene: Scene, target: Target) -> None:
 
 
 def require_held(target: Target, layer: float, radius: float, units: tuple[str, str]) -> None:
-    """Check that a layer of springs can have F_A and a₀ of a target, with any interaction.
+    """Check that a layer of springs can have F_A and a₀ of a target, with any interaction; nothing is returned.
+
+    They can up to F_A R₁/(layer a₀³) = 0.95 · 4/(9√3).
 
     Args:
         target: F_A and a₀, in `units`.
@@ -105,10 +107,10 @@ def require_held(target: Target, layer: float, radius: float, units: tuple[str, 
 def material_scene(
     contact_modulus: float, radius: float, target: Target, length_unit: float | None = None, *, tolerance: float
 ) -> tuple[Scene, Target]:
-    """Return the scene of a sphere of a material and its target in LU and FU; its interaction is only a start.
+    """Return (scene of a sphere of a material on two chains, its target in FU and LU); its interaction is only a start.
 
     The reduction is the MDR's, so that stiffness, displacement and radius are those of the sphere. FU is chosen so that
-    a bulk spring has the stiffness 1 FU/LU.
+    a bulk spring has the stiffness 1 FU/LU. The experiment is a pull-off with a preload of 0.7 F_A.
 
     Args:
         contact_modulus: E* [Pa].
@@ -150,7 +152,9 @@ def material_scene(
 
 
 def _require_resolved(a_0: float, unit: float, radius: float, fewest: float = 8.0, most: float = 2000.0) -> None:
-    """Check that a₀ [m] has `fewest` to `most` particles one length unit [m] apart and is small against R [m].
+    """Check that a₀ [m] has `fewest` to `most` particles one length unit [m] apart and is at most 0.6 of R [m].
+
+    Nothing is returned; ends are included.
 
     Raises:
         IdentifyError: it has not, or is not; the message has the allowed length unit or radius.
@@ -172,27 +176,35 @@ def _require_resolved(a_0: float, unit: float, radius: float, fewest: float = 8.
 
 
 def jkr_target(contact_modulus: float, surface_energy: float, radius: float) -> Target:
-    """Return F_A = 3πγR [N] and a₀ = (9πγR²/E*)^{1/3} [m] of JKR from E* [Pa], γ of one side [J/m²] and R [m]."""
+    """Return F_A = 3πγR [N], positive, and a₀ = (9πγR²/E*)^{1/3} [m] of JKR's contact.
+
+    Args:
+        contact_modulus: E* [Pa].
+        surface_energy: γ of one side [J/m²].
+        radius: R [m].
+    """
     sphere = PowerLaw.sphere(radius, contact_modulus, work_of_adhesion=2.0 * surface_energy)
     return Target(sphere.pull_off_force(), sphere.zero_load_radius())
 
 
 def estimated(scene: Scene, target: Target) -> Scene:
-    """Return the scene with amplitudes and ranges scaled so that the predictor gives the target, without a run.
+    """Return the scene with amplitudes and ranges scaled so that independent pairs of particles give the target.
 
-    Its F_A [FU] and a₀ [LU] are those of independent pairs of particles, not of a run.
+    The F_A [FU] and a₀ [LU] of a run differ somewhat. Nothing runs.
 
     Raises:
-        IdentifyError: no interaction of this shape has the target.
+        IdentifyError: no interaction of this shape, or no springs of this stiffness, have the target; or the scene is
+            no pull-off of a parabola with an attraction.
     """
     require_reachable(scene, target)
     return scaled(scene, start(scene, target))
 
 
 def start(scene: Scene, target: Target) -> Array:
-    """Return the logarithms of the factors of amplitudes and ranges, (2,), to reach the target by independent pairs.
+    """Return the natural logarithms of the factors (of amplitudes, of ranges), (2,), that give the target.
 
-    F_A is monotone in the amplitudes, and a₀ in the range at that F_A: two nested bracketed searches.
+    It is given by independent pairs of particles, without a run. F_A is monotone in the amplitudes, and a₀ in the range
+    at that F_A: two nested bracketed searches.
 
     Raises:
         IdentifyError: no interaction of this shape has the target; the message has the nearest a₀ at the same F_A.
@@ -200,9 +212,14 @@ def start(scene: Scene, target: Target) -> Array:
     amplitude, wanted = 0.0, np.log([target.adhesion_force, target.zero_load_radius])
 
     def deviations(amplitude: float, reach: float) -> Array:
+        """Return ln F_A/F_A* and ln a₀/a₀* of independent pairs from the target, (2,), at two logarithms of factors."""
         return _estimated(scaled(scene, np.array([amplitude, reach]))) - wanted
 
     def radius_deviation(reach: float) -> float:
+        """Return ln a₀/a₀* at the factor of the ranges, with the amplitudes for which F_A is the required one.
+
+        The logarithm of their factor is kept, as the start of the next search.
+        """
         nonlocal amplitude
         amplitude = _root(lambda a: float(deviations(a, reach)[0]), amplitude)
         return float(deviations(amplitude, reach)[1])
@@ -222,6 +239,7 @@ class _NoRootError(ValueError):
     """A function without a change of sign in the searched interval; `nearest` is its value nearest to zero."""
 
     def __init__(self, nearest: float) -> None:
+        """Store the value of the function nearest to zero, with its sign."""
         super().__init__(nearest)
         self.nearest = nearest
 
@@ -229,14 +247,16 @@ class _NoRootError(ValueError):
 def _root(
     function: Callable[[float], float], start: float, step: float = 0.25, last_step: float = 9.0, error: float = 1e-4
 ) -> float:
-    """Return the zero of a monotone function of a logarithm, to ± `error`, searched on both sides of `start`.
+    """Return the zero of a monotone function, rising or falling, of a logarithm, to ± `error`.
+
+    The interval grows to both sides of `start`, which is returned if it is a zero.
 
     Args:
         function: function of the logarithm of a factor.
         start: first logarithm.
         step: first step; each next one is twice as long.
         last_step: longest step.
-        error: error of the logarithm; the predictor is no more accurate.
+        error: error of the logarithm; the reduced model is no more accurate.
 
     Raises:
         _NoRootError: the function has one sign in the searched interval.
@@ -254,8 +274,8 @@ def _root(
 def slopes(scene: Scene, logarithms: Array, step: float = 0.03) -> Array:
     """Return d(ln F_A, ln a₀)/d(logarithms) of independent pairs, (2, 2), dimensionless, by central differences.
 
-    Rows are ln F_A and ln a₀, columns the logarithms of the factors of amplitudes and ranges. The step is much larger
-    than the error of the predictor by its grid.
+    Rows are ln F_A and ln a₀, columns the logarithms of the factors of amplitudes and ranges. The `step` is much larger
+    than the error of F_A and a₀ by their grid.
     """
     moves = step * np.eye(2)
     ends = [[_estimated(scaled(scene, logarithms + sign * move)) for sign in (1.0, -1.0)] for move in moves]
@@ -263,7 +283,10 @@ def slopes(scene: Scene, logarithms: Array, step: float = 0.03) -> Array:
 
 
 def scaled(scene: Scene, logarithms: Array) -> Scene:
-    """Return the scene with amplitudes and ranges of its interaction times the exponentials of `logarithms`, (2,)."""
+    """Return the checked scene with amplitudes and ranges of its interaction times exp(`logarithms`), (2,).
+
+    Repulsion and attraction have the same factors, first that of the amplitudes, then that of the ranges.
+    """
     data = scene.model_dump(by_alias=True, exclude_none=True)
     for term in ("repulsion", "attraction"):
         for key, factor in zip(("amplitude", "range"), np.exp(logarithms).tolist(), strict=True):
@@ -272,12 +295,14 @@ def scaled(scene: Scene, logarithms: Array) -> Scene:
 
 
 def _estimated(scene: Scene, tail: float = 1e-5, points: int = 1000) -> Array:
-    """Return ln F_A [FU] and ln a₀ [LU] of independent pairs, (2,), by the predictor of the settings on a coarser grid.
+    """Return ln F_A [FU] and ln a₀ [LU] of independent pairs of particles, (2,), on a coarse grid, without a run.
+
+    a₀ is the half-width of the contact up to the largest tension of a pair, at F = 0.
 
     Args:
         scene: scene with an interaction.
-        tail: force at the cutoff of the predictor over the force scale.
-        points: distances at which the predictor has forces.
+        tail: force at the cutoff over the force scale.
+        points: distances at which there are forces.
     """
     law = interaction_law(scene)
     assert law is not None
@@ -288,7 +313,10 @@ def _estimated(scene: Scene, tail: float = 1e-5, points: int = 1000) -> Array:
 
 
 def _largest_tension(estimate: Law) -> float:
-    """Return the undeformed gap [LU] of the predictor's largest tension, by a parabola between its points."""
+    """Return the undeformed gap [LU] at which independent pairs have their largest tension.
+
+    By a parabola through three points of the grid; at an end of the grid through the last three.
+    """
     force, points = estimate.force, np.arange(estimate.force.size, dtype=np.float64)
     i = min(max(int(np.argmin(force)), 1), len(force) - 2)
     peak, _ = vertex(points, -force, i, 1)
@@ -317,18 +345,21 @@ def identify(
 ) -> Identified:
     """Return the scene whose run has the F_A and a₀ of `target`, with that run, after scaling its interaction.
 
-    Both are met to 0.3 of the tolerance of the scene.
+    Both are met to 0.3 of the tolerance of the scene. Each run replaces the one before in the folder; none has figures.
 
     Args:
         scene: a pull_off with attraction; the shape of its interaction is kept.
         target: required F_A [FU] and a₀ [LU].
         folder: run folder, for the last run.
         progress: informed of phases and steps; None: nobody is.
-        most_runs: runs after which the search ends without a result; two to four are usual.
+        most_runs: runs after which the search ends without a result, one at least; two to four are usual.
 
     Raises:
         IdentifyError: no interaction of this shape has the target, or the search does not converge.
-        SettingsError, RunError: as `contact1d.run`.
+        SettingsError: the numbers of a scene lead to no computable system.
+        FolderError: the folder holds something else, or another run is active in it.
+        RunError: LAMMPS failed, or a result can't be trusted.
+        KeyError: a run does not report F_A or a₀.
     """
     require_reachable(scene, target)
     largest_deviation = 0.3 * scene.accuracy.tolerance
@@ -349,9 +380,10 @@ def identify(
 
 
 def scales_of_run(folder: Path, contact_modulus: float, surface_energy: float) -> tuple[Scales, dict[str, Any]]:
-    """Return the scales with which a run is JKR's contact of a material, and its results with units of LU and FU.
+    """Return (scales with which a run is JKR's contact of a material, its results with units of LU, FU and MU).
 
-    The scales are LU [m] and FU [N]; results are by name with value, uncertainty and unit of the model.
+    The scales are LU [m] and FU [N] with their uncertainties; results, pure numbers included, are dicts by name with
+    "value", "uncertainty" and "unit" of the model.
 
     Args:
         folder: run folder of a pull_off, or of a path that found F_A and a₀.

@@ -28,15 +28,15 @@ class Contact:
     asked: AskedContact
 
     def scene(self, kind: str, friction: float | None = None, **experiment: Any) -> Scene:
-        """Return the scene of an experiment with the keys of docs/scene.md, to run, to sweep or to print.
+        """Return the scene of an experiment on a rigid plane, in metres and newtons, to run, to sweep or to print.
 
         Args:
-            kind: experiment, such as "pull_off"; by default its preload is 0.7 of the pull-off force of theory.
+            kind: experiment, such as "pull_off"; without a preload that has 0.7 of JKR's pull-off force of the body.
             friction: coefficient μ; None: without friction.
-            experiment: keys of the experiment.
+            experiment: keys of the experiment, as in docs/scene.md.
 
         Raises:
-            SceneError: all problems of the scene.
+            SceneError: all problems of the scene, such as a pull_off without adhesion.
         """
         if kind == "pull_off" and experiment.get("preload") is None:
             experiment["preload"] = default_preload(self.asked)
@@ -50,39 +50,61 @@ class Contact:
     def load(self, force: list[Any], folder: AnyPath | None = None) -> list[Run]: ...
 
     def load(self, force: Any, folder: AnyPath | None = None) -> Run | list[Run]:
-        """Return the run under a force, which presses, or pulls if it is negative: a text with a unit, or [N].
+        """Return the finished run under a force, which presses, or pulls if it is negative: a text with a unit, or [N].
 
-        A list of forces makes a list of runs, in the folders 1, 2, … of the folder. Without a folder, the run folder is
-        temporary.
+        A list of forces gives a list of runs, in their order, in the subfolders 1, 2, … of the folder. Without a
+        folder, each run folder is temporary, and figures are not drawn.
+
+        Raises:
+            SceneError: the scene is invalid.
+            SettingsError: its numbers lead to no computable system.
+            RunError: the run failed, or the contact does not sustain the force.
         """
         if isinstance(force, list):
             return [self.load(step, folder and Path(folder) / str(i)) for i, step in enumerate(force, 1)]
         return run(self.scene("load", force=force), folder)
 
     def pull_off(self, preload: str | float | None = None, folder: AnyPath | None = None) -> Run:
-        """Return the run that presses with a preload, by default that of `scene`, and pulls until the bodies separate.
+        """Return the run that presses with a preload, by default 0.7 of JKR's pull-off force, and pulls until pull-off.
 
-        The preload is a text with a unit or [N]; without a folder, the run folder is temporary.
+        The preload is a text with a unit or [N], compression positive; without a folder, the run folder is temporary,
+        and figures are not drawn.
+
+        Raises:
+            SceneError: the scene is invalid, as without adhesion.
+            SettingsError: its numbers lead to no computable system.
+            RunError: the run failed.
         """
         return run(self.scene("pull_off", preload=preload), folder)
 
     def path(self, displacements: Any, folder: AnyPath | None = None) -> Run:
-        """Return the run along displacements, texts with units or [m]: a list, or { from, to, steps, return }.
+        """Return the finished run along displacements, compression positive, texts with units or [m].
 
-        Without a folder, the run folder is temporary.
+        They are a list, or a table { from, to, steps, return }. Without a folder, the run folder is temporary, and
+        figures are not drawn.
+
+        Raises:
+            SceneError: the scene is invalid.
+            SettingsError: its numbers lead to no computable system.
+            RunError: the run failed.
         """
         return run(self.scene("path", displacements=displacements), folder)
 
     def tangential(
         self, normal_force: str | float, friction: float, folder: AnyPath | None = None, **experiment: Any
     ) -> Run:
-        """Return the run under a normal force [N] with a tangential motion under Coulomb friction.
+        """Return the finished run under a normal force with a tangential motion under Coulomb friction.
 
         Args:
             normal_force: text with a unit, or [N], compression positive.
             friction: coefficient μ.
-            folder: run folder; None: a temporary one.
+            folder: run folder; None: a temporary one, and figures are not drawn.
             experiment: `displacements` or `cycles`, and other keys of the experiment.
+
+        Raises:
+            SceneError: the scene is invalid.
+            SettingsError: its numbers lead to no computable system.
+            RunError: the run failed.
         """
         return run(self.scene("tangential", friction, normal_force=normal_force, **experiment), folder)
 
@@ -91,6 +113,8 @@ def sphere(radius: str | float, counter_radius: str | float | None = None, **con
     """Return the contact of a sphere, as a paraboloid, with a flat body or a sphere (`counter_radius` < 0: a cup).
 
         contact1d.sphere(radius="2 mm", upper="rubber", lower="glass", work_of_adhesion="80 mJ/m²").pull_off()
+
+    Nothing runs before an experiment is called.
 
     Args:
         radius: radius of curvature at the apex, text with a unit or [m].
@@ -106,23 +130,42 @@ def sphere(radius: str | float, counter_radius: str | float | None = None, **con
 
 
 def cone(half_angle: str, **contact: Any) -> Contact:
-    """Return the contact of a cone with an angle between axis and flank, such as "80°"; other arguments as `sphere`."""
+    """Return the contact of a rigid or elastic cone with a flat body; nothing runs before an experiment is called.
+
+    Args:
+        half_angle: angle between axis and flank, such as "80°".
+        contact: `upper` and `lower` (names of materials, or tables with youngs_modulus and poisson_ratio), or
+            `contact_modulus`; `work_of_adhesion`, `tolerance`, `title` (docs/identify.md).
+
+    Raises:
+        SceneError: all problems of the description.
+    """
     return _contact(contact, kind="cone", half_angle=half_angle)
 
 
 def punch(radius: str | float, **contact: Any) -> Contact:
-    """Return the contact of a flat punch of a radius, text with a unit or [m]; other arguments as `sphere`."""
+    """Return the contact of a flat cylindrical punch with a flat body; nothing runs before an experiment is called.
+
+    Args:
+        radius: of the punch, text with a unit or [m].
+        contact: `upper` and `lower` (names of materials, or tables with youngs_modulus and poisson_ratio), or
+            `contact_modulus`; `work_of_adhesion`, `tolerance`, `title` (docs/identify.md).
+
+    Raises:
+        SceneError: all problems of the description.
+    """
     return _contact(contact, kind="flat_punch", radius=radius)
 
 
 def profile(file: AnyPath | None = None, **contact: Any) -> Contact:
-    """Return the contact of a measured profile, from a file or lists.
+    """Return the contact of a body of measured profile, from a file or lists, with a flat body; nothing runs yet.
 
     `centre`, `level`, `smooth`, `fit` and `units` determine how a scan is read, as in a scene (docs/scene.md).
 
     Args:
         file: with columns r or x, and z; None: `r` or `x` and `z` are given as lists.
-        contact: these keys of a profile, and the arguments of `sphere` but its radii.
+        contact: these keys of a profile; `upper` and `lower` (names of materials, or tables with youngs_modulus and
+            poisson_ratio), or `contact_modulus`; `work_of_adhesion`, `tolerance`, `title` (docs/identify.md).
 
     Raises:
         SceneError: all problems of the description.
@@ -134,5 +177,9 @@ def profile(file: AnyPath | None = None, **contact: Any) -> Contact:
 
 
 def _contact(contact: dict[str, Any], **profile: Any) -> Contact:
-    """Return the contact of a profile, by its keys, and the description's other keys; SceneError for a wrong one."""
+    """Return the contact of a profile, by its keys, and the description's other keys; no load or adhesion is required.
+
+    Raises:
+        SceneError: all problems of the description, such as an unknown key.
+    """
     return Contact(read_contact({"profile": profile, **contact}, False))

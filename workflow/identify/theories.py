@@ -37,21 +37,25 @@ class Theories:
 
     @property
     def tabor(self) -> float:
-        """The Tabor parameter μ = (R W²/(E*² h₀³))^(1/3), dimensionless."""
+        """The Tabor parameter μ = (R W²/(E*² h₀³))^(1/3) of the sphere, dimensionless, > 0."""
         return self.sphere.tabor
 
     @cached_property
     def verdict(self) -> Verdict:
-        """The theory that holds under the load (0 where none is given), with the reason."""
+        """The simplest theory that holds under the load (0 where none is given), with the reason; cached.
+
+        One of no contact, rigid sphere (Bradley), Hertz, JKR, DMT and Maugis-Dugdale.
+        """
         return valid_theory(
             self.tabor, (self.load or 0.0) / (math.pi * self.sphere.work_of_adhesion * self.sphere.radius)
         )
 
     @cached_property
     def values(self) -> Mapping[str, Mapping[str, float]]:
-        """By theory F_A [N], a₀ [m], critical radius under load control [m] and of a given load its radius [m].
+        """By theory ("JKR", "DMT", "Maugis-Dugdale") pull-off force and contact radii of the sphere in SI; cached.
 
-        Keys are `adhesion_force`, a positive magnitude, `zero_load_radius`, `critical_radius` and `loaded_radius`.
+        Keys are `adhesion_force` [N], a positive magnitude, `zero_load_radius`, `critical_radius` under load control
+        and, only with a given load, `loaded_radius` [m].
         """
         return {
             str(name): {
@@ -64,14 +68,18 @@ class Theories:
 
     @property
     def holding(self) -> str:
-        """The theory of `values` that holds by μ: DMT below 0.1, JKR above 5, else Maugis and Dugdale."""
+        """The theory, as a key of `values`, that holds at any load by the Tabor parameter μ.
+
+        "DMT" below 0.1, "JKR" above 5, else "Maugis-Dugdale".
+        """
         return str(of_tabor(self.tabor))
 
 
 def limitations(contact: AskedContact, theories: Theories) -> dict[str, str]:
     """Return the limitations of a chain as a model of an adhesive sphere: name and message; empty where there are none.
 
-    Names are `below_an_atom`, `roughness` and `tabor`.
+    Names are `below_an_atom` (a₀ below 0.3 nm), `roughness` (above a tenth of the elastic stretch at pull-off) and
+    `tabor` (the range, assumed or of two chains, is too large for JKR).
 
     Raises:
         IdentifyError: a chain is no model of the contact: its roughness exceeds the elastic stretch at pull-off.
@@ -104,13 +112,15 @@ def limitations(contact: AskedContact, theories: Theories) -> dict[str, str]:
 
 
 def _down(value: float) -> str:
-    """Return a value > 0 as text, rounded down to three significant digits."""
+    """Return a value > 0 as text, rounded down to three significant digits, without trailing zeros."""
     digits = 10.0 ** (math.floor(math.log10(value)) - 2)
     return f"{math.floor(value / digits) * digits:.3g}"
 
 
 def require_size(contact: AskedContact, radius: float) -> None:
     """Check that a contact radius [m] is at most 0.6 of the radius of a sphere; any other body passes.
+
+    Nothing is returned.
 
     Raises:
         IdentifyError: it is larger; the message has the largest share.

@@ -17,5 +17,9 @@ LAWS: tuple[type[Law], ...] = (Maugis, Receding, Jkr, Relaxing, Frictional, Inde
 
 
 def law_of(scene: Scene) -> type[Law]:
-    """Return the class of the contact law of a scene: the first of `LAWS` that applies; the last one applies to all."""
+    """Return the class of the contact law of a scene: the first of `LAWS` whose `applies` is true for it.
+
+    That is Maugis, Receding or Jkr with adhesion, Relaxing with [viscoelasticity], Frictional with [friction], and
+    Independent for any other scene.
+    """
     return next(law for law in LAWS if law.applies(scene))

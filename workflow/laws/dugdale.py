@@ -73,14 +73,13 @@ class Dugdale:
 
     @property
     def end(self) -> float:
-        """Half-width [LU] up to which an attraction may act, 1e-6 (relative) inside the body's own.
-
-        Infinite of an unbounded body.
+        """Half-width [LU] up to which an attraction may act, 1e-6 (relative) less than the body's; infinite of an
+        unbounded body.
         """
         return self.profile.reach * INSIDE
 
     def widest(self) -> float:
-        """Return the largest a [LU] whose attraction ends on the body, 1e-6 (relative) inside.
+        """Return the largest contact radius a [LU] whose attraction ends on the body, less 1e-6 (relative).
 
         Infinite of an unbounded body.
 
@@ -109,13 +108,17 @@ class Dugdale:
 
     @cached_property
     def _areas(self) -> tuple[Array, Array]:
-        """Positions x [LU] from 0 to `known`, dense near kinks, and G = ∫₀ˣ g dx there [LU²]."""
+        """(Positions x [LU], rising from 0 to the largest needed radius `known`, dense near kinks; G = ∫₀ˣ g dx there
+        [LU²]).
+
+        g is the transformed profile.
+        """
         x = np.concatenate([[0.0], np.geomspace(1e-6 * self.known, self.known, 2000)])
         x = beside_kinks(x, self.profile)
         return x, np.append(0.0, np.cumsum(self._integral(x[:-1], x[1:])))
 
     def _integral(self, low: Array, high: Array, nodes: int = 8) -> Array:
-        """Return ∫ g dx, (n,) [LU²], from positions `low` to `high`, (n,) [LU].
+        """Return ∫ g dx of the transformed profile, (n,) [LU²], from positions `low` to `high`, (n,) [LU].
 
         By a Gauss quadrature of so many `nodes`.
         """
@@ -124,15 +127,15 @@ class Dugdale:
         return np.asarray(half * (self.profile.height(0.5 * (low + high)[:, None] + half[:, None] * node) @ weight))
 
     def area(self, x: Array) -> Array:
-        """Return G(x) = ∫₀ˣ g dx, (n,) [LU²], at positions x from 0 to `known`, (n,) [LU]."""
+        """Return G(x) = ∫₀ˣ g dx of the transformed profile, (n,) [LU²], at positions x, 0 … `known`, (n,) [LU]."""
         knots, areas = self._areas
         cell = np.clip(np.searchsorted(knots, x, side="right") - 1, 0, knots.size - 1)
         return np.asarray(areas[cell] + self._integral(knots[cell], x))
 
     def _pressed(self, edge: Array, width: Array) -> Array:
-        """Return ∫₀ᵃ g/√(c² − x²) dx, (n,) [LU], at `edge` a and `width` s, (n,) [LU], with c² = a² + s².
+        """Return ∫₀ᵃ g/√(c² − x²) dx of the transformed profile g, (n,) [LU], at `edge` a and `width` s, (n,) [LU].
 
-        With x = c sin t the integral goes from 0 or a kink on in powers of √(t − t₀).
+        c² = a² + s². With x = c sin t the integral goes from 0 or a kink on in powers of √(t − t₀).
         """
         c = np.hypot(edge, width)
         kinks = [np.minimum(kink, edge) for kink in self.profile.kinks if kink < self.known]
@@ -146,9 +149,10 @@ class Dugdale:
         return total
 
     def gap_error(self, edge: Array, width: Array, displacement: Array) -> Array:
-        """Return the gap at c less the range, (m,) [LU], at `edge` a, `width` s and displacement d, (m,) [LU].
+        """Return the gap at c less the range h₀, (m,) [LU], at `edge` a, `width` s and displacement d, (m,) [LU].
 
-        s = √(c² − a²). The error is 0 in equilibrium, with d = g(a) − 2σ₀s/E*.
+        c = √(a² + s²) is the radius up to which the attraction acts. The error is 0 in equilibrium, with d = g(a) −
+        2σ₀s/E*.
         """
         c = np.hypot(edge, width)
         angle = np.arctan2(edge, width)
@@ -158,9 +162,10 @@ class Dugdale:
         return np.asarray(self.surface.height(c) - displacement + 2.0 / math.pi * elastic - self.range)
 
     def states(self, edge: Array, width: Array) -> Zone:
-        """Return the states of contacts with `edge` a and `width` s = √(c² − a²), (m,) [LU].
+        """Return the states (a, c, d, F), (m,) each, of contacts with `edge` a and `width` s = √(c² − a²), (m,) [LU].
 
-        Their displacement is that without a singular stress at a.
+        Their displacement d is that without a singular stress at a; the gap at c may differ from the range. F is
+        positive in compression.
         """
         displacement = self.profile.height(edge) - self.ratio * width
         return Zone(edge, np.hypot(edge, width), displacement, self.forces(edge, width, displacement))
@@ -175,6 +180,8 @@ class Dugdale:
 
     def widths(self, edge: Array) -> Array:
         """Return s = √(c² − a²), (m,) [LU], in equilibrium of contacts of the radii `edge` a, (m,) [LU].
+
+        c is the radius up to which the attraction acts.
 
         Raises:
             SettingsError: the attraction exceeds the body.
@@ -200,7 +207,11 @@ class Dugdale:
         return np.asarray(root.x)
 
     def before(self, reach: Array) -> Array:
-        """Return d, (m,) [LU], of bodies that do not touch and attract each other up to a radius, (m,) [LU]."""
+        """Return d, (m,) [LU], in equilibrium of bodies that do not touch and attract each other up to a radius, (m,)
+        [LU].
+
+        −h₀ at the radius 0.
+        """
         return np.asarray(self.surface.height(reach) - 2.0 / math.pi * self.ratio * reach - self.range)
 
 

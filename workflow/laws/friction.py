@@ -45,7 +45,10 @@ class JenkinsElements:
     coefficient: float
 
     def displacement_under(self, force: float) -> float:
-        """Return the displacement [LU] that carries a normal force [FU] ≥ 0; for 0, just short of the first touch."""
+        """Return the displacement [LU] that carries a normal force [FU] ≥ 0.
+
+        For 0 it is short of the first touch, by 1e-9 of the range of heights, of a flat body by 1e-9 LU.
+        """
         heights = np.sort(self.heights)
         if force == 0.0:
             return float(heights[0] - ROUND_OFF * (heights[-1] - heights[0] or 1.0))
@@ -57,7 +60,8 @@ class JenkinsElements:
         return float((force / self.normal + below[touching]) / count[touching])
 
     def touches(self, before: float, after: float) -> list[float]:
-        """Return the displacements [LU] strictly between two, in order, at which a particle begins or ends to touch.
+        """Return the displacements [LU] strictly between two, in order, at which a particle begins or ends to touch,
+        each once.
 
         `before`, `after`: displacements [LU]; where `after` is below `before` the order is falling. Empty without any.
         """
@@ -69,8 +73,8 @@ class JenkinsElements:
 def without_stops(path: Sequence[Stop]) -> list[Stop]:
     """Return a path without stops between others of a straight tangential line at constant displacement.
 
-    Such stops have no effect. `path`: (displacement, position along x) [LU] of each stop; the first and the last
-    remain.
+    Such stops have no effect. The first and the last stop are always kept. `path`: (displacement, position along x)
+    [LU] of each stop; it is not changed.
     """
     kept = list(path[:2])
     for stop in path[2:]:
@@ -83,14 +87,15 @@ def without_stops(path: Sequence[Stop]) -> list[Stop]:
 
 
 def elements_of(scene: Scene, x: Array) -> JenkinsElements:
-    """Return the Jenkins elements of a scene with [friction], at positions x, (n,) [LU], from the apex."""
+    """Return the Jenkins elements of a scene with [friction], at positions x, (n,) [LU], relative to the apex."""
     heights = np.asarray(scene.bodies.height(x), dtype=np.float64)
     stiffnesses = scene.bulk_stiffness, scene.tangential_stiffness
     return JenkinsElements(x, heights, *stiffnesses, scene.the(Friction).coefficient)
 
 
 def stops(experiment: Tangential, elements: JenkinsElements) -> list[Stop]:
-    """Return (displacement, position along x) [LU] of the load, at position 0, and of the end of each load step.
+    """Return (normal displacement, position along x) [LU] of the first load, at position 0, and of the end of each load
+    step.
 
     Where the experiment prescribes normal forces, `elements` give the displacements that carry them.
     """
@@ -126,7 +131,10 @@ class Frictional(Independent):
 
     @classmethod
     def of(cls, scene: Scene, profile: Profile) -> Self:
-        """Return the law of springs on a rigid plane, with the stiffnesses and coefficient of friction of a scene."""
+        """Return the law of springs on a rigid plane, with the stiffnesses and coefficient of friction of a scene.
+
+        Equal arguments give the same instance.
+        """
         spring, coefficient = scene.bulk_stiffness, scene.the(Friction).coefficient
         law: Self = on_plane(
             cls, profile, scene.bodies.spacing, spring, scene.tangential_stiffness / spring, coefficient
@@ -159,21 +167,26 @@ class SlidingSprings(Springs):
     def energies(self, path: Path) -> tuple[float, float]:
         """Return (elastic energy at the end of a path, dissipated work of slip along it), both [FU·LU].
 
-        The elastic energy is ½ Σ (k u² + s²/k_t) with the tangential force s of each particle [FU].
+        The elastic energy is ½ Σ (k u² + s²/k_t) with the tangential force s of each particle [FU]; the path begins
+        without a tangential force.
         """
         _, steps = self._slid(path)
         stored = 0.5 * float(np.sum(steps.force[-1:] ** 2)) / self.chain.tangential
         return super().energies(path)[0] + stored, float(steps.work.sum())
 
     def prescribed(self, path: Path) -> dict[str, Array]:
-        """Return "displacement" d and "place", the position along x, of the load steps of a path, (m,) [LU] each."""
+        """Return the columns {"displacement": normal displacement d, "place": position along x} of a path, (m,) [LU]
+        each.
+        """
         return {"displacement": path.displacement, "place": path.along}
 
     def carried(self, columns: Mapping[str, Array]) -> Followed:
         """Return the normal and tangential forces of load steps by their columns "displacement" and "place", (m,) [LU].
 
-        Both change in proportion within a step. Normal forces are positive in compression; tangential ones are those on
-        the particles, against their motion along x. The path begins without a tangential force.
+        They are the sums of the normal forces, (m,) [FU], and functions of the index of a load step that give the
+        normal and the tangential force of each particle, (n,) [FU]. Displacement and position along x change in
+        proportion within a step. Normal forces are positive in compression; tangential ones are those of the plane on
+        the particles, along +x, and negative after a motion along +x. The first state has no tangential force.
         """
         depths, positions = columns["displacement"], columns["place"]
         normal, steps = self._slid(Path(depths, positions, np.zeros_like(depths)))
@@ -181,7 +194,11 @@ class SlidingSprings(Springs):
         return Followed(self.x, normal.sum(axis=1), normal.__getitem__, lambda state: -shears[state])
 
     def _slid(self, path: Path) -> tuple[Array, Slip]:
-        """Return (normal forces in each state, (m, n) [FU] ≥ 0, slip of each load step, (m − 1, n)) along a path."""
+        """Return (normal forces in each state, (m, n) [FU] ≥ 0; slip of each load step, (m − 1, n)) along a path.
+
+        The tangential force of a slip is that of the springs, positive after a motion along +x; it is 0 in the first
+        state.
+        """
         chain = self.chain
         overlap = np.maximum(path.displacement[:, None] - chain.heights, 0.0)
         moved, pressed = np.diff(path.displacement)[:, None], np.diff(overlap, axis=0)

@@ -54,10 +54,11 @@ def elongation(x: Array, modulus: float, work: float) -> Array:
 
 
 def _from_share(share: float, middle: float) -> tuple[float, float]:
-    """Return q and κ, dimensionless, of the cell with the limit point, of which a `share` is in contact up to it.
+    """Return (q, κ), dimensionless, of a cell of which the `share` φ = q + κ q (1 − q) is in contact at its limit
+    point.
 
-    φ(q) is that share there. κ, one of 401 values in −1 … 1, makes φ nearest to the mean of the share and 1 at
-    `middle`.
+    q is 1 − 1e-9 at most. κ is that of 401 values in −1 … 1 with which φ is nearest to the mean of `share` and 1 at the
+    height `middle`.
 
     Args:
         share: of the cell, 0 … 1.
@@ -91,7 +92,7 @@ class Cells:
     def shares(self, displacements: Array) -> Array:
         """Return the share φ of each cell in contact, (m, n) in 0 … 1, at displacements (m,) [LU].
 
-        Bodies are taken to be in contact, also where they would have separated.
+        Bodies are taken to be in contact, also below the displacement at which they separate.
         """
         heights = self.heights - displacements[:, None]
         q = np.clip((self.hold - heights) / self.width, 0.0, 1.0)
@@ -100,15 +101,16 @@ class Cells:
     def lengths(self, displacements: Array) -> Array:
         """Return the force over the stiffness of each particle, (m, n) [LU], at displacements (m,) [LU].
 
-        Compression is positive. Bodies are taken to be in contact, also where they would have separated.
+        Compression is positive. Bodies are taken to be in contact, also below the displacement at which they separate.
         """
         share = self.shares(displacements)
         return np.asarray(share * (displacements[:, None] - self.heights + self.fall * (1.0 - share)))
 
     def forces(self, displacements: Array, stiffness: float) -> Array:
-        """Return F, (m,) [FU], compression positive, at displacements (m,) [LU] of bodies in contact.
+        """Return the sum F of the forces of all cells, (m,) [FU], compression positive, at displacements (m,) [LU].
 
-        `stiffness`: of one particle [FU/LU].
+        Bodies are taken to be in contact, also below the displacement at which they separate. `stiffness`: of one
+        particle [FU/LU].
         """
         return np.asarray(stiffness * self.lengths(displacements).sum(axis=1))
 
@@ -148,12 +150,13 @@ class Jkr(Law):
 
     @classmethod
     def of(cls, scene: Scene, profile: Profile) -> Law:
-        """Return the law of a scene, with its curve computed as far as the experiment needs.
+        """Return the law of a scene with adhesion, with its curve computed as far as the experiment needs.
 
-        A subclass, where called on one.
+        It is an instance of the class on which this is called: Jkr, Receding or Maugis.
 
         Raises:
-            SettingsError: the contact would be as wide as the body, or its edge would jump.
+            SettingsError: the contact would be wider than 0.9 of a body without an edge, its edge would jump, or the
+                range or rate of a subclass cannot be resolved.
         """
         covered = 0.9  # radius of a contact that covers its body, over where the body ends
         given, load = max([0.0, *scene.experiment.places()]), scene.experiment.compression or 0.0
@@ -178,9 +181,10 @@ class Jkr(Law):
 
     @classmethod
     def from_jkr(cls, jkr: Jkr, scene: Scene, wanted: float, load: float) -> Jkr:
-        """Return the law of this class that has the given JKR contact as its limit; here `jkr` itself.
+        """Return the law of this class that has the given JKR contact as its limit; here `jkr` itself, other arguments
+        unused.
 
-        A subclass computes it up to a displacement `wanted` [LU] and a load [FU].
+        Maugis computes it up to a displacement `wanted` [LU] and a load [FU], compression positive.
         """
         return jkr
 
@@ -193,35 +197,38 @@ class Jkr(Law):
         return half
 
     def columns(self, body: Profile, x: Array) -> Mapping[str, tuple[int, Array]]:
-        """Return the fields hold, width, fall and bend of `Cells` at positions x, (n,) [LU].
+        """Return constants of the cells of particles at positions x, (n,) [LU], by name: (p, values (n,) in [LUᵖ]).
 
-        By name: (p, values (n,) in [LUᵖ]), with p = 1, for bend 0. `body`: the profile as the deck has it.
+        "hold": height less displacement above which a cell is separated; "width": heights below that over which it
+        separates; "fall": rise of the profile over the inner half of the cell, each with p = 1; "bend", p = 0: κ of φ =
+        q + κ q (1 − q), the share in contact. `body`: the profile as LAMMPS has it.
         """
         cells = self.cells(x, body)
         return {"hold": (1, cells.hold), "width": (1, cells.width), "fall": (1, cells.fall), "bend": (0, cells.bend)}
 
     def largest_length_change(self, displacement: float) -> float:
-        """Return the largest length change of a spring [LU], positive.
+        """Return the largest length change of a spring [LU] up to a displacement [LU].
 
-        It is the displacement [LU], or that of pull-off under fixed grips without its sign where this is larger.
+        It is the displacement, or the magnitude of that of pull-off under fixed grips where this is larger.
         """
         return max(displacement, -self.fixed_grips[1])
 
     @property
     def modulus(self) -> float:
-        """Plane-strain modulus E* [FU/LU²] of the springs."""
+        """Plane-strain modulus E* [FU/LU²] of the springs: stiffness of a particle over the spacing."""
         return self.stiffness / self.spacing
 
     @cached_property
     def _grid(self) -> tuple[Array, Array, Array, int]:
-        """Positions x [LU], h(x) [LU], F of a contact of radius x [FU], and the index of the least h.
+        """(Contact radii x [LU], displacements h(x) [LU] and forces F(x) [FU] in equilibrium at these, the index of the
+        least h).
 
-        Where the contact may be as wide as the body, the last two positions are the same, with a far larger h at the
-        last.
+        Radii rise from 0 to the largest one that is computed; compression is positive. Where the contact may be as wide
+        as the body, the last two radii are the same, with a far larger h at the last.
         """
 
         def opened(x: Array) -> Array:
-            """Return h = g − Δl, (n,) [LU], at positions x, (n,) [LU]."""
+            """Return the displacement h = g − Δl, (n,) [LU], in equilibrium at contact radii x, (n,) [LU]."""
             return np.asarray(self.profile.height(x) - elongation(x, self.modulus, self.work))
 
         # The first position lies so many decades inside that the least h is far (30 times) outside of it.
@@ -245,12 +252,14 @@ class Jkr(Law):
 
     @property
     def deepest_known(self) -> float:
-        """Displacement [LU] up to which F is known; infinite where the contact may cover the whole body."""
+        """Displacement [LU] up to which F(d) is known, the end of the curve; infinite where the contact may cover the
+        body.
+        """
         return self.end[1] if self.known < self.profile.reach else math.inf
 
     @property
     def end(self) -> tuple[float, float, float]:
-        """Radius [LU], displacement [LU] and force [FU] of the widest contact that is computed.
+        """(Radius [LU], displacement [LU], force [FU]) of the widest contact that is computed.
 
         Displacement and force are positive in compression.
         """
@@ -260,7 +269,11 @@ class Jkr(Law):
 
     @cached_property
     def fixed_grips(self) -> tuple[float, float]:
-        """Contact radius and displacement [LU] at pull-off under fixed grips; the latter is below 0 in tension."""
+        """(Contact radius, displacement) [LU] at pull-off under fixed grips; the latter is negative in tension.
+
+        Of Maugis it is the state in which a contact that is unloaded is lost, with the radius 0 where that is not in
+        contact.
+        """
         x, h, _, least = self._grid
         return float(x[least]), float(h[least])
 
@@ -268,13 +281,15 @@ class Jkr(Law):
         """Return whether the computed curve goes well beyond pull-off, a displacement `wanted` [LU] and a `load` [FU].
 
         `margin`: factor by which its last radius, displacement and force must exceed the radius at pull-off under fixed
-        grips, `wanted` and `load`; the last force must also exceed the pull-off force.
+        grips, `wanted` and `load`; the last force must also exceed the pull-off force, without this factor.
         """
         least = margin * self.fixed_grips[0], margin * wanted, max(margin * load, self.pull_off_force())
         return all(known > needed for known, needed in zip(self.end, least, strict=True))
 
     def require_one_edge(self) -> None:
-        """Refuse a profile whose h falls again beyond its least value, so that the contact edge would jump.
+        """Raise an error for a profile whose h(x), displacement over contact radius, falls again beyond its minimum.
+
+        There the contact edge would jump.
 
         Raises:
             SettingsError: with the position.
@@ -289,13 +304,21 @@ class Jkr(Law):
             )
 
     def cells(self, x: Array, body: Profile) -> Cells:
-        """Return the cells of particles of a `body` at positions x, (n,) [LU], one spacing wide each."""
+        """Return the cells of particles of a `body` at positions x, (n,) [LU], one spacing wide each; arrays (n,).
+
+        A cell separates over heights of 1e-12 spacings at least. That with the contact edge of pull-off under fixed
+        grips separates up to this edge, and the rest of it at once.
+        """
         radius, half = np.abs(x), 0.5 * self.spacing
         heights, narrowest = body.height(radius), NARROWEST * self.spacing
         least = self.fixed_grips[0]
 
         def threshold(position: Array) -> Array:
-            """Return H, (n,) [LU], the least h from a position, (n,) [LU], outwards."""
+            """Return H, (n,) [LU]: the least displacement at which a position x, (n,) [LU], that was in contact still
+            is.
+
+            It is h = g − Δl at x, or at pull-off under fixed grips where x is inside of that.
+            """
             outer = np.minimum(np.maximum(position, least), body.reach)
             return np.asarray(body.height(outer) - elongation(outer, self.modulus, self.work))
 
@@ -321,38 +344,43 @@ class Jkr(Law):
     def energy(self, displacement: float, radius: float) -> float:
         """Return U(d, a) = E* ∫₀ᵃ (d − g)² dx − πa²W [FU·LU] at a displacement d and a `radius` a [LU].
 
-        It is 0 of separated bodies, a = 0; ∂U/∂a = 0 in equilibrium.
+        It is 0 of separated bodies, a = 0; ∂U/∂a = 0 in equilibrium. The integral is by the trapezoidal rule.
         """
         x = np.linspace(0.0, radius, POINTS)
         elastic = self.modulus * float(np.trapezoid((displacement - self.profile.height(x)) ** 2, x))
         return elastic - math.pi * radius**2 * self.work
 
     def contact_forces(self, displacements: Array) -> Array:
-        """Return F(d), (m,) [FU], of bodies in contact at displacements (m,) [LU], compression positive.
+        """Return F(d), (m,) [FU], of bodies in contact at displacements (m,) [LU], compression positive, linear in the
+        curve.
 
-        0 below pull-off under fixed grips; beyond the computed curve the force at its end.
+        0 below the displacement of pull-off under fixed grips; beyond the computed curve the force at its end. Of
+        Maugis it is F in unloading, 0 below the displacement at which the contact is lost.
         """
         _, h, force, least = self._grid
         return np.asarray(np.interp(displacements, h[least:], force[least:], left=0.0))
 
     def half_widths(self, displacements: Array, gap: float) -> Array:
-        """Return a(d) of bodies in contact, (m,) [LU], at displacements (m,) [LU], at least a spacing.
+        """Return the contact radii a(d) of bodies in contact, (m,) [LU], at displacements (m,) [LU]; one spacing at
+        least.
 
-        It is the same for any `gap`, which is not used.
+        They are the same for any `gap`, which is not used.
         """
         return np.maximum(self.spacing, self.radii(displacements))
 
     def radii(self, displacements: Array) -> Array:
-        """Return the contact radii a(d) of the continuous body, (m,) [LU], at displacements (m,) [LU].
+        """Return the contact radii a(d) of the continuous body, (m,) [LU], at displacements (m,) [LU], linear in the
+        curve.
 
-        Below pull-off under fixed grips it is the radius there, beyond the computed curve that at its end.
+        Below pull-off under fixed grips it is the radius there, beyond the computed curve that at its end. Of Maugis it
+        is a(d) in unloading, 0 where the bodies attract each other without contact.
         """
         x, h, _, least = self._grid
         return np.asarray(np.interp(displacements, h[least:], x[least:]))
 
     @cached_property
     def _rising(self) -> tuple[Array, Array]:
-        """Displacements [LU] and forces [FU], (k,), from the force maximum to the end of the curve.
+        """(Displacements [LU], forces [FU]), (k,) each, from the force maximum to the end of the curve; both rise.
 
         Forces are positive in compression; the first one is the largest tension.
         """
@@ -361,7 +389,7 @@ class Jkr(Law):
         return h[peak:], force[peak:]
 
     def pull_off_force(self) -> float:
-        """Return the pull-off force F_A [FU], positive: the largest tension."""
+        """Return the pull-off force F_A [FU], positive: the largest tension on the computed curve."""
         return max(0.0, -float(self._rising[1][0]))
 
     def displacement_at(self, force: float) -> float:
@@ -374,18 +402,19 @@ class Jkr(Law):
         return float(np.interp(force, forces, displacements))
 
     def _stiffness_under(self, force: float) -> float:
-        """Return dF/dd [FU/LU] under a force [FU], compression positive.
+        """Return dF/dd [FU/LU] under a force [FU], compression positive; beyond the computed curve that at its end.
 
-        A tension counts as 0.998 of the force maximum at most.
+        For a tension above 0.998 of the pull-off force the stiffness at 0.998 of it.
         """
         displacements, forces = self._rising
         slopes = np.gradient(forces, displacements)
         return float(np.interp(max(force, -SOFTEST_SHARE * self.pull_off_force()), forces, slopes))
 
     def parted(self, share: float) -> float:
-        """Return the displacement [LU] of pull-off under fixed grips, where the tension vanishes at once.
+        """Return the displacement [LU] of pull-off under fixed grips, where the tension vanishes at once, for any
+        `share`.
 
-        It does not depend on `share`.
+        Of Maugis it is that at which a contact that is unloaded is lost.
         """
         return self.fixed_grips[1]
 
@@ -403,42 +432,46 @@ class JkrCells(Particles):
 
     @cached_property
     def _cells(self) -> Cells:
-        """Cells of these particles of the body as the deck has it, (n,) each."""
+        """Cells of these particles, (n,) each, of the body as LAMMPS has it."""
         return self.law.cells(self.x, self.shape)
 
     @cached_property
     def _once(self) -> tuple[Cells, NDArray[np.intp]]:
-        """Cells of particles at different distances from the axis, (k,) each, and the number of particles at each."""
+        """(Cells of particles at different distances from the axis, rising, (k,) each; the number of particles at each,
+        (k,)).
+        """
         _, first, count = np.unique(np.abs(self.x), return_index=True, return_counts=True)
         return Cells(*(column[first] for column in vars(self._cells).values())), count
 
     @property
     def apart(self) -> float:
-        """Displacement [LU] of pull-off under fixed grips."""
+        """Displacement [LU] of pull-off under fixed grips, below which the contact is lost."""
         return self.law.fixed_grips[1]
 
     def held(self, displacements: Array) -> Array:
-        """Return F, (m,) [FU], of bodies in contact at displacements (m,) [LU], compression positive.
+        """Return the sum of the forces of the cells, (m,) [FU], at displacements (m,) [LU], compression positive.
 
-        It goes on below pull-off under fixed grips, where no contact is stable.
+        Bodies are taken to be in contact at any displacement, also below pull-off under fixed grips, where none is
+        stable.
         """
         cells, count = self._once
         return np.asarray(self.law.stiffness * (cells.lengths(displacements) @ count))
 
     @property
     def limits(self) -> tuple[float, ...]:
-        """Displacement [LU] of pull-off under fixed grips, the only limit point."""
+        """Displacement [LU] of pull-off under fixed grips, the only limit point; one entry."""
         return (self.apart,)
 
     @property
     def jumps(self) -> tuple[float, ...]:
-        """Displacements [LU] of pull-off under fixed grips and of the first touch."""
+        """Displacements [LU] at which the force jumps: of pull-off under fixed grips and of the first touch, 0."""
         return (self.apart, 0.0)
 
     def _holds(self, displacements: Array) -> NDArray[np.bool_]:
-        """Return whether the bodies are in contact at each displacement [LU] of a path, (m,), that begins apart.
+        """Return whether the bodies are in contact at each displacement [LU] of a path, (m,), that begins with
+        separated bodies.
 
-        Contact begins at displacement 0 and ends below pull-off under fixed grips.
+        Contact begins at displacement 0, within 1e-9 spacings, and ends below pull-off under fixed grips.
         """
         held, touching, apart = np.zeros(displacements.size, dtype=bool), False, self.apart
         for i, displacement in enumerate(displacements.tolist()):
@@ -447,15 +480,15 @@ class JkrCells(Particles):
         return held
 
     def energies(self, path: Path) -> tuple[float, float]:
-        """Return U(d, a) of JKR at the end of a path that begins apart, and the energy lost along it [FU·LU].
+        """Return (U(d, a) of JKR at the end of a path, energy lost along it), both [FU·LU].
 
-        U is 0 of separated bodies. Energy is lost in the jumps of U at each touch and at each pull-off under fixed
-        grips.
+        The path begins with separated bodies, whose U is 0. Energy is lost in the jumps of U at each touch and at each
+        pull-off under fixed grips.
         """
         held = self._holds(path.displacement)
 
         def energy(displacement: float) -> float:
-            """Return U [FU·LU] of bodies in contact at a displacement [LU]."""
+            """Return U [FU·LU] of bodies in contact at a displacement [LU], with the contact radius in equilibrium."""
             return self.law.energy(displacement, float(self.law.radii(np.asarray([displacement]))[0]))
 
         made, lost = (np.count_nonzero(np.diff(held.astype(int), prepend=0) == change) for change in (1, -1))
@@ -463,16 +496,20 @@ class JkrCells(Particles):
         return end, lost * energy(self.apart) - made * energy(0.0)
 
     def carried(self, columns: Mapping[str, Array]) -> Followed:
-        """Return the forces of load steps at the column "displacement", (m,) [LU], of a path that begins apart.
+        """Return the normal forces of load steps at the column "displacement", (m,) [LU]; other columns are not used.
 
-        They are 0 before the first touch and after pull-off.
+        They are the sums over the particles, (m,) [FU], compression positive, and a function of the index of a load
+        step that gives those of each particle. The path begins with separated bodies. Forces are 0 before the first
+        touch and from pull-off to the next touch.
         """
         displacements = columns["displacement"]
         held = self._holds(displacements)
         total = np.where(held, self.held(displacements), 0.0)
 
         def force(state: int) -> Array:
-            """Return the force of each particle, (n,) [FU], in the state of index `state`."""
+            """Return the force of each particle, (n,) [FU], compression positive, in the state of index `state`; 0
+            without contact.
+            """
             lengths = self._cells.lengths(displacements[state : state + 1])[0]
             return np.asarray(self.law.stiffness * lengths * held[state])
 

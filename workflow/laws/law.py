@@ -97,24 +97,30 @@ class Law(ABC):
     outer: Array | None = None
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the fields by name, for another process.
+        """Return {name: value} of the fields of the dataclass, for pickling.
 
-        Cached results are left behind, since they hold functions, which cannot be sent.
+        Cached results are left out, since they hold functions, which cannot be pickled.
         """
         return {entry.name: getattr(self, entry.name) for entry in fields(self)}
 
     @classmethod
     @abstractmethod
     def applies(cls, scene: Scene) -> bool:
-        """Return whether this is the law of a scene to which no law before it in `laws.LAWS` applies."""
+        """Return whether a scene has what this law is for; the first law in `laws.LAWS` that applies is the law of the
+        scene.
+
+        Maugis: adhesion with a range; Receding: adhesion with a rate; Jkr: any adhesion; Relaxing: [viscoelasticity];
+        Frictional: [friction]; Independent: always True.
+        """
 
     @classmethod
     @abstractmethod
     def of(cls, scene: Scene, profile: Profile) -> Law:
-        """Return the law of a scene whose lower body is a rigid plane, for an upper body of this profile.
+        """Return the law of a scene whose lower body is a rigid plane, an instance for an upper body of this profile.
 
         Raises:
-            SettingsError: the law has no solution for this body.
+            SettingsError: an adhesive contact would be as wide as the body, its edge would jump, or its range or rate
+                changes nothing that is resolved. Laws without adhesion raise nothing.
         """
 
     @abstractmethod
@@ -130,37 +136,41 @@ class Law(ABC):
     def rule(cls, scene: Scene) -> type[RadiusRule]:
         """Return the class that defines the contact radius of a scene.
 
-        `rules[0]` of a profile with an edge, else `rules[1]` of bodies that attract each other, else `rules[2]`.
+        `rules[0]` of a profile with an edge, else `rules[1]` of bodies that attract each other, else `rules[2]`; by
+        default ToTheEdge, InTension (radius of the largest tension) and Compressed.
         """
         return cls.rules[0 if scene.bodies.profile.has_edge else 1 if cls.attracts(scene) else 2]
 
     @classmethod
     def range_of(cls, scene: Scene, assumed: float) -> float:
-        """Return the range h₀ of the attraction [LU].
+        """Return the range h₀ of the attraction [LU]; by default 0, that of no attraction.
 
-        `assumed` [LU] where the attraction has no range, 0 without attraction, as by default.
+        Jkr and Receding, whose attraction has no range, give `assumed` [LU], Maugis that of the scene. Independent
+        gives that of Lennard-Jones surfaces with the same force-free distance, 0 on a rigid plane and without
+        attraction.
         """
         return 0.0
 
     def extent(self, deepest: float, half: float) -> float:
         """Return the half-width [LU] of the reduced model at a displacement `deepest` [LU], below 0 as at 0.
 
-        It ends where the undeformed gap exceeds the range of the forces, and is four spacings at least; `half`, the
-        half-width of the chain [LU], is not used by this default.
+        It is the half-width within which the undeformed gap is less than the range of the forces (`cutoff_gap`), and
+        four spacings at least; `half`, the half-width of the chain [LU], is not used by this default.
         """
         return max(self.half_width(max(deepest, 0.0), self.cutoff_gap), 4.0 * self.spacing)
 
     def columns(self, body: Profile, x: Array) -> Mapping[str, tuple[int, Array]]:
-        """Return constants of each particle that the deck needs, by name: (p, values (n,) in [LUᵖ]); empty by default.
+        """Return {}: by default LAMMPS needs no constants of each particle.
 
-        `body`: the profile as the deck has it; `x`: positions of the particles, (n,) [LU].
+        A subclass returns them by name: (p, values (n,) in [LUᵖ]). `body`: the profile as LAMMPS has it; `x`: positions
+        of the particles, (n,) [LU].
         """
         return {}
 
     def creep(self, time: float) -> float:
-        """Return the displacement a time [TU] after a constant load was applied, over the initial one.
+        """Return the displacement a time [TU] after a constant load was applied, over the initial one, dimensionless.
 
-        1 of an elastic body.
+        By default 1 at any time, that of an elastic body.
         """
         return 1.0
 
@@ -220,13 +230,21 @@ class Law(ABC):
         return None
 
     def contact_force(self, displacement: float) -> float:
-        """Return F [FU] at one displacement [LU], both positive in compression."""
+        """Return the normal force F [FU] of the whole body at one displacement [LU], both positive in compression.
+
+        Where loading and unloading differ it is that in unloading; 0 of separated bodies.
+        """
         return float(self.contact_forces(np.asarray([displacement]))[0])
 
     def contact_forces(self, displacements: Array) -> Array:
-        """Return F(d), (m,) [FU], at displacements (m,) [LU], both positive in compression.
+        """Return F(d), (m,) [FU], of the whole body at displacements (m,) [LU], both positive in compression.
 
         F = ∫ f dx/spacing over the width in which particles have a force, by the trapezoidal rule at 401 positions.
+        Where pairs snap, f is that of pairs that have snapped in, as in unloading. 0 where no particle interacts; a gap
+        below the least one of the grid has the force there.
+
+        Raises:
+            OverflowError: an unbounded body is too wide compared with its spacing.
         """
         half = self.half_widths(displacements, self.gap[-1])
         x = np.linspace(-half, half, 401)
@@ -244,14 +262,18 @@ class Law(ABC):
 
     @cached_property
     def half_width(self) -> Callable[[float, float], float]:
-        """Function (displacement d [LU], limit [LU]) → half-width [LU] with an undeformed gap below the limit at d.
+        """Function (displacement d [LU], limit [LU]) → half-width [LU] within which the undeformed gap is below the
+        limit at d.
 
-        One spacing where the gap at the apex exceeds the limit; results are cached.
+        One spacing where the gap at the apex is not below the limit; the half-width of the body at most. Of an adhesive
+        contact it is the same for any limit, one spacing at least: the contact radius of Jkr and Receding, and the
+        radius up to which the attraction acts of Maugis. Results are cached.
         """
         return cache(lambda displacement, gap: float(self.half_widths(np.asarray([displacement]), gap)[0]))
 
     def half_widths(self, displacements: Array, gap: float) -> Array:
-        """Return the half-widths, (m,) [LU], with an undeformed gap below `gap` [LU] at displacements (m,) [LU].
+        """Return the half-widths, (m,) [LU], within which the undeformed gap is below `gap` [LU] at displacements (m,)
+        [LU].
 
         At most the half-width of the body; one spacing where even the gap at the apex is not below `gap`.
 
@@ -276,21 +298,25 @@ class Law(ABC):
 
     @property
     def deepest_known(self) -> float:
-        """Displacement [LU] up to which F is known.
+        """Displacement [LU] up to which F(d) is known: by default infinite.
 
-        Infinite by default, and where the contact covers the whole body.
+        Of an adhesive contact it is the end of the computed curve.
         """
         return math.inf
 
     def stopped(self, energy: float) -> float:
-        """Return the displacement [LU] at which ∫₀ᵈ F dd is an energy [FU·LU].
+        """Return the displacement [LU] at which the work ∫₀ᵈ F dd of the contact is an `energy` ≥ 0 [FU·LU].
 
-        Infinite where that is beyond `deepest_known`.
+        The integral is by the trapezoidal rule at 200 displacements. Infinite where the work up to `deepest_known`, the
+        end of the known F(d), is less.
+
+        Raises:
+            OverflowError: an unbounded body is too wide compared with its spacing.
         """
         deepest, last = self.spacing, self.deepest_known
 
         def stored(displacement: float) -> float:
-            """Return ∫₀ᵈ F dd [FU·LU] up to a displacement [LU]."""
+            """Return ∫₀ᵈ F dd [FU·LU] up to a displacement [LU], positive where compression prevails."""
             displacements = np.linspace(0.0, displacement, 200)
             return float(np.trapezoid(self.contact_forces(displacements), displacements))
 
@@ -306,27 +332,39 @@ class Law(ABC):
     def radius_rate(self, displacement: float) -> float:
         """Return da/dd, dimensionless, of the contact radius at a displacement [LU], by a central difference.
 
-        The radius is here that of the largest tension under the undeformed profile, without attraction that of the
-        contact.
+        The radius is here that of the largest tension under the undeformed profile; on a rigid plane without adhesion
+        that of the contact, of particles that only repel each other that of the cutoff. Of Jkr and Receding it is a(d),
+        of Maugis the radius c(d) up to which the attraction acts. 0 where the half-width is one spacing, since the apex
+        has a larger gap, or that of the body.
         """
         edge, step = float(self.gap[int(self.force.argmin())]), DIFFERENCE * max(abs(displacement), self.spacing)
         ends = self.half_widths(np.asarray([displacement - step, displacement + step]), edge)
         return float(ends[1] - ends[0]) / (2.0 * step)
 
     def pull_off_force(self) -> float:
-        """Return the largest tension of the predictor [FU], positive; 0 without attraction."""
+        """Return the largest tension [FU] of the whole body by this predictor, positive; 0 without attraction."""
         return max(0.0, self._largest_tension[1])
 
     @cached_property
     def stiffness_under(self) -> Callable[[float], float]:
-        """Function of the force [FU], compression positive → contact stiffness dF/dd [FU/LU]; results are cached.
+        """Function of the force [FU], compression positive → contact stiffness dF/dd [FU/LU] of the whole body; results
+        are cached.
 
-        A tension counts as 0.998 of the force maximum at most, since the stiffness is 0 at the maximum.
+        For a tension above 0.998 of the largest one the stiffness at 0.998 of it, since it is 0 at the maximum. Without
+        attraction a force of 0 or less has no stiffness: 0 or NaN. Of laws without adhesion the function raises
+        NotCarriedError for a compression that the body cannot carry.
         """
         return cache(self._stiffness_under)
 
     def _stiffness_under(self, force: float) -> float:
-        """Return dF/dd [FU/LU] under a force [FU], compression positive, a tension as 0.998 of its maximum at most."""
+        """Return dF/dd [FU/LU] of the whole body under a force [FU], compression positive.
+
+        For a tension above 0.998 of the largest one the stiffness at 0.998 of it. Without attraction a force of 0 or
+        less has no stiffness: 0 or NaN.
+
+        Raises:
+            NotCarriedError: F(d) does not reach a force > 0 before the particles coincide.
+        """
         if force > 0.0:
             deepest = self.displacement_at(force)
             step = DIFFERENCE * (deepest - self._apart)
@@ -338,34 +376,33 @@ class Law(ABC):
 
     @cached_property
     def maxima_distance(self) -> Callable[[int], float]:
-        """Function of the number of particles → least distance [LU] of two maxima of the tension.
+        """Function of the number of particles → least distance [LU] in displacement of two neighbouring maxima of the
+        tension.
 
-        Infinite for one maximum. Where particles separate one by one, F(d) summed over them has a maximum for each.
-        Results are cached.
+        Infinite for one maximum or none. Where particles separate one by one, F(d) summed over them has a maximum for
+        each. Results are cached.
         """
         return cache(self._maxima_distance)
 
     @cached_property
     def displacement_at(self) -> Callable[[float], float]:
-        """Function of a force ≥ 0 [FU], compression positive → displacement [LU] at which F(d) reaches it.
+        """Function of a force ≥ 0 [FU], compression positive → displacement [LU] at which the rising F(d) reaches it.
 
-        Results are cached.
-
-        The search ends at some 10¹² spacings or distances r₀, whichever is larger, and gives this end for any larger
-        force.
-
-        Raises:
-            NotCarriedError: the particles coincide before F(d) reaches the force.
-            OverflowError: the spacing is too small compared with the body.
+        For 0 without attraction it is that at which the interaction begins, or less. The search ends at some 10¹²
+        spacings or distances r₀, whichever is larger, and gives this end for any larger force. Results are cached. The
+        function raises NotCarriedError where the particles of a finite body coincide before F(d) reaches the force, and
+        OverflowError where the spacing is too small compared with the body.
         """
         return cache(self._displacement_at)
 
     def _maxima_distance(self, particles: int) -> float:
-        """Return the least distance in d [LU] of two maxima of the tension of a chain.
+        """Return the least distance [LU] in displacement of two neighbouring maxima of the tension of a chain of
+        `particles`.
 
-        Infinite for one maximum or none.
+        Infinite for one maximum or none. The tension must fall by 1e-4 of its largest value between two of them.
 
-        The tension must fall by 1e-4 of its maximum between two of them.
+        Raises:
+            NotCarriedError, OverflowError: no displacement with F = 0 is found.
         """
         least_fall = 1e-4  # of the tension between two maxima, over the largest one
         x: Array = self.spacing * (np.arange(particles, dtype=np.float64) - 0.5 * (particles - 1))
@@ -381,7 +418,7 @@ class Law(ABC):
 
     @cached_property
     def snap(self) -> tuple[float, float]:
-        """Undeformed gap [LU] at which a joined pair snaps out, and the tension [FU] ≥ 0 that is lost there.
+        """(Undeformed gap [LU] at which a pair that has snapped in snaps out, tension [FU] ≥ 0 that is lost there).
 
         Where no pair snaps, the gap at which forces end (`cutoff_gap`) and 0.
         """
@@ -392,7 +429,9 @@ class Law(ABC):
 
     @property
     def joins(self) -> float:
-        """Undeformed gap [LU] below which an approaching pair has snapped in; `cutoff_gap` where none snaps."""
+        """Undeformed gap [LU] below which an approaching pair has snapped in; `cutoff_gap`, where forces end, if none
+        snaps.
+        """
         if self.outer is None:
             return self.cutoff_gap
         level = _level_cells(self.outer)
@@ -400,16 +439,17 @@ class Law(ABC):
 
     @property
     def cutoff_gap(self) -> float:
-        """Undeformed gap [LU] beyond which a particle has no force."""
+        """Undeformed gap [LU] beyond which a particle has no force; 0 on a rigid plane, not including adhesion."""
         return float(self.gap[-1])
 
     def premature_detachment(self, move: float, force: float) -> float:
-        """Return by how much of the gap [LU], ≥ 0, a joined pair separates too early in increments `move` [LU].
+        """Return by how much of the gap [LU], ≥ 0, a pair that has snapped in separates too early in increments `move`
+        [LU].
 
-        0 where no pair snaps. A move h puts a joined pair h further apart before it relaxes. That is beyond the
-        unstable position next to it, which is 2 √(2 e/|G″|) away at a gap e before the fold of G(r), up to e = h²
-        |G″|/8. The residual `force` of a relaxation, a norm F of the forces [FU], adds to h: it alone detaches the pair
-        at e = 20 · 2F/k.
+        0 where no pair snaps. A move h puts such a pair h further apart before it relaxes. That is beyond the unstable
+        position next to it, which is 2 √(2 e/|G″|) away at a gap e before the fold of G(r), up to e = h² |G″|/8. The
+        residual `force` of a relaxation, a norm F of the forces [FU], adds to h: it alone detaches the pair at e = 20
+        F/K, K the contact stiffness of one pair.
         """
         if self.bend == 0.0:
             return 0.0
@@ -419,20 +459,23 @@ class Law(ABC):
         return 0.125 * self.bend * (move + math.sqrt(8.0 * residual / self.bend)) ** 2
 
     def stuck_stiffness(self, displacement: float) -> float:
-        """Return the stiffness [FU/LU] of all pairs in contact at a displacement [LU], as if none separated.
+        """Return the stiffness [FU/LU] of all pairs in contact at a displacement [LU], as if none separated; of one at
+        least.
 
-        Of one at least.
-
-        Pairs are in contact up to their snap-out, or where none snaps up to the gap of the largest tension.
+        Pairs are in contact up to the gap of their snap-out, or where none snaps up to the gap of the largest tension;
+        on a rigid plane up to the gap 0, and of particles that only repel each other up to the cutoff. Of an adhesive
+        contact those within its radius count.
         """
         separation = self.snap[0] if self.snaps else float(self.gap[self.force.argmin()])
         width = 2.0 * self.half_width(displacement, separation)
         return max(1.0, width / self.spacing) * self.stiffness
 
     def parted(self, share: float) -> float:
-        """Return the displacement [LU] beyond the force maximum at which the tension is below `share` of it.
+        """Return the displacement [LU], below that of the force maximum, at which the tension has fallen below `share`
+        of it.
 
-        `share`: relative, 0 … 1. Where the tension stays above that, the displacement at which the interaction begins.
+        `share`: relative, 0 … 1. The displacement is one of 400 from the onset of the interaction to F = 0; where the
+        tension falls below `share` at none of them, as for 0, it is that of the onset.
         """
         displacements, forces = self._tensions
         peak = int(forces.argmin())
@@ -446,14 +489,17 @@ class Law(ABC):
 
     @cached_property
     def _coincidence(self) -> float:
-        """Displacement [LU] at which each particle of a finite body coincides with its opposite one."""
+        """Displacement [LU] at which each particle of a finite body coincides with its opposite one, the outermost pair
+        at last.
+        """
         return self.rest - float(self.gap[0]) + float(self.profile.height(np.asarray([self.profile.reach]))[0])
 
     @cached_property
     def _largest_tension(self) -> tuple[float, float]:
-        """Displacement [LU] and value [FU] of the largest tension, positive, by a coarse scan and a finer one.
+        """(Displacement [LU], tension [FU]) at the largest tension, positive, by a scan of 40 displacements and a finer
+        one.
 
-        Without attraction the value is 0 or below.
+        Without attraction the tension is 0 or negative.
         """
         low, high = self._apart, self.rest
         for _ in range(2):
@@ -465,18 +511,21 @@ class Law(ABC):
 
     @cached_property
     def _tensions(self) -> tuple[Array, Array]:
-        """Displacements [LU] from the onset of the interaction to the last F = 0, and F [FU] there, (400,) each.
+        """Displacements [LU], rising from the onset of the interaction to F = 0, and F [FU] there, (400,) each.
 
-        F is negative in tension.
+        F is negative in tension. Without attraction F is 0 at all displacements, which need not rise.
         """
         displacements = np.linspace(self._apart, self.displacement_at(0.0), 400)
         return displacements, self.contact_forces(displacements)
 
     def _displacement_at(self, force: float) -> float:
-        """Return the displacement [LU] at which F(d) rises to a force ≥ 0 [FU], or the end of the search.
+        """Return the displacement [LU] at which F(d) rises to a force ≥ 0 [FU], compression positive.
+
+        For 0 without attraction it is that at which the interaction begins, or less. For a force that is not reached
+        within some 10¹² spacings or distances r₀ it is the end of this search.
 
         Raises:
-            NotCarriedError: the particles coincide before F(d) reaches the force.
+            NotCarriedError: the particles of a finite body coincide before F(d) reaches the force.
             OverflowError: the spacing is too small compared with the body.
         """
         if self.spacing**2 == 0.0:
@@ -501,9 +550,11 @@ class Law(ABC):
 
 
 def _level_cells(gap: Array, flatness: float = 1e-6) -> NDArray[np.intp]:
-    """Return the rising indices of the cells in which a `gap` made monotone, (n,) [LU], is level: a pair snaps there.
+    """Return the rising indices i of cells i … i + 1 in which a `gap` made monotone, (n,) [LU], is level: a pair snaps
+    there.
 
-    `flatness`: rise of the gap in a cell over the mean rise (relative), below which it counts as level.
+    Empty where it is level nowhere. `flatness`: rise of the gap in a cell over the mean rise (relative), below which it
+    counts as level.
     """
     rises = np.diff(gap)
     return np.flatnonzero(rises < flatness * rises.mean())
@@ -512,8 +563,9 @@ def _level_cells(gap: Array, flatness: float = 1e-6) -> NDArray[np.intp]:
 def stopped_at(scene: Scene, law: Law, softer: float = 1.0) -> float:
     """Return the displacement [LU] at which a body that hits the plane is at rest: ∫F dd = ½ M v² · `softer`.
 
-    0 of an experiment without an impact; infinite beyond `Law.deepest_known`. F is that of the elastic body; `softer`,
-    a factor, is how many times softer the actual one is.
+    0 of an experiment without an impact; infinite where the work up to the end of the known F(d) is less. F is that of
+    the elastic body; `softer`, a factor, is how many times softer the actual one is. The mass M of an impact must be a
+    number.
     """
     if not isinstance(scene.experiment, Impact):
         return 0.0

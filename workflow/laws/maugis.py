@@ -78,14 +78,15 @@ class Maugis(Zoned):
 
     @classmethod
     def cohesive_load(cls, scene: Scene, edge: float, reach: float) -> tuple[float, Callable[[Array], Array]]:
-        """Return −π σ₀ (c² − a²) [FU], the force of the attraction beyond the contact edge, and the tension inside.
+        """Return (force of the attraction beyond the contact edge, −π σ₀ (c² − a²) [FU] ≤ 0, function of the tension
+        inside).
 
-        The tension is a function (2σ₀/π) arctan √((c² − a²)/(a² − r²)) [FU/LU²] ≥ 0 of radii r ≤ a, (n,) [LU].
+        The function gives (2σ₀/π) arctan √((c² − a²)/(a² − r²)) [FU/LU²] ≥ 0 at radii r ≤ a, (n,) [LU].
 
         Args:
-            scene: whose adhesion it is.
+            scene: whose adhesion it is; without a range σ₀ is 0.
             edge: contact radius a [LU].
-            reach: radius c up to which the attraction acts [LU].
+            reach: radius c ≥ a up to which the attraction acts [LU].
         """
         adhesion, square = scene.the(Adhesion), (reach - edge) * (reach + edge)
         stress, root = adhesion.work / (adhesion.range or math.inf), math.sqrt(square)
@@ -105,7 +106,11 @@ class Maugis(Zoned):
 
     @cached_property
     def _nodes(self) -> Zone:
-        """Contacts at which the equations are solved, by rising a from 0 to `known`, limit points among them."""
+        """States (a, c, d, F) at which the equations are solved, by rising contact radius a from 0 to the largest one,
+        `known`.
+
+        Radii at which d has an extremum are among them.
+        """
         first = 1e-3 * self.known
         edge = np.concatenate([np.linspace(0.0, first, 40, endpoint=False), np.geomspace(first, self.known, 400)])
         edge = beside_kinks(edge, self.profile)
@@ -113,7 +118,8 @@ class Maugis(Zoned):
         return self.equations.states(edge, self.equations.widths(edge))
 
     def _folds(self, edge: Array) -> Array:
-        """Return the radii a, (k,) [LU], at which d has an extremum along a rising grid `edge`, (n,) [LU].
+        """Return the contact radii, (k,) [LU], at which d has an extremum along a rising grid `edge` of them, (n,)
+        [LU].
 
         Empty without any.
         """
@@ -133,7 +139,12 @@ class Maugis(Zoned):
 
     @cached_property
     def curve(self) -> Zone:
-        """All states from c = 0 on: explicit before contact, a = 0, then by cubics between the solved contacts."""
+        """All states (a, c, d, F) from c = 0 on, (n,) each: first a = 0 with rising c, before contact, then by rising
+        a.
+
+        a is the contact radius, c that up to which the attraction acts [LU]. States before contact are explicit, those
+        in contact by cubics between solved ones. d rises and falls along the curve.
+        """
         from scipy.interpolate import CubicSpline
 
         nodes = self._nodes
@@ -153,11 +164,12 @@ class Maugis(Zoned):
         return Zone(*map(np.concatenate, columns))
 
     def positions(self, displacements: Array, start: float = APART) -> Array:
-        """Return the positions on the curve, (m,), of a contact that goes along displacements (m,) [LU].
+        """Return the positions on the curve of states, (m,), of a contact that goes along displacements (m,) [LU].
 
-        It begins at the position `start`, by default apart, and is at −1 wherever it is apart. Where d turns along the
-        curve it jumps to the next position with the same d; it stays apart until d exceeds −h₀, where the attraction
-        begins.
+        A position is the index of a point of `curve`, with a fraction between two points; −1 stands for separated
+        bodies. The contact begins at the position `start`, by default separated. Where d turns along the curve it jumps
+        to the next position with the same d; separated bodies stay so until d exceeds −h₀, where the attraction begins.
+        Beyond the last point of the curve the position is that point.
         """
         d = self.curve.displacement
         first = -math.inf if start == APART else float(np.interp(start, np.arange(d.size), d))
@@ -174,18 +186,20 @@ class Maugis(Zoned):
         return positions[1:]
 
     def states_at(self, positions: Array) -> Zone:
-        """Return the states at positions on the curve, (m,), linear between points.
+        """Return the states (a, c, d, F), (m,) each, at positions on the curve, (m,), linear between its points.
 
-        Of bodies apart all columns are 0, d too.
+        A position is the index of a point of `curve`, with a fraction; at −1, of separated bodies, all columns are 0, d
+        too.
         """
         number, held = np.arange(self.curve.edge.size, dtype=np.float64), positions != APART
         columns = vars(self.curve).values()
         return Zone(*(np.where(held, np.interp(positions, number, column), 0.0) for column in columns))
 
     def solved(self, displacements: Array, positions: Array) -> Zone:
-        """Return the states at displacements (m,) [LU] near `positions` on the curve, (m,), to all digits.
+        """Return the states (a, c, d, F), (m,) each, at displacements (m,) [LU], solved to all digits.
 
-        Of bodies apart a, c and F are 0. Where no solution is found the nearest point of the curve gives a or c.
+        `positions`: index of the nearest point of `curve` with a fraction, (m,), or −1 of separated bodies, of which a,
+        c and F are 0. Where no solution is found the nearest solved contact gives a, the curve c.
         """
         guess = self.states_at(positions)
         edge, width = np.zeros_like(displacements), np.zeros_like(displacements)
@@ -199,9 +213,10 @@ class Maugis(Zoned):
         return Zone(edge, np.hypot(edge, width), displacements, force)
 
     def _touching(self, displacements: Array, positions: Array) -> tuple[Array, Array]:
-        """Return a and s = √(c² − a²), (m,) [LU], of contacts at displacements (m,) [LU].
+        """Return (a, s = √(c² − a²)), (m,) [LU] each, of contacts in equilibrium at displacements (m,) [LU].
 
-        `positions`: on the curve, (m,), near them. Where no solution is found, those of the solved contact next to it.
+        `positions`: index of a near point of `curve` with a fraction, (m,). Where no solution is found, a is that of
+        the solved contact next to it.
         """
         from scipy.optimize import elementwise
 
@@ -211,7 +226,9 @@ class Maugis(Zoned):
         low += (nodes.displacement[low + 1] < displacements) & (low < nodes.edge.size - 2)
 
         def width(edge: Array, d: Array) -> Array:
-            """Return s, (m,) [LU], at a and d, (m,) [LU], ≥ 0."""
+            """Return s = √(c² − a²), (m,) [LU], at a and d, (m,) [LU], without a singular stress at a; 0 where d >
+            g(a).
+            """
             return np.asarray(np.maximum(self.profile.height(edge) - d, 0.0) / self.equations.ratio)
 
         def error(edge: Array, d: Array) -> Array:
@@ -225,9 +242,9 @@ class Maugis(Zoned):
         return edge, width(edge, displacements)
 
     def _attracted(self, displacements: Array, positions: Array) -> tuple[Array, NDArray[np.bool_]]:
-        """Return c, (m,) [LU], of bodies that attract each other and do not touch, and whether it was found, (m,).
+        """Return (c, whether it was found), (m,) each, of bodies that attract each other up to c [LU] and do not touch.
 
-        At displacements (m,) [LU] near `positions` on the curve, (m,).
+        `displacements`: (m,) [LU]; `positions`: index of a near point of `curve` before contact, with a fraction, (m,).
         """
         from scipy.optimize import elementwise
 
@@ -241,7 +258,7 @@ class Maugis(Zoned):
     def held_at(self, displacement: float) -> float:
         """Return F [FU], compression positive, at a displacement [LU] in unloading from the widest contact.
 
-        It is solved to all digits.
+        It is solved to all digits. The displacement must not be below that at which the contact is lost.
         """
         position = np.interp(displacement, self.held.displacement, self._unloaded[0])
         return float(self.solved(np.asarray([displacement]), np.atleast_1d(position)).force[0])
@@ -255,10 +272,11 @@ class Maugis(Zoned):
 
     @cached_property
     def _unloaded(self) -> tuple[list[float], list[float]]:
-        """Positions on the curve in unloading from the widest contact, and the displacements [LU] of jumps; both rise.
+        """(Positions on the curve in unloading from the widest contact, displacements [LU] at which it jumps), both
+        rising.
 
-        Both ends of a jump are among the positions. The first displacement is that at which the contact is lost, unless
-        the curve is passed down to c = 0.
+        A position is the index of a point of `curve`, with a fraction; both ends of a jump are among them. The first
+        displacement is that at which the contact is lost, unless the curve is passed down to c = 0.
         """
         d = self.curve.displacement
         passed = np.flatnonzero(d <= np.append(np.minimum.accumulate(d[::-1])[::-1][1:], np.inf)).tolist()
@@ -272,19 +290,24 @@ class Maugis(Zoned):
 
     @cached_property
     def held(self) -> Zone:
-        """States of a contact that is unloaded from the widest one, by rising d."""
+        """States (a, c, d, F), (k,) each, of a contact that is unloaded from the widest one, by rising d."""
         return self.states_at(np.asarray(self._unloaded[0]))
 
     @cached_property
     def _grid(self) -> tuple[Array, Array, Array, int]:
-        """Radii a [LU], d [LU] and F [FU] in unloading from the widest contact, by rising d, and 0, the index of least
-        d.
+        """(Contact radii a [LU], displacements d [LU], forces F [FU] in unloading from the widest contact, by rising d;
+        0).
+
+        0 is the index of the least d. Compression is positive.
         """
         return self.held.edge, self.held.displacement, self.held.force, 0
 
     @property
     def limits(self) -> tuple[float, ...]:
-        """Displacements [LU] at which a contact that is unloaded jumps, rising; empty where it never does."""
+        """Displacements [LU] at which a contact that is unloaded jumps, rising; empty where it never does.
+
+        The first is that at which the contact is lost, unless its force falls to 0 without a jump.
+        """
         return tuple(self._unloaded[1])
 
     @cached_property
@@ -308,33 +331,37 @@ class Maugis(Zoned):
         return float(maximum.x[0])
 
     def half_widths(self, displacements: Array, gap: float) -> Array:
-        """Return c(d) of bodies in contact, (m,) [LU], at displacements (m,) [LU], at least a spacing.
+        """Return the radii c(d) up to which bodies attract each other in unloading, (m,) [LU]; one spacing at least.
 
-        It is the same for any `gap`, which is not used.
+        `displacements`: (m,) [LU]. The radii are the same for any `gap`, which is not used.
         """
         return np.maximum(self.spacing, self.reaches(displacements))
 
     def reaches(self, displacements: Array) -> Array:
-        """Return the radii c(d) of the attraction, (m,) [LU], in unloading, at displacements (m,) [LU].
+        """Return the radii c(d) up to which the attraction acts, (m,) [LU], in unloading, at displacements (m,) [LU].
 
-        Beyond the computed curve those at its ends.
+        Beyond the ends of the computed curve those at the ends, also where the contact is lost.
         """
         return np.asarray(np.interp(displacements, self.held.displacement, self.held.reach))
 
     def require_one_edge(self) -> None:
-        """Accept any profile: where the edge would jump, the curve has a limit point."""
+        """Do nothing, and accept any profile: where the edge would jump, the curve of states has a limit point."""
 
     def energy(self, displacement: float, radius: float) -> float:
         """Return the energy [FU·LU] of a contact in unloading, of a `radius` a [LU] at a displacement [LU].
 
-        0 below the displacement at which the contact is lost. For a = 0 the bodies attract each other without contact.
+        It is relative to separated bodies, and 0 below the displacement at which the contact is lost. For a = 0 the
+        bodies attract each other without contact.
         """
         width = (float(self.profile.height(np.asarray([radius]))[0]) - displacement) / self.equations.ratio
         c = math.hypot(radius, width) if radius > 0.0 else float(self.reaches(np.asarray([displacement]))[0])
         return 0.0 if displacement < self.held.displacement[0] else self.energy_of(radius, c, displacement)
 
     def energy_of(self, a: float, c: float, d: float) -> float:
-        """Return the energy [FU·LU] of a state with a, c and d [LU]; 0 of bodies apart, c = 0.
+        """Return the energy [FU·LU] of a state with contact radius a, radius c of the attraction and displacement d
+        [LU].
+
+        0 of separated bodies, c = 0; else it is
 
         E* ∫₀ᵃ (d−g)² dx − (4σ₀²/E*) ∫ₐᶜ (c²−x²) dx + 4σ₀ ∫ₐᶜ (g−d) √(c²−x²) dx − πc²W
         """
@@ -349,15 +376,18 @@ class Maugis(Zoned):
         return pressed - 4.0 * self.equations.stress**2 / self.modulus * disc + attraction - math.pi * c * c * self.work
 
     def energy_at(self, position: float) -> float:
-        """Return the energy [FU·LU] of the state at a position on the curve; 0 of bodies apart."""
+        """Return the energy [FU·LU] of the state at a position on the curve, relative to separated bodies.
+
+        A position is the index of a point of `curve`, with a fraction; 0 at −1, of separated bodies.
+        """
         zone = self.states_at(np.asarray([position]))
         return self.energy_of(*(float(column[0]) for column in (zone.edge, zone.reach, zone.displacement)))
 
     @cached_property
     def snaps_in(self) -> list[float]:
-        """Displacements [LU] at which a contact that is loaded jumps, rising.
+        """Displacements [LU] at which a contact that is loaded jumps, rising; empty where it never does.
 
-        The begin of the attraction is not among them.
+        −h₀, where the attraction begins, is among them where d falls along the curve from there on.
         """
         d = self.curve.displacement
         passed = np.flatnonzero(d >= np.maximum.accumulate(d))
@@ -365,14 +395,15 @@ class Maugis(Zoned):
 
     @cached_property
     def _falls(self) -> list[int]:
-        """Number of steps up to each point of the curve in which the displacement falls."""
+        """Number of steps along the curve up to each of its points in which the displacement falls, (n,)."""
         falls: list[int] = np.cumsum(np.diff(self.curve.displacement, prepend=-np.inf) < 0.0).tolist()
         return falls
 
     def lost_between(self, before: float, after: float) -> float:
-        """Return the energy [FU·LU] that a jump between two positions on the curve dissipates; 0 where d is monotonic.
+        """Return the energy [FU·LU] that a jump between two positions on the curve dissipates.
 
-        The jump begins at the first limit point from `before` on.
+        A position is the index of a point of `curve`, with a fraction; −1, of separated bodies, counts as 0. The jump
+        begins at the first limit point from `before` on. 0 where d is monotonic between them but for round-off.
         """
         low, high = sorted((math.ceil(max(before, 0.0)), math.ceil(max(after, 0.0))))
         if self._falls[high] == self._falls[low]:
@@ -391,7 +422,8 @@ class Maugis(Zoned):
 def _between(column: Array, low: NDArray[np.intp] | int, values: Array) -> Array:
     """Return the positions, (m,), of `values`, (m,), in a `column` of the curve: index plus a fraction 0 … 1.
 
-    `low`: index of the point below each value; where the column does not rise from it to the next, the fraction is 0.
+    `low`: index of the point below each value; a value outside of the interval has the fraction 0 or 1. Where the
+    column does not rise from it to the next, the fraction is 0.
     """
     rise = column[low + 1] - column[low]
     share = np.divide(values - column[low], rise, out=np.zeros_like(rise), where=rise > 0.0)
@@ -399,7 +431,7 @@ def _between(column: Array, low: NDArray[np.intp] | int, values: Array) -> Array
 
 
 def _with_range(jkr: Jkr, reach: float, surface: Profile, wanted: float, load: float) -> Maugis:
-    """Return the law of an attraction of a range `reach` [LU], computed as far as an experiment needs.
+    """Return the law of an attraction of a range `reach` [LU], with its curve computed as far as an experiment needs.
 
     Args:
         jkr: the same contact without a range.
@@ -410,7 +442,7 @@ def _with_range(jkr: Jkr, reach: float, surface: Profile, wanted: float, load: f
 
     Raises:
         SettingsError: the attraction would exceed the body, or its width beyond the contact, c − a = πE*h₀²/4W, is too
-        small to be resolved.
+            small to be resolved.
     """
     # Over the radius under fixed grips. Measured: at 1e-10 forces are off by 4e-7, and below that the curve is not
     # monotonic.
@@ -448,17 +480,19 @@ class MaugisCells(ZonedCells):
         return float(self.law.held.displacement[0])
 
     def held(self, displacements: Array) -> Array:
-        """Return F, (m,) [FU], compression positive, of a contact that is unloaded, at displacements (m,) [LU].
+        """Return F of the continuous contact, (m,) [FU], compression positive, in unloading, at displacements (m,)
+        [LU].
 
-        0 below the displacement at which it is lost.
+        0 below the displacement at which it is lost; beyond the computed curve the force at its end.
         """
         return self.law.contact_forces(displacements)
 
     def displacement_at(self, force: float) -> float:
-        """Return the largest displacement [LU] that carries a force [FU], compression positive, by four Newton steps.
+        """Return the largest displacement [LU] that carries a force [FU], compression positive, in unloading, by four
+        Newton steps.
 
-        These start from the curve, and stay there where the force does not rise or the contact is about to be lost.
-        Where no displacement has the force, that of the force maximum.
+        These start from the curve, and are left out where the force does not rise or the contact is about to be lost. A
+        tension above the pull-off force has no solution, and the steps may lead far away.
         """
         displacement, step = super().displacement_at(force), 1e-3 * self.law.range
         low, high = self.held(np.asarray([displacement - step, displacement + step])).tolist()
@@ -468,14 +502,18 @@ class MaugisCells(ZonedCells):
 
     @property
     def limits(self) -> tuple[float, ...]:
-        """Displacements [LU] at which a contact that is unloaded jumps, rising; empty where it never does."""
+        """Displacements [LU] at which a contact that is unloaded jumps, rising; empty where it never does.
+
+        The first is that at which the contact is lost, unless its force falls to 0 without a jump.
+        """
         return self.law.limits
 
     def unloading(self, start: float, end: float, count: int) -> Array:
         """Return the falling displacements, (k,) [LU], of load steps in unloading from `start` to `end` [LU].
 
-        The start is not among them. They are at `count` equal steps of the contact radius: a stiff contact is lost in a
-        small part of the displacement. Where the radius is 0 before `end`, half as many at equal steps of d follow.
+        The start is not among them, the end is the last. They are at `count` equal steps of the contact radius down to
+        0, or to that at which the contact is lost: a stiff contact is lost in a small part of the displacement. Where
+        that comes before `end`, half as many at equal steps of d follow.
         """
         touching = self.law.held.edge > 0.0
         a, d = self.law.held.edge[touching], self.law.held.displacement[touching]
@@ -484,9 +522,10 @@ class MaugisCells(ZonedCells):
         return np.append(steps[(steps < start) & (steps > end)], np.append(beyond, [] if beyond.size else [end]))
 
     def work(self, start: float, every: int) -> float:
-        """Return ∫ −F dd [FU·LU] in unloading from `start` [LU] to pull-off, positive where tension prevails.
+        """Return ∫ −F dd [FU·LU] in unloading from `start` [LU] to where the contact is lost, positive where tension
+        prevails.
 
-        By the trapezoidal rule over points of the curve and its jumps, one of `every` so many.
+        By the trapezoidal rule over points of the curve and its jumps; of these one of `every` so many, and the start.
         """
         d, force = self.law.held.displacement, self.law.held.force
         last = int(np.searchsorted(d, start))
@@ -496,12 +535,19 @@ class MaugisCells(ZonedCells):
         return -float(np.trapezoid(force[chosen], d[chosen]))
 
     def radii(self, displacements: Array) -> Array:
-        """Return the contact radii (m,) [LU] in unloading, at displacements (m,) [LU]."""
+        """Return the contact radii (m,) [LU] in unloading, at displacements (m,) [LU]; 0 of bodies that attract without
+        contact.
+
+        Below the displacement at which the contact is lost it is the radius there, beyond the computed curve that at
+        its end.
+        """
         return self.law.radii(displacements)
 
     @property
     def critical_displacement(self) -> float:
-        """Displacement [LU] of the force maximum in unloading; before contact, that of a point of the curve."""
+        """Displacement [LU] of the force maximum: that of the solved contact, or before contact that of a point of the
+        curve.
+        """
         law, edge = self.law, np.asarray([self.law.critical_radius])
         if edge[0] > 0.0:
             return float(law.equations.states(edge, law.equations.widths(edge)).displacement[0])
@@ -509,27 +555,33 @@ class MaugisCells(ZonedCells):
 
     @property
     def critical_radius(self) -> float:
-        """Contact radius [LU] at the force maximum; 0 where that comes before contact."""
+        """Contact radius [LU] at the force maximum; 0 where that comes before contact, and that at the end of a curve
+        that ends before it.
+        """
         return self.law.critical_radius
 
     @property
     def jumps(self) -> tuple[float, ...]:
-        """Displacements [LU] of jumps of the force in unloading and loading, and −h₀, where the attraction begins."""
+        """Displacements [LU] of jumps of the force: in unloading, in loading, and −h₀, where the attraction begins.
+
+        They are not sorted, and −h₀ may be there twice.
+        """
         return (*self.limits, *self.law.snaps_in, -self.law.range)
 
     def energies(self, path: Path) -> tuple[float, float]:
-        """Return U(a, c, d) at the end of a path that begins apart, and the energy lost in jumps along it [FU·LU].
+        """Return (energy at the end of a path, energy lost in jumps along it), both [FU·LU].
 
-        U is 0 of bodies apart.
+        The path begins with separated bodies, whose energy is 0.
         """
         positions = self.law.positions(path.displacement).tolist()
         lost = sum(self.law.lost_between(*jump) for jump in pairwise([APART, *positions]))
         return self.law.energy_at(positions[-1]), lost
 
     def prescribed(self, path: Path) -> dict[str, Array]:
-        """Return "displacement" d, "edge" a, "reach" c and "height" of load steps, (m,) [LU] each.
+        """Return the columns of load steps by name, (m,) [LU] each: "displacement" d, "edge" a, "reach" c and "height".
 
-        They follow the states along the curve and its jumps on a `path` that begins apart; the height is the mean of g
-        over the contact.
+        a is the contact radius, c that up to which the attraction acts, 0 both of separated bodies. States follow the
+        curve and its jumps on a `path` that begins with separated bodies. The height is the mean of the transformed
+        profile over the contact, 0 where a = 0.
         """
         return self._edges_of(self.law.solved(path.displacement, self.law.positions(path.displacement)))

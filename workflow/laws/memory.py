@@ -49,9 +49,13 @@ class Edges:
 
 
 def edges_of(profile: Profile, x: Array, spacing: float) -> Edges:
-    """Return the cells of particles at positions x, (n,) [LU], one spacing [LU] wide; the body ends with its last cell.
+    """Return the cells of particles at positions x, (n,) [LU], one spacing [LU] wide: heights, widths and rises, (n,)
+    each.
 
-    Where the profile is level within a cell, both its heights are 1e-12 spacings, so that it touches as a whole.
+    Heights are those of the profile at x, widths the heights over which the cells come to touch a plane, rises the part
+    of these on the side of the axis [LU]. The body ends at its half-width, where the profile does not rise further.
+    Where it rises by less than 1e-12 spacings within a cell, width and rise are both 1e-12 spacings, so that the cell
+    touches as a whole.
     """
     radius, half = np.abs(x), 0.5 * spacing
     inner, heights, outer = (
@@ -79,7 +83,10 @@ class Memory:
     """
 
     def __init__(self, law: Viscoelasticity, cells: Edges) -> None:
-        """Begin with an untouched body, at displacement 0 and with undeformed surfaces."""
+        """Begin with an untouched body of the material `law`, at displacement 0 and with undeformed surfaces.
+
+        `cells`: of the particles.
+        """
         terms = law.terms or ()
         self._lasting, self._retarded, self._cells = law.lasting, law.retardation_time or 0.0, cells
         self._share, self._time = (np.asarray([getattr(term, key) for term in terms]) for key in ("share", "time"))
@@ -89,13 +96,25 @@ class Memory:
         self._known: tuple[float, Ahead] | None = None
 
     def _ahead(self, time: float) -> Ahead:
-        """Return the response of this state after a time [TU], computed once until the body moves."""
+        """Return (stiffness over the instantaneous one, u of free surfaces (n,) [LU], decay and gain of each arm) after
+        a time [TU].
+
+        The stiffness is that against a displacement at a constant rate in this time; u is the displacement of a surface
+        without a load; arms are the Maxwell elements of a Prony series. The result is kept until the body moves or
+        another time is given.
+        """
         if self._known is None or self._known[0] != time:
             self._known = time, self._after(time)
         return self._known[1]
 
     def _after(self, time: float) -> Ahead:
-        """Return the response of this state after a time [TU]; with dashpots its decay and gain of arms are empty."""
+        """Return (stiffness over the instantaneous one, u of free surfaces (n,) [LU], decay and gain of each arm) after
+        a time [TU].
+
+        The stiffness is that against a displacement at a constant rate in this time; u is the displacement of a surface
+        without a load. Decay e^(−t/τ) and gain (1 − e^(−t/τ)) τ/t are (arms,), of each Maxwell element in the Prony
+        series. With dashpots parallel to the springs the stiffness is 1, and decay and gain are empty.
+        """
         if self._retarded:
             no_arms = np.empty(0)
             return 1.0, self.outer * np.exp(-time / self._retarded), no_arms, no_arms
@@ -106,22 +125,27 @@ class Memory:
         return response, -past / response, decay, gain
 
     def pressed(self, displacement: float, time: float, velocity: float) -> tuple[Array, Array]:
-        """Return (forces over the stiffness, overlaps) at the end of a load step, both (n,) [LU].
+        """Return (forces over the stiffness, overlaps) at the end of a load step, both (n,) [LU], compression positive.
 
-        The step goes to a displacement [LU] in a time [TU] and ends with a velocity [LU/TU]; the state is not changed.
-        Forces are ≥ 0. Overlaps of particles that do not touch are below 0, so that they show the contact edge.
+        The step goes to a displacement [LU] in a time [TU] and ends with a velocity [LU/TU], which is used with
+        dashpots only; the state is not changed. Forces are ≥ 0. Overlaps of particles that do not touch are ≤ 0, so
+        that they show the contact edge; with dashpots a cell may touch in part at an overlap ≤ 0.
         """
         response, free, *_ = self._ahead(time)
         return self._forces(displacement, self._retarded * velocity, response, free)
 
     def _forces(self, displacement: float, drag: float, response: float, free: Array) -> tuple[Array, Array]:
-        """Return (forces over the stiffness ≥ 0, overlaps), both (n,) [LU], at a displacement [LU].
+        """Return (forces over the stiffness ≥ 0, overlaps), both (n,) [LU], at a displacement [LU], compression
+        positive.
+
+        An overlap is the depth of the body's profile below the plane less the displacement of a free surface, with
+        dashpots that depth plus drag where this is smaller. It is negative of particles that do not touch.
 
         Args:
             displacement: of the body [LU].
             drag: retardation time × velocity of the body [LU]; 0 without dashpots.
             response: stiffness of the load step, relative; not used with dashpots.
-            free: u of free surfaces, (n,) [LU].
+            free: displacements u of free surfaces, (n,) [LU].
         """
         overlap = displacement - self._cells.heights
         if not self._retarded:
@@ -132,14 +156,15 @@ class Memory:
         return part * (push + (1.0 - part) * rise), margin
 
     def _part(self, margin: Array) -> Array:
-        """Return the part φ of each cell that touches, (…, n) in 0 … 1, at overlaps (…, n) [LU]."""
+        """Return the part φ of each cell that touches the plane, (…, n) in 0 … 1, at overlaps (…, n) [LU]."""
         return np.clip((self._cells.rises + margin) / self._cells.widths, 0.0, 1.0)
 
     def under(self, load: float, before: float, counts: Array, time: float) -> tuple[float, float]:
         """Return (displacement [LU], velocity [LU/TU]) after a time [TU] in which the load changes at a constant rate.
 
-        Compression is positive; the state is not changed. Dashpots are integrated in two implicit stages, of second
-        order and stable for any step (R. Alexander, SIAM J. Numer. Anal. 14 (1977) 1006).
+        Compression is positive; the state is not changed. For a load of 0 the displacement is the largest one without a
+        force. The velocity is the mean one of the step, with dashpots that at its end. Dashpots are integrated in two
+        implicit stages, of second order and stable for any step (R. Alexander, SIAM J. Numer. Anal. 14 (1977) 1006).
 
         Args:
             load: at the end, ≥ 0, over the stiffness of a particle [LU].
@@ -158,10 +183,10 @@ class Memory:
         return displacement, (displacement - start) / part
 
     def _carrying(self, load: float, counts: Array, time: float, start: float, stage_time: float) -> float:
-        """Return the displacement [LU] that carries a load [LU] after a time [TU], the largest one for a load of 0.
+        """Return the displacement [LU] that carries a load [LU] after a time [TU].
 
-        The force rises with the displacement, as a parabola between any two displacements at which a cell begins or
-        ends to touch.
+        For a load of 0 it is the largest one without a force. The force rises with the displacement, as a parabola
+        between any two displacements at which a cell begins or ends to touch. The state is not changed.
 
         Args:
             load: ≥ 0, over the stiffness of a particle [LU].
@@ -174,7 +199,7 @@ class Memory:
         rate, cells = self._retarded / stage_time, self._cells
 
         def excess(displacement: float) -> float:
-            """Return the sum of forces over the stiffness, less the load [LU]."""
+            """Return the sum of forces over the stiffness of a particle, less the load [LU], at a displacement [LU]."""
             forces, _ = self._forces(displacement, rate * (displacement - start), response, free)
             return float(forces @ counts) - load
 
@@ -197,18 +222,17 @@ class Memory:
         return low + (high - low) * min(max(-2.0 * begin / (slope + root), 0.0), 1.0)
 
     def width(self, margin: Array, counts: Array) -> Array:
-        """Return how many cells touch, (…), parts of cells included, at overlaps (…, n) [LU].
+        """Return the number of cells that touch the plane, (…), parts of cells included, at overlaps (…, n) [LU].
 
         `counts`: number of particles of each cell, (n,).
         """
         return np.asarray(self._part(margin) @ counts)
 
     def go(self, displacement: float, time: float, velocity: float) -> None:
-        """Move the body to a displacement [LU] in a time [TU], with a final velocity [LU/TU].
+        """Move the body to a displacement [LU] in a time [TU], with a final velocity [LU/TU]; this changes the state in
+        place.
 
-        This changes the state in place.
-
-        Surfaces move at a constant rate within the step.
+        Surfaces move at a constant rate within the step. The velocity is used with dashpots only.
         """
         _, free, decay, gain = self._ahead(time)
         overlap = displacement - self._cells.heights
@@ -223,10 +247,11 @@ class Memory:
         self.displacement, self.surface, self._known = displacement, after, None
 
     def _recovered(self, displacement: float, time: float, velocity: float) -> Array:
-        """Return u, (n,) [LU], of surfaces that are free at the end of a load step or separate within it.
-
-        The step takes a time [TU] and ends at a displacement [LU] with a velocity [LU/TU]; it is one of a body with
+        """Return the surface displacements u, (n,) [LU], of a free surface at the end of a load step of a body with
         dashpots.
+
+        They hold for particles that are free throughout or separate within the step. The step takes a time [TU] and
+        ends at a displacement [LU] with a velocity [LU/TU].
         """
         kept = np.exp(-time / self._retarded)
         if velocity >= 0.0:
@@ -236,14 +261,13 @@ class Memory:
         return np.asarray(np.where(self._touching, separated * since, self.surface * kept))
 
     def along(self, displacements: Array, times: Array, velocities: Array) -> tuple[Array, Array]:
-        """Return (energies stored after load steps, energies dissipated in them), over the stiffness of a particle.
+        """Return (energies stored after the last load step, energies dissipated in all of them), (n,) each [LU²].
 
-        (n,) [LU²].
-
-        Arguments (m,) are those of `go`, displacements [LU], durations [TU] and final velocities [LU/TU]; the state is
-        then that after the last one. An arm dissipates ∫ share s²/τ dt with s = α + (s₀ − α) e^(−t/τ), α = u′τ; a
-        dashpot parallel to a spring T ∫ u′² dt: where a cell touches, at the velocity of the body, on a free surface
-        the energy of its spring.
+        Both are over the stiffness of a particle. Arguments, (m,), are of load steps: displacements [LU], durations
+        [TU] and final velocities [LU/TU]; the state is changed to that after the last one. A Maxwell element of a Prony
+        series dissipates ∫ share s²/τ dt with the length of its spring s = α + (s₀ − α) e^(−t/τ), α = u′τ; a dashpot
+        parallel to a spring T ∫ u′² dt: where a cell touches, at the velocity of the body, on a free surface the energy
+        of its spring.
         """
         before, states = self.displacement, [self._state]
         for step in zip(displacements.tolist(), times.tolist(), velocities.tolist(), strict=True):
@@ -272,5 +296,7 @@ class Memory:
 
     @property
     def _state(self) -> tuple[Array, ...]:
-        """The arrays of this state: surface, outer, whether cells touch, and each arm; (n,) each."""
+        """The arrays of this state, (n,) each: surface displacements [LU] of the cells and of their untouched parts,
+        whether cells touch, and the length [LU] of the spring of each Maxwell element. They are not copies.
+        """
         return self.surface, self.outer, self._touching, *self.arms

@@ -45,9 +45,10 @@ class Independent(Law):
 
     @classmethod
     def of(cls, scene: Scene, profile: Profile) -> Self:
-        """Return the law of one-sided springs on a rigid plane, with spacing and stiffness of a scene.
+        """Return the law of one-sided springs on a rigid plane, without attraction, with spacing and stiffness of a
+        scene.
 
-        `profile`: shape of the upper body.
+        `profile`: shape of the upper body. Equal arguments give the same instance.
         """
         law: Self = on_plane(cls, profile, scene.bodies.spacing, scene.bulk_stiffness)
         return law
@@ -72,19 +73,25 @@ class Springs(Particles):
 
     @property
     def apart(self) -> float:
-        """Displacement [LU] below which no pair has a force."""
+        """Displacement [LU] below which no pair has a force; 0 on a rigid plane."""
         return self.law.rest - self.law.cutoff_gap
 
     def held(self, displacements: Array) -> Array:
-        """Return F, (m,) [FU], compression positive, at displacements (m,) [LU], all pairs on the joined branch."""
+        """Return F, (m,) [FU], compression positive, at displacements (m,) [LU], with all pairs snapped in, as in
+        unloading.
+
+        0 where no pair has a force; on a rigid plane there is no tension.
+        """
         heights, indices = self.heights
         forces = self._forces(heights - displacements[:, None], np.ones(heights.size, dtype=bool))
         return np.asarray(forces @ np.bincount(indices))
 
     def carried(self, columns: Mapping[str, Array]) -> Followed:
-        """Return the forces of load steps at the column "displacement", (m,) [LU], on a path that begins apart.
+        """Return the normal forces of load steps at the column "displacement", (m,) [LU]; other columns are not used.
 
-        A pair that has snapped in stays joined up to its snap-out; this is decided where the loading turns.
+        They are the sums over the particles, (m,) [FU], compression positive, and a function of the index of a load
+        step that gives those of each particle. The path begins with separated bodies. A pair that has snapped in stays
+        so up to its snap-out; this is decided where the direction of the displacement turns.
         """
         (heights, indices), displacements = self.heights, columns["displacement"]
         counts = np.bincount(indices)
@@ -97,24 +104,27 @@ class Springs(Particles):
             joined = (joined | (last < self.law.joins)) & (last < self.law.snap[0])
 
         def force(state: int) -> Array:
-            """Return the force of each particle, (n,) [FU], in the state of index `state`."""
+            """Return the force of each particle, (n,) [FU], compression positive, in the state of index `state`."""
             return np.asarray(self._forces(heights - displacements[state], memory[state])[indices])
 
         return Followed(self.x, total, force)
 
     def energies(self, path: Path) -> tuple[float, float]:
-        """Return the elastic energy ½ k Σ u² [FU·LU] at the end of a path, and 0: none is dissipated.
+        """Return (elastic energy ½ k Σ u² at the end of a path, dissipated energy 0), both [FU·LU].
 
-        It is that of one-sided springs on a rigid plane; an interaction of pairs is not included.
+        It is that of one-sided springs on a rigid plane, at the normal displacement; an interaction of pairs is not
+        included.
         """
         heights, indices = self.heights
         pressed = np.maximum(path.displacement[-1] - heights, 0.0)
         return 0.5 * self.law.stiffness * float(pressed**2 @ np.bincount(indices)), 0.0
 
     def _forces(self, gaps: Array, joined: NDArray[np.bool_]) -> Array:
-        """Return the forces, (…, n) [FU], compression positive, of pairs at undeformed gaps, (…, n) [LU].
+        """Return the forces, (…, n) [FU], compression positive, of pairs at undeformed gaps, (…, n) [LU]; 0 beyond the
+        cutoff.
 
-        `joined`: whether each pair has snapped in, (n,); without effect where none snaps.
+        `joined`: whether each pair has snapped in, (n,); without effect where none snaps. A gap below the least one of
+        the law's grid has the force there.
         """
         law = self.law
         inner = np.interp(gaps, law.gap, law.force, right=0.0)
@@ -125,7 +135,10 @@ class Springs(Particles):
 
 
 def interaction_law(scene: Scene) -> DoubleExponential | None:
-    """Return the interaction of a pair of opposite particles of a scene, without its cutoff; None on a rigid plane."""
+    """Return the interaction of a pair of opposite particles of a scene, without its cutoff; None on a rigid plane.
+
+    Where the scene gives no attraction it is purely repulsive.
+    """
     if scene.interaction is None:
         return None
     terms = scene.interaction
@@ -136,9 +149,11 @@ def interaction_law(scene: Scene) -> DoubleExponential | None:
 def row_force(law: DoubleExponential, r: Array, spacing: float, cutoff: float) -> Array:
     """Return the force of a straight chain on a particle opposite to one of its own, (n,) [FU], repulsion positive.
 
+    It is the component normal to the chain, which is infinitely long.
+
     Args:
         law: interaction of a pair.
-        r: distances of the particle from the chain, (n,) [LU].
+        r: distances > 0 of the particle from the chain, (n,) [LU].
         spacing: of the chain [LU].
         cutoff: distance [LU] beyond which a pair has no force.
     """
@@ -162,10 +177,12 @@ def of_pairs(
 ) -> Independent:
     """Return the law of particles on springs of a `stiffness` [FU/LU] each, in two chains or in the upper one alone.
 
+    It is cached: equal arguments give the same instance.
+
     Args:
         law: interaction of a pair.
         profile: shape of the upper body.
-        spacing: distance of neighbouring particles [LU].
+        spacing: distance of neighbouring particles of the upper body [LU].
         stiffness: of one spring [FU/LU].
         cutoff: distance [LU] at which the interaction ends.
         rest: distance of the apexes at displacement 0 [LU].
@@ -187,9 +204,10 @@ def of_pairs(
 
 @lru_cache(maxsize=16)  # a law is mostly that of several bodies
 def _force_table(law: DoubleExponential, spacing: float, cutoff: float, points: int) -> tuple[Array, Array]:
-    """Return distances [LU] up to the cutoff, and the `row_force` [FU] there, repulsion positive; both (points,).
+    """Return (distances r [LU], forces [FU]), (points,) each, of a particle opposite to one of a straight chain.
 
-    `spacing`: of the opposite chain [LU].
+    Distances rise in equal steps to the cutoff, without 0; repulsion is positive. `spacing`: of the chain [LU]. Both
+    are cached and read-only.
     """
     r = np.linspace(cutoff / points, cutoff, points)
     force = row_force(law, r, spacing, cutoff)
@@ -200,6 +218,8 @@ def _force_table(law: DoubleExponential, spacing: float, cutoff: float, points: 
 @lru_cache(maxsize=16)  # as of_pairs
 def on_plane(kind: type[T], profile: Profile, spacing: float, stiffness: float, *parameters: Any) -> T:
     """Return the law of one chain on a rigid plane: one-sided springs of a `stiffness` [FU/LU] each.
+
+    It is cached: equal arguments give the same instance.
 
     Args:
         kind: class of the law.
@@ -212,7 +232,7 @@ def on_plane(kind: type[T], profile: Profile, spacing: float, stiffness: float, 
 
 
 def springs(spacing: float, stiffness: float) -> tuple[Array, Array, float]:
-    """Return (gaps [LU], forces [FU], 0): the force of a one-sided spring on a rigid plane over its undeformed gap.
+    """Return (gaps [LU], forces [FU] of a one-sided spring on a rigid plane at these undeformed gaps, 0).
 
     Gaps (61,) rise from −10⁶ spacings to 0, in geometric progression; a force is −`stiffness` [FU/LU] times the gap, ≥
     0. The third is the distance [LU] of the apexes at displacement 0.

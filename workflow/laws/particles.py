@@ -57,25 +57,27 @@ class Particles(ABC):
 
     @property
     def shape(self) -> Undeformed:
-        """Undeformed profile of the particles' body."""
+        """Undeformed profile of the particles' body: as LAMMPS has it, where the law has a table of it, else that of
+        the law.
+        """
         return self.body or self.law.profile
 
     @property
     def shares_edges(self) -> bool:
         """Whether the cell at a contact edge carries the load of its part inside the contact; False by default.
 
-        Then sums over particles converge steadily. Whole particles touch or do not, and their error goes up and down
-        with the spacing.
+        True of adhesive contacts and of bodies with dashpots. Then sums over particles converge steadily. Whole
+        particles touch or do not, and their error goes up and down with the spacing.
         """
         return False
 
     def lattices(self, is_pointed: bool) -> tuple[list[Particles], list[Particles]]:
-        """Return the particles of the same body on other lattices: (moved, on finer spacings).
+        """Return (particles of the same body moved against its apex or unevenly scaled, particles on finer spacings).
 
         The finer ones have a half and a quarter of the spacing; there are none where cells do not share their load at
-        an edge. Where there are none, the moved ones are shifted by each of `phases` against the apex; a body with
-        kinks is shifted by four phases in any case. A body with kinks, and one that `is_pointed`, as a cone, whose
-        error does not depend on the position of its apex, is among the moved ones with 0.93 and 0.86 of the spacing.
+        an edge. The moved ones are first, of a body with kinks or one that `is_pointed`, as a cone, those with 0.93 and
+        0.86 of the spacing. Then come those shifted by each of `phases` against the apex, unless there are finer ones;
+        of a body with kinks those shifted by 0.375, 0.25, 0.125 and 0 spacings in any case.
         """
         kinks, finer = self.law.profile.kinks, (0.5, 0.25) if self.shares_edges else ()
         phases = MORE_PHASES if kinks else () if finer else self.phases
@@ -85,64 +87,80 @@ class Particles(ABC):
         return moved, [self.resized(factor) for factor in finer]
 
     def prescribed(self, path: Path) -> dict[str, Array]:
-        """Return the columns of load steps, (m,) each by name, that prescribe a path to a deck; the path begins apart.
+        """Return the columns of load steps by name, (m,) each, that prescribe a path to LAMMPS; by default
+        {"displacement": d [LU]}.
 
-        By default {"displacement": d [LU]}.
+        The path begins with separated bodies.
         """
         return {"displacement": path.displacement}
 
     @abstractmethod
     def carried(self, columns: Mapping[str, Array]) -> Followed:
-        """Return the forces on the particles in load steps that have the columns of `prescribed`, (m,) each."""
+        """Return the forces in load steps by their columns, (m,) each, named as `prescribed` names them.
+
+        They are the sums of the normal forces, (m,) [FU], compression positive, and a function of the index of a load
+        step that gives those of each particle, (n,) [FU]. The path begins with separated bodies.
+        """
 
     def follow(self, path: Path) -> Followed:
-        """Return the forces on the particles in all states of a path that begins apart."""
+        """Return the forces on the particles in all states of a path that begins with separated bodies.
+
+        They are the sums of the normal forces, (m,) [FU], compression positive, and a function of the index of a state
+        that gives those of each particle, (n,) [FU].
+        """
         return self.carried(self.prescribed(path))
 
     @abstractmethod
     def held(self, displacements: Array) -> Array:
-        """Return F, (m,) [FU], compression positive, of a contact in unloading, at displacements (m,) [LU]."""
+        """Return F, (m,) [FU], the sum over the particles in unloading, at displacements (m,) [LU]; compression
+        positive.
+
+        JkrCells continue below pull-off under fixed grips, other adhesive cells have 0 there; viscoelastic springs have
+        the instantaneous F of an untouched body.
+        """
 
     @property
     @abstractmethod
     def apart(self) -> float:
-        """Displacement [LU] below which a contact that is unloaded has no force."""
+        """Displacement [LU] below which a contact that is unloaded has no force; 0 of viscoelastic springs."""
 
     def energies(self, path: Path) -> tuple[float, float] | None:
         """Return (energy stored at the end of a path on a rigid plane, energy dissipated along it), both [FU·LU].
 
         Computed independently of the forces, which it checks; None, as by default, where the law has no expression for
-        them.
+        them. The path begins with separated bodies.
         """
         return None
 
     def checked(self, path: Path, finer: int) -> Path:
-        """Return the path along which the work of a run is compared with `energies`: dense equilibria from apart on.
+        """Return the path along which the work of a run is compared with `energies`: many equilibria, from separated
+        bodies on.
 
-        `finer`: factor on the number of states. Where forces depend on time a law returns the `path` itself.
+        `finer`: factor on the number of states. Laws whose forces depend on time return the `path` itself.
         """
         return equilibria(path, self.apart, self.jumps, self.law.spacing, finer)
 
     def refined(self, history: History) -> History:
         """Return a history with further moments on both sides of displacements at which the force jumps.
 
-        Unchanged where the force is prescribed or never jumps.
+        The same object where the force is prescribed or never jumps.
         """
         return history if history.by_force or not self.jumps else history.refined_at(self.jumps)
 
     def moments(self, deepest: float, velocity: float, count: int) -> Array:
-        """Return the times, (count,) [TU] from 0 on, of load steps of a pull-off.
+        """Return the times, (count,) [TU], rising from 0 on, of load steps of a pull-off at a `velocity` [LU/TU].
 
-        It goes from the displacement `deepest` [LU] at a `velocity` [LU/TU]. By default the times are at equal
-        intervals up to the displacement `apart`.
+        It begins at the displacement `deepest` [LU]. By default the times are at equal intervals, up to the
+        displacement `apart`, below which there is no force.
         """
         return np.linspace(0.0, (deepest - self.apart) / velocity, count)
 
     def displacements_under(self, times: Array, forces: Array) -> tuple[Array, Array | None]:
         """Return (displacements (m,) [LU], velocities) under forces, (m,) [FU] ≥ 0, at times, (m,) [TU].
 
-        Velocities (m,) [LU/TU] are those of `Path`; None, as by default, where displacements are straight between the
-        states. The default does not depend on the times, and has the displacement 0 for a force of 0.
+        Velocities (m,) [LU/TU] are those at the end of each load step; None, as by default, where displacements are
+        straight between the states. The default does not depend on the times, and has the displacement 0 for a force of
+        0.
         """
         depths = {force: self.displacement_at(force) if force > 0.0 else 0.0 for force in np.unique(forces).tolist()}
         return np.asarray([depths[force] for force in forces.tolist()]), None
@@ -151,13 +169,13 @@ class Particles(ABC):
         """Return a function of the force F [FU], compression positive, on a body that has just touched.
 
         It is called state by state with (next displacement [LU], time until then [TU], velocity there [LU/TU]), and
-        remembers the state. By default F depends on the displacement alone: that in unloading, and 0 from pull-off to
-        the next touch.
+        remembers the state. By default F depends on the displacement alone: that in unloading, and 0 from pull-off
+        until the displacement is 0 or above again.
         """
         is_lost = False
 
         def force(displacement: float, time: float, velocity: float) -> float:
-            """Return F [FU] at a displacement [LU]; the rest is not used."""
+            """Return F [FU], compression positive, at a displacement [LU]; the other arguments are not used."""
             nonlocal is_lost
             is_lost = displacement < self.apart or (is_lost and displacement < 0.0)
             return 0.0 if is_lost else float(self.held(np.asarray([displacement]))[0])
@@ -166,20 +184,21 @@ class Particles(ABC):
 
     @property
     def parted(self) -> float | None:
-        """Displacement [LU] at which a contact that is unloaded is lost; None where forces depend on time."""
+        """Displacement [LU] below which a contact that is unloaded is lost; None where forces depend on time."""
         return None if self.law.in_time else self.apart
 
     @property
     def limits(self) -> tuple[float, ...]:
-        """Limit points [LU], rising, at which the force of a contact that is unloaded jumps.
-
-        Empty, as by default, without any.
-        """
+        """Displacements [LU], rising, at which the force of a contact that is unloaded jumps; empty by default."""
         return ()
 
     @property
     def jumps(self) -> tuple[float, ...]:
-        """Displacements [LU] at which the force jumps, in loading or unloading; by default the limit points."""
+        """Displacements [LU] at which the force jumps, in loading or unloading; by default those in unloading
+        (`limits`).
+
+        They need not be sorted.
+        """
         return self.limits
 
     @property
@@ -189,38 +208,41 @@ class Particles(ABC):
 
     @property
     def critical_radius(self) -> float | None:
-        """Contact radius [LU] at the force maximum; None, as by default, where the law does not give it."""
+        """Contact radius [LU] at the force maximum in unloading; None, as by default, where the law has none."""
         return None
 
     def unloading(self, start: float, end: float, count: int) -> Array:
-        """Return the displacements, (count,) [LU], of load steps in unloading from `start` to `end` [LU].
+        """Return the falling displacements, (count,) [LU], of load steps in unloading from `start` to `end` [LU].
 
-        The start is not among them. They are closest near the end, a limit point, where the force rises as a root.
+        The start is not among them, the end is the last. They are closest near the end, a limit point, where the force
+        rises as a root.
         """
         return end + (start - end) * np.linspace(1.0, 0.0, count + 1)[1:] ** 2
 
     def work(self, start: float, every: int) -> float | None:
-        """Return ∫ −F dd [FU·LU] in unloading from `start` [LU] to pull-off, positive where tension prevails.
+        """Return None: by default a law has no curve of the work.
 
-        One point of `every` so many of the law's curve is used; None, as by default, where the law has no curve.
+        A law with one returns ∫ −F dd [FU·LU] in unloading from `start` [LU] to pull-off, positive where tension
+        prevails, by one point of `every` so many of the curve.
         """
         return None
 
     def radii(self, displacements: Array) -> Array | None:
-        """Return the contact radii, (m,) [LU], in unloading at displacements (m,) [LU].
+        """Return None: by default contact radii follow from the particles' forces.
 
-        None, as by default, where they follow from the particles' forces.
+        Maugis' cells return those in unloading, (m,) [LU], at displacements (m,) [LU].
         """
         return None
 
     def shifted(self, phase: float) -> Particles:
-        """Return the particles of the same body with its apex `phase` spacings (0 … 1) from a particle."""
+        """Return new particles of the same body and half-width, its apex `phase` spacings (0 … 1) from a particle."""
         return replace(self, x=positions_within(self._reach, self.law.spacing, phase))
 
     def resized(self, factor: float) -> Particles:
-        """Return the particles of the same body at `factor` times the spacing, with stiffness and force scaled alike.
+        """Return new particles of the same body and half-width at `factor` times the spacing.
 
-        The apex is midway between two particles where the number of particles was even, else at one.
+        Stiffness and force of a particle are scaled alike. The apex is midway between two particles where the number of
+        particles was even, else at one.
         """
         law = self.law
         law = replace(law, spacing=factor * law.spacing, stiffness=factor * law.stiffness, force=factor * law.force)
@@ -235,8 +257,9 @@ class Particles(ABC):
     def displacement_at(self, force: float) -> float:
         """Return the largest displacement [LU] at which a force [FU], compression positive, is carried in unloading.
 
-        Of a tension that is never carried, the displacement of the force maximum. The search ends a tenth beyond the
-        largest expected displacement and spacing; for a force that is larger there, this end is returned.
+        Of a tension that is never carried, the displacement of the force maximum. The search ends a tenth of the
+        largest expected displacement and of the spacing beyond that displacement; for a force that is larger there,
+        this end is returned.
         """
         low, high = self.apart, self.deepest + 0.1 * (abs(self.deepest) + self.law.spacing)
         rounds, cuts = 5, 24

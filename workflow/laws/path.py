@@ -54,13 +54,18 @@ class History:
     marks: Mapping[str, str]
 
     def denser(self, times: int) -> History:
-        """Return this history with `times` as many intervals, of equal length within each of its own."""
+        """Return this history with each of its intervals divided into `times` equal ones, values by linear
+        interpolation.
+
+        A moment that is added belongs to the phase of the next one of its own.
+        """
         return self.resampled(np.linspace(0.0, len(self.phases) - 1.0, (len(self.phases) - 1) * times + 1))
 
     def resampled(self, moments: Array) -> History:
-        """Return this history at other rising `moments`, (k,), given in its own numbers.
+        """Return this history at other rising `moments`, (k,), given as indices of its own; values by linear
+        interpolation.
 
-        1.5 is midway between its second and third moment; it belongs to the phase of the third.
+        1.5 is midway between its second and third moment; it belongs to the phase of the third. Marks remain.
         """
         known = np.arange(len(self.phases))
         time, values = (np.interp(moments, known, column) for column in (self.time, self.values))
@@ -69,9 +74,10 @@ class History:
         )
 
     def refined_at(self, displacements: Sequence[float], aside: float = 1e-6) -> History:
-        """Return this history with a moment on each side of displacements [LU] that it passes, where a force jumps.
+        """Return this history, of displacements, with two further moments where it passes one of `displacements` [LU].
 
-        `aside`: how far before and after, over the load step (relative). One at which it begins does not count.
+        They are before and after the passage, where a force jumps, by `aside` of the interval (relative); the second is
+        no later than the end of the interval. An interval that begins at the displacement gets none for it.
         """
         moments = [np.arange(float(len(self.phases)))]
         for displacement in displacements:
@@ -82,7 +88,11 @@ class History:
         return self.resampled(np.unique(np.concatenate(moments)))
 
     def path(self, model: Particles) -> Path:
-        """Return the path of the body: the displacements, or under prescribed forces those by the particles `model`."""
+        """Return the path of the body over the times of this history, without tangential displacement.
+
+        Its displacements are the values, without velocities; under prescribed forces displacements and velocities are
+        those that the particles `model` compute.
+        """
         displacement, velocity = self.values, None
         if self.by_force:
             displacement, velocity = model.displacements_under(self.time, self.values)
@@ -90,7 +100,9 @@ class History:
 
 
 def path_of(displacement: Array) -> Path:
-    """Return a path of equilibria at displacements (m,) [LU], without tangential displacement, all at time 0."""
+    """Return a path of equilibria at displacements (m,) [LU], without tangential displacement or velocity, all at time
+    0.
+    """
     zeros = np.zeros_like(displacement)
     return Path(displacement, zeros, zeros)
 
@@ -117,9 +129,10 @@ class Followed:
 
 
 def legs(displacements: Array) -> list[slice]:
-    """Return the monotonic parts of a path of displacements, (m,) [LU], as slices in order, none for an empty path.
+    """Return the monotonic parts of a path of displacements, (m,) [LU], as slices in order that together cover it.
 
-    A displacement at which the direction turns belongs to the part before; equal ones in succession are no turn.
+    Empty for an empty path. A displacement at which the direction turns belongs to the part before; equal ones in
+    succession are no turn.
     """
     directions = np.sign(np.diff(displacements))
     moves = np.flatnonzero(directions)
@@ -129,11 +142,13 @@ def legs(displacements: Array) -> list[slice]:
 
 
 def equilibria(path: Path, apart: float, jumps: Sequence[float], spacing: float, finer: int) -> Path:
-    """Return a path of equilibria from apart on, with as many states as an integral of the work along it needs.
+    """Return a path of equilibria that begins with separated bodies, dense enough for an integral of the work along it.
 
-    It goes through the ends of all monotonic parts of `path`, and has states close to each jump. Where there are
-    tangential displacements it has 32 states, times `finer`, for each step that changes d, and `finer` for each other
-    one.
+    It begins just below the smaller one of `apart` and 0; smaller displacements of `path` are raised to this start. It
+    goes through the ends of all monotonic parts, with about 80 states, times `finer`, over all of the displacement, and
+    30 on both sides of each jump. Where there are tangential displacements it goes through all states of `path`, with
+    32 states, times `finer`, for each step that changes d, and `finer` for each other one, and none near jumps. Times
+    are 0.
 
     Args:
         path: of a run.

@@ -30,10 +30,15 @@ class RadiusRule(ABC):
 
     @abstractmethod
     def of(self, profile: Profile) -> ContactRadius | None:
-        """Return the contact radius [LU] with its uncertainty and edges; None where the bodies do not touch."""
+        """Return the contact radius with its uncertainty and edges [LU]; None where the bodies do not touch.
+
+        Raises:
+            ValueError: there are too few particles, or pressures of the wrong sign for this definition.
+        """
 
     def or_spot(self, profile: Profile) -> ContactRadius:
-        """Return the contact radius [LU] with its uncertainty; 0 ± 1.5 spacings where `of` gives None.
+        """Return the contact radius [LU] with its uncertainty and edges; 0 ± 1.5 spacings where the bodies do not
+        touch.
 
         So the pairs at an apex that just touch have a radius, too: the force maximum is nearer than the second
         particle, 1.5 spacings from an apex between two at most.
@@ -41,18 +46,20 @@ class RadiusRule(ABC):
         return self.of(profile) or ContactRadius(0.0, 1.5 * self.bodies.spacing, 0.0, 0.0, reaches_end=False)
 
     def is_cut(self, profile: Profile) -> bool:
-        """Return whether the contact reaches an end of the chain, where the first or last pressure is not 0."""
+        """Return whether the first or the last particle of the chain has a pressure other than 0: the contact reaches
+        an end.
+        """
         return bool(max(abs(profile.pressure[0]), abs(profile.pressure[-1])) > 0.0)
 
     def load(self, profile: Profile, radius: ContactRadius) -> Array:
-        """Return the line load at each particle, (n,) [FU/LU], compression positive.
+        """Return the line load at each particle, (n,) [FU/LU], compression positive; by default force over spacing.
 
-        By default it is the force of the particle over the spacing.
+        `radius` is not used by this default, and the array is that of the profile, not a copy.
         """
         return profile.pressure
 
     def lengths(self, profile: Profile) -> Mapping[str, float]:
-        """Return further lengths [LU] of a state, by the names of results; by default none."""
+        """Return further lengths [LU] of a state, by the names of results; {} by default."""
         return {}
 
 
@@ -60,12 +67,13 @@ class Compressed(RadiusRule):
     """Contact up to the last particle that is pressed."""
 
     def of(self, profile: Profile) -> ContactRadius | None:
-        """Return the radius [LU] at which the pressure falls to 0 (`compressive_radius`).
+        """Return the contact radius at which the pressure falls to 0, with its uncertainty and edges [LU].
 
-        None without a compressed particle.
+        It lies between the outermost compressed particle and the next, or at the last particle of the chain where that
+        is compressed. None without a compressed particle.
 
         Raises:
-            ValueError: a particle carries tension, or there are fewer than 3.
+            ValueError: a particle carries tension beside one that is compressed, or there are fewer than 3.
         """
         return compressive_radius(profile, self.share) if profile.pressure.max() > 0.0 else None
 
@@ -76,16 +84,22 @@ class Held(RadiusRule):
     jump = None
 
     def of(self, profile: Profile) -> ContactRadius | None:
-        """Return the radius [LU] of the loaded cells, that at the edge in part (`held_radius`).
+        """Return the contact radius [LU] of a pressure that jumps to 0 at its edges, with its uncertainty and edges.
 
-        None where all forces are 0.
+        The pressure of the outermost loaded particle shows which part of its cell is in contact. None where all
+        pressures are 0.
+
+        Raises:
+            ValueError: there are fewer than 3 particles.
         """
         return held_radius(profile) if profile.pressure.any() else None
 
     def load(self, profile: Profile, radius: ContactRadius) -> Array:
-        """Return the line load, (n,) [FU/LU], compression positive.
+        """Return the line load at each particle, (n,) [FU/LU], compression positive.
 
-        Where a cell at an edge is loaded in part, over this part.
+        At the outermost loaded particle on each side, whose cell may be in contact in part, it is extrapolated by a
+        parabola from the three inside, and 0 where that particle is outside the edges of `radius`. With fewer than 8
+        loaded particles all are force over spacing.
         """
         return whole_cells(profile, radius)
 
@@ -94,10 +108,13 @@ class Given(RadiusRule):
     """Contact up to the edge that the law computes for each state; where it has none, as the pressure shows it."""
 
     def of(self, profile: Profile) -> ContactRadius | None:
-        """Return the contact radius [LU] that the law gives for a state, 0 of bodies that attract and do not touch.
+        """Return the contact radius with its uncertainty and edges [LU]; None where all pressures are 0.
 
-        Of a profile without such an edge, the radius of the largest tension, or without tension that at which the
-        pressure falls to 0; None where all pressures are 0.
+        Of a `ZonedProfile` it is its own edge, 0 of bodies that attract each other and do not touch. Of another profile
+        it is the radius of the largest tension, or without tension that at which the pressure falls to 0.
+
+        Raises:
+            ValueError: a profile without an edge has fewer than 3 particles.
         """
         if not profile.pressure.any():
             return None
@@ -107,7 +124,7 @@ class Given(RadiusRule):
         return ContactRadius(profile.edge, profile.doubt, -profile.edge, profile.edge, reaches_end=False)
 
     def is_cut(self, profile: Profile) -> bool:
-        """Return whether contact or attraction reaches the end of the chain: the last force is not 0."""
+        """Return whether the last particle of the chain has a force: contact or attraction reaches the end."""
         return bool(profile.pressure[-1] != 0.0)
 
 
@@ -115,9 +132,8 @@ class WithRange(Given):
     """Contact with an attraction beyond its edge, both as the law computes them for each state."""
 
     def lengths(self, profile: Profile) -> Mapping[str, float]:
-        """Return {"cohesive_radius": radius c [LU] up to which the attraction acts}.
-
-        Empty where the law gives no edge.
+        """Return {"cohesive_radius": radius c [LU] up to which the attraction acts}; {} of a profile without a known
+        edge.
         """
         return {"cohesive_radius": profile.reach} if isinstance(profile, ZonedProfile) else {}
 
@@ -126,13 +142,20 @@ class InTension(RadiusRule):
     """Contact up to the largest tension around it."""
 
     def of(self, profile: Profile) -> ContactRadius | None:
-        """Return the radius [LU] of the largest tension on both sides (`tensile_radius`); None without any tension."""
+        """Return the radius [LU] of the largest tension, with its uncertainty and edges; None without any tension.
+
+        It is half the distance of the largest tensions on both sides of the centre, 0 where they are the same spot.
+
+        Raises:
+            ValueError: there are fewer than 3 particles, or the tension is below 1e-12 of the largest pressure.
+        """
         return tensile_radius(profile) if profile.pressure.min() < 0.0 else None
 
     def is_cut(self, profile: Profile) -> bool:
-        """Return whether the largest tension, or more than half the largest pressure, is at an end of the chain.
+        """Return whether the chain ends too near to the contact.
 
-        Pressures are compared by their magnitude.
+        So it is where the largest tension is at the first or last particle, or where the pressure there has more than
+        half of the largest magnitude.
         """
         pressure = profile.pressure
         largest = float(pressure.min())
@@ -149,7 +172,7 @@ class ToTheEdge(RadiusRule):
     def of(self, profile: Profile) -> ContactRadius | None:
         """Return the half-width of the body [LU], uncertainty 0, where any particle has a force; else None.
 
-        A body that `clings` touches also where a particle is on the plane without a force.
+        A body that adheres (`clings`) touches also where a particle is on the plane without a force.
         """
         touches = profile.pressure.any() or (self.clings and (profile.z_upper <= 0.0).any())
         edge = self.bodies.reach

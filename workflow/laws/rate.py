@@ -46,9 +46,9 @@ class Receding(Zoned):
 
     @classmethod
     def from_jkr(cls, jkr: Jkr, scene: Scene, wanted: float, load: float) -> Receding:
-        """Return the contact with the scene's rate.
+        """Return the contact with the scene's rate of the edge, whose curve goes as far as that of `jkr`.
 
-        The curve goes as far as that of `jkr`, `wanted` and `load` are not used.
+        `wanted` and `load` are not used.
 
         Raises:
             SettingsError: the experiment is so slow that the contact is JKR's, G/W − 1 < 1e-8.
@@ -71,13 +71,15 @@ class Receding(Zoned):
 
     @cached_property
     def equations(self) -> Dugdale:
-        """Equations of the contact edge, F and line load without an attraction beyond the edge."""
+        """Equations of the contact edge, F and line load, without an attraction beyond the edge."""
         return Dugdale(self.profile, self.surface, self.modulus, 0.0, self.known, self.known)
 
     def radii(self, displacements: Array) -> Array:
-        """Return a(d) in equilibrium, (m,) [LU], at displacements (m,) [LU], solved between the points of the curve.
+        """Return the contact radii a(d) in equilibrium, (m,) [LU], at displacements (m,) [LU], solved between points of
+        the curve.
 
-        Where no solution is found, by linear interpolation in the curve.
+        Where no solution is found, by linear interpolation in the curve: below pull-off under fixed grips the radius
+        there, beyond the end of the curve that at its end.
         """
         from scipy.optimize import elementwise
 
@@ -95,19 +97,19 @@ class Receding(Zoned):
     def _edge_velocity(self, edge: float, displacement: float) -> float:
         """Return the edge velocity da/dt ≤ 0 [LU/TU] at a contact radius `edge` and a displacement [LU].
 
-        0 where G ≤ W.
+        0 where the energy release rate is at most the work of adhesion, or where the edge is pressed, d ≥ g(a).
         """
         opened = float(self.profile.height(np.asarray([edge]))[0]) - displacement
         excess = self.modulus * opened * opened / (2.0 * math.pi * edge * self.work) - 1.0
         return -self.rate.velocity * excess ** (1.0 / self.rate.exponent) if excess > 0.0 and opened > 0.0 else 0.0
 
     def _receding(self, edge: float, displacement_at: Callable[[float], float], times: Array) -> Array:
-        """Return contact radii a, (m,) [LU], of a receding edge at times (m,) [TU]; 0 once the contact is lost.
+        """Return contact radii a, (m,) [LU], of an edge that recedes by its rate law at times (m,) [TU].
 
-        It is lost at 1e-3 of the radius under fixed grips.
+        0 from where a is at most 1e-3 of the radius at pull-off under fixed grips: the contact is lost.
 
         Args:
-            edge: contact radius at the first time [LU].
+            edge: contact radius at the first time [LU], > 0.
             displacement_at: function of the time [TU]: the displacement [LU].
             times: rising [TU].
         """
@@ -119,7 +121,10 @@ class Receding(Zoned):
         def change(time: float, log: Array) -> list[float]:
             # A lost edge is slowed down by a high power, since an end of the motion might not be detected; a trial step
             # may go far beyond.
-            """Return the rate of ln a [1/TU] at a time [TU], by ln a."""
+            """Return [rate of ln a [1/TU]] at a time [TU], by [ln a], a in LU.
+
+            Well below the radius at which the contact is lost it falls to 0.
+            """
             radius = max(math.exp(float(log[0])), lost * least)
             return [self._edge_velocity(radius, displacement_at(time)) / radius / (1.0 + (0.5 * least / radius) ** 12)]
 
@@ -128,10 +133,10 @@ class Receding(Zoned):
         return np.where(np.maximum.accumulate(radii <= least), 0.0, radii)
 
     def edges(self, times: Array, displacements: Array) -> Array:
-        """Return contact radii a, (m,) [LU], at times (m,) [TU] along displacements (m,) [LU] of a path from apart on.
+        """Return contact radii a, (m,) [LU], at times (m,) [TU] along displacements (m,) [LU].
 
-        Displacements are linear in between. 0 before the first touch and after pull-off; an edge that advances is in
-        equilibrium.
+        The path begins with separated bodies, and is linear in between. Radii are 0 before the first touch and from
+        pull-off to the next touch; an edge that advances is in equilibrium.
         """
         radii, edge, turns = np.zeros_like(times), 0.0, np.flatnonzero(np.diff(np.sign(np.diff(displacements)))) + 1
         for first, last in pairwise([0, *turns.tolist(), times.size - 1]):
@@ -151,13 +156,13 @@ class Receding(Zoned):
     def pull_off_times(self, start: float, velocity: float, count: int) -> Array:
         """Return rising times [TU] from 0 on of a pull from equilibrium at a constant velocity, up to separation.
 
-        They are at `count` equal steps of the contact radius, at as many of the time, and the first one without
-        contact.
+        They are at `count` equal steps of the contact radius and as many of the time, without repetition; the last is
+        the first one found without contact.
 
         Args:
             start: displacement [LU].
             velocity: of the pull [LU/TU], > 0.
-            count: see above.
+            count: number of times of each kind.
         """
         edge, least = float(self.radii(np.asarray([start]))[0]), self.fixed_grips[1]
         end = (start - least) / velocity
@@ -182,11 +187,14 @@ class RecedingCells(ZonedCells):
 
     @property
     def apart(self) -> float:
-        """Displacement [LU] of pull-off under fixed grips in the limit of a slow motion."""
+        """Displacement [LU] of pull-off under fixed grips in the limit of a slow motion; a faster contact is lost below
+        it.
+        """
         return self.law.fixed_grips[1]
 
     def held(self, displacements: Array) -> Array:
-        """Return F, (m,) [FU], compression positive, in equilibrium at displacements (m,) [LU].
+        """Return F of the continuous contact in equilibrium, (m,) [FU], compression positive, at displacements (m,)
+        [LU].
 
         0 below the displacement of pull-off under fixed grips.
         """
@@ -195,9 +203,10 @@ class RecedingCells(ZonedCells):
         return np.where(displacements >= self.apart, forces, 0.0)
 
     def zone(self, path: Path) -> Zone:
-        """Return contact radius, displacement and F of each state of a path that begins apart.
+        """Return the states (a, c = a, d, F), (m,) each, of a path that begins with separated bodies.
 
-        The attraction ends at the edge.
+        The contact radius a [LU] is also the radius c of the attraction, 0 without contact; F [FU] is positive in
+        compression.
         """
         edge = self.law.edges(path.time, path.displacement)
         no_width = np.zeros_like(edge)
@@ -208,9 +217,10 @@ class RecedingCells(ZonedCells):
         return path
 
     def energies(self, path: Path) -> tuple[float, float]:
-        """Return (U(d, a) of JKR at the end of a path that begins apart, energy lost along it), both [FU·LU].
+        """Return (U(d, a) of JKR at the end of a path, energy lost along it), both [FU·LU].
 
-        Losses are ∫ (G − W) 2πa da at a receding edge, and the jumps of U at touch and pull-off.
+        The path begins with separated bodies, whose U is 0. Losses are ∫ (G − W) 2πa da at a receding edge, and the
+        jumps of U at touch and pull-off.
         """
         law, zone = self.law, self.zone(path)
         a, d = zone.edge, zone.displacement
@@ -223,17 +233,19 @@ class RecedingCells(ZonedCells):
         return energies[-1], lost + sum(energies[jump] - energies[jump + 1] for jump in jumps.tolist())
 
     def moments(self, deepest: float, velocity: float, count: int) -> Array:
-        """Return the times [TU] from 0 on of load steps of a pull-off from `deepest` [LU] at a `velocity` [LU/TU].
+        """Return the rising times [TU] from 0 on of load steps of a pull-off from `deepest` [LU] at a `velocity`
+        [LU/TU].
 
         They are at `count` equal steps of the contact radius and as many of the time, without repetition, up to
-        separation.
+        separation; the last is the first one found without contact.
         """
         return self.law.pull_off_times(deepest, velocity, count)
 
     def refined(self, history: History) -> History:
-        """Return a history with further moments at the touch and at equal steps of an edge that recedes.
+        """Return a history with further moments on both sides of a touch, and at equal steps of an edge that recedes.
 
-        `history`: of displacements. A step of the edge is 0.01 of the largest contact radius.
+        `history`: of displacements. A touch is a passage of the displacement 0; a step of the edge is 0.01 of the
+        largest contact radius.
         """
         looks = 20  # edges computed from one moment to the next
         edge_step = 0.01  # over the largest radius
@@ -247,8 +259,10 @@ class RecedingCells(ZonedCells):
         return history.resampled(np.union1d(np.arange(float(len(history.phases))), more))
 
     def prescribed(self, path: Path) -> dict[str, Array]:
-        """Return "displacement" d, "edge" a, "reach" and "height" of load steps, (m,) [LU] each.
+        """Return the columns of load steps by name, (m,) [LU] each: "displacement" d, "edge" a, "reach" and "height".
 
-        The attraction ends at the edge, so that the reach is a; the height is the mean of g over the contact.
+        a is the contact radius, 0 without contact, and the attraction ends there, so that the reach is a, too. The
+        height is the mean of the transformed profile over the contact, 0 where a = 0. The path begins with separated
+        bodies.
         """
         return self._edges_of(self.zone(path))

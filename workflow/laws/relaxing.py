@@ -47,7 +47,10 @@ class Relaxing(Independent):
 
     @classmethod
     def of(cls, scene: Scene, profile: Profile) -> Self:
-        """Return the law of one-sided springs on a rigid plane under a profile, with the material of a scene."""
+        """Return the law of one-sided springs on a rigid plane under a profile, with the material of a scene.
+
+        Equal arguments give the same instance.
+        """
         law: Self = on_plane(cls, profile, scene.bodies.spacing, scene.bulk_stiffness, scene.the(Viscoelasticity))
         return law
 
@@ -61,16 +64,23 @@ class Relaxing(Independent):
 
     @classmethod
     def shortest_time(cls, scene: Scene) -> float:
-        """Return the shortest relaxation or retardation time of a scene [TU]."""
+        """Return the shortest relaxation time [TU] of a scene's Prony series, or its retardation time where it has
+        dashpots.
+        """
         return scene.the(Viscoelasticity).shortest_time
 
     @classmethod
     def jumps(cls, scene: Scene) -> bool:
-        """Return whether the scene has dashpots without a spring in series, whose force jumps with the velocity."""
+        """Return whether the scene has a retardation time: dashpots without a spring in series, whose force jumps with
+        velocity.
+        """
         return scene.the(Viscoelasticity).resists_jumps
 
     def untouched_radius(self, displacement: float) -> float:
-        """Return the contact radius [LU] of the undeformed profile at a displacement [LU], as in a first loading."""
+        """Return the contact radius [LU] of the undeformed profile at a displacement [LU], as in a first loading.
+
+        One spacing at a displacement of 0 or less; the half-width of the body at most.
+        """
         return self.half_width(displacement, self.rest)
 
     def creep(self, time: float) -> float:
@@ -117,8 +127,8 @@ class Relaxing(Independent):
     def columns(self, body: Profile, x: Array) -> Mapping[str, tuple[int, Array]]:
         """Return {"width": (1, w), "rise": (1, r)}, (n,) [LU]: heights over which the cells of particles touch.
 
-        At positions x, (n,) [LU], of a `body` as the deck has it; r is the part of w on the side of the axis, 1 the
-        power of a length. Empty without dashpots.
+        At positions x, (n,) [LU], of a `body` as LAMMPS has it; r is the part of w on the side of the axis, 1 the power
+        of a length. {} without dashpots.
         """
         if not self.material.retardation_time:
             return {}
@@ -137,20 +147,25 @@ class RelaxingSprings(Particles):
 
     @property
     def shares_edges(self) -> bool:
-        """Whether there are dashpots; without, the line load falls to 0 at an edge."""
+        """Whether the material has dashpots: then the cell at an edge carries the load of its part in contact.
+
+        Without them the line load falls to 0 at an edge.
+        """
         return bool(self.law.material.retardation_time)
 
     @cached_property
     def _cells(self) -> tuple[Edges, NDArray[np.intp], Array]:
-        """Cells by rising height without repetition, the index of each particle's cell, (n,), and their counts."""
+        """(Cells by rising height without repetition, (k,); index of each particle's cell, (n,); number of particles of
+        each, (k,)).
+        """
         columns = vars(edges_of(self.shape, self.x, self.law.spacing)).values()
         cells, indices = np.unique(np.stack([*columns]), axis=1, return_inverse=True)
         return Edges(*cells), indices, np.bincount(indices).astype(np.float64)
 
     def held(self, displacements: Array) -> Array:
-        """Return the instantaneous force F, (m,) [FU], compression positive, of an untouched body.
+        """Return the instantaneous elastic force F, (m,) [FU], compression positive, of an untouched body.
 
-        `displacements`: (m,) [LU].
+        `displacements`: (m,) [LU]; F is 0 at 0 and below.
         """
         cells, _, counts = self._cells
         return np.asarray(self.law.stiffness * (np.maximum(displacements[:, None] - cells.heights, 0.0) @ counts))
@@ -158,12 +173,16 @@ class RelaxingSprings(Particles):
     def durations(self, times: Array) -> Array:
         """Return the durations of load steps, (m,) [TU], that end at `times`, (m,) [TU].
 
-        The first is instantaneous: 1e-6 of the shortest relaxation time.
+        The first is instantaneous, 1e-6 of the shortest relaxation or retardation time, whatever its time.
         """
         return np.diff(times, prepend=times[0] - SUDDEN * self.law.material.shortest_time)
 
     def displacements_under(self, times: Array, forces: Array) -> tuple[Array, Array]:
-        """Return (displacements [LU], velocities [LU/TU]), (m,) each, under forces (m,) [FU] ≥ 0 at times (m,) [TU]."""
+        """Return (displacements [LU], final velocities [LU/TU]), (m,) each, under forces (m,) [FU] ≥ 0 at times (m,)
+        [TU].
+
+        The body begins untouched; the first load is applied at once. Compression is positive.
+        """
         cells, _, counts = self._cells
         memory, before, states = Memory(self.law.material, cells), 0.0, []
         for force, time in zip((forces / self.law.stiffness).tolist(), self.durations(times).tolist(), strict=True):
@@ -175,7 +194,7 @@ class RelaxingSprings(Particles):
         return np.asarray(displacements), np.asarray(velocities)
 
     def force_in_time(self) -> Callable[[float, float, float], float]:
-        """Return a function of the force F [FU] ≥ 0, compression positive, on a body that has just touched.
+        """Return a function of the force F [FU] ≥ 0, compression positive, on an untouched body at displacement 0.
 
         It is called state by state with (next displacement [LU], time until then [TU], velocity there [LU/TU]), and
         remembers the state.
@@ -184,7 +203,7 @@ class RelaxingSprings(Particles):
         memory = Memory(self.law.material, cells)
 
         def force(displacement: float, time: float, velocity: float) -> float:
-            """Return F [FU] after a load step, and move the body."""
+            """Return F [FU] ≥ 0 after a load step, and move the body."""
             pressed, _ = memory.pressed(displacement, time, velocity)
             memory.go(displacement, time, velocity)
             return self.law.stiffness * float(pressed @ counts)
@@ -192,14 +211,25 @@ class RelaxingSprings(Particles):
         return force
 
     def prescribed(self, path: Path) -> dict[str, Array]:
-        """Return "displacement" [LU], "duration" [TU] and final "velocity" [LU/TU] of load steps, (m,) each."""
+        """Return the columns of load steps by name, (m,) each: "displacement" [LU], "duration" [TU] and final
+        "velocity" [LU/TU].
+
+        Without velocities in the path they are the mean ones of the load steps, the first from displacement 0 on.
+        """
         spent, velocity = self.durations(path.time), path.velocity
         if velocity is None:
             velocity = np.diff(path.displacement, prepend=0.0) / spent
         return {"displacement": path.displacement, "duration": spent, "velocity": velocity}
 
     def carried(self, columns: Mapping[str, Array]) -> Followed:
-        """Return the forces of load steps and their contact edges, by the columns of `prescribed`."""
+        """Return the forces of load steps by their columns "displacement" [LU], "duration" [TU] and "velocity" [LU/TU],
+        (m,) each.
+
+        They are the sums over the particles, (m,) [FU] ≥ 0, compression positive, and a function of the index of a load
+        step that gives those of each particle, (n,). The body begins untouched. `zone` has, (m,) each, the contact
+        radius twice, the jump of the line load at it, its error, and the line load in a thin layer inside of it,
+        lengths in LU and line loads in FU/LU.
+        """
         cells, indices, counts = self._cells
         memory, spacing = Memory(self.law.material, cells), self.law.spacing
         displacements, spent, velocities = (columns[name] for name in ("displacement", "duration", "velocity"))
@@ -225,16 +255,17 @@ class RelaxingSprings(Particles):
     def energies(self, path: Path) -> tuple[float, float]:
         """Return (energy of springs and arms at the end of a path, energy dissipated along it), both [FU·LU].
 
-        Energy is dissipated in dashpots; that of particles that have separated is included in both.
+        The body begins untouched. Energy is dissipated in dashpots, those of the Prony series included; particles that
+        have separated are included in both.
         """
         cells, _, counts = self._cells
         stored, lost = Memory(self.law.material, cells).along(*self.prescribed(path).values())
         return self.law.stiffness * float(stored @ counts), self.law.stiffness * float(lost @ counts)
 
     def _jumps(self, edge: Array, displacement: Array, velocity: Array) -> Array:
-        """Return the line load just inside the edge, (m,) [FU/LU] ≥ 0: that of dashpots.
+        """Return the line load just inside the edge, (m,) [FU/LU] ≥ 0, that dashpots parallel to the springs cause.
 
-        0 without dashpots, without contact, and where the edge recedes.
+        0 of a Prony series, without contact, and where the body moves back, velocity < 0.
 
         Args:
             edge: contact radius, (m,) [LU].
@@ -248,7 +279,10 @@ class RelaxingSprings(Particles):
         return np.where(grows, law.stiffness / law.spacing * push, 0.0)
 
     def _layers(self, edge: Array, spent: Array, velocity: Array) -> Array:
-        """Return the line load of arms, (m,) [FU/LU] ≥ 0, in a layer a′ τ < spacing at a growing edge; 0 at another.
+        """Return the line load of the Prony series, (m,) [FU/LU] ≥ 0, just inside a growing contact edge.
+
+        0 at another edge, where the body moves back, and with dashpots. An arm has its load in a layer a′ τ behind the
+        edge; only layers thinner than about a spacing count.
 
         Args:
             edge: contact radius a, (m,) [LU].
@@ -262,15 +296,17 @@ class RelaxingSprings(Particles):
 
     @cached_property
     def _outline(self) -> tuple[Array, Array]:
-        """Heights of the body [LU], rising, and their positions [LU] from 0 to the last particle.
-
-        20 for each particle.
+        """(Heights of the body [LU], rising; their positions [LU] from 0 to the last particle), both (20 n,) for n
+        particles.
         """
         x = np.linspace(0.0, float(np.abs(self.x).max()), 20 * self.x.size)
         return np.asarray(self.law.profile.height(x), dtype=np.float64), x
 
     def _positions(self, heights: Array) -> Array:
-        """Return the positions ≥ 0, (m,) [LU], of heights on the body, (m,) [LU]: linear, and one secant step."""
+        """Return the positions ≥ 0, (m,) [LU], of heights on the body, (m,) [LU]: linear, and one secant step.
+
+        None is beyond the last particle.
+        """
         known, x = self._outline
         guess, shape = np.interp(heights, known, x), self.law.profile
         cell = np.clip(np.searchsorted(known, heights), 1, x.size - 1)
@@ -279,13 +315,12 @@ class RelaxingSprings(Particles):
         return np.clip(guess + width * missed, x[cell - 1], x[cell])
 
     def _edges(self, margin: Array) -> tuple[Array, Array]:
-        """Return (contact radii a, their errors), both (m,) [LU], of states with overlaps `margin`, (m, n) [LU].
+        """Return (contact radii a, their errors), both (m,) [LU] ≥ 0, of states with overlaps `margin`, (m, n) [LU].
 
-        0 without contact.
-
-        The overlap falls to 0 at a, linearly over the height. At a growing contact it has a kink at a, so that the next
-        two free particles show it; at a shrinking one the last particle and the next are nearer. Another particle in
-        place of one of the two gives the error.
+        Both are 0 without contact. Where the last particle touches, the radius is the half-width of body or chain, with
+        the error 0. Else the overlap falls to 0 at a, linearly over the height. At a growing contact it has a kink at
+        a, so that the next two free particles show it; at a shrinking one the last particle and the next are nearer.
+        Another particle in place of one of the two gives the error.
         """
         heights, touching = self._cells[0].heights, margin > 0.0
         end = heights.size - 1
@@ -293,7 +328,11 @@ class RelaxingSprings(Particles):
         states, after = np.arange(last.size), np.minimum(last + 1, end)
 
         def crossing(first: NDArray[np.intp], second: NDArray[np.intp]) -> Array:
-            """Return the position, (m,) [LU], at which the overlap is 0 on a line through two particles."""
+            """Return the position, (m,) [LU], at which the overlap is 0 on a line over the height through two
+            particles.
+
+            It lies between the last particle that touches and the next.
+            """
             inner, outer = margin[states, first], margin[states, second]
             share = np.divide(inner, inner - outer, out=np.zeros_like(inner), where=inner > outer)
             height = heights[first] + share * (heights[second] - heights[first])
@@ -308,7 +347,7 @@ class RelaxingSprings(Particles):
 
 
 def _returned(edge: Array) -> NDArray[np.bool_]:
-    """Return in which states, (m,), an edge grows again and is not yet at its largest value.
+    """Return in which states, (m,), an edge has grown since its least radius and is not yet at its largest one again.
 
     `edge`: contact radius, (m,) [LU].
     """

@@ -40,7 +40,7 @@ class Profile(Protocol):
         """Positions > 0 [LU], rising, at which the slope of the profile jumps; empty without any."""
 
     def __hash__(self) -> int:
-        """Return one hash for equal bodies, which share their law."""
+        """Return a hash that is equal for equal bodies, so that they share one cached law."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +75,7 @@ class Splined(Tabulated):
 
     @cached_property
     def _curve(self) -> Any:
-        """Height [LU] over x ≥ 0 [LU] through the table, a piecewise cubic `PPoly`.
+        """Height [LU] over x ≥ 0 [LU] through the table, a `PPoly` of a cubic spline between each two kinks.
 
         A kink within three positions of an end of the table is smoothed.
         """
@@ -93,10 +93,12 @@ class Splined(Tabulated):
 
 
 def tabulated(profile: Profile, spacing: float, kind: type[Tabulated] = Tabulated) -> Tabulated:
-    """Return the table of a profile, which must be finite, at 1000 positions and more at its kinks.
+    """Return the table of a profile of finite half-width: at 0, at 1000 positions up to the half-width, and near its
+    kinks.
 
-    The positions are in geometric progression. Linear interpolation then has an error of 1e-4 of the height of a
-    parabola, for a half-width of 0.1 to 1e10 spacings; closer to the apex than 0.01 spacings the profile is a line.
+    The 1000 are in geometric progression from 0.01 spacings on. Linear interpolation then has an error of 1e-4 of the
+    height of a parabola, for a half-width of 0.1 to 1e10 spacings; closer to the apex than 0.01 spacings the profile is
+    a line.
 
     Args:
         profile: whose heights are tabulated.
@@ -108,14 +110,15 @@ def tabulated(profile: Profile, spacing: float, kind: type[Tabulated] = Tabulate
 
 
 def beside_kinks(positions: Array, profile: Profile, points: int = 60, most_kinks: int = 100) -> Array:
-    """Return rising positions (n,) [LU] with more of them on both sides of a profile's kinks, where g rises as a root.
+    """Return rising positions (n,) [LU]: the given ones, and more at and on both sides of a profile's kinks, without
+    repetition.
 
-    None is added beyond the last position.
+    At a kink g rises as a root. None is added beyond the last position.
 
     Args:
         positions: rising [LU].
         profile: whose kinks they are.
-        points: number of positions on each side of a kink, from 1e-9 to a tenth of its position, in geometric
+        points: number of positions on each side of a kink, from 1e-9 to a tenth of its position away, in geometric
             progression.
         most_kinks: number of kinks, the first ones, that get them.
     """

@@ -54,18 +54,27 @@ class Zoned(Jkr):
     @property
     @abstractmethod
     def equations(self) -> Dugdale:
-        """Equations of the contact edge, of F and of the line load."""
+        """Equations of the contact edge, of F and of the line load; Receding has no attraction beyond the edge, Maugis
+        one.
+        """
 
     def columns(self, body: Profile, x: Array) -> Mapping[str, tuple[int, Array]]:
-        """Return the fields of `Cells` at positions x, (n,) [LU], by name: (p, values (n,) in [LUᵖ]).
+        """Return constants of the cells of particles at positions x, (n,) [LU], by name: (p, values (n,) in [LUᵖ]).
 
-        `body` is not used.
+        "inner" and "outer", p = 1: distances of the ends of a cell from the axis; "below" and "above", p = 2: G = ∫₀ˣ g
+        dx of the transformed profile at these; "sides", p = 0: 2 for a particle on the axis, else 1. `body` is not
+        used.
         """
         zones, powers = self.zones(x), {"inner": 1, "outer": 1, "below": 2, "above": 2, "sides": 0}
         return {name: (power, getattr(zones, name)) for name, power in powers.items()}
 
     def zones(self, x: Array) -> Cells:
-        """Return the cells of particles at positions x, (n,) [LU]: half a spacing to both sides of each."""
+        """Return the cells of particles at positions x, (n,) [LU]: half a spacing to both sides of each, on one side of
+        the axis.
+
+        An inner end is 0 at least. Beyond the largest contact radius that is computed, `known`, G = ∫ g dx does not
+        rise.
+        """
         radius, half = np.abs(x), 0.5 * self.spacing
         inner, outer = np.maximum(radius - half, 0.0), radius + half
         sides = np.where(radius < 0.25 * self.spacing, 2.0, 1.0)
@@ -75,6 +84,8 @@ class Zoned(Jkr):
 
     def loads(self, cells: Cells, zone: Zone, state: int) -> Array:
         """Return the force ∫ q dx of each cell, (n,) [FU], compression positive, in the state of index `state`.
+
+        0 of cells outside contact and attraction; those across an edge have the force of their part within it.
 
         Args:
             cells: of the particles.
@@ -105,19 +116,22 @@ class ZonedCells(Particles):
     shares_edges = True
 
     def _edges_of(self, zone: Zone) -> dict[str, Array]:
-        """Return the columns of states, (m,) [LU]: "displacement" d, "edge" a, "reach" c and "height".
+        """Return the columns of states by name, (m,) [LU] each: "displacement" d, "edge" a, "reach" c and "height".
 
-        The height is the mean of the transformed profile g over the contact, 0 where a = 0.
+        a is the contact radius, c that up to which an attraction acts. The height is the mean of the transformed
+        profile g over the contact, 0 where a = 0.
         """
         area = self.law.equations.area(zone.edge)
         height = np.divide(area, zone.edge, out=np.zeros_like(area), where=zone.edge > 0.0)
         return {"displacement": zone.displacement, "edge": zone.edge, "reach": zone.reach, "height": height}
 
     def carried(self, columns: Mapping[str, Array]) -> Followed:
-        """Return the forces of load steps by their columns "displacement", "edge" and "reach", (m,) [LU].
+        """Return the forces of load steps by their columns "displacement" d, "edge" a and "reach" c, (m,) [LU]; others
+        are not used.
 
-        With them come a, c and the jump of the line load [FU/LU] at the edge, which is 0 where an attraction acts
-        beyond it.
+        The total, (m,) [FU], compression positive, is that of the continuous contact; a function of the index of a load
+        step gives the force of each cell, (n,) [FU]. `zone` has a, c and the jump of the line load [FU/LU] at the edge:
+        E* (d − g(a)), negative in tension, and 0 without contact or where an attraction acts beyond the edge.
         """
         law, equations, cells = self.law, self.law.equations, self.law.zones(self.x)
         d, edge, reach = (columns[name] for name in ("displacement", "edge", "reach"))

@@ -12,7 +12,7 @@ FILE = Path(__file__).with_name("calibration.json")
 
 
 def _value(meaning: str) -> Any:
-    """Return a dataclass field without default, with the meaning of its number as metadata."""
+    """Return a required dataclass field (no default), whose metadata is {"is": meaning}."""
     return field(metadata={"is": meaning})
 
 
@@ -35,12 +35,16 @@ class Calibration:
 
 
 def meanings() -> dict[str, str]:
-    """Return the meaning of each value of a `Calibration` in words, by its name."""
+    """Return the meaning of each field of `Calibration` as text, by its name, in the order of the fields."""
     return {entry.name: entry.metadata["is"] for entry in fields(Calibration)}
 
 
 def calibration_of(document: Mapping[str, Any]) -> Calibration:
-    """Return the values in the contents of `calibration.json`. Raises KeyError where one is missing."""
+    """Return the values in the contents of `calibration.json` as floats; entries of other names are ignored.
+
+    Raises:
+        KeyError: a value is missing.
+    """
     return Calibration(**{name: float(document["values"][name]["value"]) for name in meanings()})
 
 

@@ -33,8 +33,10 @@ MIX_UP = "All lengths (spacing, radius, ranges) are in LU: are some of them in a
 def require_room(bodies: Bodies) -> None:
     """Refuse a profile that is too narrow for the fewest particles: 3, or 4 of an automatic chain, which is even.
 
+    A body with a vertical edge, whose particles are as many as fit into it, is not refused.
+
     Raises:
-        SettingsError: with the widest spacing that is possible.
+        SettingsError: names the widest spacing [LU] that is possible.
     """
     fewest = 4 if bodies.particles == "auto" else 3
     widest = 2.0 * bodies.reach / (fewest - 1)
@@ -46,13 +48,16 @@ def require_room(bodies: Bodies) -> None:
 
 
 def require_body(bodies: Bodies, largest: float, particles: int) -> None:
-    """Refuse a chain or a contact that is wider than its profile, and a profile whose contact is no single one.
+    """Refuse a chain, or a contact at the displacement `largest` [LU], that is wider than the profile.
 
-    A contact that is wider than its chain, but not than its profile, is refused by the run, which knows its width. A
-    flat punch is not refused. `largest`: largest displacement [LU]; `particles`: of the chain.
+    Refused too is a profile (after reduction) that falls within the chain, by more than 1e-5 of its height between
+    neighbours of 2001 positions, since the contact would have several parts. A contact that is wider than its chain,
+    but not than its profile, is not refused here, and a body with a vertical edge never. `particles`: number of the
+    upper chain.
 
     Raises:
-        SettingsError: with the nearest value that is possible.
+        SettingsError: names the most particles, the largest displacement, or the position at which the profile
+            falls.
     """
     if bodies.own_count is not None:
         return
@@ -84,7 +89,11 @@ def require_body(bodies: Bodies, largest: float, particles: int) -> None:
 
 
 def _most_particles(bodies: Bodies) -> int:
-    """Return the number of particles of the longest chain, 3 or an even number, that the profile is wide enough for."""
+    """Return the number of particles of the longest chain, 3 or an even number, that the profile is wide enough for.
+
+    Raises:
+        OverflowError: the profile is unbounded.
+    """
     return max(3, 2 * math.floor(bodies.reach / bodies.spacing * (1.0 - ROUND_OFF) + 0.5))
 
 
@@ -101,10 +110,12 @@ def decay_length(scene: Scene) -> float:
 
 
 def reflected(scene: Scene, estimate: Law, largest: float, particles: int) -> float:
-    """Return the share of a displacement that the end of the chain reflects, exp(−2 L/ℓ), 0 … 1; 0 without neighbours.
+    """Return the share of a displacement that the end of the chain reflects, exp(−2 L/ℓ), 0 … 1.
 
-    L is the distance [LU] of the end from the edge of the contact at the displacement `largest` [LU], with an
-    attraction from the largest tension, and ℓ the decay length [LU]. `estimate`: the contact law.
+    0 without neighbour springs; 1 where the chain ends within the contact. L is the distance [LU] of the end of the
+    chain from the contact edge (with an attraction, from the largest tension) at the displacement `largest` [LU], below
+    0 as at 0. ℓ [LU] is the decay length of a displacement along the chain. `estimate`: the contact law; `particles`:
+    of the upper chain.
     """
     decay = decay_length(scene)
     beyond = 0.5 * particles * scene.bodies.spacing - _edge(estimate, largest)
@@ -112,15 +123,19 @@ def reflected(scene: Scene, estimate: Law, largest: float, particles: int) -> fl
 
 
 def chains_of(scene: Scene, estimate: Law, largest: float, share: float) -> tuple[int, int]:
-    """Return (particles of the upper body, those of the lower body), as given or by `chain_length`.
+    """Return the numbers of particles (upper body, lower body).
 
-    In a slide the lower body is longer by the sliding distance on both sides.
+    Where bodies.particles is a number they are given: it is that of the lower body, and of the upper one unless
+    bodies.upper_particles differs. Else the upper body has upper_particles where given, or as many as the contact
+    needs; the lower body has as long a chain as the contact needs, lengthened on both sides by the largest tangential
+    displacement of the experiment and the given offset of the upper body. With a rigid plane the second number is not
+    used.
 
     Args:
         scene: whose chains they are.
         estimate: contact law.
         largest: largest displacement [LU].
-        share: relative force at the end of an automatic chain.
+        share: force at the end of an automatic chain over the largest force (relative).
     """
     bodies = scene.bodies
     if bodies.particles != "auto":
@@ -133,17 +148,19 @@ def chains_of(scene: Scene, estimate: Law, largest: float, share: float) -> tupl
 
 
 def _edge(estimate: Law, largest: float) -> float:
-    """Return the half-width [LU] of the largest tension, without attraction of the contact.
+    """Return the half-width [LU] up to the largest tension; without attraction, that of the contact.
 
-    `largest`: displacement [LU], below 0 as at 0.
+    It is where the undeformed gap is that of the least force of the law; one spacing where the gap at the apex is
+    larger. `largest`: displacement [LU], compression positive, below 0 as at 0.
     """
     return estimate.half_width(max(largest, 0.0), float(estimate.gap[int(estimate.force.argmin())]))
 
 
 def significant_gap(estimate: Law, largest: float, share: float) -> float:
-    """Return the undeformed gap [LU] beyond which no force exceeds a share of the largest one; r₀ without any force.
+    """Return the largest undeformed gap [LU] at which the magnitude of a force exceeds a `share` of the largest one.
 
-    `largest`: displacement [LU] of the contact; `share`: relative.
+    Only gaps above that at the apex, at the displacement `largest` [LU], count. r₀ [LU], the distance at displacement
+    0, where there is no force at any of these.
     """
     force = np.abs(estimate.force)
     borne = force[estimate.gap > estimate.rest - largest]
@@ -153,13 +170,14 @@ def significant_gap(estimate: Law, largest: float, share: float) -> float:
 def chain_length(scene: Scene, estimate: Law, largest: float, share: float) -> int:
     """Return the number of particles of an automatic chain, at whose end force and reflection are at most a share.
 
-    A flat punch has its own number; no chain is longer than its profile is wide.
+    It is even, and the chain no wider than the profile. A body with a vertical edge has as many as fit into it.
 
     Args:
         scene: whose chain it is.
         estimate: contact law.
-        largest: largest displacement [LU].
-        share: of the largest force.
+        largest: largest displacement [LU], below 0 as at 0.
+        share: force at the end over the largest one, and the part of a displacement that the end reflects
+            (relative).
     """
     if (count := scene.bodies.own_count) is not None:
         return count
@@ -173,10 +191,10 @@ def chain_length(scene: Scene, estimate: Law, largest: float, share: float) -> i
 
 
 def require_reach(scene: Scene, cutoff: float) -> None:
-    """Refuse an interaction with a cutoff [LU] over more than 5000 opposite particles.
+    """Refuse an interaction with a `cutoff` [LU] above 2500 spacings of the lower chain (5000 opposite particles).
 
     Raises:
-        SettingsError: with the longest cutoff that is possible.
+        SettingsError: names the longest cutoff that is possible.
     """
     spacing = scene.bodies.spacing
     if reaches_too_far(scene, cutoff):
@@ -190,17 +208,18 @@ def require_reach(scene: Scene, cutoff: float) -> None:
 
 
 def reaches_too_far(scene: Scene, cutoff: float) -> bool:
-    """Return whether a particle would interact with more than 5000 opposite ones within a cutoff [LU]."""
+    """Return whether a cutoff [LU] is above 2500 spacings of the lower chain: more than 5000 opposite particles."""
     return cutoff > 0.5 * MOST_PARTNERS * scene.bodies.spacing
 
 
 def require_apex(scene: Scene, particles: int, cutoff: float) -> None:
-    """Refuse a chain whose particles next to the apex are far out of range of the interaction, of a cutoff [LU].
+    """Refuse a chain whose particles next to the apex lie more than 1000 times the cutoff [LU] above it.
 
-    Their height is more than 1000 times the cutoff, or the spacing where this is larger. `particles`: of the chain.
+    Where the spacing is larger than the cutoff, it counts in place of it. A chain of an odd number of `particles` has
+    one at the apex and is never refused.
 
     Raises:
-        SettingsError: with the particles' height.
+        SettingsError: names the particles' height [LU].
     """
     nearest = 0.5 * scene.bodies.spacing if particles % 2 == 0 else 0.0
     height = float(scene.bodies.height(np.asarray([nearest]))[0])
@@ -214,10 +233,12 @@ def require_apex(scene: Scene, particles: int, cutoff: float) -> None:
 
 
 def require_travel(scene: Scene, largest: float, cutoff: float) -> None:
-    """Refuse a displacement `largest` [LU] out of all proportion to the range of the forces: 10⁹ cutoffs and spacings.
+    """Refuse a displacement of more than 10⁹ times the cutoff or the spacing of the lower chain, whichever is larger.
+
+    `largest`: displacement [LU], of either sign; `cutoff` [LU], 0 without an interaction.
 
     Raises:
-        SettingsError: with the largest displacement that is possible.
+        SettingsError: names the largest displacement that is possible.
     """
     most = FARTHEST_RATIO * max(cutoff, scene.bodies.spacing)
     if abs(largest) > most:
@@ -229,12 +250,12 @@ def require_travel(scene: Scene, largest: float, cutoff: float) -> None:
 
 
 def require_memory(scene: Scene, particles: int, cutoff: float) -> None:
-    """Refuse a system of more than 10⁷ particles of a body, or that exceeds the memory of this machine.
+    """Refuse a system of more than 10⁷ particles of a body, or that exceeds the physical memory of this machine.
 
-    `particles`: of each body; `cutoff`: of the interaction [LU].
+    `particles`: of each body; `cutoff`: of the interaction [LU], 0 without one.
 
     Raises:
-        SettingsError: with the number of particles or bytes.
+        SettingsError: names the number of particles, or the memory needed and that of the machine [GB].
     """
     if particles > MOST_PARTICLES:
         raise SettingsError(
@@ -256,18 +277,18 @@ def require_memory(scene: Scene, particles: int, cutoff: float) -> None:
 
 
 def require_digits(scene: Scene, particles: int, deepest: float, force: float) -> None:
-    """Refuse springs so stiff that the round-off error of a position is more force than the tolerance allows.
+    """Refuse springs so stiff that the round-off error of a position is more force than a tenth of `force`.
 
-    Nothing is refused without an interaction, or in time.
+    Only quasi-static scenes with an interaction are refused.
 
     Args:
-        scene: whose particles relax without time.
-        particles: per body.
-        deepest: length that a position has in addition to the height of the last particle [LU].
-        force: of one particle, times the tolerance [FU].
+        scene: whose springs they are.
+        particles: number of the upper chain.
+        deepest: length [LU] that a position has in addition to the height of the last particle.
+        force: force scale of one particle times the relative tolerance [FU].
 
     Raises:
-        SettingsError: with springs that are possible.
+        SettingsError: names a stiffness [FU/LU] that is possible.
     """
     if scene.method != "quasistatic" or not scene.interaction:
         return
@@ -284,17 +305,18 @@ def require_digits(scene: Scene, particles: int, deepest: float, force: float) -
 
 
 def _steps(rows: float) -> str:
-    """Return a text: a number of load steps, and that it is more than 10⁶."""
+    """Return a text for a message: the number of load steps `rows`, and that it is more than 10⁶ (not checked here)."""
     return f"{apart(rows, MOST_LOAD_STEPS)[0]} load steps, more than {MOST_LOAD_STEPS:.0e}"
 
 
 def require_rows(scene: Scene, longest_move: float, drive: Sequence[DriveLeg]) -> None:
-    """Refuse a prescribed path of more than 10⁶ load steps, each an approach by `longest_move` [LU] at most.
+    """Refuse a path of more than 10⁶ load steps: tangential ones, states of a slide, or prescribed displacements.
 
-    Those of a slide are the states of the legs of its `drive`.
+    An approach takes additional load steps of `longest_move` [LU] at most; infinite: none. `drive`: legs of a slide, ()
+    for any other experiment.
 
     Raises:
-        SettingsError: with the number of load steps.
+        SettingsError: names the number of load steps.
     """
     experiment = scene.experiment
     if isinstance(experiment, Tangential) and len(experiment.along()) > MOST_LOAD_STEPS:
@@ -319,10 +341,12 @@ def require_rows(scene: Scene, longest_move: float, drive: Sequence[DriveLeg]) -
 
 
 def require_steps(steps: Iterable[int]) -> None:
-    """Refuse a scene with a load step of more timesteps than LAMMPS can count, 2³¹ − 1; `steps`: of each load step.
+    """Refuse a scene with a load step of more timesteps than LAMMPS can count, 2³¹ − 1.
+
+    `steps`: timesteps of each load step; without any, nothing is refused.
 
     Raises:
-        SettingsError: with the number of timesteps.
+        SettingsError: names the largest number of timesteps.
     """
     most = max(steps, default=0)
     if most > MOST_TIMESTEPS:
@@ -337,7 +361,8 @@ def require_steps(steps: Iterable[int]) -> None:
 def in_words(scene: Scene, particles: int, cutoff: float) -> str:
     """Return a note for the user on a system so large that a run takes minutes; "" for a usual one.
 
-    `particles`: of each body; `cutoff`: of the interaction [LU].
+    Large are 20 000 particles per body; where each has more than ten opposite ones within the cutoff, fewer in
+    proportion. `particles`: of each body; `cutoff`: of the interaction [LU], 0 without one.
     """
     large, usual_partners = 20_000, 10.0
     partners = _partners(scene, particles, cutoff)
@@ -350,8 +375,8 @@ def in_words(scene: Scene, particles: int, cutoff: float) -> str:
 
 
 def _partners(scene: Scene, particles: int, cutoff: float) -> float:
-    """Return the number of opposite particles within the cutoff [LU] of one, at most `particles`.
+    """Return the number (not rounded) of opposite particles within the cutoff [LU] of one, at most `particles`.
 
-    0 on a rigid plane.
+    0 for a cutoff of 0, that of a rigid plane.
     """
     return min(particles, 2.0 * cutoff / scene.bodies.spacing + 2.0) if cutoff else 0.0

@@ -27,8 +27,9 @@ REACH = 40.0
 def slide_cutoff(law: DoubleExponential, spacing: float, load: float, tolerance: float) -> float:
     """Return the cutoff [LU] at which a pair's force is a tenth of the tolerance of the largest tangential force.
 
-    Between the longest range of the interaction and 40 times that. Each pair that comes within the cutoff or leaves it
-    changes the tangential force by that much at once.
+    The latter is that on a particle that slides over a rigid row of opposite ones. The pair's force is that of the
+    attraction alone, without one of the repulsion. The result is kept between the longest range of the interaction and
+    40 times that.
 
     Args:
         law: interaction of a pair.
@@ -43,10 +44,11 @@ def slide_cutoff(law: DoubleExponential, spacing: float, load: float, tolerance:
 
 
 def largest_holding_force(law: DoubleExponential, spacing: float, load: float) -> float:
-    """Return max_x |F_x| [FU] of a particle under a load [FU] on a rigid chain, at its height in a potential minimum.
+    """Return the largest |F_x| [FU] ≥ 0 of a particle that moves over a rigid straight row of opposite particles.
 
-    The maximum is taken over 33 positions within half a `spacing` [LU], the height is one of 400: the largest that
-    carries the load, compression positive, or where none does the smallest.
+    Its height is fixed at the largest of 400 at which, midway between two of them, it carries the `load` [FU],
+    compression positive; where none does, at the smallest. The maximum is taken over 33 positions along x within half a
+    `spacing` [LU].
     """
     reach = math.ceil(REACH * law.longest_range / spacing) + 1
     row: Array = np.asarray(spacing * np.arange(-reach, reach + 1), dtype=np.float64)
@@ -60,9 +62,14 @@ def largest_holding_force(law: DoubleExponential, spacing: float, load: float) -
 
 
 def _row_forces(law: DoubleExponential, offsets: Array, heights: Array) -> tuple[Array, Array]:
-    """Return (sums along x, sums along z), (m,) [FU], of pair forces at lateral offsets [LU], at heights (m,) [LU].
+    """Return (sums of F_x, sums of F_z), (m,) [FU] each, of the pair forces of a row on one particle.
 
-    Repulsion is positive along z.
+    Repulsion is positive along z, and along x has the sign of the offset.
+
+    Args:
+        law: interaction of a pair.
+        offsets: position of the particle along x less those of the row, (n,) [LU].
+        heights: of the particle above the row, (m,) [LU].
     """
     distance = np.hypot(offsets[None, :], heights[:, None])
     ratio = law.force(distance) / distance
@@ -70,9 +77,15 @@ def _row_forces(law: DoubleExponential, offsets: Array, heights: Array) -> tuple
 
 
 def cutoff_for(scene: Scene, law: DoubleExponential, share: float, tolerance: float) -> float:
-    """Return the scene's cutoff [LU], or the distance beyond which a pair's force is below a share of the force scale.
+    """Return the scene's cutoff [LU] where that is a number, else one that follows from `share` and `tolerance`.
 
-    In a slide it is `slide_cutoff` at least, unless it is too long for any run. `tolerance`: relative.
+    That is r₀ + b ln(1/share), r₀ = 0 without attraction: beyond it a pair's force is below about `share` (relative) of
+    the force at r₀ of the term of longest range b alone. In a slide it is at least the one at which a pair's force is a
+    tenth of `tolerance` (relative) of the largest tangential force, unless the first has more than 5000 opposite
+    particles within it.
+
+    Raises:
+        StopIteration: the scene has no interaction.
     """
     given = scene.the(Interaction).cutoff
     if given != "auto":
@@ -84,17 +97,18 @@ def cutoff_for(scene: Scene, law: DoubleExponential, share: float, tolerance: fl
 
 
 def innermost_distance(estimate: Law, cutoff: float, displacement: float) -> float:
-    """Return the distance [LU] of the predictor's innermost pair at a displacement [LU].
+    """Return the distance [LU], 0 < distance ≤ cutoff, of the two particles at the apex at a displacement [LU].
 
-    Its grid ends at `cutoff` [LU]. 0 < distance ≤ cutoff.
+    `estimate`: contact law of pairs of particles on springs, whose grid of distances ends at `cutoff` [LU]; a
+    displacement beyond the grid gives its end. Compression is positive.
     """
     grid = cutoff / estimate.gap.size * np.arange(1, estimate.gap.size + 1)
     return float(np.interp(estimate.rest - displacement, estimate.gap, grid))
 
 
 def thermal_motion(scene: Scene) -> float:
-    """Return the thermal approach [LU] of two particles on their springs: five standard deviations, 5 √(2 k_BT/k).
+    """Return how much nearer thermal motion brings two particles on their springs [LU]: 5 √(2 k_BT/k) ≥ 0.
 
-    0 without noise.
+    These are five standard deviations of their distance; 0 without noise.
     """
     return 5.0 * math.sqrt(2.0 * scene.temperature / scene.bulk_stiffness)

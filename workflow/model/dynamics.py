@@ -25,9 +25,9 @@ MOST_ROWS = 50
 
 
 def measured(unit: str, default: Any = MISSING) -> Any:
-    """Return a dataclass field with a unit, whose number a deck with units of its own converts (`deck.units`).
+    """Return a dataclass field for a number in `unit`, with {"unit": unit} as metadata.
 
-    `default`: its number; without one the field is required.
+    `default`: its value; without one the field is required.
     """
     return field(default=default, metadata={"unit": unit})
 
@@ -50,7 +50,7 @@ class DriveLeg:
 
     @property
     def row_time(self) -> float:
-        """Time from one measured state to the next [TU]."""
+        """Time [TU] from one measured state to the next: `steps` timesteps."""
         return self.steps * self.time_step
 
 
@@ -85,16 +85,23 @@ class Motion:
 def motion_of(
     scene: Scene, tolerance: float, estimate: Law, largest: float, particles: int, stiffest: float, still_step: float
 ) -> Motion:
-    """Return the numbers of a motion, from the stiffest and the softest mode of the scene.
+    """Return masses, drags, timesteps and the legs of a slide, for a motion of the scene in time.
+
+    The timestep is the smaller one of those that a particle and the plate allow; in an impact a thousandth of the time
+    to the deepest displacement at the impact velocity, or less; shortened to a whole part of the duration. An automatic
+    mass of the plate is that of all its particles; 0 without a plate. Automatic drag is critical for 0.6 of the contact
+    stiffness. The settling drag is larger, and its timestep shorter, where automatic drag would let particles
+    oscillate; in a slide it is the one under which the plate is loaded. `damped_stiffness` is 0 in a slide and where
+    the scene gives the damping.
 
     Args:
         scene: whose motion it is.
         tolerance: relative tolerance of the main results.
         estimate: contact law.
-        largest: largest displacement expected [LU].
+        largest: largest displacement expected [LU], below 0 as at 0.
         particles: number of particles of the upper body.
         stiffest: largest stiffness of a particle's bonds and contacts [FU/LU].
-        still_step: ω_max·Δt of a quasi-static motion (dimensionless).
+        still_step: ω_max·Δt of a motion that comes to rest (dimensionless).
     """
     bodies, plate, moves = scene.bodies, scene.plate, scene.experiment.motion_is_result
     touching = 2.0 * estimate.half_width(max(largest, 0.0), estimate.rest) / bodies.spacing
@@ -138,7 +145,11 @@ def motion_of(
 
 
 def _plate_stiffness(scene: Scene, particles: int) -> float:
-    """Return the stiffness [FU/LU] of all bonds of the plate: of its particles, its drive and its cantilever."""
+    """Return the stiffness [FU/LU] of all springs of the plate: N bulk springs and the one that retracts it, if any.
+
+    With a cantilever its stiffness is added, and N times that by which the tangential exceeds the bulk stiffness, if
+    so.
+    """
     stiffness = particles * scene.bulk_stiffness + scene.experiment.retraction_stiffness
     if scene.cantilever:
         lateral = max(0.0, scene.tangential_stiffness - scene.bulk_stiffness)
@@ -147,27 +158,30 @@ def _plate_stiffness(scene: Scene, particles: int) -> float:
 
 
 def _loading_drag(damping: float, critical: float) -> float:
-    """Return the drag of a particle [FU·TU/LU] with which a slide is loaded: its own, or the critical one of the plate.
+    """Return the drag of a particle [FU·TU/LU] with which a slide is loaded: `damping`, or `critical` instead.
 
-    The latter where its own is below it, or more than ten times as large. A plate that oscillates as it is loaded goes
-    through the other body, which would carry it at rest.
+    `critical`, at which the plate does not oscillate, is returned where `damping` is below it or more than ten times as
+    large. A plate that oscillates as it is loaded goes through the other body, which would carry it at rest.
     """
     too_slow = 10.0 * critical  # the plate would creep to rest
     return damping if critical <= damping <= too_slow else critical
 
 
 def whole_steps(longest: float, duration: float | None) -> float:
-    """Return the longest timestep [TU] of which a motion's duration [TU] is a whole number, two at least.
+    """Return the longest timestep [TU], `longest` at most, of which a `duration` [TU] is a whole number, two at least.
 
-    It is `longest` [TU] at most, and that without a duration (None).
+    `longest` itself where the duration is None.
     """
     return longest if duration is None else duration / max(2, math.ceil(duration / longest - ROUND_OFF))
 
 
 def longest_step(product: float, stiffness: float, mass: float, drag: float) -> float:
-    """Return the longest timestep [TU] of a mass [MU] on springs [FU/LU] with a drag [FU·TU/LU]; inf without a mass.
+    """Return the longest timestep Δt [TU] of a mass [MU] on springs [FU/LU] with a drag γ [FU·TU/LU].
 
-    ω Δt is the `product` at most, and Δt 0.2 m/γ.
+    ω Δt is the `product` (dimensionless) at most, and Δt 0.2 m/γ at most. Infinite for a mass of 0.
+
+    Raises:
+        ZeroDivisionError: a mass without stiffness.
     """
     if mass == 0.0:
         return math.inf
@@ -175,9 +189,10 @@ def longest_step(product: float, stiffness: float, mass: float, drag: float) -> 
 
 
 def _product(scene: Scene, tolerance: float, still_step: float) -> float:
-    """Return the largest ω Δt (dimensionless) of a relaxation, a motion that is the result, or with noise.
+    """Return the largest ω Δt (dimensionless) of a timestep.
 
-    Without time it is 0.5 at most.
+    In a slide 0.2, below a tolerance of 1e-3 less with its square root; in any other motion in time `still_step`; of a
+    quasi-static scene 0.5. Effects of the scene, as noise, may lower it by the relative `tolerance`.
     """
     if scene.experiment.motion_is_result:
         # Measured on 24 random slides: mean friction off by 1e-6 to 9e-5 of itself, by 5e-4 where that is 1e-4 of a
@@ -190,10 +205,12 @@ def _product(scene: Scene, tolerance: float, still_step: float) -> float:
 
 
 def _drags(scene: Scene, particles: int, critical: float, plate_mass: float) -> tuple[float, float]:
-    """Return the drags [FU·TU/LU] (of a particle, of the plate): given, or together critical for the contact.
+    """Return the drags [FU·TU/LU] (of a particle, of the plate): those of the scene, or automatic ones.
 
-    0 where there is none; an automatic one of the plate is 0 with noise and in an impact, too. `critical`: of both
-    together [FU·TU/LU]; `plate_mass` [MU].
+    An automatic one of a particle is `critical` [FU·TU/LU], that of plate and particles together, over their number;
+    without a plate √(k m), half the critical one of the particle on its spring. 0 without [damping]. An automatic one
+    of the plate is what is missing from `critical`, or more where a plate lighter than its particles would oscillate
+    against them; 0 without a plate, with noise, and in an impact. `plate_mass` [MU].
     """
     mass, damping = scene.bodies.mass, 0.0
     if scene.damping:
@@ -212,18 +229,23 @@ def _drags(scene: Scene, particles: int, critical: float, plate_mass: float) -> 
 
 
 def _relative_drag(plate: float, particles: float, rate: float) -> float:
-    """Return the drag [FU·TU/LU] with which a plate lighter than all its particles does not oscillate against them.
+    """Return the drag [FU·TU/LU] ≥ 0 with which a plate lighter than its particles does not oscillate against them.
 
-    In that oscillation a plate of mass M [MU] leaves the particles, N m [MU] together with the drag `rate` · N m, the
-    share M/(M + N m): next to nothing, if it is light, so that drag on particles does not end it. With the drag c on
-    the plate the decay rate is [rate · M + c N m/M] / 2(M + N m); c makes it that of M = N m, c = 0. For a heavier
-    plate 0.
+    0 for a plate as heavy as all particles or heavier. In that oscillation a plate of mass M = `plate` [MU] leaves the
+    particles, N m = `particles` [MU] together with the drag `rate` · N m, `rate` in [1/TU], the share M/(M + N m): next
+    to nothing, if it is light, so that drag on particles does not end it. With the drag c on the plate the decay rate
+    is [rate · M + c N m/M] / 2(M + N m); c makes it that of M = N m, c = 0.
     """
     return 0.5 * rate * plate * max(0.0, 1.0 - plate / particles)
 
 
 def drive_steps(scene: Scene, longest: float) -> tuple[DriveLeg, ...]:
-    """Return the legs of a slide, with timesteps of at most `longest` [TU]; () for any other experiment."""
+    """Return the legs of the drive of a slide in order; () for any other experiment.
+
+    Each has a whole number of measured states, 20 to 50 per spacing of the lower chain and one at least, and from one
+    to the next a multiple of 5 timesteps of at most `longest` [TU]. A leg of velocity 0 lasts as long as its distance
+    takes at the velocity of the cantilever.
+    """
     experiment = scene.experiment
     if not isinstance(experiment, Slide):
         return ()

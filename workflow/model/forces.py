@@ -25,15 +25,15 @@ table that is smoothed any earlier lets bodies pass that the interaction still c
 
 
 def loading_step_of(most: float, step: float) -> float:
-    """Return the `step` [LU] if it is > 0, never more than `most` [LU]; else `most`."""
+    """Return the `step` [LU] where it is > 0, but `most` [LU] at most; `most` where it is 0 or negative."""
     return min(step, most) if step > 0 else most
 
 
 def plane_stiffness_of(scene: Scene, tolerance: float) -> float:
-    """Return the one-sided stiffness of the rigid plane [FU/LU]: that of a particle, where it is fixed in its body.
+    """Return the one-sided stiffness of the rigid plane [FU/LU] per particle; 0 where the lower body is no rigid plane.
 
-    Where effects need bonds of the particles the plane is 1/tolerance (relative) times stiffer than those; 0 without a
-    plane.
+    It is the bulk stiffness of a particle where particles are fixed in the upper body. Where effects need bonds of the
+    particles, it is 1/tolerance (relative) times their bulk stiffness plus what effects add to that.
     """
     if scene.bodies.lower != "rigid_plane":
         return 0.0
@@ -41,7 +41,7 @@ def plane_stiffness_of(scene: Scene, tolerance: float) -> float:
 
 
 def stiffest_of(scene: Scene) -> float:
-    """Return the stiffness of the bulk spring of a particle plus that of what effects add to it [FU/LU]."""
+    """Return the bulk stiffness of a particle plus the largest stiffnesses that effects add to it, summed [FU/LU]."""
     return scene.bulk_stiffness + sum(effect.added_stiffness for effect in scene.present)
 
 
@@ -73,49 +73,59 @@ class Forces:
 
     @property
     def law(self) -> DoubleExponential | None:
-        """Interaction of a pair of particles; None on a rigid plane."""
+        """The interaction of a pair of particles; None, since on a rigid plane there is none."""
         return None
 
     @property
     def range(self) -> float:
-        """Longest range of the interaction [LU]; 0 without one."""
+        """Longest range of the interaction [LU]; 0, since on a rigid plane there is none."""
         return 0.0
 
     def with_table(self, scene: Scene, estimate: Law, largest: float, error: float) -> Forces:
-        """Return these forces with a table of the interaction; here unchanged, since there is none.
+        """Return these forces themselves, since on a rigid plane there is no interaction; arguments are ignored.
 
-        `estimate`: contact law; `largest`: displacement [LU]; `error`: allowed, of a force [FU].
+        Args:
+            scene: of the run.
+            estimate: contact law.
+            largest: largest displacement [LU].
+            error: allowed error of a force [FU].
         """
         return self
 
     def scale_of(self, scene: Scene, deepest: float) -> float:
-        """Return half the force [FU] of the particle with the largest length change of its spring, `deepest` [LU].
+        """Return the force scale of one particle [FU] > 0: half its bulk stiffness times `deepest` [LU].
 
-        Without one, a length change of a thousandth of the spacing.
+        `deepest`: largest length change of a spring; where it is 0 or negative, a thousandth of the spacing counts
+        instead.
         """
         return (deepest if deepest > 0.0 else 1e-3 * scene.bodies.spacing) * scene.bulk_stiffness / 2
 
     def stiffest(self, spacing: float) -> float:
-        """Return the largest contact stiffness of a particle [FU/LU]: that of the plane. `spacing` [LU] is ignored."""
+        """Return the largest contact stiffness of a particle [FU/LU]: that of the plane. `spacing` is ignored."""
         return self.plane_stiffness
 
     def increments(self, spacing: float, largest: float, calibration: Calibration) -> Increments:
-        """Return the increments of searches [LU], by the spacing and the largest displacement [LU].
+        """Return the displacement increments of a search on a rigid plane [LU].
 
-        Their longest move is infinite.
+        `displacement_step` and `loading_step` are a tenth of the `spacing` [LU], or less where the calibrated share of
+        the displacement `largest` [LU] is smaller and > 0. `smooth_step` is 0 and the longest move infinite.
         """
         loading = loading_step_of(0.1 * spacing, calibration.loading_increment * largest)
         return Increments(loading, loading, 0.0, math.inf)
 
     def share(self, scene: Scene) -> float:
-        """Return the relative error of a force, before a run: the plane is not quite rigid for springs of particles.
+        """Return the relative error of a force, before a run, since the plane is not quite rigid.
 
-        0 where no effect adds stiffness to a particle.
+        It is what effects add to the stiffness of a particle over that of the plane; 0 where they add none.
         """
         return sum(effect.added_stiffness for effect in scene.present) / self.plane_stiffness
 
     def error(self, scene: Scene, profile: Profile) -> float:
-        """Return the error of the force of a measured state [FU], ≥ 0."""
+        """Return the error of the contact force of a state [FU] ≥ 0, by the finite stiffness of the plane.
+
+        It is |Σ F_z| of the upper particles times what effects add to a particle's stiffness over that of the plane; 0
+        where they add none.
+        """
         return self.share(scene) * abs(scene.bodies.spacing * float(profile.pressure.sum()))
 
 
@@ -127,18 +137,23 @@ class PairForces(Forces):
 
     @property
     def law(self) -> DoubleExponential:
-        """Interaction of a pair, which the table follows."""
+        """Interaction of a pair of opposite particles, from which the table is made."""
         return self.table.law
 
     @property
     def range(self) -> float:
-        """Longest range of the interaction [LU], of its exponentials."""
+        """Range [LU] of the exponential that dominates at large distance.
+
+        That is the attraction, or without one the repulsion.
+        """
         return self.law.longest_range
 
     def with_table(self, scene: Scene, estimate: Law, largest: float, error: float) -> Forces:
-        """Return these forces with a table to an error [FU], from the smallest expected distance on.
+        """Return a copy with a table of the interaction whose force error is at most `error` [FU], from a distance on.
 
-        `estimate`: contact law; `largest`: displacement at which particles come nearest [LU].
+        The distance, `table_from` of the copy, is 0.8 (r − u) with r that of the particles at the apex at the
+        displacement `largest` [LU] and u five standard deviations of thermal motion; but at least a fifth of `closest`,
+        with noise `closest` itself. A table of 400 000 points may have a larger error. `estimate`: contact law.
         """
         nearest = self.closest * (1.0 if scene.noise else NEAR_SHARE)
         innermost = innermost_distance(estimate, self.cutoff, largest) - thermal_motion(scene)
@@ -147,43 +162,51 @@ class PairForces(Forces):
         return replace(self, table_from=start, table=table_for(self.law, self.cutoff, start, error))
 
     def scale_of(self, scene: Scene, deepest: float) -> float:
-        """Return the force maximum of one pair [FU], positive; without attraction as on a plane, by `deepest` [LU]."""
+        """Return the force scale of one particle [FU] > 0: the largest attraction of one pair.
+
+        Without attraction it is half the bulk stiffness times the largest length change of a spring, `deepest` [LU], or
+        a thousandth of the spacing where that is not > 0.
+        """
         if self.law.attraction is None:
             return super().scale_of(scene, deepest)
         r = self.law.force_free_distance() + self.law.longest_range * np.linspace(0.0, 5.0, 2001)
         return float(-self.law.force(r).min())
 
     def stiffest(self, spacing: float) -> float:
-        """Return the stiffness [FU/LU] of a particle's pairs with nearby opposite particles, at distance `closest`.
+        """Return the estimated stiffness [FU/LU] of all pairs of a particle, the nearest ones at `closest`.
 
-        `spacing`: of the particles [LU].
+        It is 2 (1 + 2a/s) V″(closest), with the range a of the repulsion and the `spacing` s of the particles [LU].
         """
         partners = 1.0 + 2.0 * self.law.repulsion.range / spacing
         return 2.0 * partners * float(self.law.stiffness(self.closest))
 
     def increments(self, spacing: float, largest: float, calibration: Calibration) -> Increments:
-        """Return the increments of searches, by the range of the interaction and the largest displacement [LU].
+        """Return the displacement increments of a search [LU]; `spacing` is ignored.
 
-        `spacing` is ignored.
+        The longest move is a quarter of `closest`. `loading_step` is a quarter of the range of the interaction, or less
+        where the calibrated share of the displacement `largest` [LU] is smaller and > 0; `displacement_step` is the
+        smaller of both; `smooth_step` is a calibrated share of the range.
         """
         move = MOVE_SHARE * self.closest
         loading = loading_step_of(0.25 * self.range, calibration.loading_increment * largest)
         return Increments(min(loading, move), loading, calibration.smooth_increment * self.range, move)
 
     def share(self, scene: Scene) -> float:
-        """Return the relative error of a force, before a run, by table and cutoff, over the force scale.
+        """Return the relative error of a force by table and cutoff over the force scale of one particle, before a run.
 
-        The tail beyond the cutoff, summed over particles, is ten times the force at the cutoff at most.
+        It is ten times the force of a pair at the cutoff, which bounds the tail beyond it summed over particles, plus
+        the largest error of the table from `table_from` on.
         """
         tail = 10.0 * abs(float(self.law.force(self.cutoff)))
         return (tail + self.table.error_beyond(self.table_from)) / self.scale
 
     def error(self, scene: Scene, profile: Profile) -> float:
-        """Return the error of the force of a measured state [FU], ≥ 0, by table and cutoff.
+        """Return the error of the contact force of a measured state [FU] ≥ 0, by table and cutoff.
 
-        2 Σ |F_table(r) - f(r)| |z|/r over opposite particles of the state, F_table = 0 beyond the cutoff. The factor is
-        the error of an equilibrium over that of forces on particles held in place, which follow it. A table's error,
-        here at the distances of the state, is half of that between two entries on average.
+        2 Σ |F_table(r) − f(r)| |z|/r over pairs of opposite particles in the profile, F_table = 0 beyond the cutoff.
+        The factor is the error of an equilibrium over that of forces on particles held in place, which follow it. A
+        table's error, here at the distances of the state, is half of that between two entries on average. `scene` is
+        ignored.
         """
         return 2.0 * left_out(self.law, self.table, profile)
 
@@ -224,6 +247,9 @@ class Increments:
     part: float = 1.0
 
     def scaled(self, part: float) -> Increments:
-        """Return these increments with all lengths multiplied by a factor `part`, and with that as their part."""
+        """Return a copy with all lengths multiplied by a factor `part`, and this factor as its own `part`.
+
+        An infinite length stays infinite; a `part` that these increments had before is replaced, not multiplied.
+        """
         lengths = {name: part * value for name, value in vars(self).items()}
         return replace(self, **lengths | {"part": part})

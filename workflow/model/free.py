@@ -26,12 +26,16 @@ FLIGHT = 3
 
 
 def swing(scene: Scene, settings: Settings, model: Particles, start: float, load: float, duration: float) -> Array:
-    """Return the displacements [LU] of a plate under a load [FU] after the first timestep, and after a time [TU], (2,).
+    """Return two displacements [LU], (2,), of a plate under a load [FU]: after one timestep, and after `duration` [TU].
 
         (M + N m) d″ = load − F(d) − c d′
 
-    from rest at `start` [LU], compression positive, with F(d) and limit points of the reduced model, in the steps of
-    LAMMPS (velocity Verlet, drag half a step late). Of more than 20 000 timesteps both are the equilibrium.
+    from rest at `start` [LU]; displacement and load are positive in compression. F(d) is the force of the reduced model
+    with its limit points; timesteps are those of LAMMPS (velocity Verlet, drag half a step late). Where there are more
+    than 20 000 timesteps, both numbers are the equilibrium under the load.
+
+    Raises:
+        IndexError: the duration is less than half a timestep.
     """
     total = sum(settings.steps_of(duration))
     if total > MOST_STEPS:
@@ -50,18 +54,21 @@ def swing(scene: Scene, settings: Settings, model: Particles, start: float, load
 
 
 def stretch(settings: Settings, velocity: float) -> int:
-    """Return the number of timesteps from state to state of an impact at a velocity [LU/TU], 1 at least.
+    """Return the number of timesteps, one at least, from one state of an impact to the next.
 
-    There are 60 states in the time of a free motion to the deepest displacement.
+    A time of free motion at `velocity` [LU/TU] over the largest expected displacement has 60 states.
     """
     return max(1, round(settings.largest_displacement / velocity / STRETCHES / settings.motion.time_step))
 
 
 def is_over(displacement: Sequence[float], force: Sequence[float], flight: int = FLIGHT) -> bool:
-    """Return whether a body has rebounded, with `flight` states of free flight, or comes down again in contact.
+    """Return whether a body has rebounded, or moves down again after it moved up.
+
+    It has rebounded where the last `flight` states have no force and the last of them moves away. In the other case its
+    motion has turned at least twice, also in contact.
 
     Args:
-        displacement: of the states so far, two at least [LU].
+        displacement: of the states so far, two at least [LU], compression positive.
         force: of the contact in these states [FU].
         flight: number of last states without a force.
     """
@@ -71,10 +78,11 @@ def is_over(displacement: Sequence[float], force: Sequence[float], flight: int =
 
 
 def impact(scene: Scene, settings: Settings, model: Particles, velocity: float, dense: int = 1) -> Path:
-    """Return the path of an impact at a velocity [LU/TU] on the reduced model, from touch to free flight.
+    """Return the path of an impact on the reduced model, from displacement 0 at a `velocity` [LU/TU] to free flight.
 
-    Its states are at the times of a run, `dense` so many times, some 20 000 at most. Velocity Verlet of M d″ = −F, with
-    F of `Particles.force_in_time`, takes 16 steps for each state of a run, which are longer than timesteps of the run.
+    It also ends where the body moves down again, and after 20 000 states. Displacements [LU], times [TU] and velocities
+    [LU/TU], (m,), positive in approach, have `dense` states for each one of a run in LAMMPS. Velocity Verlet of M d″ =
+    −F(d, time), without drag, takes 16 steps for each state of a run. The scene's plate has a mass M that is a number.
     """
     assert scene.plate
     assert scene.plate.mass != "auto"

@@ -18,10 +18,11 @@ from contact1d.workflow.scene import Cantilever, Scene, Slide
 
 
 def inertia(scene: Scene, settings: Settings) -> tuple[float, float]:
-    """Return (mass of a particle, mass of the plate) in LAMMPS [MU]: the scene's own but in a slide without noise.
+    """Return (mass of a particle, mass of the plate) [MU] for LAMMPS: those of the settings, 0 without a plate.
 
-    Without a plate its mass is 0. With noise the error of the thermostat, of the same order, is bounded by the
-    timestep.
+    In a slide without noise γ Δt/2 is added to each, times 1 − 1/2n, with its drag γ, the timestep Δt and n timesteps
+    from state to state of the first leg: LAMMPS has the drag of the velocity half a timestep before. With noise the
+    error of the thermostat, of the same order, is bounded by the timestep.
     """
     late, motion = 0.0, settings.motion
     if motion.drive and not scene.noise:
@@ -32,7 +33,7 @@ def inertia(scene: Scene, settings: Settings) -> tuple[float, float]:
 def contact_half_width(scene: Scene, settings: Settings) -> float:
     """Return the half-width [LU] in which forces on upper particles exceed the tolerance times the largest one.
 
-    At the largest expected displacement, and no more than that of the upper chain.
+    It is that at the largest expected displacement (below 0 as at 0), and at most that of the upper chain.
     """
     estimate, largest = settings.law, settings.largest_displacement
     half = estimate.half_width(max(largest, 0.0), significant_gap(estimate, largest, scene.accuracy.tolerance))
@@ -40,12 +41,10 @@ def contact_half_width(scene: Scene, settings: Settings) -> float:
 
 
 def require_way(scene: Scene, settings: Settings) -> None:
-    """Refuse a slide whose contact would leave the lower chain; a periodic one has no end.
-
-    Nothing is refused of other experiments.
+    """Refuse a slide whose contact would leave the lower chain; other experiments and periodic bodies are not refused.
 
     Raises:
-        SettingsError: with the particles that are needed.
+        SettingsError: names the particles that are needed and, where it is long enough, the possible distance.
     """
     bodies = scene.bodies
     if not isinstance(scene.experiment, Slide) or bodies.periodic:
@@ -67,15 +66,20 @@ def require_way(scene: Scene, settings: Settings) -> None:
 
 
 def cantilever_swing(scene: Scene, settings: Settings) -> float:
-    """Return the period [TU] of plate and particles on the cantilever, 2π √((M + N m)/k); the scene has one."""
+    """Return the period [TU] of plate and all N particles on the cantilever alone, 2π √((M + N m)/k).
+
+    Raises:
+        StopIteration: the scene has no cantilever.
+    """
     moving = settings.motion.plate_mass + settings.chains.upper * scene.bodies.mass
     return 2.0 * math.pi * math.sqrt(moving / scene.the(Cantilever).stiffness)
 
 
 def too_fast(scene: Scene) -> str:
-    """Return a warning where the drive passes a particle in less than its period, 2π v/s > √(k/m).
+    """Return a warning where the drive of a slide passes a particle in less than its period, 2π v/s > √(k/m).
 
-    "" where it does not, and for any experiment but a slide.
+    v is the fastest leg, k the smaller of bulk and tangential stiffness. "" where it does not, and for any other
+    experiment.
     """
     experiment, bodies = scene.experiment, scene.bodies
     if not isinstance(experiment, Slide):

@@ -11,7 +11,13 @@ from contact1d.workflow.scene import Scene
 
 
 def reduced(scene: Scene, settings: Settings) -> Particles:
-    """Return the model of the particles that run, without their neighbours, as far as the contact reaches."""
+    """Return the particles of the upper chain, without their neighbours, with the contact law of the settings.
+
+    Where bodies adhere they go to the end of the chain. Else, of an automatic chain, they go as far as forces reach at
+    the largest expected displacement (on a rigid plane 1.5 times that), also beyond the chain; of a given number of
+    particles, and of a body with a vertical edge, not beyond the chain. None lies beyond the end of the profile. The
+    apex is midway between two where the chain has an even number, else at one.
+    """
     law, bodies, deepest = settings.law, scene.bodies, settings.largest_displacement
     half = 0.5 * (settings.chains.upper - 1) * law.spacing
     # On another lattice fewer springs may carry the load, up to 1.5 times as deep as expected.

@@ -80,50 +80,56 @@ class Settings:
     largest_displacement: float = measured("LU")
 
     def drag(self, damping: float | None = None) -> float:
-        """Return the drag on plate and particles together [FU·TU/LU].
+        """Return the drag on plate and particles together [FU·TU/LU]: N times that of a particle, plus the plate's.
 
-        `damping`: coefficient of a particle [FU·TU/LU], by default its own.
+        `damping`: coefficient of a particle [FU·TU/LU]; None: that of these settings.
         """
         coefficient = self.motion.damping if damping is None else damping
         return self.chains.upper * coefficient + self.motion.plate_damping
 
     @property
     def gentle(self) -> bool:
-        """Whether a relaxation moves no particle by more than `longest_move` at a time, and none oscillates in time.
+        """Whether this is a search that restarted in smaller steps, whose increments are scaled by a factor below 1.
 
-        So it is in a search that restarts in smaller steps.
+        Then a relaxation moves no particle by more than `longest_move` at a time, and none oscillates in time.
         """
         return self.increments.part < 1.0
 
     @property
     def snaps(self) -> bool:
-        """Whether pairs of particles snap in and out, so that loading and unloading differ."""
+        """Whether pairs of particles snap in and out by the contact law, so that loading and unloading differ."""
         return self.law.snaps
 
     @cached_property
     def has_several_maxima(self) -> bool:
-        """Whether the tensile force has several maxima: pairs separate one by one, with a snap-out or nearly so."""
+        """Whether the tensile force has several maxima: pairs separate one by one, with a snap-out or nearly so.
+
+        False on a rigid plane unless its law snaps. Cached.
+        """
         return self.snaps or (self.is_smooth and self.law.maxima_distance(self.chains.upper) < math.inf)
 
     @property
     def is_smooth(self) -> bool:
-        """Whether the force is a smooth function of the displacement: opposite particles interact, and none snaps."""
+        """Whether opposite particles interact and none snaps, so that F(d) is smooth; False on a rigid plane."""
         return self.forces.range > 0.0 and not self.snaps
 
     @property
     def strongest(self) -> tuple[float, float]:
-        """(Distance [LU], tension [FU] ≥ 0) at the force maximum of a chain of opposite particles on one.
+        """(Distance [LU], tension [FU] ≥ 0) at the force maximum of one particle opposite a chain.
 
-        By the predictor, whose grid of distances ends at the cutoff; the distance is 0 on a rigid plane.
+        By the contact law on its grid of distances, which ends at the cutoff; on a rigid plane the distance is 0. The
+        tension is 0 without attraction.
         """
         force = self.law.force
         peak = int(force.argmin())
         return self.forces.cutoff * (peak + 1) / force.size, max(0.0, -float(force[peak]))
 
     def increment(self, smallest_distance: float = math.inf) -> float:
-        """Return the longest increment [LU] of a search from a state with a smallest distance of particles [LU].
+        """Return the longest increment [LU] > 0 of a search from a state with a smallest distance of particles [LU].
 
-        In unloading that distance sets no limit: infinite, the default.
+        Where F(d) is smooth: a quarter of the distance, at least a fifth of the longest move, at most `smooth_step`.
+        Else a quarter of the distance times `part` (0 for an infinite one), at least `displacement_step`, at most
+        `loading_step`. In unloading the distance is infinite, the default: `smooth_step`, or else `displacement_step`.
         """
         increments = self.increments
         if not self.is_smooth:
@@ -133,27 +139,28 @@ class Settings:
         return min(increments.smooth_step, max(shortest, MOVE_SHARE * smallest_distance))
 
     def steps_of(self, duration: float, states: int = 100) -> list[int]:
-        """Return the numbers of timesteps of the load steps of a motion of a duration [TU].
+        """Return the numbers of timesteps of the load steps of a motion of this duration [TU], in order.
 
-        The first load step has one. `states`: how many follow the first one, where there are as many timesteps; else
-        fewer.
+        The first load step has one timestep; up to `states` nearly equal ones follow, fewer where there are fewer
+        timesteps. Their sum is the duration over the timestep, rounded; [] where that is 0.
         """
         total = round(duration / self.motion.time_step)
         ends = np.unique(np.linspace(1, total, min(states, total - 1) + 1).round())
         return [int(steps) for steps in np.diff(ends, prepend=0.0)]
 
     def premature_detachment(self, move: float) -> float:
-        """Return the premature detachment [LU] of a pair under displacement increments `move` [LU].
+        """Return by how much of its gap [LU] ≥ 0 a joined pair separates too early under increments `move` [LU].
 
-        0 where none snaps.
+        It includes the residual force of a relaxation. 0 where no pair snaps.
         """
         return self.law.premature_detachment(move, self.forces.residual)
 
     def in_smaller_steps(self, part: float) -> Settings:
-        """Return these settings with increments and moves, also those of a relaxation, scaled by a factor `part`.
+        """Return a copy with increments and moves, also those of a relaxation, scaled by a factor `part`.
 
-        Also with a timestep of its own in time, and without a plate, where the scene leaves the drag open, with drag
-        that stops a particle that approaches the opposite one before its repulsion does.
+        Its timestep is the settling timestep. Without a plate, its damping is the settling damping, which stops a
+        particle that approaches the opposite one before its repulsion does; where the scene gives the damping this is
+        the same.
         """
         motion = self.motion
         damping = motion.damping if motion.plate_mass > 0.0 else motion.settling_damping
@@ -165,14 +172,16 @@ class Settings:
 def settings_for(scene: Scene, tolerance: float | None = None, calibration: Calibration | None = None) -> Settings:
     """Return the settings of a scene, with a choice of every number that it leaves open.
 
+    The latest result is cached: the same arguments return the same object.
+
     Args:
         scene: whose numbers are left open.
-        tolerance: relative, in place of the scene's own, for a refined pass.
-        calibration: in place of the one that was measured, for the study that measures it.
+        tolerance: relative, in place of the scene's own, for a refined pass; None: the scene's own.
+        calibration: in place of the one that was measured; None: that one.
 
     Raises:
-        SettingsError: the numbers are so far apart that no chain, table or timestep follows from them, or the bodies
-            cannot carry the load.
+        SettingsError: the numbers are so far apart that no chain, table or timestep follows from them, a limit of
+            size is exceeded, or the bodies cannot carry the load.
     """
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
@@ -193,11 +202,12 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
 
 
 def slower(scene: Scene, settings: Settings, factor: float = 2.0) -> list[tuple[Scene, Settings]]:
-    """Return (scene, settings) with longer timesteps and a less rigid plane, and others with more mass and drag.
+    """Return one or two pairs (scene, settings) of the same motion, to estimate its error in time.
 
-    Masses and drags that the scene gives stay; the second pair is missing where that changes nothing. `factor`:
-    timesteps, drags and 1/stiffness over the usual ones; masses by its square. An error of first order in these changes
-    by its own amount at least.
+    The first has timesteps `factor` times as long (a whole part of a given duration) and, where particles have bonds on
+    a rigid plane, a plane `factor` times softer. The second has the usual timestep or a longer one, automatic drags
+    times `factor` and automatic masses times its square; it is missing where that changes no number of the motion. An
+    error of first order in these changes by its own amount at least.
     """
     usual, forces, duration = settings.motion, settings.forces, scene.experiment.lasts
     longer = whole_steps(factor * usual.time_step, duration)
@@ -222,10 +232,11 @@ def slower(scene: Scene, settings: Settings, factor: float = 2.0) -> list[tuple[
 def _stopped(scene: Scene, law: Law, rounds: int = 4) -> float:
     """Return the displacement [LU] at which a body that hits the plane is at rest, deeper where it relaxes meanwhile.
 
-    0 of an experiment without an impact. `rounds`: most iterations of the displacement and the time of the impact.
+    0 for any experiment but an impact; infinite beyond the displacement up to which the law knows the force. `rounds`:
+    most iterations of the displacement and the time of the impact.
 
     Raises:
-        SettingsError: the body sticks.
+        SettingsError: the body sticks to the plane instead of rebounding.
     """
     depth, experiment = stopped_at(scene, law), scene.experiment
     if not isinstance(experiment, Impact):
@@ -246,17 +257,24 @@ def _stopped(scene: Scene, law: Law, rounds: int = 4) -> float:
 
 
 def _bond_on_plane(stiffness: float, plane: float) -> float:
-    """Return the stiffness of a bond [FU/LU] that in series with the `plane` has the particle's `stiffness` [FU/LU]."""
+    """Return the stiffness of a bond [FU/LU] that in series with the `plane` has the particle's `stiffness` [FU/LU].
+
+    The plane must be the stiffer one.
+
+    Raises:
+        ZeroDivisionError: both are equal, or one is 0.
+    """
     return 1.0 / (1.0 / stiffness - 1.0 / plane)
 
 
 def _require_carried(scene: Scene) -> None:
-    """Refuse a load beyond N A/a, the repulsion of N pairs at zero distance.
+    """Refuse a load beyond N A/a, the repulsion of N pairs at zero distance, with its amplitude A and range a.
 
-    Nothing with an automatic chain or no load.
+    Nothing is refused with automatic numbers of particles, or where displacements are prescribed.
 
     Raises:
-        NotCarriedError: with N A/a [FU].
+        NotCarriedError: has N A/a [FU] as `most`.
+        StopIteration: the scene has no interaction.
     """
     bodies, load = scene.bodies, scene.experiment.compression
     particles = bodies.particles if bodies.upper_particles is None else bodies.upper_particles
@@ -269,13 +287,14 @@ def _require_carried(scene: Scene) -> None:
 
 
 def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Settings:
-    """Return the settings of a scene: forces, load, chains, table, motion and increments, in this order.
+    """Return the settings of a scene: forces, load, chains, table, motion and increments are chosen in this order.
 
-    `tolerance`: relative.
+    `tolerance`: relative; `calibration`: shares of it that each number may use up.
 
     Raises:
-        SettingsError: a limit of size.
+        SettingsError: a limit of size, or an impact after which the body sticks.
         NotCarriedError: a load beyond the repulsion.
+        OverflowError, FloatingPointError, ZeroDivisionError: the magnitudes in the scene differ too much.
     """
     bodies = scene.bodies
     require_room(bodies)
@@ -302,12 +321,14 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
 
 
 def _forces(scene: Scene, tolerance: float, calibration: Calibration) -> tuple[Forces, Law]:
-    """Return (springs, plane and interaction, without table and scales; the contact law that they make).
+    """Return (the forces on a particle, the contact law), before chains and table are chosen.
 
-    The table is a preliminary one. `tolerance`: relative.
+    On a rigid plane the forces are springs and plane, and the bond of a particle that is not fixed in its body is
+    stiffer, so that with the plane in series it has the given stiffness. Of opposite chains they have the interaction,
+    its cutoff and a preliminary table. Force scale and residual are 0 in both. `tolerance`: relative.
 
     Raises:
-        SettingsError: the cutoff reaches too far.
+        SettingsError: the cutoff reaches too far, or the law has no solution for this body.
         NotCarriedError: a load beyond the repulsion.
     """
     law, bodies, spring = interaction_law(scene), scene.bodies, scene.bulk_stiffness
@@ -331,7 +352,9 @@ def _forces(scene: Scene, tolerance: float, calibration: Calibration) -> tuple[F
 
 
 def _chains(scene: Scene, estimate: Law, forces: Forces, largest: float, share: float) -> Chains:
-    """Return as many particles as the contact needs, or the scene gives.
+    """Return the numbers of particles of both bodies, as the scene gives them or the contact needs them.
+
+    `far`, the length of long bonds, is 0 in the result.
 
     Args:
         scene: whose chains they are.
@@ -341,7 +364,7 @@ def _chains(scene: Scene, estimate: Law, forces: Forces, largest: float, share: 
         share: relative force at the end of an automatic chain.
 
     Raises:
-        SettingsError: they do not fit.
+        SettingsError: they do not fit the profile, the displacement or the memory of the machine.
     """
     upper, lower = chains_of(scene, estimate, largest, share)
     require_body(scene.bodies, largest, upper)

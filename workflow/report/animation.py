@@ -33,13 +33,16 @@ OVITO = "view_in_ovito.py"
 def animate(folder: AnyPath, out: AnyPath | None = None, frames_per_second: int = 10) -> Path:
     """Return the path of an animation, GIF or MP4, of the states of a finished run, after writing it.
 
+    An existing file is replaced.
+
     Args:
         folder: run folder.
-        out: file to write, whose suffix is the format; None: way.gif in the run folder.
+        out: file to write, whose suffix, in small letters, is the format; None: way.gif in the run folder.
         frames_per_second: states per second.
 
     Raises:
-        FolderError: the folder holds no finished run, or one of a single state.
+        FolderError: the folder holds no run, or one of a single state.
+        RunError: the run failed.
         Contact1dError: the suffix is neither .gif nor .mp4, or MP4 is wanted without ffmpeg.
     """
     run = load_run(folder)
@@ -58,8 +61,11 @@ def animate(folder: AnyPath, out: AnyPath | None = None, frames_per_second: int 
 def ovito_script(folder: AnyPath) -> Path:
     """Return the path of the script with which OVITO shows the states of a run, after writing it into the run's folder.
 
+    The folder is the absolute one; an earlier script is replaced.
+
     Raises:
-        FolderError: the folder holds no finished run, or no states.
+        FolderError: the folder holds no run, or no states.
+        RunError: the run failed.
     """
     run = load_run(folder)
     missing = [name for name in (STATES, "system.data") if not (run.folder / name).is_file()]
@@ -71,7 +77,10 @@ def ovito_script(folder: AnyPath) -> Path:
 
 
 def _draw(run: Run, states: States, path: Path, frames_per_second: int) -> None:
-    """Write the animation of a run's states, whole or not at all: bodies above, the main curve with a mark below."""
+    """Write the animation of a run's states, GIF or MP4 by the suffix of `path`: bodies above, the main curve below.
+
+    The curve has a mark at the state. Where the drawing fails, an earlier file stays.
+    """
     from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 
     figure = new_figure((WIDTH, HEIGHT))
@@ -95,7 +104,7 @@ def _bodies(axes: Axes, run: Run, chart: Chart, loads: Panel, most_springs: int 
     """Draw the axes of the bodies, and return the function that draws the particles of a state, by its index, there.
 
     Particles are coloured by pressure; chains of up to `most_springs` particles have bulk springs, which of more would
-    be a grey area.
+    be a grey area. On a rigid plane there is the upper body only, and a line at 0.
 
     Args:
         axes: to draw into.
@@ -134,7 +143,10 @@ def _bodies(axes: Axes, run: Run, chart: Chart, loads: Panel, most_springs: int 
 
 
 def _trace(axes: Axes, chart: Chart) -> Callable[[int], Artist]:
-    """Draw the main curve with a mark at the state, and return the function that moves the mark to a frame."""
+    """Draw the main curve, mostly force over displacement, and return the function that puts its mark at a state.
+
+    `axes` is changed; the function takes the index of a state.
+    """
     (panel,) = chart.panels
     *curve, state = panel.series
     draw_panel(axes, chart.x, replace(panel, series=curve))

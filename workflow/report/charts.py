@@ -36,7 +36,10 @@ Data = dict[str, Any]
 
 
 def symbols(text: str) -> str:
-    """Return `text` as HTML, escaped: `F_A` has an index, `R^{2/3}` an exponent; `R = 1000 LU` is not broken."""
+    """Return `text` as HTML, escaped: `F_A` has an index, `R^{2/3}` an exponent.
+
+    Spaces within a number with a unit, and around = before a number, are no-break: `R = 1000 LU` stays on one line.
+    """
     unbroken = UNBREAKABLE.sub(lambda match: match[0].replace(" ", "\u00a0"), escape(text))
     indexed = INDEX.sub(r"<i>\1</i><sub>\2</sub>", unbroken)
     return EXPONENT.sub(lambda match: f"<sup>{match[1] or match[2]}</sup>", indexed)
@@ -44,6 +47,9 @@ def symbols(text: str) -> str:
 
 def charts_of(runs: Mapping[str, Mapping[str, Chart]]) -> list[Data]:
     """Return a chart in plotly's form for each panel; those of several runs with one name, axes and scale are overlaid.
+
+    They are in the order of their first appearance, in units with SI prefixes. A chart is not overlaid where it would
+    cover less than 5 % of the common axes. Of a single run nothing is overlaid but panels with equal names and axes.
 
     Args:
         runs: by the name of a run its charts, written in base units.
@@ -64,15 +70,18 @@ def charts_of(runs: Mapping[str, Mapping[str, Chart]]) -> list[Data]:
 
 
 def _fit(charts: Sequence[Chart], least_share: float = 0.05) -> bool:
-    """Return whether each chart of one panel covers `least_share` of the common axes: less would be a line or a dot."""
+    """Return whether each chart covers `least_share` of the common axes of all, along x and y.
+
+    Less would be a line or a dot. Each has one panel; axes are compared by their ends.
+    """
     views = np.asarray([[chart.x.view, chart.panels[0].y.view] for chart in charts])
     return bool(np.all(np.ptp(views, axis=2) >= least_share * np.ptp(views, axis=(0, 2))))
 
 
 def _overlaid(charts: Sequence[Chart], runs: int) -> Chart:
-    """Return charts of one panel each as a single chart with the axes of the first.
+    """Return charts of one panel each as a single chart with the axes and titles of the first.
 
-    Its note names the runs, unless it has all `runs` of them and these are several.
+    Its note has the notes of its panels, the names of the runs, but is "" where all of several `runs` are in it.
     """
     panels = [chart.panels[0] for chart in charts]
     series = [line for panel in panels for line in panel.series]
@@ -81,7 +90,10 @@ def _overlaid(charts: Sequence[Chart], runs: int) -> Chart:
 
 
 def _of_a_run(panel: Panel, run: str, colour: str) -> Panel:
-    """Return the panel in the colour of its run, whose name is the note; closed forms keep their colour."""
+    """Return a copy of the panel in the colour of its run, whose name is the note and begins the names of its series.
+
+    Closed forms and black marks keep colour and name. A series without a name stays so, but for bars.
+    """
     series = []
     for line in panel.series:
         if line.colour not in (THEORY, BLACK):
@@ -93,9 +105,10 @@ def _of_a_run(panel: Panel, run: str, colour: str) -> Panel:
 
 
 def drawn(chart: Chart) -> Data:
-    """Return a written chart of one panel in plotly's form: title, data and layout.
+    """Return a written chart of one panel in plotly's form: "title", "data", a list of series, and "layout".
 
-    A series that moves has a list of lists.
+    Texts are HTML. A series that moves has a list of lists. Of series with one name the first is in the legend. Raises
+    ValueError for a chart of several panels.
     """
     (panel,) = chart.panels
     heading = ": ".join(filter(None, [f"{panel.y.name} over {chart.x.name}", panel.heading]))
@@ -116,7 +129,10 @@ def drawn(chart: Chart) -> Data:
 
 
 def _trace(line: Series, x: Axis, y: Axis) -> Data:
-    """Return a series in plotly's form; ±∞ are the ends of the axes, uncertainties are bars."""
+    """Return a series in plotly's form; ±∞ are the ends of the axes, uncertainties other than 0 are bars.
+
+    An area is filled, without a line. Numbers have seven digits, and None for NaN.
+    """
     style = line.look.lstrip("o.x")
     trace: Data = {
         "x": listed(x.ended(line.x)), "y": listed(y.ended(line.y)), "name": _words(line.name),
@@ -136,9 +152,14 @@ def _trace(line: Series, x: Axis, y: Axis) -> Data:
 def moving(run: Run, states: States) -> list[Chart]:
     """Return the charts that a slider moves: the main curve with a mark, line loads [N/m], bodies [m], with prefixes.
 
-    Without units of the scene they are in LU and FU. Their series that move have a row for each state; x of particles
-    that do not move along it has one row. A shear other than 0 is drawn beside the line load, as it acts on the lower
-    body.
+    The main curve is mostly force over displacement, the bodies are their heights over x. Without units of the scene
+    they are in LU and FU. Each has one panel. Their series that move have a row for each state; x of particles that do
+    not move along it has one row. Line load is compression positive; a shear other than 0 is drawn beside it, as it
+    acts on the lower body. Particles far from the contact in all states are left out.
+
+    Args:
+        run: a finished one.
+        states: its states.
     """
     main = path_chart(run.model)
     panel, (x, y, *_) = main.panels[0], main_curve(run.model).values()
@@ -149,6 +170,7 @@ def moving(run: Run, states: States) -> list[Chart]:
     positions = positions if np.ptp(positions, axis=0).any() else positions[0]
 
     def over_x(y: Axis, **lines: NDArray[np.float32]) -> Chart:
+        """Return the chart of lines by name, (states, particles) in units of the model, over x, with the axis `y`."""
         series = [
             Series(positions, values[:, view], name, colour, "o-")
             for (name, values), colour in zip(lines.items(), COLOURS, strict=False)
@@ -167,7 +189,9 @@ def moving(run: Run, states: States) -> list[Chart]:
 def path_of(run: Run, states: States) -> Data:
     """Return what a slider needs, by name: `words`, a text for each state, `start`, and `charts` in plotly's form.
 
-    `start` is the index of the state that is shown first, that of the largest |y| of the main curve, mostly the force.
+    The main curve is mostly force over displacement. `words` have the position on it, the branch, and the contact
+    radius where there is one. `start` is the index of the state that is shown first, that of the largest |y| of the
+    main curve. `charts` are the main curve with a mark, the line load and the bodies.
     """
     charts = moving(run, states)
     curve = charts[0].panels[0]
@@ -182,7 +206,10 @@ def path_of(run: Run, states: States) -> Data:
 
 
 def listed(values: Any) -> list[Any]:
-    """Return numbers as nested lists for JSON, rounded to seven digits; None for those that are not finite."""
+    """Return numbers as nested lists for JSON, rounded to seven significant digits; None for those that are not finite.
+
+    Raises TypeError for a single number.
+    """
     numbers = np.asarray(values, dtype=np.float64)
     size = np.where(np.isfinite(numbers) & (numbers != 0.0), np.abs(numbers), 1.0)
     digits = 10.0 ** (6.0 - np.floor(np.log10(size)))
@@ -192,5 +219,5 @@ def listed(values: Any) -> list[Any]:
 
 
 def _words(text: str) -> str:
-    """Return a text with symbols as HTML, as `symbols` writes them, without the $ of TeX."""
+    """Return a text as HTML, escaped, with indices and exponents, without the $ of TeX: `F_A` has an index A."""
     return symbols(text.replace("$", ""))

@@ -41,12 +41,15 @@ SIGNATURES = (
 def report(folders: Sequence[AnyPath], out: AnyPath = "report.html") -> Path:
     """Return the path of the page of runs or of a sweep, after writing it.
 
+    A failed run is on the page, with its reason.
+
     Args:
         folders: folders of one or several runs, 24 at most, which are overlaid; or the folder of one sweep.
         out: file to write; an earlier page is replaced.
 
     Raises:
-        FolderError: a folder holds neither a run nor a sweep, or there are too many; or the file is there and no page.
+        FolderError: a folder holds neither a run nor a sweep, there are too many, or a sweep among others; a file in it
+            can't be read; or the file is there and no page.
     """
     path = Path(out)
     if path.exists() and not (path.is_file() and any(signature in path.read_bytes() for signature in SIGNATURES)):
@@ -71,7 +74,8 @@ def report(folders: Sequence[AnyPath], out: AnyPath = "report.html") -> Path:
 def _of_runs(runs: Sequence[Run]) -> str:
     """Return the HTML page of runs.
 
-    A failed run is reported with the reason, and a single run has a slider over its states.
+    A failed run is reported with the reason. A single finished run has a slider over its states, where it has kept
+    them.
     """
     names = _names(runs)
     done = {name: run for name, run in zip(names, runs, strict=True) if run.status == "done"}
@@ -88,13 +92,16 @@ def _of_runs(runs: Sequence[Run]) -> str:
 
 
 def _deck(run: Run) -> str:
-    """Return the text of in.lammps of a run; "" without the file."""
+    """Return the text of in.lammps, the LAMMPS input of a run, from its folder; "" without the file."""
     path = run.folder / "in.lammps"
     return path.read_text(encoding="utf-8") if path.is_file() else ""
 
 
 def _facts(run: Run) -> dict[str, str]:
-    """Return tolerance, refinements, LAMMPS steps and times [s] of a run as texts by what they are."""
+    """Return tolerance, refinements, LAMMPS steps and wall times [s] of a run as texts by what they are.
+
+    Without an entry in results.json the tolerance of the settings is the required one, and there are 0 refinements.
+    """
     accuracy: Mapping[str, Any] = run.document.get("accuracy", {})
     asked, timing = run.scene.accuracy.tolerance, run.timing
     return {
@@ -108,7 +115,10 @@ def _facts(run: Run) -> dict[str, str]:
 
 
 def _names(runs: Sequence[Run]) -> list[str]:
-    """Return the name of each run on the page: its title; or its folder's name, or path, if two runs have the same."""
+    """Return the name of each run on the page, in order: its title, unless two runs have the same one.
+
+    Then it is the name of its folder, and where two of these are the same the whole path.
+    """
     for names in ([run.scene.title for run in runs], [run.folder.name for run in runs]):
         if len(set(names)) == len(names):
             return names
@@ -116,12 +126,17 @@ def _names(runs: Sequence[Run]) -> list[str]:
 
 
 def _of_sweep(folder: Path) -> str:
-    """Return the HTML page of a sweep, with the first 500 points in its table."""
+    """Return the HTML page of a sweep, with the first 500 points in its table.
+
+    Raises:
+        FolderError: the folder holds no record of a sweep.
+    """
     most_rows = 500  # results.csv has all
     plan, units = read_record(folder), units_in(folder)
     drawn = {"": sweep_charts(folder, plan, units)}
 
     def number(row: Mapping[str, str], name: str) -> str:
+        """Return a result of a row as text with uncertainty and unit; "—" for an empty cell."""
         return str(Quantity(float(row[name]), float(row[f"{name}_uncertainty"]), units[name])) if row[name] else "—"
 
     return _page(
@@ -133,13 +148,19 @@ def _of_sweep(folder: Path) -> str:
 
 
 def _page(template: str, charts: Sequence[Data], moving: Mapping[str, Any] | None, **values: Any) -> str:
-    """Return a page with its scripts and data; the filter `symbols` writes `F_A` and `R^0.5` in plain text as HTML.
+    """Return a page with its scripts and data, as HTML.
+
+    In the template the filter `symbols` writes `F_A` and `R^0.5` as HTML.
 
     Args:
         template: name of its file.
         charts: in plotly's form.
         moving: charts that a slider moves, with their texts; None: without a slider.
         values: of the names in the template.
+
+    Raises:
+        ValueError: a number in the charts that is not finite.
+        jinja2.UndefinedError: a name in the template without a value.
     """
     from plotly.offline import get_plotlyjs
 
@@ -154,7 +175,10 @@ def _page(template: str, charts: Sequence[Data], moving: Mapping[str, Any] | Non
 
 
 def sentence(scene: Scene, scales: Scales) -> str:
-    """Return a sentence with the bodies, effects and experiment of a scene, numbers in SI with `scales` where known."""
+    """Return a sentence with the bodies, effects and experiment of a scene, numbers in SI with `scales` where known.
+
+    Else they are in units of the model. The upper body has its shape and sizes, effects their names.
+    """
     bodies, experiment = scene.bodies, scene.experiment
     size, given = (
         ", ".join(f"{name} {value}" for name, value in _values(table, scales) if name != "kind")
@@ -169,7 +193,7 @@ def sentence(scene: Scene, scales: Scales) -> str:
 def scene_in_words(scene: Scene, scales: Scales) -> list[dict[str, Any]]:
     """Return name, meaning and values with units of each table of a scene, in order; in SI with `scales` where known.
 
-    They are under `name`, `meaning`, and `values`, pairs of label and text.
+    They are under `name`, `meaning`, and `values`, pairs of label and text. Tables that the scene lacks are left out.
     """
     tables = {name: getattr(scene, name) for name in Scene.model_fields}
     return [
@@ -180,7 +204,7 @@ def scene_in_words(scene: Scene, scales: Scales) -> list[dict[str, Any]]:
 
 
 def _meaning(table: Table) -> str:
-    """Return the first line of the description of a table's class, without "Effect: ", with a capital."""
+    """Return the first line of the docstring of a table's class, without "Effect: ", with a capital; "" without one."""
     text = (type(table).__doc__ or "").partition("\n")[0].removeprefix("Effect: ")
     return text[:1].upper() + text[1:]
 
@@ -188,7 +212,8 @@ def _meaning(table: Table) -> str:
 def _values(table: Table, scales: Scales, within: str = "") -> Iterator[tuple[str, str]]:
     """Yield label and text with unit of each key of a table that has a value, also of those of tables in it.
 
-    Labels begin with `within`. Units of 1 are left out, and quantities of unknown unit in SI beside known scales.
+    Labels begin with `within`. A key on None is left out, one whose name ends in "_unit" where it is 1, and, with known
+    scales, one whose unit has no known size in SI.
     """
     for name, key in keys_of(type(table)).items():
         value, unit = getattr(table, key.field), key.allowed.unit
@@ -205,9 +230,11 @@ def _values(table: Table, scales: Scales, within: str = "") -> Iterator[tuple[st
 
 
 def _shown(value: Any, unit: str, scales: Scales, most_items: int = 6) -> str:
-    """Return a value of a scene as text, a float in SI with a prefix where `scales` know its unit.
+    """Return a value of a scene as text: "yes" or "no", a float with its unit in six digits, else as it prints.
 
-    Of a list with more than `most_items` it has the first and last ones, and their number.
+    A float is in SI with a prefix where `scales` know its unit. Of a list with more than `most_items` it has the first
+    and last ones, half of that number each, and their number. A table is the texts of its values in brackets, without
+    their labels.
     """
     if isinstance(value, Table):
         return f"({', '.join(text for _, text in _values(value, scales))})"

@@ -37,7 +37,10 @@ COLOURS = np.array([[0.70, 0.02, 0.15], [0.86, 0.86, 0.86], [0.02, 0.30, 0.70]])
 
 
 def main(folder: Path) -> None:
-    """Load the states of a run in a folder, choose view and colours, and write way.ovito and way.png there."""
+    """Load the states of a run in a folder, choose view and colours, and write way.ovito and way.png there.
+
+    Earlier ones are replaced. The path of way.ovito is printed.
+    """
     pipeline = import_file(str(folder / "system.data"))
     trajectory = LoadTrajectoryModifier()
     trajectory.source.load(str(folder / "states.lammpstrj"))
@@ -76,8 +79,10 @@ def main(folder: Path) -> None:
 def extents(states: list[Any], least_share: float = 0.01) -> tuple[float, float, float, float, int]:
     """Return half-width, height and spacing of the view [LU], largest |force| on a particle [FU], and index of a state.
 
-    That state is the one with the largest sum of forces on the upper body. The view has all particles with at least
-    `least_share` of the largest force. Without any force that is 1, and the spacing of a single particle is 1.
+    That state is the one with the largest |sum of forces| on the upper body. The half-width is 1.2 times the largest
+    |x| of all particles with more than `least_share` of the largest force, plus two spacings; the height is that of
+    both bodies in it, or the spacing where it is 0. Without any force the largest is 1, and the spacing of a single
+    particle is 1.
 
     Args:
         states: particles of each state, with type, position and `Press`, the force onto the opposite body [FU].

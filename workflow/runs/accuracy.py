@@ -21,10 +21,11 @@ CURVE_FORCE = "force in curve.csv"
 
 
 def accuracy_warnings(scene: Scene, outcome: Outcome) -> dict[str, str]:
-    """Return the warnings of results that are not reported or miss the tolerance of the scene: name and message.
+    """Return the warnings, name and message, of results that are not reported or miss the tolerance of the scene.
 
     Names are `unknown` (not reported), `lattice` (the discretisation error alone exceeds the tolerance) and `tolerance`
-    (the others). Empty where all meet it, and of a mean under noise, whose standard error is its uncertainty.
+    (the others). Empty where all meet it, and for experiments whose results are means under noise, whose standard error
+    is their uncertainty. The forces of a path count as one result.
     """
     if kind_of(scene).is_statistical:
         return {}
@@ -52,10 +53,11 @@ def accuracy_warnings(scene: Scene, outcome: Outcome) -> dict[str, str]:
 def unreported(scene: Scene, outcome: Outcome) -> dict[str, Result]:
     """Return the results whose uncertainty exceeds half of the value, and the tolerance of the run's scale, by name.
 
-    The scale of a force or a displacement is the largest of the run, that of another result the largest one of its
-    unit: a number that is 0 within the tolerance of that scale is reported as 0. A dissipated energy is its own scale,
-    since the question is whether there is a loss at all. The shares of statistics and of numbers with ± do not count.
-    Empty for means under noise, which are reported whatever their standard errors.
+    The scale of a force or a displacement is the largest absolute one of the run, that of a radius the largest radius,
+    that of another result the largest one of its unit: a number that is 0 within the tolerance of that scale is
+    reported as 0. A dissipated energy is its own scale, since the question is whether there is a loss at all. The
+    shares of statistics and of numbers with ± do not count. Prescribed results are never among them; empty for means
+    under noise, which are reported whatever their standard errors.
     """
     if kind_of(scene).is_statistical:
         return {}
@@ -77,7 +79,9 @@ def unreported(scene: Scene, outcome: Outcome) -> dict[str, Result]:
 
 
 def main_results(scene: Scene, results: Mapping[str, Result]) -> dict[str, Result]:
-    """Return the main results of an experiment that a run has, by name, without the load and prescribed ones.
+    """Return the main results of an experiment that a run has, by name, in the order of the experiment.
+
+    Prescribed results are left out, and the load of an experiment under a force. Empty where there are none.
 
     Args:
         scene: of the run.
@@ -89,9 +93,12 @@ def main_results(scene: Scene, results: Mapping[str, Result]) -> dict[str, Resul
 
 
 def require_results(scene: Scene, outcome: Outcome) -> None:
-    """Raise UntrustedError where a run has main results and none of them can be reported.
+    """Check that at least one main result of a run can be reported; nothing is returned.
 
-    The result of a path that the scene gives is its curve, so that it passes.
+    A run without main results passes, and one along a path that the scene gives, whose result is its curve.
+
+    Raises:
+        UntrustedError: none can be reported; with their bounds and how to improve them.
     """
     if scene.experiment.history_is_given:
         return
@@ -101,7 +108,9 @@ def require_results(scene: Scene, outcome: Outcome) -> None:
 
 
 def with_checks(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressure]) -> Outcome:
-    """Return the outcome with the consistency checks of the body's results added to its own.
+    """Return the outcome with further consistency checks: of the pressure on the body, and with exact closed forms.
+
+    Its own checks stay, unless one of these has the same name; all else is unchanged.
 
     Args:
         scene: of the run.
@@ -113,7 +122,11 @@ def with_checks(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPres
 
 
 def require_consistency(outcome: Outcome) -> None:
-    """Raise UntrustedError where a consistency check of a run fails, with the first that does; nothing is returned."""
+    """Check that each consistency check of a run holds; nothing is returned.
+
+    Raises:
+        UntrustedError: one does not, with the first that fails; a difference of NaN fails.
+    """
     for name, check in outcome.consistency.items():
         if not check.holds:
             raise UntrustedError(
@@ -123,18 +136,19 @@ def require_consistency(outcome: Outcome) -> None:
 
 
 def reported(scene: Scene, outcome: Outcome) -> Outcome:
-    """Return the outcome without the results of `unreported`, those too uncertain to be stated.
+    """Return the outcome without the results that are too uncertain to be stated; all else is unchanged.
 
-    All else is unchanged.
+    These are the results, neither prescribed nor means under noise, whose uncertainty exceeds half of their value and
+    the tolerance of the run's largest value of the kind.
     """
     missing = unreported(scene, outcome)
     return replace(outcome, results={name: result for name, result in outcome.results.items() if name not in missing})
 
 
 def _scale_name(name: str, result: Result) -> str:
-    """Return what a result is compared with: "radius" of radii, a dissipated energy's own name, else the unit.
+    """Return the name of the scale that a result is compared with: "radius" of radii, else its unit, such as "FU".
 
-    A dissipated energy that has a scale of its own is compared by its unit, too.
+    A dissipated energy, or energy of instabilities, without a scale of its own has its own name.
     """
     if result.scale is None and name.startswith(LOSSES):
         return name
@@ -144,7 +158,8 @@ def _scale_name(name: str, result: Result) -> str:
 def _bound(result: Result) -> str:
     """Return the bound of an uncertain result with its unit: "(less than 2.3 FU)" if it may be 0, else "(± 2.3 FU)".
 
-    The bound of one that may be 0 is |value| + uncertainty. Of an infinite uncertainty it says that there is no bound.
+    The bound of one that may be 0 is |value| + uncertainty, the other one the uncertainty, both in two digits. For an
+    infinite uncertainty the text in brackets says that there is no bound.
     """
     bound, words = result.uncertainty, "±"
     if np.isinf(bound):
@@ -155,10 +170,10 @@ def _bound(result: Result) -> str:
 
 
 def _curve_force(scene: Scene, outcome: Outcome) -> dict[str, Result]:
-    """Return the force with the largest error of a curve that is a result, by its name in warnings.
+    """Return {name of the force in warnings: force with the largest error} of a path, whose forces are results.
 
-    Empty for other curves. It is a result in [FU] whose scale is the largest |force|. Numbers with ± count for
-    alternative profiles only.
+    {} for other experiments. It is a result in [FU], compression positive, whose scale is the largest |force| of the
+    curve. Numbers with ± count for alternative profiles only.
     """
     if not kind_of(scene).curve_is_result:
         return {}
@@ -171,7 +186,10 @@ def _curve_force(scene: Scene, outcome: Outcome) -> dict[str, Result]:
 
 
 def _advice(scene: Scene, results: Mapping[str, Result]) -> str:
-    """Return a sentence on how to improve results, by their dominant error, such as a finer spacing to use.
+    """Return a sentence, without a full stop, on how to improve results, by the first dominant error that applies.
+
+    In this order: two evaluations that differ, points of a profile, timestep, spacing of a radius; else the advice of
+    the experiment.
 
     Args:
         scene: of the run.
@@ -195,9 +213,10 @@ def _is_of_points(result: Result) -> bool:
 
 
 def _by_lattice(results: Mapping[str, Result], tolerance: float) -> dict[str, float]:
-    """Return relative discretisation errors above the tolerance, by name, dimensionless; empty where there are none.
+    """Return the relative discretisation errors above the tolerance, dimensionless, by name; empty where none is.
 
-    The share of interpolation of radii between particles, and that of numbers with ±, do not count.
+    Prescribed results and those of size 0 are left out, but a radius of size 0 has an infinite error. The share of
+    interpolation of radii between particles, and that of numbers with ±, do not count.
     """
     of_lattice = {
         name: replace(result, errors={LATTICE: result.errors.get(LATTICE, 0.0) - result.read}, read=0.0, given=0.0)
@@ -213,7 +232,7 @@ def _lattice_message(scene: Scene, shares: Mapping[str, float], uncertain: bool)
 
     Args:
         scene: of the run.
-        shares: relative discretisation errors by name.
+        shares: relative discretisation errors by name, one at least.
         uncertain: whether there are unreported results with too large a discretisation error.
     """
     tolerance = scene.accuracy.tolerance

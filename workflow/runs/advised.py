@@ -43,11 +43,29 @@ def run(
     ranks: int = 1,
     printed: Callable[[Run], object] | None = None,
 ) -> Run:
-    """Return the finished run of a scene.
+    """Return the finished run of a scene; where it fails, the first suggested fix is tried, and the error says so.
 
-    Where it fails, the first suggested fix is tried, and the error says the outcome. Arguments and errors are those of
-    `workflow.runs.campaign.run`, but for defaults: a missing folder stands for a temporary one, which is removed with
-    the `Run`; its figures are drawn only where `figures` is given, or later by `Run.plot`.
+    All files of the run are written into a folder. The message of an error without a fix to try is unchanged.
+
+    Args:
+        scene: a `Scene`, or a file, TOML text or tables.
+        folder: made if it does not exist, an earlier run in it is replaced; None: a temporary one, which is removed
+            with the `Run`, but kept after a RunError.
+        figures: whether to draw figures, or their format: "png" (as True), "svg" or "pdf"; None: only with a folder.
+            `Run.plot` draws them later.
+        progress: informed of phases and steps; None: nobody is.
+        time_limit: wall time for LAMMPS [s], for each pass.
+        settings: used in place of those chosen by the scene, without refinement.
+        workers: number of repeats of a thermal pull-off at a time; None: as many as there are processors.
+        ranks: number of MPI ranks that share a large contact.
+        printed: called with the run when its numbers are written, before the figures are drawn.
+
+    Raises:
+        SceneError: the scene is invalid; nothing is written.
+        RanksError: several ranks can't run it, or are no use; nothing is written.
+        SettingsError: the scene's numbers lead to no computable system; nothing is written.
+        FolderError: the folder holds something else, or another run is active in it.
+        RunError: LAMMPS failed, or the result can't be trusted.
     """
     progress, figures = progress or Silent(), folder is not None if figures is None else figures
     reader = partial(edited, scene)
@@ -76,12 +94,12 @@ def run(
 
 
 def mended(reader: Reader, error: SceneError, progress: Progress) -> SceneError:
-    """Return the error of a scene with the outcome of its first suggested fix in the hint.
+    """Return a new error of a scene, with the outcome of its first suggested fix in the hint of its first problem.
 
-    Unchanged if it suggests none.
+    The same error where it suggests none that makes the scene valid. The fix is tried for at most 4 s of LAMMPS.
 
     Args:
-        reader: returns the scene with an edit.
+        reader: returns the scene with an edit; raises SceneError.
         error: of the scene without an edit.
         progress: informed of the trial.
     """
@@ -93,12 +111,12 @@ def mended(reader: Reader, error: SceneError, progress: Progress) -> SceneError:
 
 
 def edited(source: AnyScene, edit: SceneEdit, overrides: Iterable[str] = (), without: Iterable[str] = ()) -> Scene:
-    """Return a scene as `read_scene` reads it, with an edit.
+    """Return the checked scene that a source describes, with an edit.
 
     Args:
-        source: a file, TOML text, or tables.
+        source: a file, TOML text, tables or a `Scene`.
         edit: values to set and tables to leave out.
-        overrides: further values, `key=value`, which the edit goes over.
+        overrides: further values, `key=value`; those of the edit have priority.
         without: further tables to leave out.
 
     Raises:
@@ -108,19 +126,28 @@ def edited(source: AnyScene, edit: SceneEdit, overrides: Iterable[str] = (), wit
 
 
 def _overrides(edit: SceneEdit) -> list[str]:
-    """Return the values of an edit as texts `key=value`, in the form of `read_scene` and `--set`."""
+    """Return the values of an edit as texts `key=value`: a text as it is, any other value as in TOML; [] for none."""
     return [f"{key}={value if isinstance(value, str) else as_toml(value)}" for key, value in edit.values.items()]
 
 
 def in_words(edit: SceneEdit) -> str:
-    """Return an edit as options of `contact1d run`: first `--without effect`, then `--set key=value`."""
+    """Return an edit as options of `contact1d run`: first each `--without effect`, then each `--set key=value`.
+
+    "" for an edit that changes nothing.
+    """
     return " ".join([*(f"--without {name}" for name in edit.without), *(f"--set {text}" for text in _overrides(edit))])
 
 
 def _tried(reader: Reader, error: Contact1dError, progress: Progress) -> str:
-    """Return the message on the trial of the first change of an error that gives a valid scene.
+    """Return a sentence, without a full stop, on the trial of the first change of an error that gives a valid scene.
 
-    "" where there is none.
+    It says that the change gives a result, or that it has none within 4 s and which others were not tried. "" where no
+    change gives a valid scene.
+
+    Args:
+        reader: returns the scene with an edit; raises SceneError.
+        error: with its changes.
+        progress: informed of the trial.
     """
     edits = []
     for edit in error.changes:
@@ -144,8 +171,10 @@ def _tried(reader: Reader, error: Contact1dError, progress: Progress) -> str:
 def _attempt(scene: Scene) -> None:
     """Run a scene once in a temporary folder, without refinement and retries, for at most 4 s of LAMMPS.
 
+    Nothing is returned, and no file is left.
+
     Raises:
-        Contact1dError: the run failed.
+        Contact1dError: the run failed, or the time was too short.
     """
     with TemporaryDirectory() as folder:
         scene = with_spacing(scene)
@@ -154,9 +183,10 @@ def _attempt(scene: Scene) -> None:
 
 
 def in_si(scene: Scene, edit: SceneEdit, digits: int = 3) -> SceneEdit:
-    """Return an edit with numbers as texts with units, "33.3pN", since a scene with units takes no plain number.
+    """Return a copy of an edit whose floats with a unit are texts in SI with a prefix, "33.3pN".
 
-    It is returned unchanged without a material or where LU or FU is not known.
+    Other values are unchanged, as are floats without dimension and those whose unit has no known size. The edit itself
+    is returned without a material or where LU or FU is not given.
 
     Args:
         scene: the scene with the edit.
@@ -178,9 +208,14 @@ def in_si(scene: Scene, edit: SceneEdit, digits: int = 3) -> SceneEdit:
 
 
 def _reported(error: RunError, cause: UntrustedError, outcome: str) -> RunError:
-    """Return the error with the outcome of a trial added, and write it to results.json in its folder.
+    """Return a new RunError with the outcome of a trial in its message, and write that to results.json in its folder.
 
-    The advice of the error is kept only where the trial failed.
+    The advice of the cause is kept only where the trial failed.
+
+    Args:
+        error: of the run, with its folder.
+        cause: what can't be trusted.
+        outcome: sentence on the trial.
     """
     document = read_results(error.folder)
     facts = document["error"]

@@ -57,12 +57,12 @@ def run(
     Args:
         scene: a `Scene`, or anything that `read_scene` reads: a file, TOML text, tables.
         folder: made if it does not exist; an earlier run in it is replaced.
-        figures: whether to draw figures, or their format: "png" (the default), "svg" or "pdf".
+        figures: whether to draw figures, or their format: "png" (as True), "svg" or "pdf".
         progress: informed of phases and steps; None: nobody is.
         time_limit: wall time for LAMMPS [s], for each pass.
-        settings: used in place of those that `settings_for` chooses, without refinement; for cost studies.
+        settings: used in place of those that follow from the scene, without refinement; for cost studies.
         retries: whether smaller steps are tried where the bodies went through each other.
-        workers: number of repeats of a thermal pull-off at a time; None: as many as there are processors.
+        workers: number of repeats of a thermal pull-off at a time; None or 0: as many as there are processors.
         ranks: number of MPI ranks that share a large contact; the results are those of one.
         printed: called with the run when its numbers are written, before the figures are drawn.
 
@@ -71,7 +71,7 @@ def run(
         RanksError: several ranks can't run it, or are no use; nothing is written.
         SettingsError: the scene's numbers lead to no computable system; nothing is written.
         FolderError: the folder holds something else, or another run is active in it.
-        RunError: LAMMPS failed, or the result can't be trusted.
+        RunError: LAMMPS failed, or the result can't be trusted; results.json in the folder says why.
     """
     started, progress = time.perf_counter(), progress or Silent()
     with _prepared(scene, folder, progress, settings, ranks) as (deck, phases, path):
@@ -90,8 +90,14 @@ def _prepared(
 ) -> Iterator[tuple[Deck, tuple[Phase, ...], Path]]:
     """Write the deck of a scene with its planned schedule into a folder in place of an earlier run, and lock that.
 
-    Yields the deck, the schedule and the folder. Errors are those of `run` but RunError; of a SettingsError the numbers
-    are in SI where the units are known.
+    Yields (deck, schedule, absolute path of the folder); the lock ends with the block. Files of an earlier run are
+    removed.
+
+    Raises:
+        SceneError: the scene is invalid; nothing is written.
+        SettingsError: its numbers lead to no computable system, in SI where the units are known; nothing is written.
+        RanksError: several ranks can't run it, or are no use; nothing is written.
+        FolderError: the folder holds something else, or another run is active in it.
     """
     given = scene if isinstance(scene, Scene) else read_scene(scene)
     scales = scales_of(given, {})
@@ -120,7 +126,7 @@ def _prepared(
 
 
 def _run(context: RunContext, started: float, figures: bool | str, written: Sequence[Phase], refine: bool) -> Run:
-    """Return the finished run of a context's deck, and write the files of the run.
+    """Return the finished run of a context's deck, with its outcome, and write the files of the run but the figures.
 
     Args:
         context: with deck and folder.
@@ -159,11 +165,14 @@ def _run(context: RunContext, started: float, figures: bool | str, written: Sequ
 
 
 def _failed(context: RunContext, error: EngineError | UntrustedError, started: float, figures: bool | str) -> RunError:
-    """Return the error of a run that failed, in the units of its scene, and write results.json and the states so far.
+    """Return the RunError of a run that failed, in the units of its scene; write results.json and the states so far.
+
+    Numbers in the message of `error`, and its advice, are put into these units in place. Without states so far, only
+    results.json is written.
 
     Args:
         context: with deck and folder, and what is left of the run.
-        error: the cause, whose message is put into the units of the scene.
+        error: the cause.
         started: reading of time.perf_counter at the beginning [s].
         figures: whether figures of these states are drawn, or their format.
     """
@@ -185,10 +194,10 @@ def _failed(context: RunContext, error: EngineError | UntrustedError, started: f
 
 
 def _timing(context: RunContext, started: float) -> dict[str, float]:
-    """Return the wall and processor times [s] of a run since `started`, and its number of steps, for results.json.
+    """Return times [s] of a run since `started`, and its number of steps, by name, for results.json.
 
-    Wall times are `total_s`, `lammps_s` and of that `rows_s` in load steps; `lammps_cpu_s` is on LAMMPS' processors.
-    `started` is a reading of time.perf_counter [s].
+    Wall times are `total_s`, `lammps_s` of all passes in LAMMPS and of that `rows_s` in load steps; `lammps_cpu_s` is
+    the processor time of LAMMPS; `steps` is a number of timesteps. `started` is a reading of time.perf_counter [s].
     """
     total = time.perf_counter() - started
     lammps, cpu, rows, steps = context.clock.taken
@@ -196,7 +205,10 @@ def _timing(context: RunContext, started: float) -> dict[str, float]:
 
 
 def _hint(message: str) -> str:
-    """Return what to do about a LAMMPS error whose message does not say it, as ". Use …"; "" for any other message."""
+    """Return what to do about a LAMMPS error whose message does not say it, as ". Use …"; "" for any other message.
+
+    Known are lost atoms, a box that is too wide, a run that is too long, and a lack of memory.
+    """
     if "atoms" in message and ("missing" in message or "left the box" in message):
         return ". The motion is unstable: use stiffnesses, masses, damping and ranges of similar magnitude"
     if TOO_WIDE in message:
@@ -209,21 +221,33 @@ def _hint(message: str) -> str:
 
 
 def write_deck(scene: AnyScene, folder: AnyPath) -> Path:
-    """Return the absolute path of a folder, after writing system.data, the table and in.lammps into it; nothing runs.
+    """Return the absolute path of a folder, after writing the files of a run's deck into it; nothing runs.
 
-    in.lammps has the planned schedule. Arguments and errors are those of `run`, but RunError and RanksError.
+    These are in.lammps with the planned schedule, system.data and its tables, and scene.toml. Files of an earlier run
+    in the folder are removed.
+
+    Args:
+        scene: a `Scene`, or a file, TOML text or tables.
+        folder: made if it does not exist.
+
+    Raises:
+        SceneError: the scene is invalid; nothing is written.
+        SettingsError: its numbers lead to no computable system; nothing is written.
+        FolderError: the folder holds something else, or a run is active in it.
     """
     with _prepared(scene, folder, Silent()) as (_, _, path):
         return path
 
 
 def prepare(folder: Path, kind: str = "run", marks: Collection[str] = ("in.lammps", LOCK)) -> Path:
-    """Make the folder of a run or a sweep, and return its absolute path; nothing in it is removed.
+    """Make the folder of a run or a sweep with an empty lock file, and return its absolute path, links resolved.
+
+    Nothing in it is removed; an empty folder, or one with a lock file alone, passes.
 
     Args:
         folder: to be made; one that holds files must have one of `marks`, of an earlier run or sweep.
         kind: "run" or "sweep", for messages.
-        marks: names of files.
+        marks: names of files; a file that is not complete counts, too.
 
     Raises:
         FolderError: the folder is a file, holds files but none of `marks`, or cannot be written.
@@ -243,12 +267,12 @@ def prepare(folder: Path, kind: str = "run", marks: Collection[str] = ("in.lammp
 
 @contextmanager
 def alone(folder: Path, busy: str = "another run is active in", wait: float = 1.0) -> Iterator[None]:
-    """Lock a folder for a `with` block.
+    """Lock a folder for a `with` block; nothing is yielded, and the lock file is removed at its end.
 
-    The system releases it even if this process is killed, when its children have ended.
+    The system releases the lock even if this process is killed, when its children have ended.
 
     Args:
-        folder: the folder.
+        folder: an existing folder.
         busy: the message of the FolderError where it is locked, without the folder.
         wait: time [s] for the children of a run that was killed to end.
 

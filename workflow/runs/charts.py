@@ -48,9 +48,10 @@ FROM_ZERO = ("contact_radius", "force", "friction", "tangential_force")
 
 
 def charts(run: Run) -> dict[str, Chart]:
-    """Return the charts of a run by the names of the figures' files, the main one first.
+    """Return the charts of a run by the names of the figures' files without suffix, the main one first.
 
-    They are in SI base units where the units are known, else in units of the model.
+    They are in SI base units where the units are known, else in units of the model. A figure for which the run has no
+    data is missing.
     """
     scales, bodies = run.scales, run.scene.bodies
     title = run.scene.title + ("" if bodies.reduction == "mdr" else f"\n(reduction {bodies.reduction})")
@@ -61,7 +62,13 @@ def charts(run: Run) -> dict[str, Chart]:
 
 
 def axis_of(column: str) -> Axis:
-    """Return the axis of a column of the tables, in units of the model; KeyError for a column without a unit."""
+    """Return the axis of a column of the tables: its name in words and its unit of the model.
+
+    Those of forces and contact radii include 0.
+
+    Raises:
+        KeyError: the column has no unit, or is not known.
+    """
     remark = figures.COMPRESSIVE if column in CURVE_COLUMNS[:2] else ""
     name = "displacement of the drive" if column == "drive" else column.replace("_", " ")
     return Axis(name, COLUMN_UNITS[column], remark, zero=column in FROM_ZERO)
@@ -70,8 +77,11 @@ def axis_of(column: str) -> Axis:
 def main_curve(run: Run) -> dict[str, Array]:
     """Return the columns of the main curve by name, (n,) each, that of x first; in units of the model.
 
-    `run` has its tables in these units. There is an element for each state of the curve; those before a slide is driven
-    are NaN. A normal force that changes is the third column.
+    These are tangential force over displacement, friction over drive, displacement over time (the force where
+    displacements are prescribed), else force over displacement, compression positive. A normal force that changes is
+    the third column. There is an element for each state of the curve; those before a slide is driven are NaN.
+
+    `run` has its tables in units of the model.
     """
     columns = run.friction or run.curve
     over = next(name for name in MAIN if name in columns)
@@ -83,10 +93,11 @@ def main_curve(run: Run) -> dict[str, Array]:
 
 
 def legs_of(run: Run, along: Array) -> list[tuple[str, NDArray[np.int64]]]:
-    """Return branch and indices of the states of each leg of a path, (k,).
+    """Return (name of the branch, indices of its states, (k,)) of each leg of the curve.
 
-    Of a prescribed path a leg begins with the last state of the one before. Of any other experiment they are the
-    branches of each cycle, sorted by the positions `along`, (n,), since a search goes back and forth.
+    Of a prescribed path, and of a tangential one, a leg begins with the last state of the one before. Of any other
+    experiment they are the branches of each cycle, in the order of their first states, sorted by the positions `along`,
+    (n,), since a search goes back and forth.
     """
     branch, kind = run.curve.branch, run.scene.experiment
     if kind.history_is_given or kind.goes_along:
@@ -100,7 +111,10 @@ def legs_of(run: Run, along: Array) -> list[tuple[str, NDArray[np.int64]]]:
 
 
 def _charts(run: Run) -> Iterator[tuple[str, Chart]]:
-    """Yield name and chart of each figure that a run has, in units of the model, the main one first."""
+    """Yield (name of the file without suffix, chart) of each figure that a run has, the main one first.
+
+    `run` has its tables in units of the model, as have the charts.
+    """
     scene, profiles = run.scene, figures.seen(run.profiles)
     over, up, *_ = main_curve(run)
     rule = radius_rule(scene, scene.accuracy.tolerance)
@@ -133,12 +147,14 @@ def _charts(run: Run) -> Iterator[tuple[str, Chart]]:
 
 
 def path_chart(run: Run, columns: Mapping[str, Array] | None = None, **references: Sequence[Series]) -> Chart:
-    """Return the chart of columns over the first one, by default of the main curve; in units of the model.
+    """Return the chart of columns over the first one, a panel for each, by default of the main curve.
+
+    In units of the model; each leg of the path is a line.
 
     Args:
         run: with its tables in units of the model.
         columns: by name, (n,) each, that of x first; None: the main curve.
-        references: further series by the column to which they belong.
+        references: further series by the column to which they belong; those of other columns are ignored.
     """
     (over, along), *upwards = (columns or main_curve(run)).items()
     panels = [(axis_of(name), column, references.get(name, ())) for name, column in upwards]
@@ -146,7 +162,10 @@ def path_chart(run: Run, columns: Mapping[str, Array] | None = None, **reference
 
 
 def _samples(run: Run) -> Chart:
-    """Return the chart of displacement and force over time of a contact with noise, with load and mean position."""
+    """Return the chart of displacement [LU] and force [FU] over time [TU] of a contact with noise.
+
+    Compression is positive. With lines of the load and, where it is reported, of the mean displacement.
+    """
     table, mean = run.tables[SAMPLE_TABLE], run.results.get("displacement")
     references = {"force": figures.lines(("load", table["time"], table["load"]))}
     if mean is not None:
@@ -155,9 +174,10 @@ def _samples(run: Run) -> Chart:
 
 
 def _under_load(run: Run) -> Iterator[tuple[str, Chart]]:
-    """Yield the charts of the force [FU] over displacement [LU] and, where that changes, contact radius [LU].
+    """Yield the charts of the force [FU] over displacement [LU] and over contact radius [LU], compression positive.
 
-    Of a sphere whose F_A and a₀ are known the latter has F/F_A over a/a₀.
+    Of a sphere whose F_A and a₀ > 0 are known the latter has F/F_A over a/a₀; of any other body it is left out where
+    the radius has fewer than two different values above 0. `run` has its tables in units of the model.
     """
     curve, theory, scale, tension = run.curve, _theory(run), _pull_off(run), run.results.get("adhesion_force")
     references = figures.lines(*((name, d, force) for name, _, d, force in theory))
@@ -181,22 +201,28 @@ def _under_load(run: Run) -> Iterator[tuple[str, Chart]]:
 
 
 def _ting(run: Run, over: str) -> list[Series]:
-    """Return F of Lee, Radok and Ting [FU] over a column `over` of the curve; an empty list where they do not apply."""
+    """Return a list of F of Lee, Radok and Ting [FU] over a column `over` of the curve, compression positive.
+
+    Empty where they do not apply: to anything but one indentation by a viscoelastic paraboloid, cone or power.
+    """
     history = indented(Case(run.scene, run.results))
     return [] if history is None else figures.lines(("Ting", run.curve[over], history.forces(run.curve.time)))
 
 
 def _pull_off(run: Run) -> tuple[float, float] | None:
-    """Return F_A [FU] and a₀ > 0 [LU] of the run, or of the image to which its curve belongs; None without them."""
+    """Return (F_A [FU], tension positive, a₀ > 0 [LU]) of the run; None where either is missing or a₀ is 0.
+
+    Where the run reports lengths of the one-dimensional image as well, a₀ is that of the image, as in its curve.
+    """
     force, radius = run.results.get("adhesion_force"), run.results.get("zero_load_radius")
     radius = run.results.get(f"{IMAGE}zero_load_radius", radius)
     return (force.value, radius.value) if force and radius and radius.value > 0.0 else None
 
 
 def _zones(run: Run, states: Iterable[str]) -> dict[str, tuple[float, float, int]]:
-    """Return stick radius [LU], tangential displacement [LU] and direction of motion of states by name, from the curve.
+    """Return (stick radius [LU], tangential displacement [LU], direction of motion) of states by name, from the curve.
 
-    The direction is that of the last motion along x, 1 or -1, and 0 where there was none.
+    The direction is that of the last motion along x, 1 or −1, and 0 where there was none.
     """
     zones, displacements = {}, run.curve.tangential_displacement
     for state in states:
@@ -207,7 +233,10 @@ def _zones(run: Run, states: Iterable[str]) -> dict[str, tuple[float, float, int
 
 
 def _marks(run: Run, radii: Mapping[str, ContactRadius]) -> dict[str, dict[str, float]]:
-    """Return the contact and the stick radius on the body [LU], named as in a legend, by state."""
+    """Return the contact radius and, of a tangential experiment, the stick radius [LU] by state and name in a legend.
+
+    The contact radius is that on the body: half of the image's where this stands for two equal spheres.
+    """
     wider = WIDER_THAN_SPHERES if stands_for_spheres(run.scene) else 1.0
     sticks = _zones(run, radii) if run.scene.experiment.goes_along else {}
     return {
@@ -217,7 +246,11 @@ def _marks(run: Run, radii: Mapping[str, ContactRadius]) -> dict[str, dict[str, 
 
 
 def _body_theory(run: Run, marks: Mapping[str, Mapping[str, float]]) -> dict[str, figures.Theory]:
-    """Return the closed form of p(r), by the one state that it applies to: name, r [LU] and p [FU/LU²]; else empty."""
+    """Return {state: (name, r [LU], p [FU/LU²])} of the first closed form of the pressure, compression positive.
+
+    The state is the first reported one that touches, r from just above 0 to just inside its contact radius, (300,)
+    each. {} where no closed form applies.
+    """
     case = Case(run.scene, run.results)
     for state in (name for name in REPORTED if name in marks):
         for form in applying(case):
@@ -228,7 +261,10 @@ def _body_theory(run: Run, marks: Mapping[str, Mapping[str, float]]) -> dict[str
 
 
 def _mindlin(run: Run) -> list[Series]:
-    """Return F_x of Cattaneo and Mindlin [FU] over u [LU] along the path; an empty list where they do not apply."""
+    """Return a list of F_x of Cattaneo and Mindlin [FU] over u [LU] along the path, fifty points for each load step.
+
+    Empty where they do not apply: to anything but a paraboloid with friction under a constant load.
+    """
     case, u = Case(run.scene, run.results), run.friction["tangential_displacement"]
     if not drawn_along(case):
         return []
@@ -239,11 +275,11 @@ def _mindlin(run: Run) -> list[Series]:
 
 
 def _theory(run: Run) -> list[tuple[str, Array, Array, Array]]:
-    """Return name, a [LU], d [LU] and F [FU] of the closed form of the body; an empty list where there is none.
+    """Return a list of the one (name, a [LU], d [LU], F [FU]) of the body's closed form, compression positive.
 
-    For two chains without a closed form it is JKR's with the run's own F_A and a₀. The image x²/2R₁ on springs E* per
-    length is the contact of R = 2R₁; its a₀ is twice that of the two spheres. JKR is drawn up to 1.3 a₀, on a plane
-    from where fixed grips separate.
+    Empty where there is none. For two chains without a closed form it is JKR's with the run's own F_A and a₀. The image
+    x²/2R₁ on springs E* per length is the contact of R = 2R₁; its a₀ is twice that of the two spheres. JKR is drawn up
+    to 1.3 a₀, on a plane from the radius at which fixed grips separate.
     """
     scene, half, case, pull_off = run.scene, run.scene.bodies.plane_radius, Case(run.scene, run.results), _pull_off(run)
     radius, work, forms = 2.0 * (half or 0.0), scene.work_of_adhesion, applying(case)

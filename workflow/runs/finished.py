@@ -48,11 +48,11 @@ class Results(Named[Quantity]):
     """
 
     def __missing__(self, name: str) -> Quantity:
-        """Raise KeyError with the names that there are."""
+        """Raise KeyError for a name that the run has no result of, with the names that there are."""
         raise KeyError(f"the run has no {name}, it has {', '.join(self) or 'no results'}")
 
     def __repr__(self) -> str:
-        """Return a line for each quantity."""
+        """Return a line "name = value ± uncertainty unit" for each quantity, with SI prefixes; "" without any."""
         return "\n".join(f"{name} = {quantity}" for name, quantity in self.items())
 
 
@@ -79,12 +79,15 @@ class Run:
 
     @cached_property
     def results(self) -> Results:
-        """The reported quantities by name, each with uncertainty and unit: in SI where the scene has units."""
+        """The reported quantities by name, each with uncertainty and unit: in SI where the scene has units; cached.
+
+        Those too uncertain to be reported are missing, as are all of a run that failed.
+        """
         return Results({name: Quantity.of(entry) for name, entry in quantities_in(self.document).items()})
 
     @property
     def status(self) -> str:
-        """Whether the run has results: "done", or "failed".
+        """Whether the run has results, as text: "done", or "failed" for a run read by `read_run`.
 
         `run` and `load_run` raise RunError in place of the latter.
         """
@@ -92,35 +95,39 @@ class Run:
 
     @property
     def warnings(self) -> dict[str, str]:
-        """The messages of the warnings, by name; empty where there are none."""
+        """The messages of the warnings, by name, in the units of the scene; empty where there are none."""
         return {warning["name"]: warning["message"] for warning in self.document["warnings"]}
 
     @property
     def timing(self) -> dict[str, float]:
         """Times [s] by name: `total_s`, `lammps_s` in LAMMPS and of that `rows_s` in load steps; and number of `steps`.
 
-        These are wall times; `lammps_cpu_s` is the processor time of LAMMPS.
+        These are wall times; `lammps_cpu_s` is the processor time of LAMMPS. `steps` are timesteps.
         """
         return dict(self.document["timing"])
 
     @property
     def curve(self) -> Columns:
-        """The measured states, an element for each: every column of curve.csv, in SI where the scene has units."""
+        """The measured states, an element for each: every column of curve.csv, in SI where the scene has units.
+
+        Raises:
+            KeyError: the run failed and has no tables.
+        """
         return self.tables["curve"]
 
     @property
     def friction(self) -> Columns:
-        """The columns of friction.csv of a slide; of a tangential experiment the curve; else empty.
+        """The columns of friction.csv of a slide; of a tangential experiment those of the curve; empty of any other.
 
-        In SI as the curve.
+        In SI where the scene has units, else in units of the model.
         """
         return self.curve if self.scene.experiment.goes_along else self.tables.get("friction", Columns({}))
 
     @property
     def detachments(self) -> Columns:
-        """The columns of detachments.csv, an element for each pull of a pull-off with [noise]; else empty.
+        """The columns of detachments.csv, an element for each pull of a pull-off with [noise]; empty of any other run.
 
-        In SI as the curve.
+        In SI where the scene has units, else in units of the model.
         """
         return self.tables.get(DETACHMENTS, Columns({}))
 
@@ -129,6 +136,9 @@ class Run:
         """Line load and shear along x of the reported states, by name; the content of profile.csv.
 
         Lengths are in [m] and loads in [N/m] where the scene has units, else in [LU] and [FU/LU]; compression positive.
+
+        Raises:
+            KeyError: the run failed and has no tables.
         """
         return {
             state: Profile(*(columns[name] for name in PROFILE_COLUMNS))
@@ -155,27 +165,30 @@ class Run:
 
     @property
     def _numbers(self) -> Results:
-        """The reported results by name in units of the model, LU, FU and MU."""
+        """The reported results by name in units of the model, LU, FU, MU and TU; those of pure numbers have "1"."""
         return Results({name: Quantity.of(entry, False) for name, entry in quantities_in(self.document).items()})
 
     @cached_property
     def scales(self) -> Scales:
-        """The scales of LU, FU and, where it is known, MU in SI.
+        """The scales of LU, FU and, where it is known, MU in SI, with their uncertainties; cached.
 
-        Unknown ones (`known` is False) without a [material].
+        Unknown (`known` is False) without a [material], or without the results that fix them.
         """
         return scales_of(self.scene, self._numbers)
 
     @cached_property
     def model(self) -> Run:
-        """The run with its tables and results in units of the model, LU, FU and MU; its own `model` is itself."""
+        """The run with its tables and results in units of the model, LU, FU and MU; cached.
+
+        Its own `model` is itself, and its `document` is that of this run, which has both units.
+        """
         tables = {name: in_model_units(columns, self.scales) for name, columns in self.tables.items()}
         run = replace(self, tables=tables)
         vars(run).update(results=self._numbers, model=run)
         return run
 
     def plot(self, name: str | None = None) -> Figure:
-        """Return a figure as a matplotlib Figure, by default the experiment's main one; `.savefig(path)` keeps it.
+        """Return a new matplotlib Figure of the run, by default the experiment's main one; `.savefig(path)` keeps it.
 
         Args:
             name: "force_displacement", "force_radius", "force_time", "displacement_time", "pressure", "pressure_3d",
@@ -192,21 +205,28 @@ class Run:
         return plots.draw(drawable[name].written(scale_of))
 
     def atoms(self, state: int = -1) -> Atoms:
-        """Return a reported state as ase.Atoms, positions [LU], by default the last.
+        """Return a reported state as ase.Atoms, read from the run's folder, positions [LU], by default the last.
 
-        For what it has see `contact1d.atoms`.
+        Atoms are of the species X, in the order of their LAMMPS ids, with arrays "id", "type", "body", "role" and
+        "opposite_force", (n, 3) [FU], and the timestep in `info`.
+
+        `state`: index in the order of the loading; negative from the end.
 
         Raises:
+            FileNotFoundError: the folder has no states.
             IndexError: there is no such state.
+            ValueError: the state is cut short or lacks a column.
         """
         return atoms(self.folder, state)
 
     def to_json(self, path: AnyPath | None = None) -> str:
-        """Return the text of results.json, and write it to `path`, unless that is None."""
+        """Return the text of results.json, and write it to a file `path`, unless that is None."""
         return _written(as_json(self.document), path)
 
     def to_csv(self, path: AnyPath | None = None, table: str = "results") -> str:
         """Return a table as CSV text, and write it to `path`, unless that is None.
+
+        Columns in SI have their unit in the header. Numbers have all digits, NaN is an empty cell.
 
         Args:
             path: of the file.
@@ -220,12 +240,17 @@ class Run:
         return _written(file.getvalue(), path)
 
     def to_latex(self, path: AnyPath | None = None) -> str:
-        """Return results, uncertainties and units as a LaTeX tabular, and write it to `path`, unless that is None."""
+        """Return results, uncertainties and units as a LaTeX tabular, a row for each, and write it to `path`.
+
+        In SI with prefixes where the scene has units. Nothing is written where `path` is None.
+        """
         lines = [f"{name.replace('_', ' ')} & ${_tex(quantity)}$ \\\\" for name, quantity in self.results.items()]
         return _written("\n".join([r"\begin{tabular}{ll}", *lines, r"\end{tabular}", ""]), path)
 
     def to_xarray(self, table: str = "curve") -> Dataset:
-        """Return one of `tables` as an xarray.Dataset with units, the results in its attributes as text.
+        """Return one of `tables` as an xarray.Dataset, variables along the dimension "row" with their SI units.
+
+        Variables in units of the model have no unit. The attributes are the title, and the results as text.
 
         Args:
             table: "results" or a name in `tables`.
@@ -247,9 +272,10 @@ class Run:
         return xarray.Dataset(variables, attrs={"title": self.scene.title, **results})
 
     def _table(self, name: str) -> Columns:
-        """Return the table "results" (name, value, uncertainty, unit) or one of `tables`.
+        """Return the table "results" (name, value, uncertainty, unit) or one of `tables`, which has priority.
 
-        ValueError for any other name.
+        Raises:
+            ValueError: there is no such table; the message says which there are.
         """
         parts, quantities = ("value", "uncertainty", "unit"), self.results.values()
         results = {"name": [*self.results]} | {part: [getattr(number, part) for number in quantities] for part in parts}
@@ -261,7 +287,8 @@ class Run:
     def __repr__(self) -> str:
         """Return title, status, folder, results with their closed forms, and warnings, a line each.
 
-        Implausible values come first, since every result follows from them.
+        Warnings of implausible values come before the results, since every result follows from them, others after
+        these.
         """
         lines = [f"Run {self.scene.title!r}: {self.status}, {self.folder}"]
         for name, quantity in self.results.items():
@@ -273,7 +300,10 @@ class Run:
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
-        """Return title, status, folder, results and warnings as an HTML table, for notebooks."""
+        """Return title, status, folder, results and warnings as an HTML table, for notebooks.
+
+        Warnings of implausible values come before the results, others after these.
+        """
         cells = [(name.replace("_", " "), str(quantity)) for name, quantity in self.results.items()]
         for name, message in self.warnings.items():
             cells.insert(0 if name.startswith(IMPLAUSIBLE) else len(cells), (f"warning: {name}", message))
@@ -287,7 +317,7 @@ TEX = {"±": r"\pm", "µ": r"\mu ", "·": r"\cdot ", "²": "^2"}
 
 
 def _tex(quantity: Quantity) -> str:
-    """Return a quantity with its uncertainty and unit in LaTeX's mathematical form, without dollar signs."""
+    """Return a quantity with its uncertainty and unit, SI units with a prefix, in LaTeX, without dollar signs."""
     number, unit = str(quantity).rsplit(" ", 1) if quantity.unit != NUMBER else (str(quantity), "")
     number = re.sub(r"e([+-]\d+)", lambda power: rf"\cdot 10^{{{int(power[1])}}}", number)
     text = number + re.sub(r"[A-Za-z]+", r"\\mathrm{\g<0>}", rf"\,{unit}" if unit else "")
@@ -297,14 +327,14 @@ def _tex(quantity: Quantity) -> str:
 
 
 def _written(text: str, path: AnyPath | None) -> str:
-    """Write a text to a path, unless that is None, and return it."""
+    """Return a text, after writing it to a path in place of an earlier file, unless the path is None or empty."""
     if path:
         write_whole(Path(path), text)
     return text
 
 
 def load_run(folder: AnyPath) -> Run:
-    """Return the finished run in a folder, without its outcome.
+    """Return the finished run in a folder; its `outcome` is None.
 
     Raises:
         FolderError: the folder holds no run, or none that this version can read.
@@ -318,6 +348,8 @@ def load_run(folder: AnyPath) -> Run:
 
 def read_run(folder: Path) -> Run:
     """Return the run in a folder; one that failed is returned, too (`status` is "failed"), without tables.
+
+    Its `outcome` is None, and `folder` absolute.
 
     Raises:
         FolderError: the folder holds no run, or none that this version can read.
@@ -337,7 +369,7 @@ def read_run(folder: Path) -> Run:
 
 
 def draw(drawn: Mapping[str, Chart], folder: Path, figures: bool | str) -> None:
-    """Save charts in a folder, each under its name; numbers get units with SI prefixes.
+    """Save charts in a folder, each under its name, in place of earlier ones; numbers get units with SI prefixes.
 
     Args:
         drawn: charts by name, in base units.

@@ -20,9 +20,10 @@ INPUT_COLUMNS = ("input", "half_width")
 def inputs_of(scene: Scene, outcome: Outcome) -> dict[str, Any]:
     """Return the table `inputs`, by column: each input, its 95 % half-width, and the change of each main result.
 
-    Half-width and changes are relative to the values, dimensionless; a change is the larger one of both directions, ≥
-    0. The table is empty for a scene without uncertain inputs. The deviation of a measured profile has no half-width
-    (NaN), and a result of 0 no relative change (NaN).
+    Columns are "input" (dotted keys), "half_width", and one of the name of each main result. Half-width and changes are
+    relative to the values, dimensionless; a change is the larger one of both directions, ≥ 0. {} for a scene without
+    uncertain inputs. The deviation of a measured profile has no half-width (NaN), and a result of size 0 no relative
+    change (NaN).
     """
     keys = list(dict.fromkeys(move.key for move in outcome.moves))
     if not keys:
@@ -35,13 +36,19 @@ def inputs_of(scene: Scene, outcome: Outcome) -> dict[str, Any]:
 
 
 def entries(table: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Return the table `inputs` as in results.json: an entry for each input, without what is NaN."""
+    """Return the table `inputs` as in results.json: a dict by column for each input, without what is NaN.
+
+    `table`: columns of one length, by name; [] is returned without any.
+    """
     rows = [dict(zip(table, row, strict=True)) for row in zip(*table.values(), strict=True)]
     return [{name: value for name, value in row.items() if value == value} for row in rows]
 
 
 def chart(table: Mapping[str, Any]) -> Chart:
-    """Return the bar chart of the changes of results in percent, grouped by the inputs of the table `inputs`."""
+    """Return the bar chart of the relative changes of results [%], grouped by the inputs of the table `inputs`.
+
+    A change that is NaN has no bar.
+    """
     names = [name for name in table if name not in INPUT_COLUMNS]
     words = [key.partition(".")[2].replace("profile.", "") for key in table["input"]]
     ticks = {float(i): text.replace(".", " ").replace("_", " ") for i, text in enumerate(words)}
@@ -57,9 +64,9 @@ def chart(table: Mapping[str, Any]) -> Chart:
 
 
 def in_words(document: Mapping[str, Any]) -> list[str]:
-    """Return lines on the inputs of results.json for a terminal, the one with the largest change first.
+    """Return lines on the inputs of results.json for a terminal: a heading, then the inputs, the largest change first.
 
-    Empty without any.
+    Changes are in percent. [] where the document has no inputs.
     """
     rows = [
         ({name: change for name, change in row.items() if name not in INPUT_COLUMNS}, row)

@@ -24,14 +24,14 @@ def run_many(
     """Return a run or an error for each of many scenes, which run several at a time, without figures.
 
     Args:
-        scenes: pairs of a scene as `run` reads it and a folder of its own.
+        scenes: pairs of a scene (a `Scene`, a file, TOML text or tables) and a folder of its own.
         executor: anything with the interface of `concurrent.futures`; None: processes on this machine.
         workers: runs at a time on this machine; None: as many as there are processors. Ignored with an executor.
 
     Returns:
         An entry for each pair, in the order given: a `Run`, or a `RunError` with the folder and the message of whatever
-        error `run` raised. After an error the others run, unless a process was killed: then its executor ends, and each
-        scene that has not run gives an error.
+            error `run` raised. After an error the others run, unless a process was killed: then its executor ends, and
+            each scene that has not run gives an error.
     """
     pairs = list(scenes)
     if executor is None:
@@ -42,9 +42,9 @@ def run_many(
 
 
 def completed(pairs: Sequence[tuple[AnyScene, AnyPath]], executor: Executor) -> Iterator[tuple[int, Entry]]:
-    """Yield for each pair, as it is done, its index among the pairs, and its run or RunError.
+    """Yield (index among the pairs, its run or RunError) for each pair, as it is done.
 
-    A pair whose folder another one has already gives an error, as does one that the executor does not run.
+    A pair whose folder an earlier one has gives an error, without a run, as does one that the executor does not run.
     """
     futures: dict[Future[Entry], int] = {}
     taken = set()
@@ -67,9 +67,9 @@ def completed(pairs: Sequence[tuple[AnyScene, AnyPath]], executor: Executor) -> 
 
 
 def attempt(scene: AnyScene, folder: Path) -> Entry:
-    """Return the run of a scene without figures and outcome, or the RunError of a run that failed.
+    """Return the run of a scene, without figures and outcome, or the RunError of a run that failed.
 
-    Any other error is the cause of a RunError that is returned.
+    Any other exception is returned as a RunError, too, which has it as `__cause__` and its traceback as a note.
     """
     try:
         return replace(run(scene, folder, figures=False, workers=1), outcome=None)
@@ -84,7 +84,10 @@ def attempt(scene: AnyScene, folder: Path) -> Entry:
 
 
 def _no_answer(error: Exception, folder: Path) -> RunError:
-    """Return the RunError of a scene whose process was killed, or that its executor did not run, with the reason."""
+    """Return the RunError of a scene whose process was killed, or that its executor did not run, with the reason.
+
+    Its folder is `folder`, and `kept` is False, since the run may not have begun.
+    """
     if isinstance(error, BrokenExecutor):
         message = "the process that was to run it was killed, most often because the machine was out of memory"
     else:

@@ -66,7 +66,7 @@ def implausible(scene: Scene, scales: Scales, quantities: Mapping[str, Quantity]
 
     Args:
         scene: with or without a material; without one only results are checked.
-        scales: of LU and FU in SI; without these only numbers without LU and FU are.
+        scales: of LU and FU in SI; where they are unknown, numbers with these units, and results, are not checked.
         quantities: the results by name, in units of the model.
     """
     warnings: dict[str, list[str]] = {}
@@ -76,9 +76,10 @@ def implausible(scene: Scene, scales: Scales, quantities: Mapping[str, Quantity]
 
 
 def _moduli(scene: Scene) -> Iterator[tuple[str, str]]:
-    """Yield name and message of each modulus and Poisson's ratio of a material that few have; none without a material.
+    """Yield (name, message) of each modulus and Poisson's ratio of a material that few have; none without a material.
 
-    Moduli below 1 kPa and above 2 TPa, of a pair only if both are so stiff, and ratios below 0.
+    These are moduli below 1 kPa, above 2 TPa only if all moduli of the material are, in one message, and Poisson's
+    ratios below 0.
     """
     material = scene.material
     if material is None:
@@ -101,7 +102,11 @@ def _moduli(scene: Scene) -> Iterator[tuple[str, str]]:
 
 
 def _numbers(scene: Scene, scales: Scales) -> Iterator[tuple[str, str]]:
-    """Yield name and message of each number of a scene outside of its usual range; none without a material."""
+    """Yield (name, message) of each number of a scene outside its usual range, ends included; none without a material.
+
+    Only sizes, surface energies and temperatures have a usual range. A number whose unit has no known size in SI is
+    left out, as is a 0.
+    """
     if scene.material is None:
         return  # all numbers are the model's
     for place in places(Scene, scene.model_dump(by_alias=True, exclude_none=True)):
@@ -117,9 +122,9 @@ def _numbers(scene: Scene, scales: Scales) -> Iterator[tuple[str, str]]:
 
 
 def _radii(scales: Scales, quantities: Mapping[str, Quantity], atom: float = 1e-10) -> Iterator[tuple[str, str]]:
-    """Yield name and message of each contact radius in (0, `atom`) [m], where continuum theory fails.
+    """Yield (name, message) of each result whose name ends in "radius" above 0 and below `atom` [m].
 
-    None without scales.
+    There continuum theory fails. None where the scales are unknown.
     """
     if not scales.known:
         return

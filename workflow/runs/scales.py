@@ -40,7 +40,10 @@ def scales_of(scene: Scene, quantities: Mapping[str, Quantity]) -> Scales:
 
 
 def _scales(scene: Scene, quantities: Mapping[str, Quantity]) -> Scales:
-    """Return the scales of a run by the values of the numbers, without their ±; unknown ones as in `scales_of`."""
+    """Return the scales of a run by the values of the numbers, without the uncertainty due to their ±.
+
+    They are unknown (`known` is False) without a [material], or without the results that fix them.
+    """
     material = scene.material
     if material is None or unfound(scene, quantities):
         return UNKNOWN
@@ -58,7 +61,7 @@ def _scales(scene: Scene, quantities: Mapping[str, Quantity]) -> Scales:
 
 
 def unfound(scene: Scene, quantities: Mapping[str, Quantity]) -> tuple[str, ...]:
-    """Return the names of F_A and a₀ where the scene's units need them and they are missing or not above 0; else empty.
+    """Return the names of F_A and a₀ where the scene's units need them and they are missing or not above 0; else ().
 
     Only `surface_energy` in [material] needs them.
     """
@@ -74,10 +77,12 @@ def jkr_scales(
     contact_modulus: float,
     surface_energy: float,
 ) -> Scales:
-    """Return the scales, LU [m] and FU [N], with which a run is JKR's contact of a material, with their uncertainties.
+    """Return the scales, LU [m] and FU [N], with which a run is JKR's contact of a material, with uncertainties.
+
+    These are due to F_A and a₀. MU is not known.
 
     Args:
-        adhesion_force: F_A > 0 [FU].
+        adhesion_force: F_A > 0 [FU], tension positive.
         zero_load_radius: a₀ > 0 [LU].
         curvature_radius: R [LU].
         contact_modulus: E* [Pa].

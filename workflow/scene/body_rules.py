@@ -31,8 +31,9 @@ from contact1d.workflow.scene.tables import (
 def punch(d: Draft) -> Rows:
     """Yield the rules of a flat punch, whose edge is half a spacing beyond its last particle.
 
-    A rule is (dotted key, whether it is broken, what is wrong, suggested fix). None of another profile, and where
-    radius or spacing are not known or automatic.
+    A rule is (dotted key, whether it is broken, what is wrong, suggested fix); unbroken ones are yielded, too. No rule
+    for another profile, and where radius or spacing are not known or automatic; only the first where the radius over
+    the spacing is infinite.
     """
     radius, spacing = d["bodies.profile.radius"], d["bodies.spacing"]
     if d.profile != "flat_punch" or radius is None or spacing in (None, "auto"):
@@ -56,8 +57,8 @@ def counter_body(d: Draft) -> Rows:
 
     The radius is positive for a convex body and negative for a concave one: the first rule is broken from −R to 0, R
     the radius of the upper body [LU]. The second one is broken with the reduction "geike_popov", given or by default. A
-    rule is (dotted key, whether it is broken, what is wrong, suggested fix). Nothing is yielded where one of the radii
-    is absent or wrong by itself.
+    rule is (dotted key, whether it is broken, what is wrong, suggested fix); unbroken ones are yielded, too. Nothing is
+    yielded where one of the radii is absent or wrong by itself.
     """
     key = "bodies.profile.counter_radius"
     radius, counter = d["bodies.profile.radius"], d[key]
@@ -75,8 +76,8 @@ def counter_body(d: Draft) -> Rows:
 def reduction(d: Draft) -> Rows:
     """Yield the rule that excludes the paper's reduction for a body for which it was not derived.
 
-    A rule is (dotted key, whether it is broken, what is wrong, suggested fix). None of a parabola, a circle or an
-    unknown profile.
+    A rule is (dotted key, whether it is broken, what is wrong, suggested fix). It is broken with "geike_popov" in a
+    scene with a material, and yielded in any case but for a parabola, a circle or an unknown profile.
     """
     profile = d["bodies.profile"]
     if profile is None or profile["kind"] in SPHERES:
@@ -93,8 +94,9 @@ def reduction(d: Draft) -> Rows:
 def periodic_lengths(d: Draft) -> Rows:
     """Yield the rules of springs and lengths of two periodic chains, which have a common period.
 
-    A rule is (dotted key, whether it is broken, what is wrong, suggested fix). None of other bodies; none of lengths
-    where numbers of particles or spacings are unknown or automatic, or the upper body has one particle.
+    A rule is (dotted key, whether it is broken, what is wrong, suggested fix); unbroken ones are yielded, too. No rule
+    for other bodies; none of springs unless both stiffnesses are given; none of lengths where numbers of particles or
+    spacings are unknown or automatic, or the upper body has one particle.
     """
     if not d["bodies.periodic"]:
         return

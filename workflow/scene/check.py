@@ -23,7 +23,9 @@ from contact1d.workflow.scene.tables import Tables
 def mend_words(scene: Place) -> None:
     """Report and correct every misspelt or unknown word of a scene, in place.
 
-    Names of tables and lists of values are replaced by the tables that they stand for.
+    A key that is similar to an allowed one is moved there, unless that has a value; other unknown keys are removed.
+    Texts become the allowed word or table of that name that they are similar to, and remain where there is none. A list
+    of values that a table may be becomes the table.
     """
     for place in chain((scene,), scene):
         _mend_word(place)
@@ -37,7 +39,9 @@ def mend_words(scene: Place) -> None:
 def _mend_keys(place: Place, value: dict[str, Any]) -> None:
     """Report and correct the misspelt or unknown keys of a table `value`, and its kind, in place.
 
-    Unknown keys are removed.
+    A key that is similar to an allowed one is moved there, unless that has a value; others are removed. The first 20
+    are reported with a suggestion, more without, and these are all removed. Where the kind remains unknown, only the
+    key "kind" itself is looked for.
     """
     if place.allowed.kinds:
         for similar in [key for key in value if "kind" not in value and nearest(key, ["kind"])][:1]:
@@ -53,11 +57,11 @@ def _mend_keys(place: Place, value: dict[str, Any]) -> None:
 
 
 def _mend_word(place: Place) -> None:
-    """Correct the text at a place, in place, to the word or the name of a table that it most likely means.
+    """Correct the text at a place, in place, to the allowed word or the name of a table that it most likely means.
 
-    A misspelt one is added to `place.problems`; the name of a table is replaced by a copy of the table, without a
-    problem where only case, "-" or blanks differ. A text that is similar to nothing, and what is no text, remains as it
-    is.
+    A misspelt one, also by its case alone, is reported. The name of a table is replaced by a copy of the table, without
+    a problem where only case, "-" or blanks differ. An allowed word, a text that is similar to nothing, and what is no
+    text remain as they are.
     """
     value, allowed = place.value, place.allowed
     names = allowed.table.by_name if allowed.table else {}
@@ -75,9 +79,9 @@ def _names(place: Place) -> str:
 
 
 def _mend_key(place: Place, known: Collection[str], key: str) -> None:
-    """Report an unknown key of a table, and remove it or move its value to the `known` key that was meant.
+    """Report an unknown key of a table, and remove it or move its value to the `known` key that was meant, in place.
 
-    A value that this key already has is kept.
+    A value that this key already has is kept, and then that of `key` is lost.
     """
     value, table, begin = place.value.pop(key), place.allowed.table_for(place.value), ""
     method = table.only_method if key == "method" and table and issubclass(table, Kind) else None
@@ -92,7 +96,11 @@ def _mend_key(place: Place, known: Collection[str], key: str) -> None:
 
 
 def _homes(key: str) -> list[str]:
-    """Return the tables of a scene that have the key `key`, as they are written in a file; empty without any."""
+    """Return the tables of a scene that have the key `key`, as written in a scene file: "[plate]"; empty without any.
+
+    A table with a kind is '[bodies.profile] of kind = "cone"', the scene itself "the lines above the first table".
+    Tables that are items of lists are left out.
+    """
     return [
         f"[{path}]" + (f' of kind = "{kind}"' if kind else "") if path else "the lines above the first table"
         for path, kind, table in tables_in(Tables)
@@ -101,7 +109,10 @@ def _homes(key: str) -> list[str]:
 
 
 def report_faults(scene: Place, error: ValidationError) -> None:
-    """Report each error of a validation by pydantic once, except at keys whose values already have a reported error."""
+    """Report each error of a validation by pydantic once, except at keys whose values already have a reported error.
+
+    Errors of inner keys are first, and mark all tables around them: an error of such a table is then not reported.
+    """
     faults = [(_place(scene, details), details) for details in error.errors(include_url=False)]
     # a value that may be of several types has an error for each type: errors inside come first, a wrong type last
     faults.sort(key=lambda fault: (-len(fault[0].keys), fault[1]["type"].endswith("_type")))
@@ -111,9 +122,10 @@ def report_faults(scene: Place, error: ValidationError) -> None:
 
 
 def _place(scene: Place, details: ErrorDetails) -> Place:
-    """Return the innermost key of the scene to which an error of pydantic's belongs.
+    """Return the innermost key of the scene to which an error of pydantic's belongs; the whole scene where none does.
 
-    The location that pydantic gives has names of types as well, which are skipped.
+    The location that pydantic gives has names of types as well, which are skipped. An error of the kind of a table is
+    that of its key "kind".
     """
     place = scene
     for step in (*details["loc"], "kind" if details["type"].startswith("union_tag") else ""):
@@ -124,7 +136,7 @@ def _place(scene: Place, details: ErrorDetails) -> Place:
 def _report(place: Place, details: ErrorDetails) -> None:
     """Report an error of pydantic's at a key in the terms of the scene file: what is allowed, and the suggested fix.
 
-    The key is then marked as wrong.
+    The key, and all tables that contain it, are then marked as wrong.
     """
     kind, must, hint = details["type"], f"must be {statement(place.allowed)}", _hint(place)
     if place.absent:
@@ -143,7 +155,7 @@ def _report(place: Place, details: ErrorDetails) -> None:
 
 
 def _hint(place: Place) -> str:
-    """Return the suggested fix for a value of the wrong type; "" where none is known."""
+    """Return the suggested fix for a value of the wrong type, or the names that it may have; "" where none is known."""
     given, allowed, text = place.value, place.allowed, text_of(place.allowed)
     if isinstance(given, str) and allowed.type in (int, float):
         if any(map(str.isdigit, given)):

@@ -25,10 +25,11 @@ UNIT_KEYS = {"LU": "length_unit", "FU": "force_unit", "MU": "mass_unit"}
 
 
 def convert(scene: Place) -> bool:
-    """Replace the texts with units of a scene by numbers in LU, FU, MU and TU, in place.
+    """Replace the texts with units of a scene by numbers in LU, FU, MU and TU, or in units of SI where keys have these.
 
-    Return whether the scene has such texts, right or wrong. Errors in them are reported. Their keys, and those whose
-    numbers are then unknown, are marked as wrong.
+    That is done in place. Return whether the scene has such texts, right or wrong, apart from keys with an error
+    reported before. Sizes of LU, FU and MU that texts need and [material] lacks are put into it as 1. Errors are
+    reported; their keys, and those whose numbers are then unknown, are marked as wrong and keep their texts.
     """
     texts = [place for place in numbers_in(scene) if place.is_text and place.sound]
     read = {place: value for place in texts if (value := _si_value(place)) is not None}
@@ -46,9 +47,9 @@ def convert(scene: Place) -> bool:
 
 
 def _si_value(place: Place) -> Fraction | None:
-    """Return the quantity of a text in its unit of SI, a temperature as k_B T [J].
+    """Return the exact quantity of a text in its unit of SI; a temperature in K or °C as k_B T [J].
 
-    None, and reported, where it is none.
+    None, and reported, where the text is no quantity of an allowed dimension.
     """
     try:
         value, dimension = si_value(place.value, *place.unit.texts)
@@ -59,9 +60,9 @@ def _si_value(place: Place) -> Fraction | None:
 
 
 def _put_number(place: Place, value: Fraction) -> None:
-    """Replace a text by its number in the scene, and keep the text as the source.
+    """Replace a text by its number in the scene, nearest float, in place; the text stays known for messages.
 
-    A number that is too large is reported.
+    A number beyond the range of floats is reported, and the text remains.
     """
     text = copy(place)
     try:
@@ -72,9 +73,10 @@ def _put_number(place: Place, value: Fraction) -> None:
 
 
 def _scales(scene: Place, texts: list[Place]) -> dict[str, Fraction] | None:
-    """Return the sizes of those of LU [m], FU [N] and MU [kg] that `texts` need; None, and reported, where unknown.
+    """Return the exact sizes of LU [m], FU [N] and MU [kg] by name, at least those that `texts` need; None if unknown.
 
-    An absent [material] is added to the scene.
+    Unknown sizes are reported here, or where tables are checked if [material] or a size in it is wrong. An absent
+    [material], and sizes that it lacks, as 1, are added to the scene.
     """
     material = scene.inside["material"]
     if material.absent:
@@ -90,10 +92,11 @@ def _scales(scene: Place, texts: list[Place]) -> dict[str, Fraction] | None:
 
 
 def _chosen_scales(draft: Draft, texts: list[Place]) -> dict[str, Fraction] | None:
-    """Return the sizes of those of LU [m], FU [N] and MU [kg] that `texts` need.
+    """Return the exact sizes of LU [m], FU [N] and MU [kg] by name: those that `texts` need, mostly all of LU and FU.
 
-    Those that the scene leaves open are 1 and are put into it. None where plain numbers are mixed with units, which is
-    reported, or where a given size is no positive number.
+    Sizes that the scene lacks are 1 and are put into it. FU is not: with bulk_stiffness beside elastic moduli it
+    follows from these. None where plain numbers are mixed with units, or FU is needed although it follows: both are
+    reported. Also where a given size is no positive number.
     """
     given, elastic = draft.scene.find("bodies.bulk_stiffness"), draft.holds("elastic")
     stiffness = given if given and given.value != "auto" and elastic else None  # FU follows from it and the moduli
@@ -116,9 +119,9 @@ def _chosen_scales(draft: Draft, texts: list[Place]) -> dict[str, Fraction] | No
 
 
 def _plain_numbers(draft: Draft, bases: Collection[str]) -> list[Place]:
-    """Return the numbers without a unit that are in units made of `bases` (LU, FU, MU).
+    """Return the places of numbers other than 0 without a unit, also by default, in units made of `bases` (LU, FU, MU).
 
-    A mass that has no effect is not among them.
+    A mass of particles that has no effect, as in a quasi-static scene, is not among them. In the order of the scene.
     """
     in_time = draft.experiment.only_method == "dynamic" or draft.facts["in_time"]
     without = "" if in_time and not draft.experiment.is_massless else "bodies.mass"
@@ -127,11 +130,11 @@ def _plain_numbers(draft: Draft, bases: Collection[str]) -> list[Place]:
 
 
 def _report_mixed(plain: list[Place], text: Place, chosen: Collection[str], elastic: bool) -> None:
-    """Report plain numbers beside a number with a unit, where the sizes of LU, FU or MU are unknown.
+    """Report plain numbers beside a number with a unit, where the sizes of LU, FU or MU are unknown, as one problem.
 
     Args:
-        plain: the numbers without a unit; the message is at the first.
-        text: one with a unit, which it names.
+        plain: the numbers without a unit, one at least; the problem is at the first, and names three at most.
+        text: one with a unit, which the message names.
         chosen: of LU, FU and MU those that the scene does not give.
         elastic: whether the scene has elastic moduli.
     """
@@ -154,7 +157,7 @@ def _report_mixed(plain: list[Place], text: Place, chosen: Collection[str], elas
 
 
 def is_positive(place: Place) -> bool:
-    """Return whether a key has a finite number greater than 0."""
+    """Return whether a key has a finite number (int or float, no boolean) greater than 0."""
     return place.is_number and 0.0 < place.value <= sys.float_info.max
 
 
@@ -162,6 +165,9 @@ def size(unit: str, scales: Mapping[str, Fraction]) -> Fraction:
     """Return the size of a model `unit`, such as "FU/LU", in its unit of SI, exactly where it is a fraction.
 
     `scales`: sizes of LU [m], FU [N] and MU [kg]. An irrational size, as that of a time, is the nearest float.
+
+    Raises:
+        KeyError: `unit` is none of the model, or a size that it needs is not in `scales`.
     """
     square = math.prod((scales[base] ** int(2 * power) for base, power in SI[unit].powers.items()), start=Fraction(1))
     root = Fraction(math.isqrt(square.numerator), math.isqrt(square.denominator))

@@ -48,9 +48,10 @@ KNOWN = "*"
 
 @cache
 def _read(conditions: str) -> list[list[tuple[str, str | None, bool]]]:
-    """Return for each condition, separated by blanks, its alternatives: (name, required value, whether it must hold).
+    """Return for each condition, between blanks, its alternatives, between bars: (name, value, whether it must hold).
 
-    The value is None where the name alone is asked for.
+    The value is the text after "=", None where the name alone is given; a name with "!" before it must not hold.
+    Cached: the lists are shared.
     """
     alternatives = []
     for words in conditions.split():
@@ -73,7 +74,7 @@ class Draft:
     """
 
     def __init__(self, scene: Place) -> None:
-        """Read the kinds, effects and facts of a scene that may have wrong values."""
+        """Read the kinds, effects and facts of a scene that may have wrong values; later changes are not followed."""
         self.scene = scene
         self.kind, self.lower, self.profile = self["experiment.kind"], self["bodies.lower"], self["bodies.profile.kind"]
         self.experiment = KINDS.get(str(self.kind), Kind)
@@ -92,7 +93,7 @@ class Draft:
             self.facts[name] = self.holds(conditions)
 
     def _first(self, effects: Sequence[str], text: str, dynamic: str) -> str:
-        """Return `text` with the name of the first of these effects that the scene has.
+        """Return `text`, in place of {} the name of the first of these effects, in their order, that the scene has.
 
         Else `dynamic`, where the scene names the dynamic method, else "".
         """
@@ -100,31 +101,33 @@ class Draft:
         return next(named, dynamic if self["experiment.method"] == "dynamic" else "")
 
     def __contains__(self, path: str) -> bool:
-        """Return whether the scene has a value, right or wrong, at the dotted key `path`."""
+        """Return whether the scene has a value, right or wrong, at the dotted key `path`; a default is none."""
         place = self.scene.find(path)
         return place is not None and not place.absent
 
     def __getitem__(self, path: str) -> Any:
-        """Return the value at the dotted key `path`, or its default.
+        """Return the value at the dotted key `path`, in model units once texts are converted, or its default.
 
-        None where it is wrong, or there is no such key.
+        None where it is wrong, or there is no such key. An absent key that is required counts as wrong once tables are
+        checked; before that it is `PydanticUndefined`.
         """
         place = self.scene.find(path)
         return place.value if place and place.sound else None
 
     def holds(self, conditions: str) -> bool:
-        """Return whether all `conditions`, between blanks, hold; of alternatives, between bars, at least one.
+        """Return whether all `conditions`, between blanks, hold: of alternatives, between bars, one at least.
 
-        A condition is one of the `facts`, a dotted key that has a value, or a key with "=" and the value that it must
-        have, or that its list must contain; "=*" stands for any value that is right. With "!" before it, it must not
-        hold.
+        A condition is a fact by its name (`facts`); a dotted key, which must have a value, right or wrong; or a key
+        with "=" and the value that it, or its default, must have, or that its list must contain. "=*" stands for any
+        value that is right; a value that is wrong or missing equals none. With "!" before it, it must not hold. True
+        without conditions.
         """
         return all(any(self._is(*condition) for condition in alternatives) for alternatives in _read(conditions))
 
     def _is(self, name: str, text: str | None, wanted: bool) -> bool:
-        """Return whether a condition on the key or fact `name` is as `wanted`.
+        """Return whether a condition on the key or fact `name` holds if `wanted`, or does not hold if not `wanted`.
 
-        `text`: required value, None without one.
+        `text`: required value of the key, "*" for any that is right; None: the fact is true, or the scene has the key.
         """
         if text is not None:
             known, value = self[name], VALUES.get(text, text)
@@ -136,9 +139,9 @@ class Draft:
         return is_true == wanted
 
     def written(self, path: str, number: float) -> float | str:
-        """Return a `number` in model units as it would stand at the dotted key `path`, to six digits.
+        """Return a `number` in model units as it would be written at the dotted key `path`, with six digits.
 
-        It is a text in the unit of the text that it replaces, "2 mm", else a number.
+        Where the value there was a text with a unit, it is a text in that unit without a blank, "2mm"; else a float.
         """
         place = self.scene.find(path)
         text = place.source.value if place and place.source and place.value else None
@@ -153,8 +156,8 @@ Rule = Row | Callable[[Draft], Rows]
 
 
 def limit(value: float, of: float) -> str:
-    """Return the number `of`, the limit that `value` exceeds, as text with six digits or more.
+    """Return the number `of`, the limit that `value` exceeds, as text with six digits, without zeros at its end.
 
-    It has as many digits as show the difference.
+    Where these do not show which one is larger, with as many significant digits as do, up to 17.
     """
     return apart(value, of, DIGITS)[1]

@@ -74,18 +74,24 @@ class Effect(Table):
 
     @property
     def added_stiffness(self) -> float:
-        """Largest stiffness [FU/LU] that the effect adds to a particle, which limits the timestep; 0 by default."""
+        """Largest stiffness [FU/LU] that the effect adds to a particle, which limits the timestep.
+
+        0 for all effects but [neighbours].
+        """
         return 0.0
 
     def bond_drag(self, stiffness: float) -> float:
-        """Return the drag [FU·TU/LU] parallel to a bulk spring of this stiffness [FU/LU], which limits the timestep.
+        """Return the drag [FU·TU/LU] parallel to a bulk spring of this stiffness [FU/LU]: 0 for every effect.
 
-        Always 0.
+        It would limit the timestep.
         """
         return 0.0
 
     def largest_phase(self, tolerance: float) -> float:
-        """Return the largest ω·Δt [rad] with which the effect is exact to a relative tolerance; infinite by default."""
+        """Return the largest ω·Δt [rad] with which the effect is exact to a relative tolerance.
+
+        Infinite for all effects but [noise].
+        """
         return math.inf
 
 
@@ -114,7 +120,7 @@ class Neighbours(Effect):
 
     @property
     def added_stiffness(self) -> float:
-        """Stiffness 4 k_n [FU/LU] of neighbours that move against each other."""
+        """Stiffness 4 k_n [FU/LU] of the springs to neighbours that move against a particle."""
         return 4.0 * self.stiffness
 
 
@@ -174,7 +180,7 @@ class Adhesion(Effect):
 
     @property
     def work(self) -> float:
-        """Work of adhesion W [FU/LU], given or twice the surface energy."""
+        """Work of adhesion W [FU/LU] ≥ 0 of both surfaces: as given, else twice the surface energy."""
         if self.work_of_adhesion is not None:
             return self.work_of_adhesion
         assert self.surface_energy is not None
@@ -216,12 +222,12 @@ class Viscoelasticity(Effect):
 
     @property
     def lasting(self) -> float:
-        """Share of the instantaneous modulus that does not relax, 0 … 1; 1 of a Kelvin-Voigt body."""
+        """Share of the instantaneous modulus that does not relax, 0 … 1: 1 − Σ share; 1 of a Kelvin-Voigt body."""
         return max(0.0, 1.0 - math.fsum(term.share for term in self.terms or ()))
 
     @property
     def resists_jumps(self) -> bool:
-        """Whether a jump of the displacement takes an unbounded force: of a body with a retardation time."""
+        """Whether a jump of the displacement takes an unbounded force: with a retardation time (Kelvin-Voigt)."""
         return self.retardation_time is not None
 
     @property
@@ -255,10 +261,7 @@ class Noise(Effect):
     """seed of the random forces"""
 
     def largest_phase(self, tolerance: float) -> float:
-        """Return the largest ω·Δt [rad] with which ⟨u²⟩ is exact to a relative tolerance.
-
-        U is a particle's displacement.
-        """
+        """Return the largest ω·Δt [rad] with which mean squares of displacements are exact to a relative tolerance."""
         bias = 0.4  # relative error of ⟨u²⟩ over (ω Δt)² with fix langevin and fix nve, measured at ω Δt = 0.1: 0.4 %
         return math.sqrt(tolerance / bias)
 

@@ -86,9 +86,10 @@ class Path(Kind):
     method: AnyMethod = None
 
     def places(self) -> list[float]:
-        """Return the displacements [LU], compression positive, in the order in which they are visited.
+        """Return the displacements [LU] of the upper body, compression positive, in the order of the load steps.
 
-        The turning point of a span is there once.
+        Those of a list as given; of a span from its start to its turning point, which is there once, and back unless
+        the scene leaves that out.
         """
         return _values(self.displacements)
 
@@ -119,12 +120,12 @@ class PullOff(Kind):
 
     @property
     def is_retracted(self) -> bool:
-        """Whether the plate is retracted at a given velocity."""
+        """Whether the plate is retracted along z at a given velocity, its own or that of the far end of a spring."""
         return self.velocity is not None
 
     @property
     def retraction_stiffness(self) -> float:
-        """Stiffness [FU/LU] of the spring that retracts the plate; 0 where none is given."""
+        """Stiffness [FU/LU] of the spring that retracts the plate; 0 where none is given, for that of the contact."""
         return self.stiffness or 0.0
 
 
@@ -164,12 +165,16 @@ class Slide(Kind):
     """legs [velocity, distance] of the driven end in place of one distance"""
 
     def legs(self, velocity: float) -> tuple[Leg, ...]:
-        """Return the legs of the driven end: the given path, or one of the given distance at `velocity` [LU/TU]."""
+        """Return the legs (velocity [LU/TU], distance [LU] > 0) of the driven end: the given path.
+
+        Else one leg of the given distance at `velocity` [LU/TU], which a path does not use. ValidationError without
+        both.
+        """
         return self.path or (Leg(velocity=velocity, distance=self.distance or 0.0),)
 
     @property
     def excursion(self) -> float:
-        """Largest displacement [LU] ≥ 0 of the driven end to one side of its start."""
+        """Largest displacement [LU] ≥ 0 of the driven end to either side of its start: by the distance, or the path."""
         ends = accumulate(leg.distance * ((leg.velocity > 0.0) - (leg.velocity < 0.0)) for leg in self.path or ())
         return max([self.distance or 0.0, *map(abs, ends)])
 
@@ -214,22 +219,22 @@ class Tangential(Kind):
 
     @property
     def compression(self) -> float | None:
-        """The largest normal force [FU], compression positive; None where displacements are given."""
+        """The largest normal force [FU] ≥ 0 of all load steps, compression positive; None without forces."""
         return max(_for_each(self.normal_force, 1), default=None)
 
     def places(self) -> list[float]:
-        """Return the normal displacement [LU], compression positive, of each load step.
+        """Return the normal displacement [LU], compression positive, of each load step; a single one is repeated.
 
         Empty where forces are given.
         """
         return _for_each(self.normal_displacement, len(self.along()))
 
     def along(self) -> list[float]:
-        """Return the displacement along x [LU] of each load step."""
+        """Return the displacement along x [LU] of each load step, of the cycles, the list or the span; signed."""
         return _values(self.cycles or self.displacements or ())
 
     def normal_forces(self) -> list[float]:
-        """Return the normal force [FU], compression positive, of each load step.
+        """Return the normal force [FU], compression positive, of each load step; a single one is repeated.
 
         Empty where displacements are given.
         """
@@ -237,7 +242,7 @@ class Tangential(Kind):
 
     @property
     def excursion(self) -> float:
-        """Largest magnitude [LU] of the tangential displacements, ≥ 0."""
+        """Largest magnitude [LU] of the tangential displacements of all load steps, ≥ 0."""
         return max(map(abs, self.along()))
 
 
@@ -319,7 +324,7 @@ class History(Kind):
 
     @property
     def times(self) -> list[float]:
-        """Times [TU] of the points of the history, of displacements or of forces."""
+        """Times [TU] of the points of the history, of displacements or of forces, in the order of the scene."""
         return [point.time for point in self.displacement or self.force or ()]
 
     @property
@@ -329,7 +334,7 @@ class History(Kind):
 
     @property
     def compression(self) -> float | None:
-        """The largest force [FU], compression positive; None where displacements are given."""
+        """The largest force [FU] ≥ 0 of the points, compression positive; None where displacements are given."""
         return max((point.force for point in self.force or ()), default=None)
 
     def places(self) -> list[float]:

@@ -18,10 +18,13 @@ class ProfileFileError(ValueError):
 def read_line(path: Path) -> tuple[list[float], list[float], str]:
     """Return (positions, heights, their unit, such as "1 µm") of the line along x through the highest point of a scan.
 
-    An instrument's heights grow out of the sample, those of a profile away from the plane: their sign is changed.
+    Of a line scan it is the whole; positions are as in the file. An instrument's heights grow out of the sample, those
+    of a profile away from the plane: their sign is changed.
 
     Raises:
-        ProfileFileError: SurfaceTopography is not installed, or can't read the file, or it has no unit or gaps.
+        ProfileFileError: SurfaceTopography is not installed, or can't read the file, or the scan has no unit, or the
+            line has gaps.
+        ValueError: a map has no heights at all.
     """
     try:
         import numpy as np

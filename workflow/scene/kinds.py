@@ -73,7 +73,8 @@ class Cycles(Table):
     def values(self) -> list[float]:
         """Return the displacements [LU] in order: 0, points/4 steps to u_m, then `points` steps of each cycle.
 
-        0 and ±u_m are exact.
+        The last one is u_m. There are 1 + points/4 + number·points of them; 0 and ±u_m are exact. `points` must be a
+        multiple of 4, which is checked elsewhere; ZeroDivisionError for fewer than 4.
         """
         n = self.points // 4
         steps = range(-n, self.number * self.points + 1)
@@ -81,12 +82,15 @@ class Cycles(Table):
 
 
 def _values(listed: Sequence[float] | Span | Cycles) -> list[float]:
-    """Return the displacements [LU] of a list, a span or cycles, in order."""
+    """Return the displacements [LU] of a list, a span or cycles, in order, as a new list."""
     return list(listed) if isinstance(listed, Sequence) else listed.values()
 
 
 def _for_each(given: tuple[float, ...] | float | None, count: int) -> list[float]:
-    """Return a value for each of `count` points, by a list as it is, or by one number for all; empty for None."""
+    """Return a list with a value for each of `count` points: a number repeated, a tuple as it is; [] of None.
+
+    The length of a tuple is not compared with `count`.
+    """
     return [] if given is None else list(given) if isinstance(given, tuple) else [given] * count
 
 
@@ -122,44 +126,55 @@ class Kind(Table):
 
     @property
     def given_method(self) -> Method | None:
-        """The only possible method, else the one that the scene names; None where it follows from the effects."""
+        """The only possible method of the experiment, "quasistatic" or "dynamic", else the one that the scene gives.
+
+        None where it gives none, so that the method follows from the effects.
+        """
         return self.only_method or getattr(self, "method", None)
 
     @property
     def is_retracted(self) -> bool:
-        """Whether the plate is retracted along z at a given velocity; False by default."""
+        """Whether the plate is retracted along z at a given velocity: a pull-off that has one; False for all others."""
         return False
 
     @property
     def retraction_stiffness(self) -> float:
-        """Stiffness [FU/LU] of the spring that retracts the plate along z; 0, as by default, where none is given."""
+        """Stiffness [FU/LU] ≥ 0 of the spring that retracts the plate along z in a pull-off, as the scene gives it.
+
+        0 where it gives none, and for all other experiments.
+        """
         return 0.0
 
     @property
     def lasts(self) -> float | None:
-        """Duration [TU] of the motion that the scene prescribes.
+        """Duration [TU] that the scene prescribes: of a hold, and of a history from its first point to its last.
 
-        None, as by default, where the motion ends in equilibrium or with the drive.
+        None for all other experiments, whose motion ends in equilibrium or with the drive.
         """
         return None
 
     @property
     def compression(self) -> float | None:
-        """Normal force [FU] that presses the bodies together, 0 for a tensile one.
+        """Normal force [FU] ≥ 0 that presses the bodies together: as given, and 0 where that is tensile.
 
-        None where displacements are prescribed.
+        The largest one of a tangential path or a history under forces; the preload of a pull-off. None where
+        displacements are prescribed instead, and of a path and an impact.
         """
         force = getattr(self, self.load_key or "", None)
         return None if force is None else max(force, 0.0)
 
     def places(self) -> list[float]:
-        """Return the prescribed displacements [LU] in order, compression positive.
+        """Return the prescribed normal displacements [LU] in order, compression positive.
 
-        Empty, as by default, without any.
+        Those of a path, of a tangential path (one for each load step), of a hold, and of the points of a history. Empty
+        where these give forces, and for all other experiments.
         """
         return []
 
     @property
     def excursion(self) -> float:
-        """Largest tangential displacement [LU] ≥ 0 of the bodies against each other; 0, as by default, without one."""
+        """Largest magnitude [LU] ≥ 0 of the displacement along x; 0 for all but a slide and a tangential path.
+
+        That of the driven end in a slide, from its start; that of the upper body in a tangential path.
+        """
         return 0.0

@@ -35,15 +35,23 @@ AS_A_SCAN = (
 
 
 def is_scan(profile: Mapping[str, Any], keys: Mapping[str, Any] = SCAN_KEYS) -> bool:
-    """Return whether a profile's points are those of a scan: one of the `keys` differs from its default there.
+    """Return whether a profile's points are those of a scan: one of the `keys` is there and differs from its default.
 
-    `keys`: by default those that centre, level, smooth or fit the points.
+    "none" counts as the default; a given centre of 0 does not.
+
+    Args:
+        profile: values by key.
+        keys: default by key; centre, level, smooth and fit where it is not given.
     """
     return any(profile.get(key, default) not in (default, "none") for key, default in keys.items())
 
 
 def fault_of(r: tuple[float, ...], z: tuple[float, ...]) -> str | None:
-    """Return why radii r and heights z [LU] are no profile, with the suggested fix; None if they are one."""
+    """Return why radii r and heights z [LU] are no profile, with the suggested fix; None if they are one.
+
+    There must be as many radii as heights. Radii must begin at 0 and rise, without a step above ten times the median
+    one; no height may be below the first, and one must be above it.
+    """
     if len(r) != len(z):
         return f"must have as many radii as heights, not {len(r)} and {len(z)}"
     steps = [after - before for before, after in pairwise(r)]
@@ -108,7 +116,7 @@ class Measured(Shape):
 
     @model_validator(mode="after")
     def _is_a_profile(self) -> Self:
-        """Return this profile; raise PydanticCustomError where its points are none."""
+        """Return this profile unchanged; raise PydanticCustomError where points are missing or are no profile."""
         along = self.r if self.x is None else self.x
         if along is None or self.z is None:
             raise PydanticCustomError("scene", "needs a file, or the lists r and z")
@@ -118,9 +126,11 @@ class Measured(Shape):
         return self
 
     def _fault(self, along: tuple[float, ...], z: tuple[float, ...]) -> str | None:
-        """Return why positions `along` and heights z [LU] are no profile, with the suggested fix.
+        """Return why positions `along` and heights z [LU] are no profile, with the suggested fix; None if they are one.
 
-        None if they are one.
+        Points that are kept must begin at the axis and rise from there; positions x from side to side need one of the
+        keys centre, level, smooth and fit. Of points that a curve replaces it is the reason for which it cannot be
+        fitted, or that the keys exclude each other.
         """
         if not self.is_scan:
             return fault_of(along, z) if self.x is None else f"positions x need to be read as a scan: {AS_A_SCAN}"
@@ -137,17 +147,26 @@ class Measured(Shape):
 
     @property
     def is_scan(self) -> bool:
-        """Whether the points are those of a scan, which is centred, levelled or fitted."""
+        """Whether the points are those of a scan, by one of the keys centre (also of 0), level, smooth and fit."""
         return is_scan(vars(self))
 
     @property
     def is_curve(self) -> bool:
-        """Whether a fitted curve replaces the points."""
+        """Whether a fitted curve replaces the points, by one of the keys smooth and fit.
+
+        False where they are only centred or levelled.
+        """
         return is_scan(vars(self), CURVE_KEYS)
 
     @property
     def taken(self) -> Taken | None:
-        """The curve that is fitted to the scan, with its parameters; None without a scan."""
+        """The curve that is fitted to the scan, with its parameters [LU]; None where the points are no scan.
+
+        It is there, too, where the points of the scan are kept.
+
+        Raises:
+            ScanError: the points determine no such curve.
+        """
         if not self.is_scan:
             return None
         along = self.r if self.x is None else self.x
@@ -156,7 +175,10 @@ class Measured(Shape):
         return _take(along or (), self.z or (), centre, self.level, length, None if self.fit == "none" else self.fit)
 
     def _from_the_axis(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Return (radii, heights) [LU] of the points, of a scan the mean of its sides."""
+        """Return (radii, heights) [LU] of the points as given, not of a scan.
+
+        Of a scan the mean of its sides without tilt, at evenly spaced radii from 0, with the height 0 there.
+        """
         taken = self.taken
         if taken is None:
             return self.r or (), self.z or ()
@@ -165,7 +187,7 @@ class Measured(Shape):
 
     @property
     def body(self) -> Shape:
-        """The body through the points, or the fitted curve of a scan that is smoothed or fitted."""
+        """The body through the points, or the fitted curve of a scan with smooth or fit; a new object for each call."""
         from contact1d.workflow.scene.points import Points, curve_of  # it loads scipy as well
 
         if self.is_curve and (taken := self.taken):
@@ -174,28 +196,36 @@ class Measured(Shape):
         return Points.model_construct(r=r, z=z)
 
     def height(self, x: Array) -> Array:
-        """Return the height [LU] of the measured body above its apex at positions x [LU]; same shape."""
+        """Return the height [LU] of the measured body above its apex at positions x [LU]; same shape.
+
+        It is constant beyond the end of the body.
+        """
         return self.body.height(x)
 
     def transformed(self, x: Array) -> Array:
-        """Return the height g(x) [LU] of the measured body after the MDR transform at positions x [LU]; same shape."""
+        """Return the height g(x) [LU] of the measured body after the MDR transform at positions x [LU]; same shape.
+
+        It is constant beyond the end of the body.
+        """
         return self.body.transformed(x)
 
     @property
     def reach(self) -> float:
-        """The half-width [LU] of the measured body."""
+        """The half-width [LU] of the measured body: of its last point, or of the end of a fitted curve."""
         return self.body.reach
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Radii [LU] at which the slope of the measured body jumps; empty without any."""
+        """Radii [LU], rising, at which the slope of the measured body jumps; empty without any or of a fitted shape."""
         return self.body.kinks
 
     @property
     def alternatives(self) -> tuple[Shape, ...]:
-        """Other bodies through the same points.
+        """Other bodies that the points may mean, as a tuple.
 
-        Of a curve with a given distance of its knots it is the curve with half of it, of another curve there is none.
+        Where the points are kept, two or five: with chords or corners between the points, and where heights have few
+        digits with heights moved by half a digit. Of a curve with a given distance of its knots it is the curve with
+        half of it, of another curve there is none.
         """
         if not self.is_curve:
             return self.body.alternatives
@@ -204,12 +234,15 @@ class Measured(Shape):
 
     @property
     def coarser(self) -> tuple[Shape, ...]:
-        """Bodies through fewer of the points; empty of a curve."""
+        """Bodies through fewer of the points, two, one or none; empty of a curve that replaces the points."""
         return self.body.coarser
 
     @property
     def deviations(self) -> tuple[tuple[Shape, Shape], ...]:
-        """Pairs of curves that differ by the uncertainty due to noise of the scan; empty where the points are kept."""
+        """Pairs of curves: half of the difference of a result is its uncertainty at 95 % due to noise of the scan.
+
+        Different pairs are independent. Empty where the points are kept.
+        """
         from contact1d.workflow.scene.points import curve_of
 
         if not self.is_curve or (taken := self.taken) is None:
@@ -219,12 +252,13 @@ class Measured(Shape):
 
 @lru_cache(maxsize=8)
 def _take(along: tuple[float, ...], z: tuple[float, ...], *settings: Any) -> Taken:
-    """Return the curve that is fitted to a scan of positions `along` and heights z [LU].
+    """Return the curve that is fitted to a scan of positions `along` and heights z [LU]; cached for repeated calls.
 
-    Cached, since each height needs it.
+    `settings`: centre [LU] or None for a search, whether a tilt is removed, distance of knots [LU] or None for one by
+    the noise, and the name of a shape or None for a smooth curve.
 
-    `settings`: centre [LU] or None for a search, whether a tilt is removed, distance of knots [LU] or None, and the
-    name of a shape or None.
+    Raises:
+        ScanError: the points determine no such curve.
     """
     import numpy as np
 

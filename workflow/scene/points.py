@@ -28,19 +28,20 @@ class Piecewise(Shape):
 
     @abstractmethod
     def _curve(self) -> Any:
-        """Return the height [LU] over r [LU] as a `scipy.interpolate.PPoly`, from the axis to the body's end."""
+        """Return the height [LU] over r [LU], 0 on the axis, as a `scipy.interpolate.PPoly` up to the body's end.
+
+        It is of the third degree at most, and NaN beyond the end.
+        """
 
     def height(self, x: Array) -> Array:
         """Return the height z(|x|) − z(0) [LU] at positions x [LU], constant beyond the body's end; same shape."""
         return np.asarray(self._curve()(np.minimum(np.abs(x), self.reach)))
 
     def transformed(self, x: Array) -> Array:
-        """Return the height g(x) [LU] after the MDR transform at positions x [LU], constant beyond the body's end.
+        """Return the height g(x) [LU] after the MDR transform at positions x [LU]; same shape.
 
-        Same shape.
-
-        It is exact: the slope is a parabola p₀ + p₁ r + p₂ r² between two points, and ∫ (p₀ + p₁ r + p₂ r²)/√(x² − r²)
-        dr = (p₀ + p₂ x²/2) arcsin(r/x) − (p₁ + p₂ r/2) √(x² − r²).
+        It is constant beyond the body's end. It is exact: the slope is a parabola p₀ + p₁ r + p₂ r² between two points,
+        and ∫ (p₀ + p₁ r + p₂ r²)/√(x² − r²) dr = (p₀ + p₂ x²/2) arcsin(r/x) − (p₁ + p₂ r/2) √(x² − r²).
         """
         radii, p_0, p_1, p_2 = _slope_polynomials(self._curve())
         flat = np.minimum(np.abs(np.ravel(x)), self.reach)
@@ -76,17 +77,23 @@ class Points(Piecewise):
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Radii [LU], rising, at which the points show that the slope jumps; empty without any."""
+        """Radii [LU], rising, at which the points show that the slope jumps; empty without any.
+
+        There the curvature at a point, or in sum at two in sequence, exceeds that at both neighbours by a factor: 8,
+        for `Corners` 3. A jump between two points is where the parabolas through the points of either side meet. The
+        axis and the last point are not among them.
+        """
         x, _, corners = _with_corners(self.r, self.z, self.sharp)
         return tuple(x[corners].tolist())
 
     @property
     def alternatives(self) -> tuple[Shape, ...]:
-        """Bodies with chords, or with corners in which neighbouring chords meet, where the points show no smooth curve.
+        """Other bodies that the points may mean, two or five.
 
-        A body whose slope only rises is between the two. Where heights have few digits, also a body whose apex is half
-        a digit lower, and two whose heights are by as much higher and lower in pairs, which changes the slope at every
-        other point most.
+        Always one with chords and one with corners in which neighbouring chords meet, in place of cubics where the
+        points show no smooth curve: a body whose slope only rises is between the two. Where heights have nine digits or
+        fewer, also a body whose apex is half a digit lower, and two whose heights are by as much higher and lower in
+        pairs, which changes the slope at every other point most.
         """
         bodies: list[Shape] = [kind.model_construct(r=self.r, z=self.z) for kind in (Chords, Corners)]
         if digit := _smallest_digit(self.z):
@@ -98,13 +105,19 @@ class Points(Piecewise):
 
     @property
     def coarser(self) -> tuple[Shape, ...]:
-        """Bodies through every second point, and through the other points; without those of fewer than four points."""
+        """Bodies through every second point, and through the other points, each with the first and the last point.
+
+        Without those of fewer than four points, so that there are two, one or none.
+        """
         r, z = self.r, self.z
         fewer = [((r[0], *r[first:-1:2], r[-1]), (z[0], *z[first:-1:2], z[-1])) for first in (1, 2)]
         return tuple(Points.model_construct(r=r, z=z) for r, z in fewer if len(r) >= FEWEST_POINTS)
 
     def _curve(self) -> Any:
-        """Return the height [LU] over r [LU], a `PPoly`: monotone cubics through the points."""
+        """Return the height [LU] over r [LU], a `PPoly`: monotone cubics through the points.
+
+        0 on the axis, NaN beyond the last point.
+        """
         return _spline(self.r, self.z)
 
 
@@ -112,7 +125,10 @@ class Chords(Points):
     """A measured profile that is straight between its points, where these show no smooth curve."""
 
     def _curve(self) -> Any:
-        """Return the height [LU] over r [LU], a `PPoly`: chords where the points show no smooth curve."""
+        """Return the height [LU] over r [LU], a `PPoly`: monotone cubics, or chords where points show no smooth curve.
+
+        0 on the axis, NaN beyond the last point.
+        """
         return _rough_curve(self.r, self.z, False)
 
 
@@ -126,15 +142,20 @@ class Corners(Points):
     """Ratio of the curvatures at the four points around a cell beyond which they show no smooth curve."""
 
     def _curve(self) -> Any:
-        """Return the height [LU] over r [LU], a `PPoly`: chords up to corners where the points show no smooth curve."""
+        """Return the height [LU] over r [LU], a `PPoly`: monotone cubics, or chords where points show no smooth curve.
+
+        These go on from both sides into a cell up to the corner in which they meet. 0 on the axis, NaN beyond the last
+        point.
+        """
         return _rough_curve(self.r, self.z, True)
 
 
 def _chord_slopes(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Array, Array, Array]:
-    """Return (radii [LU], heights above the apex [LU], slopes of the chords, changes of these per length [1/LU]).
+    """Return (radii [LU], heights above the apex [LU], slopes of the chords, their changes per length [1/LU]).
 
-    The body is even in x: the chords begin at the point on the other side of the axis, (n,), and their changes on the
-    axis, (n − 1,). Radii and heights are (n,).
+    Radii and heights are (n,). The body is even in x: the chords begin at the point on the other side of the axis,
+    (n,). The changes of slope are over the distance of the two neighbours, at the axis and all points but the last, (n
+    − 1,).
     """
     x, y = np.asarray(r), np.asarray(z) - z[0]
     slope = np.diff(y, prepend=y[1]) / np.diff(x, prepend=-x[1])
@@ -145,10 +166,12 @@ def _chord_slopes(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Ar
 def _with_corners(
     r: tuple[float, ...], z: tuple[float, ...], sharpness: float = Points.sharp
 ) -> tuple[Array, Array, Any]:
-    """Return (radii, heights) [LU] of the points, with one at each jump of the slope, and the indices of jumps.
+    """Return (radii, heights) [LU] of the points, with one at each jump of the slope, and the indices of the jumps.
 
-    The slope jumps between two points whose curvatures are in sum `sharpness` times those of their neighbours: where
-    the parabolas through the points of either side meet, or at a point where these do not meet between two.
+    Radii rise, heights are above the apex. Cached: the arrays must not be changed. The slope jumps between two points
+    whose curvatures are in sum more than `sharpness` times each of their neighbours': where the parabolas through the
+    points of either side meet, or at a point where these do not meet between two and its curvature alone is as large.
+    Jumps in the round-off error do not count.
     """
     flank = 3  # points that determine the parabola of one side
     margin = 1e-3  # share of a cell at its ends, where a jump would have shown at the next points
@@ -175,9 +198,10 @@ def _with_corners(
 
 
 def _with_chord_corners(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Array]:
-    """Return radii and heights [LU] of the points, with one in each cell in which the chords of both sides meet.
+    """Return (radii, heights) [LU] of the points, with one in each cell in which the chords of both sides meet.
 
-    None is added beside a point at which the slope jumps.
+    Radii rise, heights are above the apex. No point is added where chords do not meet inside the cell, in the first and
+    last cell, and beside a point at which the slope jumps.
     """
     x, y, slope, _ = _chord_slopes(r, z)
     before, after, start, end = slope[1:-2], slope[3:], slice(1, -2), slice(2, -1)
@@ -195,9 +219,9 @@ def _with_chord_corners(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Arr
 
 
 def _smallest_digit(z: tuple[float, ...]) -> float:
-    """Return the power of ten [LU] of which all heights [LU] are whole multiples, within 1e-4.
+    """Return the largest power of ten [LU] of which all heights [LU] are whole multiples, within 1e-4 of it.
 
-    0 where it would be ten digits or more below the largest height.
+    0 where it would be ten digits or more below the largest height; a height other than 0 is required.
     """
     heights = np.asarray(z)
     first = math.ceil(math.log10(np.abs(heights).max()))
@@ -210,10 +234,10 @@ def _smallest_digit(z: tuple[float, ...]) -> float:
 
 @lru_cache(maxsize=8)
 def _rough_curve(r: tuple[float, ...], z: tuple[float, ...], corners: bool) -> Any:
-    """Return the height above the apex [LU] over r [LU], a `PPoly`: monotone cubics, and chords in rough cells.
+    """Return the height above the apex [LU] over r [LU], a `PPoly`: monotone cubics, and chords in rough cells; cached.
 
-    Rough cells show no smooth curve (`_is_rough`). With `corners` the chords of both sides go on up to where they meet.
-    It is NaN beyond the last point.
+    Rough cells are within two cells of one that shows no smooth curve. With `corners` the chords of both sides go on up
+    to where they meet. It is NaN beyond the last point.
     """
     spline = _spline(r, z)
     x, y = _with_chord_corners(r, z) if corners else (np.asarray(r), np.asarray(z) - z[0])
@@ -229,7 +253,8 @@ def _rough_curve(r: tuple[float, ...], z: tuple[float, ...], corners: bool) -> A
 def _is_rough(r: tuple[float, ...], z: tuple[float, ...]) -> NDArray[np.bool_]:
     """Return whether each cell between two points is within two cells of one that shows no smooth curve, (n − 1,).
 
-    That is one around which curvatures differ in sign, or by more than `Corners.sharp`. r, z: of the points [LU].
+    That is one around which one of the four curvatures is 0 or negative, or the largest is more than 3 times the
+    smallest, unless all are round-off errors. r, z: of the points [LU].
     """
     x, _, slope, bend = _chord_slopes(r, z)
     bend = np.concatenate([bend[1:2], bend, bend[-1:], bend[-1:]])  # of the points from −1 to n
@@ -242,10 +267,10 @@ def _is_rough(r: tuple[float, ...], z: tuple[float, ...]) -> NDArray[np.bool_]:
 
 @lru_cache(maxsize=8)
 def _spline(r: tuple[float, ...], z: tuple[float, ...]) -> Any:
-    """Return monotone cubics through the points, z(0) = 0, as a `PPoly`: height [LU] over r [LU].
+    """Return monotone cubics through the points, z(0) = 0, as a `PPoly`: height [LU] over r [LU]; cached.
 
-    It is NaN beyond the last point. Where the slope jumps, the cubics of each side have their own slope. Cached, since
-    a search for a chain's length repeats the call.
+    It is NaN beyond the last point. Where the slope jumps, it has a further point, and the cubics of each side have
+    their own slope, unless the jump is less than two points from the next one or from an end.
     """
     least = 2  # points of a curve in addition to the one at which its slope jumps
     x, y, corners = _with_corners(r, z)
@@ -261,9 +286,9 @@ def _spline(r: tuple[float, ...], z: tuple[float, ...]) -> Any:
 def _cubic_coefficients(x: Array, y: Array) -> Array:
     """Return the coefficients of monotone cubics through the points (x, y), (4, n − 1), as `PPoly` has them.
 
-    The slope at a point is that of the parabola through it and its neighbours, so that a sphere's paraboloid is met
-    exactly, but no more than three times the rise to either side, and 0 where that changes its sign: then no cubic
-    overshoots (F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238).
+    x rises; three points are needed. The slope at a point is that of the parabola through it and its neighbours, so
+    that a sphere's paraboloid is met exactly, but no more than three times the rise to either side, and 0 where that
+    changes its sign: then no cubic overshoots (F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238).
     """
     step, rise = np.diff(x), np.diff(y) / np.diff(x)
     inner = (step[1:] * rise[:-1] + step[:-1] * rise[1:]) / (step[1:] + step[:-1])
@@ -277,7 +302,10 @@ def _cubic_coefficients(x: Array, y: Array) -> Array:
 
 
 def _slope_polynomials(curve: Any) -> tuple[Array, Array, Array, Array]:
-    """Return radii, (n,) [LU], and p₀, p₁, p₂ of the slope p₀ + p₁ r + p₂ r² between them, (n − 1,) each."""
+    """Return radii r, (n,) [LU], and p₀, p₁ [1/LU], p₂ [1/LU²] of the slope p₀ + p₁ r + p₂ r² between, (n − 1,) each.
+
+    `curve`: height over r, a `PPoly` of the third degree.
+    """
     square, linear, constant = curve.derivative().c
     start = curve.x[:-1]
     return curve.x, constant - linear * start + square * start**2, linear - 2.0 * square * start, square
@@ -301,10 +329,11 @@ class Smoothed(Piecewise):
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Middles [LU] of the intervals between knots in which the slope jumps: it rises eight times as fast as usual.
+        """Middles [LU], rising, of the intervals between knots in which the slope jumps; empty without any.
 
-        Usual is its mean over the body. What is infinite at a kink is then no number that depends on the distance of
-        the knots. In the first interval, at the apex, the slope may rise by any amount. Empty without any.
+        There it rises at more than eight times its mean rate. The mean rate is the largest slope over the radius of the
+        last knot. What is infinite at a kink is then no number that depends on the distance of the knots. In the first
+        interval, at the apex, the slope may rise by any amount.
         """
         cells = zip(pairwise(self.knots), pairwise(self.slopes), strict=True)
         steep = Points.sharp * max(self.slopes) / self.reach
@@ -312,15 +341,15 @@ class Smoothed(Piecewise):
         return tuple(middle for middle in middles if middle > self.knots[1])
 
     def _curve(self) -> Any:
-        """Return the height [LU] over r [LU], a `PPoly`: parabolas between knots."""
+        """Return the height [LU] over r [LU], a `PPoly`: parabolas between knots; 0 on the axis, NaN beyond the end."""
         return _quadratics(self.knots, self.slopes)
 
 
 @lru_cache(maxsize=64)
 def _quadratics(knots: tuple[float, ...], slopes: tuple[float, ...]) -> Any:
-    """Return the height [LU] over r [LU], 0 on the axis, as a `PPoly`, by its slopes at knots [LU].
+    """Return the height [LU] over r [LU], 0 on the axis, as a `PPoly`, by its slopes at knots [LU]; cached.
 
-    NaN beyond the last knot.
+    NaN beyond the last knot. It is stored in the third degree, with 0 as first coefficient.
     """
     x, slope = np.asarray(knots), np.asarray(slopes)
     return PPoly(
@@ -341,34 +370,35 @@ class Fitted(Shape):
     end: float
 
     def height(self, x: Array) -> Array:
-        """Return the height [LU] of the fitted shape at positions x [LU], constant beyond the end of the scan.
+        """Return the height [LU] of the fitted shape above its apex at positions x [LU]; same shape.
 
-        Same shape.
+        It is constant beyond the end of the scan. NaN of a circle that ends before the scan, beyond its radius.
         """
         return self.inner.height(np.minimum(np.abs(x), self.end))
 
     def transformed(self, x: Array) -> Array:
-        """Return the MDR height g(x) [LU] of the fitted shape at positions x [LU], constant beyond the scan's end.
+        """Return the height g(x) [LU] of the fitted shape after the MDR transform at positions x [LU].
 
-        Same shape.
+        It is constant beyond the end of the scan. Same shape as x.
         """
         return self.inner.transformed(np.minimum(np.abs(x), self.end))
 
     @property
     def reach(self) -> float:
-        """The radius [LU] at which the scan or the shape ends, the smaller one."""
+        """The radius [LU] at which the scan or the fitted shape (a circle) ends, the smaller one."""
         return min(self.end, self.inner.reach)
 
     @property
     def curvature_radius(self) -> float | None:
-        """The radius of curvature [LU] of the fitted shape at its apex; None where it has none."""
+        """The radius of curvature [LU] at the apex of the fitted parabola or circle; None of a power."""
         return self.inner.curvature_radius
 
 
 def curve_of(taken: Taken, parameters: Array) -> Shape:
-    """Return the body that is fitted to a scan, with these `parameters` (`Taken.parameters`) of its curve.
+    """Return the body [LU] that is fitted to a scan, unchecked, with these `parameters`, (k,), of its curve.
 
-    It is a smooth curve by its slopes at the knots, or a parabola, circle or power up to the end of the scan.
+    It is a smooth curve by its slopes at the knots but the first, or a parabola or circle by 1/R [1/LU] or a power by
+    height [LU] and exponent, each up to the end of the scan. `taken`: has the kind of curve, and its knots or width.
     """
     first, *more = parameters.tolist()
     if taken.shape == "smooth":

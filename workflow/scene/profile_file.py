@@ -43,8 +43,10 @@ Row = tuple[int, list[str]]
 def take_points(scene: Place, folder: Path) -> dict[str, list[float]]:
     """Return the lists r and z, or x and z, of the file in `folder` that the profile of a scene names.
 
-    They are in one unit, which is put into the scene as the profile's `scale` where none is given: 1 LU without units
-    in the file. Empty where the profile names no file, or has lists of its own, and where an error was reported.
+    Both are in one unit, which is put into the scene as the profile's `scale` where none is given: a text, "1 µm", or
+    without units in the file 1, one LU. Empty where the profile names no file; where it has lists of its own beside it,
+    and where the file, its units or the scale are wrong, which is reported. Of a profile with such an error only its
+    kind remains in the scene.
     """
     profile, file, scale, units = (scene.find(f"bodies.profile{key}") for key in ("", ".file", ".scale", ".units"))
     if not profile or not file or not scale or not units or not isinstance(file.value, str):
@@ -81,7 +83,7 @@ def take_points(scene: Place, folder: Path) -> dict[str, list[float]]:
 
 
 def _unit_and_ratio(units: object) -> tuple[str, float]:
-    """Return the unit of positions, "1 µm", and the ratio of that of heights to it, negative with a minus.
+    """Return the unit of positions, "1 µm", and the ratio of the unit of heights to it, negative if that has a minus.
 
     `units`: two texts, such as ["µm", "-nm"].
 
@@ -97,15 +99,22 @@ def _unit_and_ratio(units: object) -> tuple[str, float]:
 
 
 def _are_equal(first: tuple[str, float], second: tuple[str, float]) -> bool:
-    """Return whether two pairs are equal: a unit of positions, and the ratio of that of heights to it, within 1e-12."""
+    """Return whether two pairs are equal: (unit of positions, "1 µm"; ratio of the unit of heights to it).
+
+    Units are equal if their sizes in metres are, ratios within 1e-12 (relative).
+
+    Raises:
+        UnitTextError: a unit is no length.
+    """
     sizes = {si_value(unit, MODEL)[0] for unit, _ in (first, second)}
     return len(sizes) == 1 and math.isclose(first[1], second[1], rel_tol=1e-12)
 
 
 def put_points(scene: Place, lists: dict[str, list[float]]) -> None:
-    """Replace the file of a profile by its points, in the scene: `lists` times its scale [LU].
+    """Replace the file of a profile by its points, in the scene: `lists` times the profile's scale [LU].
 
-    Nothing is done without points or where the profile has an error; points that are too large are reported.
+    The scale is a number by then. The keys file, scale and units are removed. Nothing is done without points or where
+    the profile has an error; points that are too large for a float are reported, and the profile remains.
     """
     profile = scene.find("bodies.profile")
     if not lists or not profile or not profile.sound:
@@ -121,18 +130,19 @@ def put_points(scene: Place, lists: dict[str, list[float]]) -> None:
 
 
 def read_profile(path: Path, scan: bool) -> tuple[dict[str, list[float]], str | None, float]:
-    """Return (lists r and z of a measured profile from the axis out, unit of r, ratio of the unit of z to it).
+    """Return (lists of a measured profile, unit of positions, ratio of the unit of heights to it).
 
-    The unit is a text, "1 µm"; without units it is None, which stands for LU, and the ratio 1. Messages name lines and
-    never quote them: a path in a scene may point at any file. Lines that begin with #, empty lines and lines before the
-    table are skipped. Columns of other names are ignored. Points may begin at the edge; those from −x to x are folded
-    into the mean of both sides. Of a `scan`, and of an instrument's file, all points are kept, in their order, as x and
-    z.
+    The lists are "r" and "z", rising from the axis out, where points may begin at the edge, and those from −x to x are
+    folded into the mean of both sides. Of a `scan`, and of an instrument's file, they are "x" and "z", all points in
+    their order. The unit is a text, "1 µm"; without units it is None, which stands for LU, and the ratio 1. Messages
+    name lines and never quote them: a path in a scene may point at any file. Lines that begin with #, empty lines and
+    lines before the table are skipped, columns of other names ignored.
 
     Raises:
-        UnreadableError: there is no such file, or it is no text.
-        ProfileFileError: it has more lines than `rows_in` allows, a cell is empty or no number, a line has one column,
-        there are fewer than four points, names are not known, or the two sides differ.
+        UnreadableError: there is no such file, or it is no text, or has more than 8 MB.
+        ProfileFileError: it has more than 100000 lines or no points, a cell is empty or no finite number, a line has
+            one column, names or units are not known, or an instrument's file cannot be read. Unless it is a scan, also
+            for fewer than four points, heights that rise or fall where radii do not, or two sides that differ.
     """
     if path.suffix.lower() in ENDINGS:
         x, z, unit = read_line(path)
@@ -147,10 +157,14 @@ def read_profile(path: Path, scan: bool) -> tuple[dict[str, list[float]], str | 
 
 
 def _from_the_axis(r: list[float], z: list[float]) -> dict[str, list[float]]:
-    """Return {"r": radii, "z": heights}, from the axis out, of points that are one side of a profile, or both.
+    """Return {"r": radii, "z": heights} of points that are one side of a profile, or both.
+
+    One side is returned from the axis out, also where it begins at the edge; of both sides, with rising radii from
+    below 0, it is their mean. Radii that neither rise nor fall throughout are returned as they are.
 
     Raises:
-        ProfileFileError: the columns seem to be swapped, both sides differ, or there are fewer than four points.
+        ProfileFileError: the columns seem to be swapped (heights rise or fall throughout, radii do not), both sides
+            differ, or there are fewer than four points.
     """
     if _rising(r[::-1]):
         r, z = r[::-1], z[::-1]
@@ -166,13 +180,15 @@ def _from_the_axis(r: list[float], z: list[float]) -> dict[str, list[float]]:
 
 
 def rows_in(lines: list[str], most: int = 100_000) -> list[Row]:
-    """Return (number, cells) of each line of a file that has content, with decimal points in place of commas.
+    """Return (line number from 1, cells as text) of each line of a file that has content.
 
-    Lines that begin with # are left out, and a first line "sep=;".
+    Lines that begin with # are left out, and a first line "sep=;". Where no number has a decimal point, decimal commas
+    become points.
 
     Args:
         lines: of the file.
-        most: lines that are allowed; a scene with as many points takes ten seconds to run.
+        most: lines that are allowed, with those that are left out; a scene with as many points takes ten seconds to
+            run.
 
     Raises:
         ProfileFileError: there are more lines.
@@ -189,9 +205,10 @@ def rows_in(lines: list[str], most: int = 100_000) -> list[Row]:
 
 
 def _cells(line: str) -> list[str]:
-    """Return the cells of a line, separated by semicolon, tab, comma or blanks, the first of these that it has.
+    """Return the cells of a line without blanks around them, separated by semicolon, tab, comma or blanks.
 
-    A comma between blanks may be a decimal comma.
+    The first of these that it has separates them. If that is a comma, and all of two or more words between blanks are
+    numbers with a decimal comma, blanks do.
     """
     separator = next((character for character in ";\t," if character in line), None)
     if separator == "," and len(words := line.split()) > 1 and all(map(COMMA.fullmatch, words)):
@@ -202,7 +219,9 @@ def _cells(line: str) -> list[str]:
 def _without_preamble(rows: list[Row]) -> None:
     """Remove, in place, the rows before the names of the columns, or before the numbers of a table without names.
 
-    A line before the numbers with as many cells as these counts as their names, whether these are known or not.
+    Numbers begin in the first row that has two or more. Names are the last row before it with a known name of heights,
+    else the first one with as many cells as the numbers and without a label such as "Date:", whether its names are
+    known or not. Without any row of numbers nothing is removed.
     """
     start = next((i for i, (_, cells) in enumerate(rows) if sum(_number(cell) is not None for cell in cells) > 1), 0)
     names = [i for i, (_, cells) in enumerate(rows[:start]) if {*_words(cells)} & {*HEIGHTS} and len(cells) > 1]
@@ -212,19 +231,20 @@ def _without_preamble(rows: list[Row]) -> None:
 
 
 def _words(names: list[str]) -> list[str]:
-    """Return the names of the columns in lower case, without their units; "" for what is no name."""
+    """Return the names of the columns in lower case, in order, without their units; "" for a cell that is no name."""
     matches = [NAME.match(name.strip('" ')) for name in names]
     return [match[1].lower() if match else "" for match in matches]
 
 
 def _header(rows: list[Row]) -> tuple[Sequence[int], str | None, float]:
-    """Return ((column of radii, column of heights), unit of radii as "1 µm", unit of heights over it).
+    """Return ((column of radii or positions, column of heights), unit of the former, "1 µm", unit of heights over it).
 
-    Columns are indices. Without units the second is None and the third 1. The lines of names and units, and all lines
-    before them, are removed from `rows`.
+    Columns are indices, (0, 1) without names. Without units, or with LU, the second is None and the third 1. The lines
+    of names and units, and all lines before them, are removed from `rows`, in place.
 
     Raises:
-        ProfileFileError: names or units are not known, or only one of the two columns has a unit.
+        ProfileFileError: names or units are not known, only one of the two columns has a unit, there are more than two
+            columns without names, or numbers with a decimal comma are separated by commas.
     """
     _without_preamble(rows)
     line, names = rows[0] if rows else (0, ["0"])
@@ -256,7 +276,7 @@ def _header(rows: list[Row]) -> tuple[Sequence[int], str | None, float]:
 
 
 def units_of(names: list[str], below: list[str], columns: Sequence[int]) -> tuple[list[str], bool]:
-    """Return (units of `columns`, whether the cells below the names have them); "" for a column without a unit.
+    """Return (units of `columns` in order, whether the cells below the names have them); "" for a column without one.
 
     Args:
         names: of all columns, with units or without.
@@ -272,6 +292,9 @@ def units_of(names: list[str], below: list[str], columns: Sequence[int]) -> tupl
 
 def require_names(line: int, cells: list[str], names: list[str]) -> None:
     """Refuse more whole numbers than names above them: decimal commas between commas that separate columns.
+
+    Nothing is returned. A line is accepted where any cell has something else than a whole number; empty cells do not
+    count.
 
     Args:
         line: number of the line, for the message.
@@ -307,15 +330,18 @@ def _column_of(line: int, words: list[str], allowed: tuple[str, ...]) -> int:
 
 
 def _rising(values: list[float]) -> bool:
-    """Return whether each value exceeds the one before it."""
+    """Return whether each value exceeds the one before it; True of fewer than two."""
     return all(after > before for before, after in pairwise(values))
 
 
 def _folded(x: list[float], z: list[float]) -> tuple[list[float], list[float]]:
-    """Return (radii from 0 on, heights): the mean of both sides of a profile with rising positions x from −x to x.
+    """Return (radii, heights): the mean of both sides of a profile with rising positions x from −x to x.
+
+    Radii rise from the middle on: from 0 for an odd number of points, from half a step for an even one.
 
     Raises:
-        ProfileFileError: positions differ by more than 0.001 of a step, or heights by more than 5 % of the profile's.
+        ProfileFileError: positions differ by more than 0.001 of a mean step, or heights by more than 5 % of the
+            profile's.
     """
     positions, heights = (list(zip(values, values[::-1], strict=True))[len(x) // 2 :] for values in (x, z))
     difference, height, problem = max(abs(right - left) for right, left in heights), max(z) - min(z), ""
@@ -356,7 +382,10 @@ def _radius_and_height(line: str, cells: list[str], columns: Sequence[int]) -> l
 
 
 def _number(cell: str) -> float | None:
-    """Return the number that a cell has, in quotes or without; None where it is none."""
+    """Return the number that a cell has, in double quotes or without, by Python's `float`; None where it is none.
+
+    Infinity and NaN are numbers.
+    """
     try:
         return float(cell.strip().strip('"'))
     except ValueError:

@@ -38,12 +38,15 @@ class Unit:
 
     @property
     def texts(self) -> tuple[str, ...]:
-        """The dimensions that a text with a unit may have, each by a unit; messages name the first."""
+        """Units, one for each dimension that a text with a unit may have: `text`, or `name` alone where that is empty.
+
+        Messages name the first.
+        """
         return self.text or (self.name,)
 
     @property
     def bases(self) -> frozenset[str]:
-        """Those of LU, FU and MU that determine its size in SI.
+        """The names of those of LU, FU and MU that determine its size in SI; all three for TU.
 
         Empty for a unit of SI and for a number without dimension.
         """
@@ -77,7 +80,7 @@ class Table(BaseModel):
     by_name: ClassVar[Mapping[str, Mapping[str, Any]]] = {}
 
     def __dir__(self) -> list[str]:
-        """Return the names for completion: keys, properties and methods, without those of pydantic."""
+        """Return the names for completion: keys, properties and methods; none of pydantic or with a leading "_"."""
         return [name for name in super().__dir__() if name[0] != "_" and name not in vars(BaseModel)]
 
 
@@ -149,39 +152,50 @@ class Allowed:
     words: tuple[str, ...] = ()
 
     def __or__(self, second: Allowed) -> Allowed:
-        """Return the values that at least one of the two allows."""
+        """Return a new `Allowed` of the values that at least one of the two allows.
+
+        It has the words, tables and marks of both, those of self first. Of two plain types, and of two lists, that of
+        self alone is kept; of two tables of one kind that of `second`.
+        """
         tables = {**self.tables, **second.tables}
         marks, words = self.marks + second.marks, self.words + second.words
         return Allowed(self.type or second.type, marks, self.items or second.items, tables, words)
 
     @cached_property
     def table(self) -> type[Table] | None:
-        """The table that the value must be; None if several or none are allowed, and for a list."""
+        """The only table, one without a `kind`, that the value may be; cached.
+
+        None where tables are distinguished by their kind, where no table is allowed, and where a list is allowed.
+        """
         return None if self.items else self.tables.get("")
 
     @property
     def kinds(self) -> Mapping[str, type[Table]]:
-        """The tables by their `kind`, where the value is one of several.
-
-        Empty where it is one without a kind, or no table.
-        """
+        """The tables that the value may be, by their `kind`; empty where a table without a kind is allowed, or none."""
         return {} if "" in self.tables else self.tables
 
     @cached_property
     def unit(self) -> Unit | None:
-        """The unit of a number, or of the items of a list of numbers; None where there is none."""
+        """The unit of a number, or where it has none that of the items of a list; None without any; cached.
+
+        A number without dimension has the unit named "1".
+        """
         units = (mark for mark in self.marks if isinstance(mark, Unit))
         return next(units, self.items.unit if self.items else None)
 
     @cached_property
     def quantity(self) -> Unit | None:
-        """The unit of a number with decimals, "1" without a dimension; None for counts, lists and what is no number."""
+        """The unit of a number with decimals (float), named "1" without a dimension; cached.
+
+        Also where words or lists are allowed besides the number. None for whole numbers, for lists alone, for what is
+        no number, and for a float without a unit in its type.
+        """
         return self.unit if self.type is float else None
 
     def table_for(self, value: Mapping[str, Any]) -> type[Table] | None:
-        """Return the table that `value` is meant to be, by its kind where several are allowed.
+        """Return the class of table that `value` is meant to be: the only one allowed, whatever its kind, or by "kind".
 
-        None where that is unknown.
+        None where that is missing or unknown, or where no table is allowed.
         """
         alone = len(self.tables) == 1
         return next((table for kind, table in self.tables.items() if alone or kind == value.get("kind")), None)
@@ -199,7 +213,11 @@ class Key:
 
 @cache
 def keys_of(table: type[Table]) -> dict[str, Key]:
-    """Return every key allowed in `table`, by its name in TOML, in order; cached, since a scene needs some tens."""
+    """Return every key allowed in `table`, a `Key` by its name in TOML, in the order of the fields.
+
+    The default of a required key is `PydanticUndefined`. Cached, since a scene needs some tens: the dict is shared and
+    must not be changed.
+    """
     keys = {}
     for name, given in table.model_fields.items():
         allowed, text = allowed_by(given.annotation, (*given.metadata,)), " ".join(str(given.description).split())
@@ -208,9 +226,10 @@ def keys_of(table: type[Table]) -> dict[str, Key]:
 
 
 def allowed_by(annotation: Any, marks: tuple[Any, ...] = ()) -> Allowed:
-    """Return the values that a type allows, without None, which is the type of an absent key.
+    """Return the values that a type of a field allows, without None, which is the type of an absent key.
 
-    `annotation`: type of a field; `marks`: metadata of it in addition to its own.
+    `annotation`: type of a field; `marks`: metadata of it in addition to its own. Of a union each member has the marks;
+    a list has them itself, and its items have their own; a Literal and a table keep none.
     """
     origin, arguments = get_origin(annotation), get_args(annotation)
     if origin is Annotated:
@@ -255,13 +274,14 @@ class Place:
     _inside: dict[Any, Place] | None = None
 
     def __post_init__(self) -> None:
-        """Share the list of problems with all places of the scene."""
+        """Set `problems` to the list of `above`, which all places of the scene share; without `above` to a new one."""
         self.problems = self.above.problems if self.above else []
 
     def __iter__(self) -> Iterator[Place]:
-        """Yield all keys and items inside, a table before its content, which may be corrected meanwhile.
+        """Yield the `Place` of every key and item inside, at all depths, without itself; a table before its content.
 
-        Also absent keys.
+        A value may be corrected with `put` meanwhile: then the new content follows. Absent keys are among them, and the
+        items of a list that is a default.
         """
         for place in self.inside.values():
             yield place
@@ -270,9 +290,10 @@ class Place:
 
     @property
     def inside(self) -> dict[Any, Place]:
-        """The places of its keys or items by name or index; empty for a plain value.
+        """The places of the allowed keys of a table by name, or of the items of a list by index; {} for a plain value.
 
-        Of a table whose kind is unknown only that of its kind.
+        Absent keys are among them, with their default as value; unknown keys are not. Of a table whose kind is unknown
+        there is only that of "kind". Cached until `put`.
         """
         if self._inside is None:
             value, allowed = self.value, self.allowed
@@ -291,63 +312,86 @@ class Place:
 
     @property
     def kind(self) -> Place:
-        """The place of the key "kind", which selects a table out of several."""
+        """A new place of the key "kind", which selects a table out of several; its value is None where that is absent.
+
+        This place must have a dict as value, else AttributeError.
+        """
         return Place(
             self.value.get("kind"), Allowed(words=(*self.allowed.kinds,)), "kind", self, "kind" not in self.value
         )
 
     @property
     def keys(self) -> Keys:
-        """The keys from the top of the scene down to it; empty for the whole scene."""
+        """The keys from the top of the scene down to this place, indices as int; empty for the whole scene."""
         return (*self.above.keys, self.key) if self.above else ()
 
     def find(self, path: str) -> Place | None:
-        """Return the place at a dotted path of keys from here; None if there is no such key."""
+        """Return the place at a dotted path of keys below this one, also of an absent key; None if no such key exists.
+
+        Items of lists are not found: an index in a path is no key.
+        """
         place: Place | None = self
         for key in path.split("."):
             place = place.inside.get(key) if place else None
         return place
 
     def put(self, value: object) -> None:
-        """Put a value at this place in the scene, and in the table or list that contains it."""
+        """Set the value of this place, in place, also in the dict or list of the scene that contains it.
+
+        It then counts as present, and the places inside are made anew. AssertionError for the whole scene.
+        """
         assert self.above is not None
         self.above.value[self.key] = self.value = value
         self.absent, self._inside = False, None
 
     @property
     def unit(self) -> Unit:
-        """The unit of a number; an AssertionError where no number with decimals is allowed."""
+        """The unit of a number with decimals, "1" without a dimension; AssertionError where none is allowed."""
         unit = self.allowed.quantity
         assert unit is not None
         return unit
 
     @property
     def is_text(self) -> bool:
-        """Whether the value is a text that must mean a number with a unit: it has digits, and is no plain number."""
+        """Whether the value is a text that must mean a number with a unit.
+
+        It has digits, and is neither a plain number nor an allowed word; whether the unit is right is not checked.
+        """
         value = self.value
         digits = isinstance(value, str) and value not in self.allowed.words and any(map(str.isdigit, value))
         return digits and not NUMBER.fullmatch(value.strip())
 
     @property
     def is_number(self) -> bool:
-        """Whether the value is a number other than 0, which is the same in all units."""
+        """Whether the value is an int or float other than 0; False for booleans and texts.
+
+        0 is excluded because it is the same in all units.
+        """
         return isinstance(self.value, int | float) and not isinstance(self.value, bool) and self.value != 0
 
     @property
     def path(self) -> str:
-        """The dotted path of the place as written in the scene, "bodies.profile.radius".
+        """The dotted path of this place in the scene, "bodies.profile.radius"; "" for the whole scene.
 
-        Of its source where it has one.
+        Where the value was read from elsewhere in the scene (`source`), the path of that: the key `file` for points of
+        a file.
         """
         return path_of((self.source or self).keys)
 
     @property
     def given(self) -> str | None:
-        """The value as written, or a default number, as TOML; None for any other absent key."""
+        """The value as written in the scene, as TOML of at most 60 characters.
+
+        Of a value that follows from a text with a unit, or from a file, it is that text or the name of the file. Of an
+        absent key it is a default number other than 0, else None.
+        """
         return None if self.absent and not self.is_number else shown((self.source or self).value)
 
     def report(self, message: str, hint: str = "") -> None:
-        """Add a problem of this place to those of the scene: what is wrong, and as `hint` the suggested fix."""
+        """Add a problem at this place to those of the scene: what is wrong, and as `hint` the suggested fix.
+
+        The place still counts as sound.
+        """
         self.problems.append(Problem(self.path, message, self.given, hint))
 
     def doubt(self) -> None:
@@ -366,16 +410,19 @@ class Place:
 
 
 def places(table: type[Table], data: Mapping[str, Any]) -> Iterator[Place]:
-    """Yield the place (key, value and unit) of each number in `data`, a table of this type with the keys of a scene
-    file.
+    """Yield the place (key, value and unit) of each number in `data`, a dict of a table with the keys of a scene file.
+
+    Absent keys are among them where a number is their default; counts and lists are not, items of lists are. A text or
+    a word in place of a number with decimals is yielded as well. `Place.put` changes `data`.
     """
     return numbers_in(Place(data, allowed_by(table)))
 
 
 def numbers_in(whole: Place) -> Iterator[Place]:
-    """Yield every place of a number with decimals, or of a value in place of one, inside `whole`.
+    """Yield every place of a number with decimals, or of a value in place of one, inside `whole`, in order.
 
-    Absent keys are among them where a number is their default; counts and lists are not, items of lists are.
+    Absent keys are among them where a number is their default; whole numbers and lists are not, items of lists are. A
+    text with a unit and a word such as "auto" are values in place of a number.
     """
     for place in whole:
         if place.allowed.quantity and not place.inside and (isinstance(place.value, float) or not place.absent):
@@ -385,7 +432,8 @@ def numbers_in(whole: Place) -> Iterator[Place]:
 def tables_in(table: type[Table], path: str = "", kind: str = "") -> Iterator[tuple[str, str, type[Table]]]:
     """Yield (dotted path, kind, type) of every table inside `table`, itself first, and of each kind of a union.
 
-    The kind is "" of a table without one; `path`, `kind`: of `table` itself.
+    The kind is "" of a table without one. Tables that are items of lists are left out. `path`, `kind`: of `table`
+    itself.
     """
     yield path, kind, table
     for name, key in keys_of(table).items():

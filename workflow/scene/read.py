@@ -70,25 +70,32 @@ class Scene(Tables):
 
     @property
     def tables(self) -> dict[str, Any]:
-        """The tables of the scene file by name, with defaults and ±, which read back as an equal scene."""
+        """The tables of the scene file by name, a new dict with defaults and ±, which reads back as an equal scene.
+
+        Keys that are absent and have no default are left out. A reduction is there also where it follows from other
+        keys.
+        """
         return with_shares(self.model_dump(mode="json", by_alias=True, exclude_none=True), self._shares)
 
     @property
     def given(self) -> dict[str, Any]:
-        """The tables of the scene file by name, with ±, without values that follow from other keys.
+        """The tables of the scene file by name, a new dict with defaults and ±.
 
-        Such values may then change with these keys.
+        Without a reduction that the file does not give: it follows from other keys, and may then change with them.
         """
         return with_shares(plain_data(self), self._shares)
 
     def __str__(self) -> str:
-        """Return the scene as the text of a TOML file, with defaults."""
+        """Return the scene as the text of a TOML file, with defaults, ± and its reduction."""
         return tables_as_toml(self.tables)
 
     def moved(self, key: str, factor: float) -> Scene:
-        """Return the scene with the number at a dotted key times a factor, unchecked.
+        """Return a copy of the scene with the number at a dotted key times a factor, unchecked; its ± are unchanged.
 
         A flat punch keeps its number of particles: given spacing and stiffness change with its radius.
+
+        Raises:
+            KeyError: there is no such key.
         """
         bodies = self.bodies
         scene: Scene = moved(self, keys_in(key), factor)
@@ -99,18 +106,20 @@ class Scene(Tables):
         return scene
 
     def with_(self, changes: Mapping[str, Any] | None = None, *, without: Iterable[str] = (), **keywords: Any) -> Scene:
-        """Return this scene with values changed, checked as a whole.
+        """Return a new scene with values changed, checked as a whole; this one is unchanged.
 
             scene.with_({"bodies.profile.radius": 2000.0, "accuracy.tolerance": 1e-4}, without="neighbours")
             scene.with_(bodies__profile__radius=2000.0, accuracy__tolerance=1e-4)
 
+        Values that follow from others, such as a reduction that was not given, follow anew.
+
         Args:
             changes: values by dotted keys, as in a scene file; a table is a dict, None removes a key or table.
-            without: effects whose tables are removed.
-            keywords: more changes, the keys' dots written as two underscores.
+            without: effects whose tables are removed after the changes.
+            keywords: more changes, the keys' dots written as two underscores; they have priority.
 
         Raises:
-            SceneError: the changed scene is not valid; with every problem at once.
+            SceneError: the changed scene is not valid, or an effect to remove is absent; with every problem at once.
         """
         given: object = {} if changes is None else changes
         if not isinstance(given, Mapping):
@@ -123,7 +132,7 @@ class Scene(Tables):
         return _checked(plain_data(data), problems, FilePath())
 
     def with_profile(self, profile: Shape) -> Scene:
-        """Return the scene with another shape of the upper body, which is not checked."""
+        """Return a copy of the scene with another shape of the upper body, which is not checked."""
         return self.model_copy(update={"bodies": self.bodies.model_copy(update={"profile": profile})})
 
 
@@ -140,15 +149,17 @@ def read_scene(
     """Return the scene that `source` describes, checked; `source` is not changed.
 
     Args:
-        source: a TOML file, by its path; or TOML text, which is a `str` with a line break or "=" in it; or a mapping
-            of tables with the keys of a scene file, where None counts as absent; or a `Scene`.
-        overrides: strings "table.key=value", applied in order, the value read as TOML or else as bare text.
-        without: names of effects whose tables are removed.
+        source: a TOML file, by its path; or TOML text, which is a `str` with a line break or "=" in it; or a mapping of
+            tables with the keys of a scene file, where None counts as absent; or a `Scene`.
+        overrides: strings "table.key=value", applied in order, the value read as TOML or else as bare text; a single
+            string is one of them.
+        without: names of effects whose tables are removed after that; a single string is one name.
         folder: where a file with the points of a profile is looked for; None: the folder of `source`, if that is a
             file, or the current one. The points are read into the scene, which does not need the file afterwards.
 
     Raises:
-        SceneError: with every problem at once, also for a file that is missing, unreadable, not UTF-8 or not TOML.
+        SceneError: with every problem at once, also for a file that is missing, unreadable, not UTF-8 or not TOML, and
+            for an effect to remove that is absent.
     """
     if isinstance(source, Scene):
         plain: Any = source.given
@@ -162,10 +173,11 @@ def read_scene(
 
 
 def read_tables(source: str | PathLike[str]) -> dict[str, Any]:
-    """Return the tables of a TOML file, by its path, or of TOML text (with a line break or "="), unchecked.
+    """Return the tables of a TOML file, by its path, or of TOML text (a `str` with a line break or "="), unchecked.
 
     Raises:
-        SceneError: with one problem: no such file, or no TOML.
+        SceneError: with one problem: no such file, one that is unreadable or not UTF-8, no TOML, too deep, or `source`
+            is neither path nor text.
     """
     if not isinstance(source, str | PathLike):
         given = type(source).__name__
@@ -184,11 +196,11 @@ def _is_text(source: object) -> bool:
 
 
 def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -> Scene:
-    """Return the scene of the tables `plain`, which is corrected in place.
+    """Return the scene of the tables `plain`, which is corrected in place; texts with units in it become numbers.
 
     Args:
         plain: tables by name.
-        problems: those that are known already.
+        problems: those that are known already; the others are added to it.
         folder: where the file of a profile is looked for.
 
     Raises:
@@ -221,9 +233,9 @@ def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -
 
 
 def _at_ends(scene: Scene) -> Iterator[Problem]:
-    """Yield the problems of a scene with a number of a list at an end of its ±: falling times, or shares above 1.
+    """Yield the problems that a scene has with a number in a list at an end of its ±, such as times that do not rise.
 
-    The first of each end, with the key of the number.
+    The first problem of each end, with the key of the number. Numbers that are in no list are not moved.
     """
     for path, share in scene.shares.items():
         for factor in (1.0 - share, 1.0 + share) if "[" in path else ():
@@ -234,9 +246,10 @@ def _at_ends(scene: Scene) -> Iterator[Problem]:
 
 
 def _in_si(tables: Place, has_texts: bool) -> list[Problem]:
-    """Return the problems of a scene, with SI in place of LU, FU and MU where its numbers are written in SI.
+    """Return the problems of a scene, with SI in place of LU, FU and MU in messages and fixes.
 
-    `has_texts`: whether any number is. The problems remain as they are where the sizes of the units are unknown.
+    They remain as they are where the sizes of LU and FU are unknown, and where the scene has no text with a unit
+    (`has_texts`), unless one LU is 1 m and one FU 1 N; so do problems about units of the model.
     """
     draft = Draft(tables)
     length, force, mass = (draft[f"material.{key}"] for key in UNIT_KEYS.values())
@@ -254,7 +267,8 @@ def _in_si(tables: Place, has_texts: bool) -> list[Problem]:
 def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> list[Problem]:
     """Set each of `overrides`, "table.key=value", in `data`, in place, and return the problems of invalid ones.
 
-    A value is read as TOML, or as bare text where it is not TOML; absent tables are added.
+    They are set in order. A value is read as TOML, or as bare text where it is not TOML; absent tables are added. Empty
+    where all are valid.
     """
     form = "write table.key=value, for example experiment.method=dynamic"
     problems = []
@@ -276,7 +290,8 @@ def set_values(
 ) -> list[Problem]:
     """Set the value of each dotted key in `data`, in place, and return the problems of keys that cannot be set.
 
-    None is set as well, and such a key counts as absent. Absent tables are added.
+    Such keys are no path of names, or lead through a value that is no table. None is set as well, and such a key counts
+    as absent. Absent tables are added.
 
     Args:
         data: tables by name.
@@ -301,9 +316,9 @@ def set_values(
 
 
 def remove_effects(data: dict[str, Any], names: Iterable[str]) -> list[Problem]:
-    """Remove from `data`, in place, the table of each effect in `names`.
+    """Remove from `data`, in place, the table of each effect in `names`; a name given twice counts once.
 
-    Return the problems of those that are not there.
+    Return the problems of those that are not there or are no effects; empty without any.
     """
     problems = []
     for name in dict.fromkeys(names):
@@ -320,7 +335,7 @@ def remove_effects(data: dict[str, Any], names: Iterable[str]) -> list[Problem]:
 
 
 def _toml_value(text: str) -> Any:
-    """Return the value that a text means in TOML; the text itself where it is no value."""
+    """Return the value that a text means in TOML; the text itself where it is no value, or more than one."""
     try:
         values = tomllib.loads(f"value = {text}")
     except (ValueError, RecursionError):
@@ -329,16 +344,19 @@ def _toml_value(text: str) -> Any:
 
 
 def _listed(words: Iterable[str]) -> list[str]:
-    """Return `words` as a list; a single string is one word."""
+    """Return `words` as a new list; a single string is one word."""
     return [words] if isinstance(words, str) else list(words)
 
 
 def plain_data(value: Any, levels: int = DEEPEST) -> Any:
     """Return a copy of `value` in dicts, lists and plain values, without keys that are None.
 
-    Numpy's arrays become lists.
+    Numpy's arrays become lists, tables dicts by the keys of a scene file, with their defaults. A reduction is left out
+    if the file did not give it. None in a list remains.
 
-    Of a scene without a reduction that its file does not give. `levels`: most levels of tables and lists.
+    Args:
+        value: a table, a mapping, a list, or a plain value, which is returned as it is.
+        levels: most levels of tables and lists.
 
     Raises:
         SceneError: there are more levels.
@@ -364,10 +382,10 @@ def _rank(problem: Problem) -> int:
 
 
 def _tables(text: str, path: str) -> dict[str, Any]:
-    """Return TOML text as a dict; `path` is its origin, for messages.
+    """Return TOML text as a new dict; `path` is its origin, for messages.
 
     Raises:
-        SceneError: with one problem: the text is no TOML, or nested too deep.
+        SceneError: with one problem: the text is no TOML, or nested more than 100 deep.
     """
     try:
         if not LONG_KEY.search(text):
@@ -380,7 +398,9 @@ def _tables(text: str, path: str) -> dict[str, Any]:
 
 
 def _syntax_problem(path: str, text: str, reason: str) -> Problem:
-    """Return an error in the TOML itself as a problem, with the line, its text and the suggested fix.
+    """Return an error in the TOML itself as a problem, with the line, up to 80 characters of it, and the suggested fix.
+
+    Without line and fix where `reason` names no line; without fix where none is known.
 
     Args:
         path: of the file.

@@ -10,13 +10,15 @@ from contact1d.workflow.scene.read import Scene
 
 
 def less_compression(scene: Scene, carried: float | None = None) -> Iterator[SceneEdit]:
-    """Yield an edit of the scene with a smaller compressive force of the experiment.
+    """Yield an edit of the scene with a smaller compressive force of the experiment [FU], to three digits.
 
-    None where it gives no single force.
+    Nothing is yielded where the experiment gives no single compressive force: a displacement, a tensile force, or a
+    list of forces.
 
     Args:
         scene: with the experiment.
-        carried: a force [FU] that is carried: the edit has half of it; without it a third of the force given.
+        carried: a force [FU] that is carried: the edit has half of it, whatever the force given; None: a third of the
+            force given. Without an edit where it is 0 or less.
     """
     given = scene.experiment.compression
     force = 0.5 * carried if carried is not None else (given or 0.0) / 3.0
@@ -27,9 +29,10 @@ def less_compression(scene: Scene, carried: float | None = None) -> Iterator[Sce
 
 
 def against_passing(scene: Scene) -> Iterator[SceneEdit]:
-    """Yield edits of the scene against bodies that penetrate each other, as far as they apply to it.
+    """Yield edits of the scene against bodies that penetrate each other, each for itself, as far as they apply to it.
 
-    These are a tenth of the temperature, no lateral motion unless it is examined, and a smaller load.
+    In this order: with noise a tenth of the temperature; no [horizontal], unless in a slide or with a plate that is
+    free along x; a third of the compressive force, where the experiment gives a single one. None may apply.
     """
     if scene.noise:
         yield SceneEdit({"noise.temperature": float(f"{0.1 * scene.temperature:.3g}")})
@@ -40,9 +43,11 @@ def against_passing(scene: Scene) -> Iterator[SceneEdit]:
 
 
 def longer_chain(scene: Scene) -> Iterator[SceneEdit]:
-    """Yield edits of the scene against a contact that reaches the end of its chain.
+    """Yield edits of the scene against a contact that reaches the end of its chain, each for itself.
 
-    They are more particles, where their number is given, and a smaller load.
+    First more particles: twice as many of the upper chain, if its number is given and it is not periodic, with an
+    automatic number of lower ones; else an automatic number, if that is not automatic yet. Then a third of the
+    compressive force, where the experiment gives a single one. None may apply.
     """
     bodies = scene.bodies
     if bodies.upper_particles is not None and not bodies.periodic:

@@ -44,7 +44,12 @@ from contact1d.workflow.scene.tables import (
 
 
 def _interaction(d: Draft) -> Rows:
-    """Yield the rules of range and amplitude of an attraction, and of the cutoff; none where one of them is unknown."""
+    """Yield the rules of range and amplitude of an attraction, and of a cutoff that is a number.
+
+    A rule is (dotted key, whether it is broken, what is wrong, suggested fix) and for the first two the changes by
+    dotted key each of which helps; unbroken ones are yielded, too. No rule where amplitudes or ranges are unknown; only
+    the first, of the range, where that is broken.
+    """
     attraction, repulsion = "interaction.attraction", "interaction.repulsion"
     A, a, B, b = (d[f"{term}.{key}"] for term in (repulsion, attraction) for key in ("amplitude", "range"))
     if None in (A, a, B, b):
@@ -69,7 +74,12 @@ def _interaction(d: Draft) -> Rows:
 
 
 def _tension(d: Draft) -> Rows:
-    """Yield the rules that a force ≤ 0, which is not compressive, needs attraction between the bodies."""
+    """Yield the two rules, of the keys force and normal_force, that a force ≤ 0 needs attraction between the bodies.
+
+    A rule is (dotted key, whether it is broken, what is wrong, suggested fix). Both are yielded always, and are broken
+    for a known force or preload ≤ 0 (not compressive) with neither interaction.attraction nor an [adhesion] that the
+    experiment allows.
+    """
     force = d[f"experiment.{d.experiment.load_key}"]
     adheres = "adhesion" in d and "adhesion" not in d.experiment.excludes
     broken = force is not None and force <= 0.0 and not adheres and "interaction.attraction" not in d
@@ -82,7 +92,11 @@ def _tension(d: Draft) -> Rows:
 
 
 def _normal_loads(d: Draft) -> Rows:
-    """Yield the rules of the normal forces or displacements of a tangential path, and of the points of its cycles."""
+    """Yield the rules of the points of cycles, and of the normal forces or displacements of a tangential path.
+
+    A rule is (dotted key, whether it is broken, what is wrong, suggested fix); unbroken ones are yielded, too. Only the
+    first, of the points, for other experiments, and where it is broken or normal loads are unknown or given twice.
+    """
     given = [key for key in ("experiment.normal_force", "experiment.normal_displacement") if key in d]
     points = d["experiment.cycles.points"] or 0
     fewer = 4 * max(1, points // 4)
@@ -102,7 +116,10 @@ def _normal_loads(d: Draft) -> Rows:
 
 
 def _shares(d: Draft) -> Rows:
-    """Yield the rule that the shares of a Prony series add up to 1 at most."""
+    """Yield the rule that the shares of a Prony series add up to 1 at most, within 1e-9, whether or not it is broken.
+
+    A rule is (dotted key, whether it is broken, what is wrong, suggested fix).
+    """
     total = math.fsum(term["share"] for term in d["viscoelasticity.terms"] or [])
     yield ("viscoelasticity.terms", total > 1.0 + WHOLE_NUMBER_ERROR,
            f"the shares of the instantaneous modulus must add up to 1 at most, not {apart(total, 1.0, DIGITS)[0]}",
@@ -110,7 +127,13 @@ def _shares(d: Draft) -> Rows:
 
 
 def _history(d: Draft) -> Rows:
-    """Yield the rules of a history: times rise, and load steps are short enough for a viscoelastic body."""
+    """Yield the rules of a history, of its times, its largest value, its first value and its load steps.
+
+    Times rise, a value is greater than 0, bodies with a retardation time begin apart, and load steps under a force are
+    no longer than the shortest time of a viscoelastic body. A rule is (dotted key, whether it is broken, what is wrong,
+    suggested fix); unbroken ones are yielded, too. No rule for another experiment, or for a history without known
+    points.
+    """
     given = [key for key in ("displacement", "force") if d.kind == "history" and d[f"experiment.{key}"]]
     if not given:
         return
@@ -131,12 +154,22 @@ def _history(d: Draft) -> Rows:
 
 
 def _needed(name: str, by: str) -> Row:
-    """Return the rule, broken, of an effect `name` that is missing; `by`: what needs it, in words."""
+    """Return the rule (name, True, what is wrong, suggested fix) of an effect `name` that is needed.
+
+    It always counts as broken, and is reported only where the scene lacks the effect. `by`: what needs it, in words.
+
+    Raises:
+        KeyError: there is no such effect.
+    """
     return name, True, f"missing, needed by {by}", f"add {EFFECT_TABLES[name].how}"
 
 
 def _excluded(d: Draft) -> Rows:
-    """Yield the rules of effects that an experiment excludes, and of those that exclude each other on a rigid plane."""
+    """Yield the rules of effects that an experiment excludes, and of those that exclude each other on a rigid plane.
+
+    A rule is (name of the effect, True, what is wrong, suggested fix): it always counts as broken, and is reported only
+    where the scene has the effect. No rule of the former where the experiment is unknown.
+    """
     possible = (kind for kind, table in KINDS.items() if not table.excludes.keys() & {*d.effects})
     alternative = next((f', or use kind = "{kind}"' for kind in possible), "")
     for name, reason in d.experiment.excludes.items() if d.kind else ():
@@ -147,9 +180,11 @@ def _excluded(d: Draft) -> Rows:
 
 
 def _methods(d: Draft) -> Rows:
-    """Yield the rules of effects that an experiment and its method need; a quasi-static one has none in time.
+    """Yield the rules of effects that an experiment and its method need, and of those that exist in time only.
 
-    None where the experiment or its method is unknown.
+    A rule is (name of the effect, whether it is broken, what is wrong, suggested fix). Those of needed effects always
+    count as broken, and are reported only where the scene lacks these; the others are broken where a quasi-static scene
+    has the effect. No rule where the experiment or its method is unknown.
     """
     kind, experiment, given = d.kind, d.experiment, d["experiment.method"]
     if kind is None or (given is None and "experiment.method" in d):
@@ -170,7 +205,11 @@ def _methods(d: Draft) -> Rows:
 
 
 def _declared_keys(d: Draft) -> Rows:
-    """Yield the rules of keys of which exactly one must be given."""
+    """Yield the rules of keys of which exactly one must be given, in effects, the experiment and the profile.
+
+    A rule is (dotted key, whether it is broken, what is wrong, suggested fix): one of the first key, broken where none
+    is given, and a broken one for each further key that is given.
+    """
     effects = {name: EFFECT_TABLES[name] for name in d.effects if d[name] is not None}
     profile = keys_of(Bodies)["profile"].allowed.kinds.get(d.profile, Table)
     for name, table in {**effects, "experiment": d.experiment, "bodies.profile": profile}.items():
@@ -272,7 +311,7 @@ ABOUT_ABSENT = {"miss": True, "not ": False, "only": False}
 
 
 def check_fit(scene: Place) -> None:
-    """Report every violation of a rule across the tables of a scene, in its problems.
+    """Report every violation of a rule across the tables of a scene, in its problems, and return nothing.
 
     A rule that depends on a value with an error of its own is left out.
     """
@@ -283,15 +322,18 @@ def check_fit(scene: Place) -> None:
 
 
 def _check(draft: Draft, keys: str, broken: object, message: str, fix: str, *edits: Mapping[str, float]) -> None:
-    """Report a rule that is broken, at each of its keys that the scene may have.
+    """Report a rule that is broken, as a problem at each of its keys; return nothing.
+
+    A message that begins with "missing" is for keys that the scene lacks, one that begins with "not" or "only" for
+    those that it has; others are for both. Keys that no table has are left out.
 
     Args:
         draft: the scene.
         keys: dotted keys, between blanks.
         broken: conditions in words (`Draft.holds`), or whether the rule is broken.
-        message: what is wrong.
-        fix: suggested fix, with {} for each number of `edits`.
-        edits: changes by dotted key, each of which makes the scene valid.
+        message: what is wrong, after conditions in words with {name} of a fact.
+        fix: suggested fix, with {} for each number of `edits`, or {name}.
+        edits: changes by dotted key [model units], each of which makes the scene valid.
     """
     if not (draft.holds(broken) if isinstance(broken, str) else broken):
         return

@@ -31,7 +31,10 @@ Node = dict[str, Any]
 
 
 def statement(allowed: Allowed) -> str:
-    """Return the allowed values as text that follows "must be": 'a number greater than 0 (LU), or "auto"'."""
+    """Return the allowed values as text that follows "must be": 'a number greater than 0 (LU), or "auto"'.
+
+    "" where nothing is allowed.
+    """
     parts = []
     if allowed.type:
         unit = allowed.unit
@@ -52,36 +55,49 @@ def statement(allowed: Allowed) -> str:
 
 
 def text_of(allowed: Allowed) -> str:
-    """Return an example of a text with a unit in place of a number, "10 mm"; "" where the value has no unit."""
+    """Return an example of a text with a unit in place of a number, "10 mm"; "" where the value has no dimension.
+
+    Of a list the example is for an item.
+    """
     unit = allowed.quantity or (allowed.items and allowed.items.quantity)
     return example(unit.texts[0]) if unit and unit.name != "1" else ""
 
 
 def described(allowed: Allowed) -> str:
-    """Return `statement`, and for a number with a unit also an example of text: "…, or text such as "10 mm""."""
+    """Return the allowed values as text that follows "must be": 'a number (LU), or text such as "10 mm"'.
+
+    The example of text is for a number with a unit alone.
+    """
     text = text_of(allowed)
     return statement(allowed) + (f", or text such as {as_toml(text)}" if text else "")
 
 
 def meaning(table: type[Table], name: str) -> str:
-    """Return description and allowed values of a key: "displacement of the driven end; must be a number greater …"."""
+    """Return description and allowed values of a key: "displacement of the driven end; must be a number greater …".
+
+    Raises:
+        KeyError: the table has no such key.
+    """
     key = keys_of(table)[name]
     return f"{key.description}; must be {described(key.allowed)}"
 
 
 def scene_schema() -> Node:
-    """Return the JSON schema of a scene file, as a dict."""
+    """Return the JSON schema (draft 7) of a scene file, as a new dict without references."""
     named = {"title": "contact1d scene", "description": "A scene of contact1d."}
     return {"$schema": DIALECT} | _table(Tables) | named
 
 
 def schema_text() -> str:
-    """Return the JSON schema of a scene file, as text."""
+    """Return the JSON schema (draft 7) of a scene file, as indented text with a line break at its end."""
     return json.dumps(scene_schema(), indent=1, ensure_ascii=False) + "\n"
 
 
 def _nodes(allowed: Allowed) -> Node:
-    """Return the JSON schema of the values that a key allows, as a dict."""
+    """Return the JSON schema of the values that a key allows, as a dict: {"anyOf": […]} where types are several.
+
+    A number with a unit may also be a text.
+    """
     nodes = [_table(table) for table in allowed.tables.values()]
     if allowed.items:
         nodes.insert(0, {"type": "array", "items": _nodes(allowed.items)} | _bounds(allowed, LENGTHS))
@@ -95,15 +111,15 @@ def _nodes(allowed: Allowed) -> Node:
 
 
 def _bounds(allowed: Allowed, names: Mapping[Any, str]) -> Node:
-    """Return the bounds of a value by the names of the JSON schema; empty without any.
+    """Return the bounds of a value by the names of the JSON schema, {"minimum": 0}; empty without any.
 
-    `names`: these names by the type of the mark that gives a bound.
+    `names`: these names by the type of the mark that gives a bound; marks of other types are ignored.
     """
     return {names[type(mark)]: next(iter(astuple(mark))) for mark in allowed.marks if type(mark) in names}
 
 
 def _table(table: type[Table]) -> Node:
-    """Return the JSON schema of a table, as a dict; also of its name or list of values where it may be one."""
+    """Return the JSON schema of a table, as a dict; {"anyOf": […]} where it may also be a name or list of values."""
     keys, properties = keys_of(table), {}
     for name, key in keys.items():
         properties[name] = _nodes(key.allowed) | {"description": meaning(table, name)}
@@ -123,13 +139,13 @@ def _table(table: type[Table]) -> Node:
 
 
 def _either(words: tuple[str, ...]) -> str:
-    """Return words as a text, '"a", "b" or "c"'."""
+    """Return words as a text, '"a", "b" or "c"'; a single one alone; ValueError without any."""
     *first, last = (as_toml(word) for word in words)
     return f"{', '.join(first)} or {last}" if first else last
 
 
 def _range(allowed: Allowed) -> str:
-    """Return the range of a number as text with a blank before it, " from 0 to 1"; "" without any."""
+    """Return the range of a number as text with a blank before it, " from 0 to 1" or " greater than 0"; or ""."""
     bounds = _bounds(allowed, RANGES)
     if {"minimum", "maximum"} <= bounds.keys():
         return f" from {bounds['minimum']:.10g} to {bounds['maximum']:.10g}"

@@ -49,56 +49,79 @@ class Shape(Table):
 
     @abstractmethod
     def height(self, x: Array) -> Array:
-        """Return the height z(x) = f(|x|) [LU] above the apex as drawn, at the positions `x` [LU]; same shape."""
+        """Return the height z(x) = f(|x|) [LU] above the apex as drawn, at the positions `x` [LU]; same shape.
+
+        NaN beyond the radius of a circle or an ellipsoid; constant beyond the last point of a measured profile; 0 of a
+        punch beyond its edge, too.
+        """
 
     @abstractmethod
     def transformed(self, x: Array) -> Array:
-        """Return the height g(x) [LU] above the apex after the transform, at the positions `x` [LU]; same shape."""
+        """Return the height g(x) [LU] above the apex after the MDR transform, at the positions `x` [LU]; same shape.
+
+        Beyond the end of a body it is finite but has no meaning: constant of a measured profile, 0 of a punch, linear
+        of a circle or an ellipsoid.
+        """
 
     @property
     def reach(self) -> float:
-        """Half-width [LU] within which there is a body at all; infinite by default."""
+        """Half-width [LU] within which there is a body at all; infinite for a parabola, cone, power or periodic flat.
+
+        The radius of a circle, of an ellipsoid across its axis and of a punch, the last point of a measured profile.
+        """
         return math.inf
 
     @property
     def curvature_radius(self) -> float | None:
-        """Radius of curvature R at the apex [LU]; None, as by default, where there is none."""
+        """Radius of curvature R at the apex [LU], for two curved bodies 1/R = 1/R₁ + 1/R₂; None where there is none.
+
+        Given for a parabola, a circle and an ellipsoid; None for all others, also for a power of exponent 2, and for a
+        measured profile even where a parabola or circle is fitted to it (that curve itself, `Fitted`, has its R).
+        """
         return None
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Radii [LU] off the axis at which the slope jumps: a pressure there has no bound, and g′ is not finite.
+        """Radii [LU] off the axis, rising, at which the slope jumps.
 
-        Empty, as by default, without any.
+        A pressure there has no bound, and g′ is not finite. Only measured profiles have them: empty for all others. An
+        edge of the body is not among them.
         """
         return ()
 
     @property
     def alternatives(self) -> tuple[Shape, ...]:
-        """Other bodies that agree with all that is known of this one; empty, as by default, for a formula."""
+        """Other bodies that agree with all that is known of this one; empty for all but measured profiles."""
         return ()
 
     @property
     def coarser(self) -> tuple[Shape, ...]:
-        """Bodies through fewer points, in place of an alternative that is no contact; empty by default."""
+        """Bodies through fewer points, in place of an alternative that is no contact.
+
+        Only those of measured profiles whose points are kept; empty for all others.
+        """
         return ()
 
     @property
     def deviations(self) -> tuple[tuple[Shape, Shape], ...]:
         """Pairs of bodies: half of the difference of a result between the two is its uncertainty at 95 %.
 
-        Uncertainties of different pairs are independent. Empty, as by default, for a formula.
+        Uncertainties of different pairs are independent. Only those of a curve that is fitted to a scan; empty for all
+        others.
         """
         return ()
 
     @property
     def taken(self) -> Taken | None:
-        """The curve that is fitted to a scan, with its parameters; None, as by default, for a shape that is given."""
+        """The curve that is fitted to a scan, with its parameters; None for a profile that is no scan."""
         return None
 
     @property
     def steepest(self) -> Self:
-        """The steeper of the two bodies, whose slope and size limit the theory; by default this one, on a plane."""
+        """The steeper of two curved bodies, on a plane, whose slope and size limit the theory.
+
+        That is for a parabola with a lower body; all other shapes are themselves on a plane, and this is self.
+        """
         return self
 
 
@@ -115,11 +138,17 @@ class Parabola(Shape):
     """
 
     def height(self, x: Array) -> Array:
-        """Return the height z = x²/2R [LU] at positions x [LU], of two curved bodies their gap; same shape."""
+        """Return the height z = x²/2R [LU] at positions x [LU]; same shape.
+
+        Of two curved bodies it is the gap, 1/R = 1/R₁ + 1/R₂.
+        """
         return x**2 / (2 * self.curvature_radius)
 
     def transformed(self, x: Array) -> Array:
-        """Return the transformed height g = x²/R [LU] at positions x [LU]; same shape."""
+        """Return the height g = x²/R [LU] after the MDR transform at positions x [LU]; same shape.
+
+        Of two curved bodies 1/R = 1/R₁ + 1/R₂.
+        """
         return x**2 / self.curvature_radius
 
     @property
@@ -129,9 +158,10 @@ class Parabola(Shape):
 
     @property
     def steepest(self) -> Self:
-        """The body with the smaller radius on a plane.
+        """A parabola with the smaller magnitude of the two radii, R₁ or R₂ of the lower body, on a plane.
 
-        The gap of a ball in a cup is flat where the ball itself is steep.
+        Without a lower radius it is equal to this one. The gap of a ball in a cup is flat where the ball itself is
+        steep.
         """
         radius = min(self.radius, abs(self.counter_radius or math.inf))
         return self.model_copy(update={"radius": radius, "counter_radius": None})
@@ -146,14 +176,14 @@ class Circle(Shape):
     """radius R"""
 
     def height(self, x: Array) -> Array:
-        """Return the height z = R − √(R² − x²) [LU] at positions |x| ≤ R [LU]; same shape.
+        """Return the height z = R − √(R² − x²) [LU] at positions |x| ≤ R [LU], NaN beyond; same shape.
 
         It is calculated without a difference of large numbers.
         """
         return x**2 / (self.radius + ((self.radius - x) * (self.radius + x)) ** 0.5)
 
     def transformed(self, x: Array) -> Array:
-        """Return the transformed height g = x artanh(x/R) [LU] at positions x [LU]; same shape.
+        """Return the height g = x artanh(x/R) [LU] after the MDR transform at positions x [LU]; same shape.
 
         It grows without bound towards the edge; beyond (1 − 1e-12) R the factor artanh remains constant.
         """
@@ -185,19 +215,22 @@ class Ellipsoid(Shape):
     """half axis b along the load"""
 
     def height(self, x: Array) -> Array:
-        """Return the height z = b − b √(1 − x²/c²) [LU] at positions |x| ≤ c [LU]; same shape.
+        """Return the height z = b − b √(1 − x²/c²) [LU] at positions |x| ≤ c [LU], NaN beyond; same shape.
 
-        It is b/c times that of a sphere of radius c.
+        It is b/c times that of a sphere of radius c; b is the half axis along the load.
         """
         return self.half_axis / self.radius * self._sphere.height(x)
 
     def transformed(self, x: Array) -> Array:
-        """Return the transformed height g = (b/c) x artanh(x/c) [LU] at positions x [LU]; same shape."""
+        """Return the height g = (b/c) x artanh(x/c) [LU] after the MDR transform at positions x [LU]; same shape.
+
+        b is the half axis along the load, c across it. Beyond (1 − 1e-12) c the factor artanh remains constant.
+        """
         return self.half_axis / self.radius * self._sphere.transformed(x)
 
     @property
     def _sphere(self) -> Circle:
-        """The sphere with the half axis c across the load as its radius."""
+        """A new, unchecked circle [LU] whose radius is the half axis c across the load."""
         return Circle.model_construct(radius=self.radius)
 
     @property
@@ -207,15 +240,15 @@ class Ellipsoid(Shape):
 
     @property
     def curvature_radius(self) -> float:
-        """The radius of curvature c²/b [LU] at the apex."""
+        """The radius of curvature c²/b [LU] at the apex, c the half axis across the load and b along it."""
         return self.radius**2 / self.half_axis
 
 
 def _half_angle(text: object) -> object:
-    """Return the text unchanged if it is a half angle between 0° and 90°, "80°" or "1.4 rad".
+    """Return the text unchanged if it is a half angle greater than 0° and less than 90°, "80°" or "1.4 rad".
 
     Raises:
-        PydanticCustomError: it is none, or has an uncertainty.
+        PydanticCustomError: it is none, no text, or has an uncertainty.
     """
     problem = 'must be text with a unit, greater than 0° and less than 90°, from the axis to the flank: write "80°"'
     try:
@@ -244,7 +277,7 @@ class Cone(Shape):
 
     @property
     def rise(self) -> float:
-        """The slope s of the flank, dimensionless: given, or the cotangent of the half angle."""
+        """The slope s of the flank, dimensionless: as given, else the cotangent of the half angle."""
         return self.slope or 1.0 / math.tan(si_value(self.half_angle or "", "rad")[0])
 
     def height(self, x: Array) -> Array:
@@ -252,7 +285,7 @@ class Cone(Shape):
         return self.rise * abs(x)
 
     def transformed(self, x: Array) -> Array:
-        """Return the transformed height g = (π/2) s |x| [LU] at positions x [LU]; same shape."""
+        """Return the height g = (π/2) s |x| [LU] after the MDR transform at positions x [LU]; same shape."""
         return 0.5 * math.pi * self.rise * abs(x)
 
 
@@ -262,11 +295,11 @@ class Level(Shape):
     has_edge = True
 
     def height(self, x: Array) -> Array:
-        """Return the height 0 [LU] at all positions x; same shape."""
+        """Return the height 0 [LU] at all positions x [LU], also beyond an edge; same shape."""
         return 0.0 * abs(x)
 
     def transformed(self, x: Array) -> Array:
-        """Return the transformed height 0 [LU] at all positions x; same shape."""
+        """Return the height 0 [LU] after the MDR transform at all positions x [LU], also beyond an edge; same shape."""
         return 0.0 * abs(x)
 
 
@@ -308,7 +341,10 @@ class Power(Shape):
         return self.height_there * abs(x / self.radius) ** self.exponent
 
     def transformed(self, x: Array) -> Array:
-        """Return the transformed height g = κ_n z [LU] at positions x [LU]; same shape."""
+        """Return the height g = κ_n z [LU] after the MDR transform at positions x [LU]; same shape.
+
+        κ_n = (√π/2) n Γ(n/2)/Γ((n + 1)/2), π/2 for n = 1 and 2 for n = 2.
+        """
         from contact1d.analysis.theory.indenters import galin_factor  # it loads numpy, which a scene can do without
 
         return galin_factor(self.exponent) * self.height(x)

@@ -117,9 +117,12 @@ class Unit:
     angular: bool = False
 
     def measures(self, unit: str) -> bool:
-        """Return whether this unit has the dimension of `unit`, a unit of SI.
+        """Return whether this unit has the dimension of `unit`, a unit of SI: "1" for a number, "rad" for an angle.
 
-        An angle is no number without dimension.
+        An angle is no number without dimension, and the other way round.
+
+        Raises:
+            UnitTextError: `unit` is none.
         """
         return self.dimension == _dimension(unit) and self.angular == (unit == "rad")
 
@@ -135,7 +138,11 @@ FACTOR = re.compile(rf"({'|'.join(PREFIXES)})({'|'.join(BASES | DERIVED)})([²³
 
 
 def in_words(unit: str) -> str:
-    """Return what a quantity in `unit` (of SI or of the model) is, with an example: "a force, such as 10 N"."""
+    """Return what a quantity in `unit` (of SI or of the model) is, with an example: "a force, such as 10 N".
+
+    Raises:
+        KeyError: no name or no example is known of this dimension.
+    """
     return f"{DIMENSIONS[in_si(unit)]}, such as {example(unit)}"
 
 
@@ -149,15 +156,18 @@ def example(unit: str) -> str:
 
 
 def in_si(unit: str) -> str:
-    """Return the unit of SI with the dimension of the model's `unit`: N·s/m for FU·TU/LU; a unit of SI unchanged."""
+    """Return the unit of SI with the dimension of the model's `unit`: N·s/m for FU·TU/LU; any other text unchanged."""
     return SI[unit].si if unit in SI else unit
 
 
 def split(text: str) -> tuple[str, str]:
-    """Return number and unit of "10 mm", each as text.
+    """Return number and unit of "10 mm", each as text without blanks around it, a sign "−" of the number as "-".
+
+    Whether such a unit exists is not checked.
 
     Raises:
-        UnitTextError: there is no number or no unit, or the text has more than 60 characters.
+        UnitTextError: the text has more than 60 characters, does not begin with a number, or what follows is no unit:
+            nothing, a comma, another digit or point, an exponent that is not an integer, or LU, FU, MU or TU.
     """
     plain = text.strip().replace("−", "-")
     match = NUMBER.match(plain)
@@ -171,14 +181,16 @@ def split(text: str) -> tuple[str, str]:
 
 
 def quantity(text: str, largest: float = 1e300) -> tuple[Fraction, Unit]:
-    """Return the exact value of a text such as "10 mm" in base units of SI, and its unit.
+    """Return the exact value of a text such as "10 mm" in base units of SI (m, kg, s, K, A, mol; rad), and its unit.
+
+    A number too small for a float counts as 0.
 
     Args:
         text: of the quantity.
-        largest: magnitude of its number; the products with units and other numbers of a scene are then mostly finite.
+        largest: the magnitude of its number must be less, so that products with units are mostly finite.
 
     Raises:
-        UnitTextError: "has no unit", or another sentence without a subject; also for a number beyond `largest`.
+        UnitTextError: "has no unit", or another sentence without a subject; also for a number of `largest` or more.
     """
     number, given = split(text)
     unit, size = _unit(given), float(number)
@@ -190,12 +202,12 @@ def quantity(text: str, largest: float = 1e300) -> tuple[Fraction, Unit]:
 
 
 def si_value(text: str, unit: str, *also: str) -> tuple[Fraction, str]:
-    """Return (value of the text in SI, the one out of `unit` and `also` that has its dimension).
+    """Return (exact value of the text in SI, the first one out of `unit` and `also` that has its dimension, as given).
 
     Args:
         text: such as "10 mm".
         unit: wanted dimension, as a unit of SI or of the model; "1" for a number without dimension.
-        also: further dimensions that are allowed, as units of SI.
+        also: further dimensions that are allowed, as units of SI or of the model.
 
     Raises:
         UnitTextError: with a sentence that begins "must be …": the text is no quantity, or one of another dimension.
@@ -218,8 +230,8 @@ def si_value(text: str, unit: str, *also: str) -> tuple[Fraction, str]:
 def si_base(text: str) -> tuple[float, str]:
     """Return the number of a text in the unit of SI of its dimension, and that unit: 0.01 and "m" of "10 mm".
 
-    Of N/m and J/m², which have one dimension, it is the one in the text. An angle, and a dimension that is not known
-    here, keep their unit.
+    Of N/m and J/m², which have one dimension, it is the one whose first letter is in the text's unit, else N/m. An
+    angle, and a dimension without a name here, keep their number and unit.
 
     Raises:
         UnitTextError: the text is no quantity.
@@ -232,18 +244,18 @@ def si_base(text: str) -> tuple[float, str]:
 
 
 def _quoted(text: str) -> str:
-    """Return a text for a message: at most 60 characters, "?" for each that is not printable.
+    """Return a text for a message, without quotes: at most 60 characters, "?" for each that is not printable.
 
-    "an empty text" for none.
+    A longer one ends with "…". "an empty text" for one of blanks alone or without characters.
     """
     short = text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
     return "".join(c if c.isprintable() else "?" for c in short).strip() or "an empty text"
 
 
 def _other_unit(text: str, unit: str) -> str:
-    """Return the question whether another unit was meant, "; did you mean 10 GPa?" for "10 gpa".
+    """Return the question whether another unit was meant, "; did you mean 10 GPa?" of "10 gpa"; "" if none is likely.
 
-    "" where none is likely.
+    Likely is a common unit of the dimension of `unit` that differs in case alone, and N·m for "Nm" as an energy.
     """
     try:
         number, given = split(text)
@@ -258,19 +270,23 @@ def _other_unit(text: str, unit: str) -> str:
 
 @cache
 def _registry() -> Any:
-    """Return pint's registry of units, with exact factors."""
+    """Return pint's registry of units of SI, with factors as fractions; cached, and imported with the first call."""
     import pint
 
     return pint.UnitRegistry(non_int_type=Fraction)
 
 
 def _dimension(unit: str) -> Mapping[str, Any]:
-    """Return the dimension of a unit of SI, powers by pint's names; empty for "1" and "rad"."""
+    """Return the dimension of a unit of SI, as powers by pint's names ("[length]": 1); empty for "1" and "rad".
+
+    Raises:
+        UnitTextError: there is no such unit.
+    """
     return {} if unit in ("1", "rad") else _unit(unit).dimension
 
 
 def _for_pint(unit: str) -> str:
-    """Return `unit` as pint reads it: J/m**2 for J/m2 and J/m^2."""
+    """Return `unit` in the notation of pint, unchecked: "J/m**2" for J/m2, J/m^2 and J/m², "*" for "·" and "×"."""
     plain = unit.translate(str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")).replace("·", "*").replace("×", "*")
     plain = re.sub(r"(\*\*|\^)", "", plain)
     return re.sub(r"(?<=[^\W\d_])(-?\d+)", r"**\1", plain)
@@ -278,7 +294,7 @@ def _for_pint(unit: str) -> str:
 
 @cache
 def _unit(text: str) -> Unit:
-    """Return the unit of a text; cached.
+    """Return the unit of a text such as "mm" or "N/m"; cached.
 
     Raises:
         UnitTextError: there is no such unit.
@@ -287,7 +303,10 @@ def _unit(text: str) -> Unit:
 
 
 def _si_unit(text: str) -> Unit | None:
-    """Return a unit of symbols of SI with their prefixes, products and quotients; None where it has others."""
+    """Return the unit of a text of SI symbols with prefixes, products by "·" and quotients by "/", such as "mN·s/m²".
+
+    None where it has anything else: other symbols, blanks, or powers other than ² and ³.
+    """
     factor, powers = Fraction(1), Counter[str]()
     for sign, name in re.findall("([·/])([^·/]*)", f"·{text}"):
         match = FACTOR.fullmatch(name)
@@ -330,7 +349,7 @@ def _pint_unit(text: str) -> Unit:
 
 
 def _is_known(name: str) -> bool:
-    """Return whether pint knows the name of a unit."""
+    """Return whether pint knows the name of a unit, with a prefix or without; False for "nan" and "inf" in any case."""
     from pint import PintError
 
     try:

@@ -131,20 +131,21 @@ class Material(Table):
     def elastic(self) -> dict[str, Elastic]:
         """The given bodies that are not rigid, and so have a compliance, by "upper" and "lower".
 
-        Empty where E* is given.
+        Empty without any, as where E* is given in place of them.
         """
         bodies = {"upper": self.upper, "lower": self.lower}
         return {name: body for name, body in bodies.items() if isinstance(body, Elastic)}
 
     def effective_modulus(self) -> float:
-        """Return the contact modulus E* [Pa], given or of both bodies.
+        """Return the contact modulus E* [Pa]: as given, else of both bodies, 1/E* = Σ (1 − ν²)/E.
 
-        Of a rigid one and the other that of the other alone.
+        Of a rigid one and the other that of the other alone. ZeroDivisionError where neither E* nor an elastic body is
+        given.
         """
         return self.contact_modulus or 1.0 / sum(body.compliance for body in self.elastic.values())
 
     def tangential_share(self) -> float:
-        """Return the tangential over the normal contact modulus, G*/E*, dimensionless.
+        """Return the tangential over the normal contact modulus, G*/E*, dimensionless, of the bodies that are elastic.
 
         1 if only E* is known, so that bulk springs are equally stiff in both directions.
         """
@@ -171,7 +172,8 @@ def default_reduction(has_material: bool, lower: str, profile: str) -> Reduction
 def wider_than_body(profile: Mapping[str, Any]) -> float | None:
     """Return the half-width of the paper's image over the contact radius of the body on a plane under the same force.
 
-    (2κ_n)^{1/(n+1)} for z ∝ xⁿ, dimensionless; None where there is no closed form.
+    (2κ_n)^{1/(n+1)} for z ∝ xⁿ, dimensionless; None for punches, flats and measured profiles, and for a power without
+    an exponent.
 
     Args:
         profile: with the keys of a scene file. Of a circle or an ellipsoid the factor is that of its parabola.
@@ -224,15 +226,17 @@ class Bodies(Table):
     def height(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the height [LU] of the upper chain above its apex at the positions `x` [LU]; same shape.
 
-        It is transformed where the reduction is the MDR.
+        It is that of the profile after the MDR transform where the reduction is the MDR, else as drawn.
         """
         return self.profile.transformed(x) if self.reduction == "mdr" else self.profile.height(x)
 
     @property
     def reach(self) -> float:
-        """Half-width [LU] within which the profile is a body at all; infinite of an unbounded one.
+        """Half-width [LU] within which the profile is a body at all; infinite for a parabola, cone or power.
 
-        Of a flat body half of its chain, infinite where its number of particles is automatic.
+        The radius of a circle, a punch, or an ellipsoid across the load; the last point of a measured profile. Of a
+        periodic flat body half of its chain, infinite where its number of particles is automatic; AssertionError there
+        where no spacing was chosen yet.
         """
         if isinstance(self.profile, Flat):
             count = self.upper_particles or self.particles
@@ -241,30 +245,37 @@ class Bodies(Table):
 
     @property
     def own_count(self) -> int | None:
-        """Particles of the upper chain of a body with an edge, as many as fit into it; None for other bodies."""
+        """Particles of the upper chain of a flat punch, as many as fit into it; None for bodies without an edge.
+
+        Of a periodic flat body their given number; OverflowError where that is automatic. AssertionError where no
+        spacing was chosen yet.
+        """
         return round(2.0 * self.reach / self.own_spacing) if self.profile.has_edge else None
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Radii [LU] off the axis at which the slope of the profile jumps; empty without any."""
+        """Radii [LU] off the axis, rising, at which the slope of the profile jumps; empty of all but measured ones."""
         return self.profile.kinks
 
     @property
     def spacing(self) -> float:
-        """Distance [LU] of neighbouring particles; "auto" is a number once `with_spacing` has chosen it."""
+        """Distance [LU] of neighbouring particles, where bodies differ of the lower one; AssertionError if "auto"."""
         assert self.given_spacing != "auto", "no spacing was chosen yet"
         return self.given_spacing
 
     @property
     def own_spacing(self) -> float:
-        """Distance [LU] of neighbouring particles of the upper body."""
+        """Distance [LU] of neighbouring particles of the upper body, as given, else the common one.
+
+        AssertionError where that is still "auto".
+        """
         return self.upper_spacing or self.spacing
 
     @property
     def plane_radius(self) -> float | None:
         """Radius R₁ [LU] of the plane parabola x²/2R₁ that represents a parabola of radius R: R, or with the MDR R/2.
 
-        None for other profiles.
+        Of two curved bodies 1/R = 1/R₁ + 1/R₂ of both radii. None for other profiles, also for a circle.
         """
         profile = self.profile
         return PARABOLA_SHARE[self.reduction] * profile.curvature_radius if isinstance(profile, Parabola) else None
@@ -291,7 +302,7 @@ def _one_line(title: str) -> str:
     """Return the title, unchanged, if it is one line.
 
     Raises:
-        PydanticCustomError: it is empty, or has a line break or another unprintable character.
+        PydanticCustomError: it is empty or blank, or has a line break or another unprintable character.
     """
     if not title.strip() or not title.isprintable():
         raise PydanticCustomError("scene", "must be one line of text, not empty")
@@ -336,7 +347,11 @@ class Tables(Table):
 
     @model_validator(mode="after")
     def _choose_reduction(self) -> Self:
-        """Return the scene with a reduction of its bodies, which counts as not given where it is by default."""
+        """Return this scene, or where it gives no reduction of its bodies a copy that has one.
+
+        In the copy it still counts as not given. It is "geike_popov" for a parabola without a material on another body
+        than a rigid plane, "mdr" for all others.
+        """
         bodies = self.bodies
         if bodies.reduction is not None:
             return self
@@ -346,35 +361,39 @@ class Tables(Table):
         return self.model_copy(update={"bodies": resolved})
 
     def __repr__(self) -> str:
-        """Return one line: title, profile, effects and experiment; `print` shows the whole scene."""
+        """Return one line: title, kind of profile, names of effects and kind of experiment, in <Scene …>."""
         effects = f", {', '.join(self.effects)}" if self.effects else ""
         return f"<Scene {self.title!r}: {self.bodies.profile.kind}{effects}; {self.experiment.kind}>"
 
     @property
     def effects(self) -> tuple[str, ...]:
-        """Names of the effects that this scene has, in deck order."""
+        """Names of the effects whose tables this scene has, in the order of the scene's fields; empty without any.
+
+        That is also their order in a deck: interaction, neighbours, horizontal, adhesion, viscoelasticity, friction,
+        damping, noise, plate, cantilever.
+        """
         return tuple(name for name in EFFECTS if getattr(self, name) is not None)
 
     @property
     def present(self) -> tuple[Effect, ...]:
-        """The tables of the effects that this scene has, in deck order."""
+        """The tables of the effects that this scene has, in the order of `effects`; empty without any."""
         return tuple(getattr(self, name) for name in self.effects)
 
     @property
     def is_modelled(self) -> bool:
-        """Whether the reduced model has all effects of this scene."""
+        """Whether the reduced model has all effects of this scene: False with [neighbours] or [noise], else True."""
         return all(effect.is_modelled for effect in self.present)
 
     @property
     def keeps_springs(self) -> bool:
-        """Whether all effects keep the line load inside a contact as that of linear springs, regardless of its edge."""
+        """Whether all effects keep the line load inside a contact as that of linear springs, regardless of its edge.
+
+        All but [neighbours], [viscoelasticity] and [noise] do; True without effects.
+        """
         return all(effect.keeps_springs for effect in self.present)
 
     def the(self, kind: type[E]) -> E:
-        """Return the effect of this class, which a rule or the experiment needs.
-
-        StopIteration where the scene has none.
-        """
+        """Return the table of the effect of this class; StopIteration where the scene has none."""
         return next(effect for effect in self.present if isinstance(effect, kind))
 
     @property
@@ -389,9 +408,11 @@ class Tables(Table):
 
     @property
     def bulk_stiffness(self) -> float:
-        """Stiffness k [FU/LU] of each particle to its bulk: given, else that of the material.
+        """Stiffness k [FU/LU] of each particle to its bulk along z: given, else that of the material.
 
-        Two chains in series, or one on a rigid plane, make the layer c: k = 2 c h or c h, with the spacing h.
+        Two chains in series, or one on a rigid plane or chain, make the layer c: k = 2 c h or c h, with the spacing h;
+        c is E* with the MDR and E*/2 with "geike_popov". AssertionError where the material lacks the sizes of LU or FU,
+        or no spacing was chosen yet.
         """
         given = self.bodies.bulk_stiffness
         if given != "auto":
@@ -406,7 +427,7 @@ class Tables(Table):
     def tangential_stiffness(self) -> float:
         """Stiffness [FU/LU] of each particle to its bulk along x: given, else G*/E* times the normal stiffness.
 
-        Equal to the normal stiffness where E and ν are not known.
+        Equal to the normal stiffness where E and ν are not known. AssertionError where the normal one is not known.
         """
         given = self.bodies.bulk_stiffness_tangential
         if given is not None:
@@ -415,24 +436,30 @@ class Tables(Table):
 
     @property
     def chains(self) -> int:
-        """Number of chains that share the deformation: two, or one on a rigid plane or a rigid chain."""
+        """Number of chains that share the deformation: 2 with a lower body of particles, 1 on a rigid one."""
         return 2 if self.bodies.lower == "particles" else 1
 
     @property
     def stands(self) -> bool:
-        """Whether particles are fixed in the upper body, on a rigid plane that has their springs."""
+        """Whether particles are fixed in the upper body, on a rigid plane that has their springs.
+
+        That is on any rigid plane without [neighbours] and [noise], which need particles that move by themselves.
+        """
         return self.bodies.lower == "rigid_plane" and not any(effect.needs_bonds for effect in self.present)
 
     @property
     def is_stepped(self) -> bool:
-        """Whether particles follow the plate without relaxation, so that load steps are timesteps of one run."""
+        """Whether particles follow the plate without relaxation, so that load steps are timesteps of one run.
+
+        That is in a quasi-static run on a rigid plane without [neighbours].
+        """
         return self.stands and self.method == "quasistatic"
 
     @property
     def method(self) -> Method:
-        """The experiment's only method or the given one, else "dynamic" or "quasistatic" by the effects.
+        """The experiment's only method, "dynamic" or "quasistatic", else the given one, else by the effects.
 
-        "dynamic" with a plate, damping, noise or a cantilever.
+        By these it is "dynamic" with a plate, damping, noise or a cantilever.
         """
         return self.experiment.given_method or default_method(self.effects)
 

@@ -28,10 +28,11 @@ EXACT = (
 
 
 def take_shares(scene: Place) -> dict[str, float]:
-    """Return the 95 % half-width of each number with ± over its value (relative), by dotted key.
+    """Return the 95 % half-width of each number with ± over its magnitude (relative), by dotted key; empty without any.
 
     The scene keeps the value alone, in place. In Python a number may be a pair of value and half-width, each a text or
-    a number. Errors are reported.
+    a number. Errors are reported: a text that cannot be read is left out and remains; a number that may have no
+    uncertainty, or one of half of its value or more, or 0 or less, is among the results nevertheless.
     """
     shares = {}
     for place in numbers_in(scene):
@@ -54,7 +55,10 @@ def take_shares(scene: Place) -> dict[str, float]:
 
 
 def _parts(value: object) -> tuple[Any, Any] | None:
-    """Return (value, half-width) as written in a text with ± or a list of two; None for anything else."""
+    """Return (value, half-width) as written in a text with ± (or +- or +/-) or a list of two; None for anything else.
+
+    The unit of "(10 ± 0.1) mm" is then behind both. An item of a list may have any type; nothing is checked.
+    """
     if isinstance(value, str) and len(parts := SIGN.split(value)) == 2 and parts[0]:
         if match := TOGETHER.fullmatch(value.strip()):
             parts = [f"{part}{match[2]}" for part in SIGN.split(match[1])]
@@ -63,7 +67,10 @@ def _parts(value: object) -> tuple[Any, Any] | None:
 
 
 def _read(place: Place, value: Any, spread: Any) -> tuple[Any, Fraction]:
-    """Return (value as a scene has it, half-width over its magnitude), the latter 0 for a value of 0.
+    """Return (value as a scene has it, half-width over its magnitude).
+
+    The value is a float, or a text where it has a unit. The second is 0 for a value of 0, except with "%"; negative for
+    a negative half-width.
 
     Args:
         place: key of the number.
@@ -71,7 +78,7 @@ def _read(place: Place, value: Any, spread: Any) -> tuple[Any, Fraction]:
         spread: half-width as written, with a unit, "%" or neither.
 
     Raises:
-        UnitTextError: one of them is no number, or the units do not fit.
+        UnitTextError: one of them is no number, the units do not fit, or a half-width is a temperature in °C or °F.
     """
     number, half, text, units = _plain(value), _plain(spread), str(spread).strip(), place.unit.texts
     if not any(map(str.isdigit, text)):
@@ -94,7 +101,10 @@ def _read(place: Place, value: Any, spread: Any) -> tuple[Any, Fraction]:
 
 
 def _plain(value: Any) -> Fraction | None:
-    """Return a finite number, or that of a text without a unit, as a fraction; None for anything else."""
+    """Return a finite number, or that of a text without a unit, as the fraction of its decimals; None for all else.
+
+    None for booleans, infinity and NaN, too.
+    """
     if isinstance(value, int | float) and not isinstance(value, bool):
         return Fraction(repr(value)) if value - value == 0 else None
     plain = str(value).strip().replace("−", "-")
@@ -102,7 +112,7 @@ def _plain(value: Any) -> Fraction | None:
 
 
 def with_shares(tables: dict[str, Any], shares: Mapping[str, float]) -> dict[str, Any]:
-    """Add ± to the numbers at these dotted keys, as `take_shares` reads it, and return the tables, changed in place.
+    """Return the tables with ± at the numbers of these dotted keys, "10.0 ± 1.0 %"; they are changed in place.
 
     `shares`: half-widths over the values (relative). Keys that the tables do not have are left out.
     """
@@ -117,7 +127,11 @@ def with_shares(tables: dict[str, Any], shares: Mapping[str, float]) -> dict[str
 
 
 def moved(part: Any, keys: Sequence[Any], factor: float) -> Any:
-    """Return a copy of a table, list of tables or number with the number at these keys times a factor."""
+    """Return a copy of a table, list of tables or number with the number at these keys times a factor.
+
+    It is not checked. The original is unchanged; without keys it is itself the number. An index beyond the end of a
+    list changes nothing; KeyError for a key that the table does not have.
+    """
     if not keys:
         return factor * part
     first, *rest = keys

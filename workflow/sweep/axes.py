@@ -49,9 +49,10 @@ class Axis:
 
     @cached_property
     def numbers(self) -> tuple[tuple[float, ...], str]:
-        """The values as numbers, of texts with units in base units of SI, and their common unit, "" of plain numbers.
+        """The values as (numbers, their common unit); those of texts with units in base units of SI; cached.
 
-        No numbers and "" if a value is neither a number nor a text with a unit, or units differ.
+        The unit is "" of plain numbers. ((), "") if a value is neither a finite number nor a text with a unit, if
+        numbers and texts are mixed, or if units differ.
         """
         if all(map(_is_number, self.values)):
             return tuple(map(float, self.values)), ""
@@ -63,9 +64,9 @@ class Axis:
 
     @cached_property
     def cells(self) -> tuple[Any, ...]:
-        """The values as cells of the table: numbers, of texts with units in SI, or words as they are.
+        """The values as cells of the table: floats, of texts with units in SI, if all are such and of one unit; cached.
 
-        Others as in a scene file.
+        Else numbers and texts as they are, and others (True, False, tables, lists) as text in TOML.
         """
         return self.numbers[0] or tuple(
             value if isinstance(value, str | int | float) and not isinstance(value, bool) else as_toml(value)
@@ -93,20 +94,27 @@ class SweepPlan:
     combine: str
 
     def __len__(self) -> int:
-        """Return the number of points."""
+        """Return the number of points: the product of the numbers of values, or zipped that of the first axis."""
         lengths = [len(axis.values) for axis in self.axes]
         return math.prod(lengths) if self.combine == "product" else lengths[0]
 
     def values(self) -> Iterator[tuple[Any, ...]]:
-        """Yield the values of each point, one for each axis, as the sweep file has them."""
+        """Yield the values of each point in order, a tuple with one for each axis, as the sweep file has them."""
         return self._combined(axis.values for axis in self.axes)
 
     def cells(self) -> Iterator[tuple[Any, ...]]:
-        """Yield the values of each point as cells of the table, one for each axis."""
+        """Yield the values of each point in order as cells of the table, a tuple with one for each axis: numbers in SI.
+
+        Words are as they are, others as text in TOML.
+        """
         return self._combined(axis.cells for axis in self.axes)
 
     def _combined(self, columns: Iterable[tuple[Any, ...]]) -> Iterator[tuple[Any, ...]]:
-        """Yield one item of each column for each point: all combinations, the last column quickest, or side by side."""
+        """Yield a tuple of one item of each column for each point: all combinations, the last column quickest, or zip.
+
+        Raises:
+            ValueError: side by side (zip), where the columns have different lengths.
+        """
         return itertools.product(*columns) if self.combine == "product" else zip(*columns, strict=True)
 
 
@@ -115,7 +123,7 @@ Rule = tuple[bool, str, str, object, str]
 
 
 def _broken(rules: Iterable[Rule]) -> list[Problem]:
-    """Return the problems of the rules that are broken; empty where none is."""
+    """Return the problems of the rules that are broken, in their order; [] where none is."""
     return [
         Problem(path, message, None if given is None else shown(given), hint)
         for broken, path, message, given, hint in rules
@@ -125,6 +133,9 @@ def _broken(rules: Iterable[Rule]) -> list[Problem]:
 
 def read_sweep(source: AnySweep) -> SweepPlan:
     """Return the sweep that a TOML file, by its path, or a mapping with the keys of such a file describes.
+
+    The base scene is not checked. Paths in it are relative to the folder of the sweep file, or of the scene file that
+    it names; for a mapping to the current folder.
 
     Raises:
         SceneError: all problems of the sweep file; or those of the base scene's file, if it can't be read.
@@ -149,7 +160,10 @@ def read_sweep(source: AnySweep) -> SweepPlan:
 
 
 def _of_file(tables: Mapping[str, Any]) -> Iterator[Rule]:
-    """Yield the rules of the keys at the top of a sweep file, each with whether it is broken."""
+    """Yield each rule of the keys at the top of a sweep file, with whether it is broken.
+
+    All rules are yielded, also those that are met; none of the content of an axis.
+    """
     title, combine, axes = tables.get("title", ""), tables.get("combine", "product"), tables.get("axes")
     scene, base = tables.get("scene"), tables.get("base")
     one_base = "give a scene file, or the scene's tables under [base]"
@@ -170,16 +184,16 @@ def _of_file(tables: Mapping[str, Any]) -> Iterator[Rule]:
 def _unknown(table: Mapping[str, Any], allowed: Sequence[str], where: str = "") -> Iterator[Rule]:
     """Yield the rule of each key of a table, broken where it is not among the `allowed` ones.
 
-    `where` goes before its name.
+    `where` precedes the name of the key in its path, such as "axes[0].".
     """
     for key in table:
         yield key not in allowed, where + key, "unknown key", None, suggestion(key, allowed)
 
 
 def _of_axis(table: Any, where: str) -> Iterator[Rule]:
-    """Yield the rules of the table of one axis, each with whether it is broken.
+    """Yield each rule of the table of one axis, with whether it is broken; only one, broken, where it is no table.
 
-    `where` is its place, such as axes[0].
+    `where`: its path in the sweep file, such as axes[0].
     """
     if not isinstance(table, Mapping):
         yield True, where, "must be a table with key and values", table, ""
@@ -202,7 +216,10 @@ def _of_axis(table: Any, where: str) -> Iterator[Rule]:
 
 
 def _of_span(table: Mapping[str, Any], where: str) -> Iterator[Rule]:
-    """Yield the rules of an axis that is given by its ends, each with whether it is broken; `where` is its place."""
+    """Yield each rule of an axis that is given by its ends, with whether it is broken.
+
+    `table` has the keys from, to and steps; `where`: its path in the sweep file, such as axes[0].
+    """
     given, steps, scale = (table["from"], table["to"]), table["steps"], table.get("scale", "linear")
     ends, _ = Axis("", given).numbers
     must = "must be a finite number"
@@ -218,7 +235,10 @@ def _of_span(table: Mapping[str, Any], where: str) -> Iterator[Rule]:
 
 
 def _of_axes(axes: Sequence[Axis], combine: str) -> Iterator[Rule]:
-    """Yield the rules of all axes together, each with whether it is broken: keys differ, lengths, number of points."""
+    """Yield each rule of all axes together, with whether it is broken: different keys, lengths, number of points.
+
+    Lengths must be equal only side by side (zip), and the number of points is limited to a million only in a product.
+    """
     keys, lengths = [axis.key for axis in axes], [len(axis.values) for axis in axes]
     for i, key in enumerate(keys):
         yield key in keys[:i], f"axes[{i}].key", "another axis has the same key", key, ""
@@ -233,8 +253,8 @@ def _of_axes(axes: Sequence[Axis], combine: str) -> Iterator[Rule]:
 def _span(table: Mapping[str, Any]) -> tuple[Any, ...]:
     """Return the steps + 1 values of an axis given by its ends, which are exact: evenly spaced, or in equal ratios.
 
-    They are whole numbers if all values of a linear axis are whole, and texts with units if the ends are texts; else
-    floats.
+    They are whole numbers if ends and all values of a linear axis are whole; texts if the ends are, those between in
+    base units of SI; else floats. Values between are rounded to 12 digits.
     """
     given, steps, scale = (table["from"], table["to"]), table["steps"], table.get("scale", "linear")
     ends, unit = Axis("", given).numbers
@@ -248,11 +268,12 @@ def _span(table: Mapping[str, Any]) -> tuple[Any, ...]:
 
 
 def _is_list(value: object) -> bool:
+    """Return whether a value is a list or tuple, or another sequence but a text."""
     return isinstance(value, Sequence) and not isinstance(value, str)
 
 
 def _is_number(value: object) -> bool:
-    """Return whether a value is a finite number; True and False are none."""
+    """Return whether a value is a finite int or float; True and False are none, nor are texts."""
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
@@ -278,7 +299,10 @@ class Point:
 
 
 def points(plan: SweepPlan) -> Iterator[Point]:
-    """Yield the points of a sweep in order, each made as it is needed; a point without a valid scene has the reason."""
+    """Yield the points of a sweep in order, each made as it is needed.
+
+    A point whose values give no valid scene has None as its scene, "" as its name, and the reason in one line.
+    """
     for values in plan.values():
         try:
             scene = _scene(plan, values)
@@ -289,7 +313,9 @@ def points(plan: SweepPlan) -> Iterator[Point]:
 
 
 def require_keys(plan: SweepPlan) -> None:
-    """Check, with the first point, that each axis is a key of the scene; wrong values are errors of their points.
+    """Check, with the first point, that each axis is a key of the scene; nothing is returned.
+
+    Wrong values pass, since they are errors of their points.
 
     Raises:
         SceneError: an axis names no key of the scene.
@@ -330,5 +356,5 @@ def _scene(plan: SweepPlan, values: tuple[Any, ...]) -> Scene:
 
 
 def _is_of_axis(path: str, keys: list[str]) -> bool:
-    """Return whether a path in a scene is one of the keys, or a table that a key goes through."""
+    """Return whether a dotted path in a scene is one of the keys, or a table that a key goes through."""
     return any(key == path or key.startswith(f"{path}.") for key in keys)

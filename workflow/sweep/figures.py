@@ -35,10 +35,10 @@ DARK_TO_LIGHT = ("#440154", "#46327e", "#365c8d", "#277f8e", "#1fa187", "#4ac16d
 
 
 def sweep_charts(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> dict[str, Chart]:
-    """Return by name the chart of each result that changes, over the first axis with several values.
+    """Return by name the chart of each result that changes, over the first axis with several values but the seed.
 
-    They are in SI base units where these are known, else in units of the model. A result that changes by less than 1e-6
-    of its largest value has no chart.
+    They are in SI base units where these are known, else in units of the model. A result that changes by at most 1e-6
+    of its largest value, or that no run has, has no chart. Axes of positive values over a factor of 20 are logarithmic.
 
     Args:
         folder: folder of the sweep, with its table.
@@ -61,15 +61,15 @@ def sweep_charts(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> dic
 def _points(folder: Path, plan: SweepPlan, names: Iterable[str], places: Mapping[str, float]) -> dict[str, DataFrame]:
     """Return by result a table with a row for each value, of runs and of closed forms; no entry without a value.
 
-    Column `label` has the values of the axes but the first, `form` the name of the closed form ("" of a run), `place`
-    the abscissa: a number of the first axis, or the position of a word in it. `value` and `uncertainty` are in the
-    units of the sweep's table; of a closed form the uncertainty is 0.
+    Column `label` has the values of the axes that distinguish lines ("" without any), `form` the name of the closed
+    form ("" of a run), `place` the abscissa: a number of the axis along x, or the position of a word in it. `value` and
+    `uncertainty` are in the units of the sweep's table; of a closed form the uncertainty is 0.
 
     Args:
         folder: folder of the sweep, with its table.
         plan: the sweep.
         names: results.
-        places: position of each word of the first axis; empty where that has numbers.
+        places: position of each word of the axis along x; empty where that has numbers.
     """
     from pandas import DataFrame
 
@@ -90,7 +90,7 @@ def _points(folder: Path, plan: SweepPlan, names: Iterable[str], places: Mapping
 
 
 def _lines(points: DataFrame) -> list[Series]:
-    """Return lines of the closed forms, then the runs as points in their colours.
+    """Return lines of the closed forms, then the runs as points in their colours, one series for each label.
 
     Their values are in the unit of the table. Runs that differ by their seed alone are one point, the mean with its
     standard error; a single one has its uncertainty.
@@ -111,7 +111,7 @@ def _lines(points: DataFrame) -> list[Series]:
 
 
 def _spans(values: Collection[float], least_ratio: float = 20.0) -> bool:
-    """Return whether positive values span `least_ratio` or more, so that their axis is logarithmic.
+    """Return whether values are all above 0 and span a factor of `least_ratio` or more, so that an axis is logarithmic.
 
     False without values.
     """
@@ -119,9 +119,9 @@ def _spans(values: Collection[float], least_ratio: float = 20.0) -> bool:
 
 
 def _dense(x: Array, values: Array, points: int = 200) -> tuple[Array, Array]:
-    """Return x and values of a closed form at `points` abscissas, by monotone cubics of their logarithms.
+    """Return (x, values) of a closed form at `points` abscissas in equal ratios, by monotone cubics of logarithms.
 
-    With fewer than three abscissas, or one of x and values not above 0, these are returned as they are.
+    With fewer than three abscissas, or one of x and values not above 0, these are returned as they are. `x` is rising.
     """
     if len(x) < 3 or min(x.min(), values.min()) <= 0.0:
         return x, values
@@ -130,16 +130,20 @@ def _dense(x: Array, values: Array, points: int = 200) -> tuple[Array, Array]:
 
 
 def roles_of(plan: SweepPlan) -> tuple[Axis, list[Axis]]:
-    """Return the axis along x, and the axes that distinguish lines; axes side by side (zip) make one line.
+    """Return (the axis along x, the axes that distinguish lines, [] for none).
 
-    The seed and axes of one value count as neither; where there are no others the first axis is along x.
+    Along x is the first axis, others distinguish lines; side by side (zip) there is one line. The seed and axes of one
+    value count as neither; where there are no others the first axis is along x.
     """
     axes = [axis for axis in plan.axes if axis.key != SEED and len(axis.values) > 1] or list(plan.axes[:1])
     return axes[0], [] if plan.combine == "zip" else axes[1:]
 
 
 def label_in(axis: Axis, cell: str) -> str:
-    """Return the text of a table's cell in a legend: with a unit of SI and its prefix if the axis has a unit."""
+    """Return the text of a table's cell in a legend: in SI with a prefix if the axis has a unit, else unchanged.
+
+    A number in SI has five digits.
+    """
     unit = axis.numbers[1]
     return str(Quantity(float(cell), 0.0, unit)) if unit else cell
 
@@ -147,8 +151,8 @@ def label_in(axis: Axis, cell: str) -> str:
 def title_of(plan: SweepPlan, axis: Axis) -> str:
     """Return the title of an axis from the description of its key, such as `radius of curvature R at the apex`.
 
-    Where the base scene does not know the key, it is that of the last table on its path that it knows, or the last two
-    parts of the key.
+    It ends before the first comma, semicolon, colon or bracket. Where the base scene does not know the key, it is the
+    description of the last table on its path that it knows, or the last two parts of the key.
     """
     allowed, data, name = allowed_by(Scene), plan.base, ".".join(axis.key.split(".")[-2:])
     for part in axis.key.split("."):

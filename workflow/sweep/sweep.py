@@ -64,9 +64,13 @@ class Sweep:
     quantities: Mapping[str, str]
 
     def table(self) -> DataFrame:
-        """Return results.csv as a pandas.DataFrame of numbers, in base units of SI where these are known.
+        """Return results.csv as a pandas.DataFrame, a row for each point, in base units of SI where these are known.
 
-        Its columns have no units in their names; `.attrs["units"]` has the unit of each column that has one.
+        Its columns have no units in their names; `.attrs["units"]` has the unit of each column that has one. Empty
+        cells are NaN; `status`, `reason` and `run` are text.
+
+        Raises:
+            FileNotFoundError: the table was removed.
         """
         frame = frame_of(self.folder)
         units = {name[1]: name[2] for header in frame.columns if (name := HEADER.fullmatch(header))}
@@ -87,9 +91,12 @@ def sweep(
 ) -> Sweep:
     """Return the sweep after running every point that has not run yet; its table and figures have all points.
 
+    A point whose run fails, or that has no valid scene, is a row of the table. If the sweep is interrupted, the table
+    is written, and the same call continues it.
+
     Args:
         source: a sweep file, by its path, or its tables.
-        folder: folder of the sweep; points that ran in it earlier are kept.
+        folder: folder of the sweep; points that ran in it earlier are kept, also those that failed.
         executor: "local", "slurm", or anything with the interface of `concurrent.futures`.
         workers: processes, or jobs of Slurm, at a time; None: as many as there are processors.
         figures: whether to draw, or the format: "png" (the same as True), "svg" or "pdf".
@@ -99,7 +106,8 @@ def sweep(
     Raises:
         SceneError: the sweep file is wrong, or an axis names no key of the scene; nothing is written.
         FolderError: the folder holds another sweep or something else, or this sweep is active in it.
-        ExecutorError: there is no such executor.
+        ExecutorError: there is no such executor, or it refuses a job.
+        OSError: the disk is full.
     """
     plan = read_sweep(source)
     require_keys(plan)
@@ -133,7 +141,7 @@ def sweep(
 
 
 def _record(plan: SweepPlan) -> str:
-    """Return the text of a sweep file for a sweep, its base scene included."""
+    """Return the text of a sweep file, TOML, for a sweep: each axis by its values, and its base scene as [base]."""
     head = f"title = {as_toml(plan.title)}\ncombine = {as_toml(plan.combine)}\n"
     axes = "".join(f"\n[[axes]]\nkey = {as_toml(a.key)}\nvalues = {as_toml(list(a.values))}\n" for a in plan.axes)
     base = "".join(f"{key} = {as_toml(value)}\n" for key, value in plan.base.items())
@@ -141,9 +149,10 @@ def _record(plan: SweepPlan) -> str:
 
 
 def _continues(folder: Path, record: str, progress: Progress) -> bool:
-    """Return whether the folder holds a sweep with the same base scene and axis keys; values may be added.
+    """Return whether the folder holds a sweep with the same base scene and keys of axes, in order; values may differ.
 
     A record that can't be read is replaced where there are runs, and `progress` says so: True then, False without runs.
+    `record`: text of the sweep file of today.
     """
     try:
         plans = [read_record(folder), read_sweep(record)]
@@ -156,13 +165,13 @@ def _continues(folder: Path, record: str, progress: Progress) -> bool:
 
 
 def _missing(plan: SweepPlan, folder: Path, rows: list[str | Answer], progress: Progress) -> Iterator[Task]:
-    """Yield scene and folder of each point that has not run yet, each scene once.
+    """Yield (scene, its run folder) of each point that has not run yet, each scene once.
 
     Args:
         plan: the sweep.
         folder: folder of the sweep.
         rows: list that gets the folder name of each point, in order, or the refusal of one without a valid scene.
-        progress: informed of refusals and of points that are done.
+        progress: informed of refusals, of points that are done and of those with the scene of an earlier one.
     """
     seen = set()
     for point in points(plan):
@@ -183,10 +192,14 @@ def _missing(plan: SweepPlan, folder: Path, rows: list[str | Answer], progress: 
 
 
 def _answered(tasks: Iterator[Task], workplace: Workplace) -> Iterator[tuple[str, Answer]]:
-    """Run tasks, `workplace.window` chunks at a time; yield folder name and outcome of each as it ends.
+    """Run tasks, `workplace.window` chunks at a time; yield (folder name, outcome) of each as it ends.
 
     A process that dies breaks its executor. The tasks that ran or waited then run again one by one, so that a second
     failure is that of a known task, which then has failed.
+
+    Raises:
+        OSError: the disk is full.
+        ExecutorError: a job was refused.
     """
     while (first := next(tasks, None)) is not None:
         suspects: list[Task] = []
@@ -204,7 +217,9 @@ def _answered(tasks: Iterator[Task], workplace: Workplace) -> Iterator[tuple[str
 def _through(
     executor: Executor, tasks: Iterator[Task], chunk: int, window: int, broken: list[Task]
 ) -> Iterator[tuple[str, Answer]]:
-    """Yield folder name and outcome of each task as it ends; put the tasks of an executor that breaks into `broken`.
+    """Yield (folder name, outcome) of each task as it ends; put the tasks of an executor that breaks into `broken`.
+
+    The outcome of a task that its executor lost is that in its folder, else `missing`.
 
     Args:
         executor: runs the tasks.
@@ -243,18 +258,27 @@ def _through(
 
 
 def _not_run(error: Exception) -> Answer:
-    """Return the outcome `missing` of a point whose job ended before the point ran, with the error as its reason."""
+    """Return the outcome `missing` of a point whose job ended before the point ran, with the error as its reason.
+
+    The reason is in one line.
+    """
     words = " ".join(str(error).split()).rstrip(".")
     return Answer("missing", f"its job ended before it ran; start the sweep again: {words}")
 
 
 def attempt_all(tasks: Sequence[Task]) -> list[Answer]:
-    """Run scenes one after the other in this process, which loads LAMMPS once, and return their answers."""
+    """Run scenes one after the other in this process, which loads LAMMPS once, and return their outcomes in order.
+
+    Raises:
+        OSError: the disk is full; further scenes do not run.
+    """
     return [_attempt(scene, folder) for scene, folder in tasks]
 
 
 def _attempt(scene: Scene, folder: Path) -> Answer:
     """Return the outcome of a scene after running it: done, refused (no valid scene or settings), or failed, with why.
+
+    It has no results, which are in the run folder.
 
     Raises:
         OSError: the disk is full, which stops all other points, too.
@@ -271,18 +295,22 @@ def _attempt(scene: Scene, folder: Path) -> Answer:
 def _finish(plan: SweepPlan, folder: Path, rows: Sequence[str | Answer], answers: Mapping[str, Answer]) -> Sweep:
     """Write the table of a sweep from refusals, run folders, and the answers that no folder holds; return the sweep.
 
-    A table of 100 000 points or more is written as Parquet as well.
+    A sweep of 100 000 points or more is written as Parquet as well.
 
     Args:
         plan: the sweep.
         folder: folder of the sweep.
         rows: folder name or refusal of each point so far, in order; the others are `missing`.
-        answers: outcomes that were not `done`, by folder name.
+        answers: outcomes that were not `done`, by folder name; those in run folders have priority.
+
+    Raises:
+        Contact1dError: Parquet needs pyarrow, which isn't installed; results.csv is written.
     """
     parquet_rows = 100_000  # rows from which on the table is written as Parquet as well
     interrupted = Answer("missing", "the sweep was interrupted before it")
 
     def answered() -> Iterator[tuple[tuple[Any, ...], Answer]]:
+        """Yield (cells of the axes, outcome) of every point in order; `missing` where a point has none."""
         for cells, row in zip(plan.cells(), chain(rows, repeat(interrupted)), strict=False):
             if isinstance(row, Answer):
                 yield cells, row
@@ -322,16 +350,17 @@ class Workplace:
 def workplace_of(
     executor: Executor | str, workers: int | None, folder: Path, partition: str | None = None
 ) -> Workplace:
-    """Return the executor for the points of a sweep.
+    """Return the executor for the points of a sweep, and how many it is given at a time; it is opened when it is used.
 
     Args:
         executor: "local", "slurm", or one that the caller opened and will close.
-        workers: processes here, or jobs at a time; None: as many as there are processors.
+        workers: processes here, or jobs at a time; None: as many as there are processors, 16 for an executor of the
+            caller.
         folder: folder of the sweep, for Slurm's scripts and outputs.
         partition: partition of Slurm; None: its default.
 
     Raises:
-        ExecutorError: the executor is unknown, or what it needs isn't installed; the message says what to install.
+        ExecutorError: the executor is unknown, what it needs isn't installed, or Slurm has no such partition.
     """
     ahead = 4  # chunks for each worker that are submitted before their turn, so that no worker waits for the parent
     if isinstance(executor, Executor):
@@ -352,7 +381,10 @@ def workplace_of(
 
 @contextmanager
 def _slurm(folder: Path, partition: str) -> Iterator[Executor]:
-    """Yield an executor that submits jobs of one processor to a partition of Slurm, with its files in `folder`."""
+    """Yield an executor that submits jobs of one processor to a partition of Slurm, with its files in `folder`.
+
+    It is closed at the end of the block, when its jobs have ended.
+    """
     resources = {"cores": 1, "partition": partition}
     with catch_warnings():
         simplefilter("ignore")  # executorlib's use of pydantic, and that it cannot check a partition
@@ -364,10 +396,10 @@ def _slurm(folder: Path, partition: str) -> Iterator[Executor]:
 
 
 def _partition(wanted: str | None) -> str:
-    """Return the wanted partition, or Slurm's default one, since executorlib would submit an empty name.
+    """Return the wanted partition, or Slurm's default one, else its first: executorlib would submit an empty name.
 
     Raises:
-        ExecutorError: Slurm doesn't run, or has no such partition.
+        ExecutorError: Slurm doesn't answer, or has no such partition.
     """
     from subprocess import run
 

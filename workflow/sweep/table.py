@@ -49,9 +49,10 @@ class Answer:
 
 
 def answer_in(folder: Path) -> Answer | None:
-    """Return the outcome of the run in a folder of a sweep.
+    """Return the outcome of the run in a folder of a sweep, "done" or "failed", with its results in SI where known.
 
-    None where no run ended there or its results.json is invalid.
+    Its reason is the message of the error, or the names of warnings, "" without any. None where no run ended there or
+    its results.json is invalid.
     """
     document = document_in(folder)
     if not document:
@@ -67,7 +68,8 @@ def write_table(
 ) -> dict[str, str]:
     """Write results.csv, in SI where it is known, in two passes over the runs with a single run in memory.
 
-    A result whose unit differs from that in the first run that has it is left empty.
+    A result that a run lacks, or whose unit differs from that in the first run that has it, is left empty. An earlier
+    file is replaced.
 
     Args:
         folder: folder of the sweep.
@@ -96,14 +98,17 @@ def write_table(
 
 
 def columns_of(name: str) -> tuple[str, str]:
-    """Return the names of the two columns of a result: of its value, and of its uncertainty."""
+    """Return the names of the two columns of a result in the table: (of its value, of its uncertainty)."""
     return name, f"{name}_uncertainty"
 
 
 def frame_of(folder: Path) -> DataFrame:
-    """Return the table of a sweep as a pandas.DataFrame, texts without the mark for spreadsheets.
+    """Return the table of a sweep as a pandas.DataFrame, a row for each point, texts without the mark for spreadsheets.
 
-    A column in SI has its unit in its name, as in `radius [m]`.
+    A column in SI has its unit in its name, as in `radius [m]`. Empty cells are NaN.
+
+    Raises:
+        FileNotFoundError: the folder has no results.csv.
     """
     import pandas
 
@@ -111,7 +116,7 @@ def frame_of(folder: Path) -> DataFrame:
 
 
 def write_parquet(folder: Path) -> None:
-    """Write the table as results.parquet.
+    """Write the table in results.csv as results.parquet as well, in place of an earlier one.
 
     Raises:
         Contact1dError: pyarrow isn't installed.
@@ -123,7 +128,10 @@ def write_parquet(folder: Path) -> None:
 
 
 def document_in(folder: Path) -> dict[str, Any]:
-    """Return the content of results.json in a run folder; an empty dict where it can't be read or is none of a run."""
+    """Return the content of results.json in a run folder, also of a run that failed.
+
+    An empty dict where it can't be read or is none of a run.
+    """
     try:
         return read_results(folder)
     except FolderError:
@@ -131,7 +139,7 @@ def document_in(folder: Path) -> dict[str, Any]:
 
 
 def read_record(folder: Path) -> SweepPlan:
-    """Return the sweep in a folder as it ran last.
+    """Return the sweep in a folder as it ran last, with the base scene in its record.
 
     Raises:
         FolderError: the folder holds no record of a sweep.
@@ -143,12 +151,15 @@ def read_record(folder: Path) -> SweepPlan:
 
 
 def units_in(folder: Path) -> dict[str, str]:
-    """Return the unit of each result of a sweep by name, from the run folders: in SI where it is known."""
+    """Return the unit of each result of a sweep by name, in SI where it is known, from the first run that has it.
+
+    The runs of the table in `folder` are read; points that did not run have none. Empty without results.
+    """
     return _units(filter(None, (answer_in(folder / row["run"]) for row in read_table(folder))))
 
 
 def _units(answers: Iterable[Answer]) -> dict[str, str]:
-    """Return the unit of each result in the first run that has it, by name; empty without results."""
+    """Return the unit of each result, as text, in the first run that has it, by name; empty without results."""
     units: dict[str, str] = {}
     for answer in answers:
         for name, quantity in answer.results.items():
@@ -157,15 +168,21 @@ def _units(answers: Iterable[Answer]) -> dict[str, str]:
 
 
 def counts_in(folder: Path) -> dict[str, int]:
-    """Return how many points of a sweep's table ended as `done`, `failed`, `refused`, or are `missing`.
+    """Return how many points of a sweep's table ended as `done`, `failed`, `refused`, or are `missing`, by status.
 
-    Without those of 0.
+    Counts of 0 are left out.
     """
     return dict(Counter(row["status"] for row in read_table(folder)))
 
 
 def read_table(folder: Path) -> Iterator[dict[str, str]]:
-    """Yield the rows of results.csv, cells as text by the names of their columns without units."""
+    """Yield the rows of results.csv as dicts: cells as text, "" for empty ones, by the names of columns without units.
+
+    Texts lack the mark for spreadsheets.
+
+    Raises:
+        FileNotFoundError: at the first row; the folder has no results.csv.
+    """
     with (folder / TABLE).open(newline="", encoding="utf-8") as file:
         rows = csv.reader(file)
         names = [*map(bare, next(rows))]

@@ -62,18 +62,21 @@ class Contribution:
 
 
 def number(value: float) -> str:
-    """Return a number as LAMMPS text that reads back to the same double."""
+    """Return a number as LAMMPS text that reads back to the same double: "0.1", "1e-09"."""
     return repr(float(value))
 
 
 def sphere_radius(scene: Scene, settings: Settings) -> float:
-    """Return the radius [LU] of particles that are spheres, which friction needs; 0 where they are points."""
+    """Return the radius [LU] of particles that are spheres, which friction needs; 0 where they are points.
+
+    It is four times the largest displacement or the spacing, whichever is larger.
+    """
     deepest = max(settings.largest_displacement, scene.bodies.spacing)
     return 4.0 * deepest if scene.friction else 0.0  # a wall loses a sphere that overlaps it further
 
 
 def skin(scene: Scene) -> float:
-    """Return the skin of the neighbour lists [LU], half a spacing.
+    """Return the skin of LAMMPS's neighbour lists [LU], half a spacing of the lower body.
 
     A load step of a path moves a body by less, so that a list lasts for a relaxation.
     """
@@ -81,7 +84,10 @@ def skin(scene: Scene) -> float:
 
 
 def first_upper_anchor(scene: Scene, settings: Settings) -> int:
-    """Return the atom ID of the first upper anchor, after the particles of both bodies and the lower anchors."""
+    """Return the atom ID, counted from 1, of the first upper anchor.
+
+    It comes after the particles of both bodies and the lower anchors, which a rigid chain and a rigid plane lack.
+    """
     below = {"particles": 2, "rigid_chain": 1, "rigid_plane": 0}[scene.bodies.lower]
     return settings.chains.upper + below * settings.chains.lower + 1
 
@@ -93,5 +99,8 @@ EFFECTS: dict[str, Callable[[Scene, Settings], Contribution]] = {
 
 
 def contributions(scene: Scene, settings: Settings) -> tuple[Contribution, ...]:
-    """Return the parts of all effects of a scene, in the order of the effects; () without effects."""
+    """Return the deck parts (fragments, variables) of all effects of a scene, in their order; () without effects.
+
+    Numbers are in the units of `scene` and `settings`.
+    """
     return tuple(EFFECTS[name](scene, settings) for name in scene.effects)

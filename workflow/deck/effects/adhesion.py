@@ -10,9 +10,10 @@ from contact1d.workflow.scene import Adhesion, Scene
 
 
 def adhesion(scene: Scene, settings: Settings) -> Contribution:
-    """Return the part of adhesion, after the plane's.
+    """Return the deck part (fragments, variables) of adhesion to a rigid plane, in the units of the arguments.
 
-    One without fragments where W is 0. The cells are in a separate file.
+    One without fragments where W is 0; the fragment "cohesion" with a range or a rate, else "adhesion". The constants
+    of each particle are in a separate file.
     """
     effect, stiffness = scene.the(Adhesion), {"adhesion_stiffness": number(scene.bulk_stiffness)}
     if not effect.work:

@@ -6,7 +6,10 @@ from contact1d.workflow.scene import Scene
 
 
 def damping(scene: Scene, settings: Settings) -> Contribution:
-    """Return the part of the drag on the particles; with noise without fragments, since its thermostat includes it."""
+    """Return the deck part (fragments, variables) of the drag on the particles, in the units of the arguments.
+
+    With noise it has neither, since the thermostat includes this drag.
+    """
     if scene.noise:
         return Contribution("damping", Stage.DRAG, ())
     return Contribution("damping", Stage.DRAG, ("damping",), {"damping_coefficient": number(settings.motion.damping)})

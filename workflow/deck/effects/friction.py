@@ -6,7 +6,10 @@ from contact1d.workflow.scene import Friction, Scene
 
 
 def friction(scene: Scene, settings: Settings) -> Contribution:
-    """Return the part of the friction of a wall with spheres, which system.data has, with the slot `atom_style`."""
+    """Return the deck part (fragments, variables) of friction on a rigid plane, in the units of the arguments.
+
+    It has the `atom_style` sphere: the particles are spheres in system.data.
+    """
     variables = {
         "friction_normal_stiffness": number(settings.forces.plane_stiffness),
         "friction_tangential_stiffness": number(scene.tangential_stiffness),

@@ -8,9 +8,10 @@ from contact1d.workflow.scene import Scene
 
 
 def horizontal(scene: Scene, settings: Settings) -> Contribution:
-    """Return the part of the motion along x, which frees the guide.
+    """Return the deck part (fragments, variables) of the motion of particles along x.
 
-    With k_t ≠ k_n also the bonds to the far anchors.
+    Where springs are as stiff along x as along z it has no variables. Else also the bonds to the far anchors, with
+    their type, half the difference of the stiffnesses, length and the edge of bins, in the units of the arguments.
     """
     if settings.chains.far == 0.0:
         return Contribution("horizontal", Stage.SPRINGS, ("horizontal",))

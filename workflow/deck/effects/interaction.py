@@ -6,9 +6,10 @@ from contact1d.workflow.scene import Scene
 
 
 def interaction(scene: Scene, settings: Settings) -> Contribution:
-    """Return the part of the pair forces, with the shared slot `pair_style`.
+    """Return the deck part (fragments, variables) of the pair forces between opposite particles.
 
-    Each measurement sums those of opposite particles.
+    It has the `pair_style` table. Fragments around each measurement add up the forces on each particle. AssertionError
+    where the settings have no table.
     """
     assert settings.forces.table
     return Contribution(

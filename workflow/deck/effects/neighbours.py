@@ -6,6 +6,10 @@ from contact1d.workflow.scene import Neighbours, Scene
 
 
 def neighbours(scene: Scene, settings: Settings) -> Contribution:
-    """Return the part of the springs between neighbours, for which system.data has bonds and shifted anchors."""
+    """Return the deck part (fragments, variables) of the springs between neighbours of a body.
+
+    Its coefficient is half their stiffness, in the units of the arguments. System.data has their bonds, and anchors
+    that are shifted against their forces.
+    """
     coefficient = number(scene.the(Neighbours).stiffness / 2)
     return Contribution("neighbours", Stage.SPRINGS, ("neighbours",), {"neighbours_bond_coefficient": coefficient})

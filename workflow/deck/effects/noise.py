@@ -6,9 +6,11 @@ from contact1d.workflow.scene import Noise, Scene
 
 
 def noise(scene: Scene, settings: Settings) -> Contribution:
-    """Return the part of the Langevin thermostats: of particles and, where the plate has a drag, of one anchor.
+    """Return the deck part (fragments, variables) of the Langevin thermostat of the particles.
 
-    `fix langevin` takes the relaxation time m/γ.
+    Where the plate has a drag, also of a thermostat of one anchor. `fix langevin` takes the relaxation time m/γ, in the
+    units of the arguments. In a slide there are also a stronger drag for the time before the drive, where settings have
+    one, and fragments around each measurement that count the heat; in other experiments there are none of these.
     """
     variables = {
         "noise_temperature": number(scene.the(Noise).temperature),

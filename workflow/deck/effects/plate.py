@@ -6,7 +6,12 @@ from contact1d.workflow.scene import Plate, Scene
 
 
 def plate(scene: Scene, settings: Settings) -> Contribution:
-    """Return the part of the rigid plate: its mass, in system.data, and its drag are distributed over its anchors."""
+    """Return the deck part (fragments, variables) of the rigid plate, in the units of the arguments.
+
+    Its mass, in system.data, and its drag are distributed over its anchors. The drag is 0 where there is noise, whose
+    thermostat has it. A plate of one anchor has a fragment of its own; one that a spring retracts also that of the
+    spring, and a wide one with an interaction that of larger bins.
+    """
     anchors = settings.chains.upper * (1 if settings.chains.far == 0.0 else 2)
     alone = anchors == 1
     free = {True: "NULL", False: "0.0"} if alone else {True: "on", False: "off"}

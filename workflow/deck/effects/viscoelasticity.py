@@ -9,9 +9,11 @@ from contact1d.workflow.scene import Scene, Viscoelasticity
 
 
 def viscoelasticity(scene: Scene, settings: Settings) -> Contribution:
-    """Return the part of the viscoelastic springs: fragments for each term of the Prony series, in their order.
+    """Return the deck part (fragments, variables) of the viscoelastic springs, in the units of the arguments.
 
-    With a retardation time, the part of springs with a parallel dashpot.
+    Fragments and variables for each term of the Prony series, in their order; with a retardation time those of springs
+    with a parallel dashpot. Load steps that are timesteps of one run have their own durations, else each lasts a
+    timestep of the motion.
     """
     effect, rows = scene.the(Viscoelasticity), scene.is_stepped
     fragments = ["elapsed_rows" if rows else "elapsed_steps"]
