@@ -13,6 +13,7 @@ from contact1d import Scene, read_scene
 from tests.approx import relative
 from tests.limits import LIMIT, SLOW_LIMIT, time_limit
 from tests.records import record_slow_tests
+from tests.run_numbers import NumbersOfRuns
 from tests.scenes import chains
 
 settings.register_profile("repeatable", deadline=None, derandomize=True)
@@ -39,7 +40,12 @@ PLANE: dict[str, Any] = {
 }
 
 
-pytest_configure = record_slow_tests
+def pytest_configure(config: pytest.Config) -> None:
+    """The records that are compared or written."""
+    record_slow_tests(config)
+    config.pluginmanager.register(NumbersOfRuns())
+
+
 pytest.approx = relative  # before any test module is imported
 
 
