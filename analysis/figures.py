@@ -242,13 +242,14 @@ def body(
 ) -> Chart:
     """Return the chart of a traction on the three-dimensional body over r, in a panel for each state.
 
-    Values of more than 8 times the median magnitude, near a pole at the edge, are left out.
+    Values of the run of more than 8 times their median magnitude in the state, near a pole at the edge, are left out;
+    closed forms are drawn whole.
 
     Args:
         name: of the traction, and of its column.
         states: its columns by state, `r` [LU], `<name>` and `<name>_uncertainty` [FU/LU²].
-        marks: by state the radii to mark, by name [LU]; one of 0 is not marked, and of more than two the first two are.
-        theories: by state name, r [LU] and values [FU/LU²] of its closed form; a state may have none.
+        marks: by state the radii to mark, by name [LU]: of the first two those above 0; a state may have none.
+        theories: by state (name, r [LU], values [FU/LU²]) of its closed form; a state may have none.
     """
     panels = []
     for state, columns in states.items():

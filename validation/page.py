@@ -73,9 +73,9 @@ def duration(seconds: float) -> str:
 
 def agreement(rows: Sequence[Row]) -> str:
     """What rows say together, for a sentence: "all 8 rows pass", "5 of 8 rows pass, 2 fail, 1 differs as expected"."""
-    counts = {"fail": len(verdicts(rows, "FAIL")), "differ as expected": len(verdicts(rows, "DIFFERS"))}
-    short = [f"{count} {words}" for words, count in counts.items() if count]
-    passed = f"{len(rows) - sum(counts.values())} of" if short else "all"
+    failed, differing = len(verdicts(rows, "FAIL")), len(verdicts(rows, "DIFFERS"))
+    short = [_counted(failed, "fail")] * bool(failed) + [_as_expected(differing)] * bool(differing)
+    passed = f"{len(rows) - failed - differing} of" if short else "all"
     return ", ".join([f"{passed} {len(rows)} rows pass", *short])
 
 
@@ -96,18 +96,27 @@ def worst_deviation(rows: Iterable[Row]) -> float:
 
 
 def outcome(rows: Sequence[Row]) -> str:
-    """How the rows came out: "12 of 14 rows pass, 2 differ as expected; apart from these 3 repeat another"."""
+    """How the rows came out: "12 of 14 rows pass, 2 differ as expected; counted separately: 3 repeat another"."""
     own = judged(rows)
-    asked = [row for row in own if row.known is None]
     expected = [row for row in own if row.known is not None]
-    failing = verdicts(expected, "FAIL")
-    parts = [f"{len(verdicts(asked, 'PASS'))} of {len(asked)} rows pass"] if asked else []
-    parts += [f"{len(expected) - len(failing)} differ as expected"] if len(expected) > len(failing) else []
-    parts += [f"{len(failing)} do not differ as expected"] if failing else []
+    differing, failing = len(verdicts(own, "DIFFERS")), len(verdicts(expected, "FAIL"))
+    parts = [f"{len(verdicts(own, 'PASS'))} of {len(own)} rows pass"]
+    parts += [_as_expected(differing)] if differing else []
+    parts += [f"{failing} should differ and {'does' if failing == 1 else 'do'} not as expected"] if failing else []
     apart = Counter(row.standing for row in rows if row.standing != "judged")
-    said = [f"{apart['repeats']} repeat another"] if apart["repeats"] else []
+    said = [f"{_counted(apart['repeats'], 'repeat')} another"] if apart["repeats"] else []
     said += [f"{apart['by construction']} true by construction"] if apart["by construction"] else []
     return ", ".join(parts) + (f"; counted separately: {', '.join(said)}" if said else "")
+
+
+def _counted(count: int, verb: str) -> str:
+    """ "1 repeats", "2 repeat"."""
+    return f"{count} {verb}{'s' * (count == 1)}"
+
+
+def _as_expected(count: int) -> str:
+    """ "1 differs as expected", "2 differ as expected"."""
+    return f"{_counted(count, 'differ')} as expected"
 
 
 def reference(row: Row) -> str:
@@ -194,14 +203,17 @@ def summary(paper: Record, hard: Record, speed: Record) -> str:
 def _kinds(record: Record) -> str:
     """How many rows count what must not be, and which classes are recorded in their short form."""
     none = sum(row.reference.value == 0.0 for row in record.rows)
-    text = f"{none} of {len(record.rows)} rows count what must not be, and pass at 0; the others compare numbers."
+    text = (
+        f"{none} of {len(record.rows)} rows count errors that must not occur, such as a missing warning, and pass at "
+        "0; the others compare numbers."
+    )
     quick = [f"`{answer.name}`" for answer in record.answers if answer.form != "full"]
-    return f"{text} Recorded in their short form: {', '.join(quick)}." if quick else text
+    return f"{text} Measured in their short form, without `--full`: {', '.join(quick)}." if quick else text
 
 
 def studies_table(record: Record) -> str:
     """A row for each study: its name, what was asked, what came out, the verdict, when."""
-    return table(("study", "asked", "result", "verdict", "measured"), [_study(answer) for answer in record.answers])
+    return table(("study", "subject", "result", "verdict", "measured"), [_study(answer) for answer in record.answers])
 
 
 def speed_table(record: Record) -> str:
@@ -231,20 +243,27 @@ def _when(answers: Sequence[Answer]) -> str:
 def _differing(record: Record) -> str:
     """What the paper says and this program does not find: as the paper has it, as it is here, and why."""
     rows = [
-        (f"`{answer.name}`", row.name, allowed(row) if row.bound.kind == "at least" else reference(row),
-         measured(row.value, row.uncertainty, row.unit), row.known.source)
+        (f"`{answer.name}`", row.name, _in_the_paper(row), measured(row.value, row.uncertainty, row.unit),
+         row.known.source)
         for answer in record.answers
         for row in judged(answer.rows)
         if row.known and row.reference.evidence in ("printed value", "paper's words")
     ]  # fmt: skip
-    return table(("study", "statement", "in the paper", "here", "since"), rows)
+    return table(("study", "quantity", "in the paper", "here", "reason"), rows)
+
+
+def _in_the_paper(row: Row) -> str:
+    """A printed number, or a qualitative statement with the number by which it is tested."""
+    if row.reference.evidence == "printed value":
+        return reference(row)
+    return f"{row.reference.source}; tested as {allowed(row)}, the uncertainty of the runs"
 
 
 def _study(answer: Answer) -> tuple[str, ...]:
     words, own = outcome(answer.rows), judged(answer.rows)
     off = [row for row in own if row.bound.kind in ("relative", "claim") and row.reference.value and not row.known]
     if off and math.isfinite(worst := worst_deviation(off)):
-        words += f"; worst deviation {share(worst)}"
+        words += f"; largest relative deviation {share(worst)}"
     found = {row.verdict for row in own}
     verdict = next((word for word in ("FAIL", "DIFFERS") if word in found), "PASS")
     badge = f"**{verdict}**" if verdict == "FAIL" else verdict
@@ -258,7 +277,7 @@ def _class(answer: Answer) -> tuple[str, ...]:
         f"`{answer.name}`",
         f"{answer.title}: {answer.question}",
         rows,
-        number(min(margins), 3) if margins else "nothing off",
+        number(min(margins), 3) if margins else "no difference found",
         _when([answer]),
     )
 

@@ -107,9 +107,9 @@ def test_what_is_shown_is_what_is_printed(page: str, name: str, command: str, li
 
 
 def test_readme_has_what_effects_cost_by_the_records_of_cost_studies() -> None:
-    """Time of a run with an effect over that without it, and the largest change of a main result."""
+    """CPU time with an effect over that without it, and the largest relative error of a main result without it."""
     rows = [
-        "| effect | scene | time with it over without | change of the results without it |",
+        "| effect | scene | CPU time with it over without | largest relative error without it |",
         "| --- | --- | --- | --- |",
     ]
     for path in sorted((ROOT / "validation" / "results" / "costs").glob("*.json")):

@@ -51,10 +51,11 @@ def table_of(heading: str) -> Node:
 def section(heading: str, summary: str) -> str:
     table, lines = table_of(heading), [f"\n## [{heading}]\n", f"{summary}\n"]
     if table["properties"]:
-        lines.append("| key | what | must be | absent |\n| --- | --- | --- | --- |")
+        lines.append("| key | what | must be | where absent |\n| --- | --- | --- | --- |")
     for word, key in table["properties"].items():
         what, _, allowed = key["description"].partition("; must be ")
-        default = "none"
+        what, _, default = what.partition("; absent: ")
+        default = default or "none"
         if "default" in key:
             text = key["default"] if isinstance(key["default"], str) else json.dumps(key["default"])
             default = f"`{text}`"
@@ -92,7 +93,7 @@ def test_every_key_has_a_meaning_and_every_number_a_text_in_a_unit_of_its_dimens
     page, keys = PAGE.read_text(encoding="utf-8"), list(described(SCHEMA))
     rows = re.findall(r'^\| (\S+) \| .* \| `"\S+ (.*)"` \|$', page, re.MULTILINE)
     numbers = [found for one in keys for found in re.findall(r'\((\S+)\).* text such as "\S+ (.*)"', one)]
-    assert len(rows) == 9
+    assert len(rows) == 10
     assert len(numbers) == sum("text such as" in one for one in keys) > 50
     for unit, written in (*rows, *numbers):
         if written != "K":  # k_BT

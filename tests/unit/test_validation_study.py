@@ -55,7 +55,7 @@ def test_rows_are_written_for_people() -> None:
     row = at_most("half", 0.5, 1.0, "theory")
     assert row.margin == pytest.approx(2.0)
     rows = [row, replace(row, standing="repeats"), replace(row, value=2.0)]
-    assert outcome(rows) == "1 of 2 rows pass; counted separately: 1 repeat another"
+    assert outcome(rows) == "1 of 2 rows pass; counted separately: 1 repeats another"
     assert measured(1.48341, 0.00012, "FU") == "1.48341 ± 0.00012 FU"
     assert [duration(seconds) for seconds in (12.0, 2700.0, 7500.0)] == ["12 s", "45 min", "2 h 5 min"]
     assert measured(3.1e-7, 4e-8, "1") == "(3.10 ± 0.40) × 10⁻⁷"

@@ -21,7 +21,7 @@ from validation.study import Record
 DENSE = 25
 """Points of a line."""
 HEAD = ("model", "quantity", "LAMMPS", "exact", "deviation", "what to use")
-NOWHERE, STICK = "–", "they stick"
+NOWHERE, STICK, EXACT = "–", "the spheres stick", "exact"
 JKR_IN_NAMES = {"jkr": "`jkr`", "dmt": "`dmt`", "nearest jkr": f"`jkr`, {cases.STRONGER:g} γ"}
 Array = NDArray[np.float64]
 
@@ -106,25 +106,26 @@ def version(package: str) -> str:
 def _models(rows: Rows) -> Iterator[Sequence[str]]:
     near = {name: f"{all_of[1]:g}" for name, all_of in cases.NEAREST.items()}
     eta = f"`limit_damping` and η = {near[cases.LIMITED.name]} · 2 E* τ/m"
+    stronger = f"a surface energy of {cases.STRONGER:g} γ, if restitution matters more than pull-off"
     lines = (
-        ("hertz", "`hertz`, no damping", "", "restitution", "right"),
-        ("hertz", "`hertz`, no damping", "", "contact_time", "right"),
+        ("hertz", "`hertz`, no damping", "", "restitution", EXACT),
+        ("hertz", "`hertz`, no damping", "", "contact_time", EXACT),
         ("viscoelastic", "`viscoelastic`", "A = 0.3", "restitution", eta),
         ("viscoelastic", "`viscoelastic`", "A = 0.3", "contact_time", "`limit_damping`"),
-        ("viscoelastic limit_damping", "with `limit_damping`", "A = 0.3", "restitution", eta),
+        ("viscoelastic limit_damping", "`viscoelastic` with `limit_damping`", "A = 0.3", "restitution", eta),
         ("coeff_restitution", "`coeff_restitution`", "e = 0.6", "restitution",
-         "right, the same at every velocity"),
+         "exact at every velocity"),
         (
-            "coeff_restitution limit_damping", "with `limit_damping`", "e = 0.6", "restitution",
-            "leave `limit_damping` out",
+            "coeff_restitution limit_damping", "`coeff_restitution` with `limit_damping`", "e = 0.6", "restitution",
+            "`coeff_restitution` without `limit_damping`",
         ),
         ("tsuji", "`tsuji`", "e = 0.6", "restitution", "`coeff_restitution`, or a newer LAMMPS"),
-        ("jkr", "`jkr`", "v = 1.5 v_s", "restitution", f"{cases.STRONGER:g} γ, if e matters more than pull-off"),
-        ("jkr", "`jkr`", "", "sticking velocity", "as for the restitution"),
-        ("jkr", "`jkr`", "", "pull off", "right"),
-        ("jkr", "`jkr`", "", "dissipated", "as for the restitution"),
-        ("dmt", "`dmt`", "v = 1.5 v_s", "restitution", "right for small hard spheres (Tabor parameter far below 1)"),
-        ("wall hertz/material", "`fix wall/gran`", "", "E*", "2 E in place of E for a rigid wall"),
+        ("jkr", "`jkr`", "v = 1.5 v_s", "restitution", stronger),
+        ("jkr", "`jkr`", "", "sticking velocity", stronger),
+        ("jkr", "`jkr`", "", "pull off", EXACT),
+        ("jkr", "`jkr`", "", "dissipated", stronger),
+        ("dmt", "`dmt`", "v = 1.5 v_s", "restitution", "exact for small hard spheres (Tabor parameter far below 1)"),
+        ("wall hertz/material", "`fix wall/gran`", "", "E*", "`fix wall/gran` with 2 E in place of E"),
     )  # fmt: skip
     for model, shown, at, quantity, use in lines:
         row = rows[row_name(model, at, quantity)]
@@ -135,25 +136,26 @@ def _models(rows: Rows) -> Iterator[Sequence[str]]:
 def _quantity(name: str) -> str:
     """As the page has it, with its unit."""
     return {
-        "contact_time": "contact time [T]", "pull off": "pull-off force [(3/2)πWR]", "E*": "E* of a rigid wall [E]",
+        "contact_time": "contact time [T]", "pull off": "pull-off force [(3/2)πWR]",
+        "E*": "E* of a sphere on a rigid wall [E]",
         "sticking velocity": "sticking velocity [v_s]", "dissipated": "dissipated energy [(W⁵R⁴/E*²)^(1/3)]",
     }.get(name, name)  # fmt: skip
 
 
 def _viscoelastic(rows: Rows) -> str:
     lines = [[f"{A:g}", *rows.beside(A)] for A in cases.NUMBERS]
-    return table(["A", "exact e", *rows.our_head, "`viscoelastic`", "with `limit_damping`"], lines)
+    return table(["A", "exact restitution", *rows.our_head, *map(_words, cases.DAMPED)], lines)
 
 
 def _times(rows: Rows) -> str:
-    names = {"contact_time": "contact time", "peak_force": "largest force"}
+    names = {"contact_time": "contact time [T]", "peak_force": "largest force [m v/T]"}
     lines = [[f"{A:g}", words, *rows.beside(A, name)] for A in cases.TIMED for name, words in names.items()]
-    return table(["A", "quantity", "exact", *rows.our_head, "`viscoelastic`", "with `limit_damping`"], lines)
+    return table(["A", "quantity", "exact", *rows.our_head, *map(_words, cases.DAMPED)], lines)
 
 
 def _asked(rows: Rows) -> str:
     lines = [[f"{e:g}", *map(both, rows.of(cases.BY_RESTITUTION, f"e = {e:g}"))] for e in cases.ASKED]
-    return table(["given e", *(_words(model) for model in cases.BY_RESTITUTION)], lines)
+    return table(["given restitution", *map(_words, cases.BY_RESTITUTION)], lines)
 
 
 def _words(model: cases.Model) -> str:
@@ -185,7 +187,7 @@ def _adhesive(rows: Rows) -> str:
         exact = value(found[0].reference.value) if over > 1.0 else STICK
         cells = [both(row) if row and row.reference.value else value(row.value) if row else NOWHERE for row in found]
         lines.append([f"{over:g}", exact, *rows.ours(at, "restitution"), *cells])
-    return table(["v/v_s", "exact e, JKR", *rows.our_head, *JKR_IN_NAMES.values()], lines)
+    return table(["v/v_s", "exact restitution, JKR", *rows.our_head, *JKR_IN_NAMES.values()], lines)
 
 
 def _drawn(rows: Rows) -> str:
@@ -207,7 +209,7 @@ def _wall(rows: Rows) -> str:
     ):  # fmt: skip
         row = rows[row_name(name, "", "E*")]
         lines.append([words, value(row.value), value(row.reference.value), deviation(row)])
-    return table(["`fix wall/gran granular`", "E*/E in LAMMPS", "rigid wall", "deviation"], lines)
+    return table(["`fix wall/gran granular`", "E*/E in LAMMPS", "E*/E of a rigid wall", "deviation"], lines)
 
 
 def drawings(record: Record) -> Mapping[str, Drawing]:

@@ -68,6 +68,8 @@ def _pushed(contact: Contact, d: float) -> float:
 BUCKLING = Study(
     "buckling",
     "Buckling of aligned chains",
-    "Aligned chains under load are in unstable equilibrium, which exact symmetry preserves without a perturbation.",
+    "Two chains with opposite particles under load are in unstable equilibrium above a critical force, which a "
+    "symmetric calculation does not leave without a perturbation. Do displaced pairs return below the critical force,"
+    " and move away above it?",
     measure,
 )

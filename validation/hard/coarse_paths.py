@@ -124,7 +124,7 @@ def _force(contact: Adhesive) -> Function:
 COARSE_PATHS = Study(
     "coarse_paths",
     "Paths of few steps and cycles of small amplitude",
-    "Steps as wide as the loop, or a slip narrower than the spacing, see no loss at all. Is what is lost within its "
-    "uncertainty, or named as not known?",
+    "Load steps as long as a loop is wide, or a slip zone narrower than the spacing, show no dissipated energy at "
+    "all. Is the dissipated energy within its uncertainty, or reported as unknown?",
     measure,
 )

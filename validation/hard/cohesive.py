@@ -170,8 +170,9 @@ def _value(run: Run | Refused, name: str) -> float:
 
 COHESIVE = Study(
     "cohesive",
-    "Dugdale's law between the limits",
-    "A range of the adhesion makes contacts that are neither DMT's nor JKR's. Are forces, radii and curves those of "
-    "Maugis's equations, of boundary elements and of quadratures, for any profile, from one limit to the other?",
+    "Dugdale's attraction of finite range, from DMT to JKR",
+    "An attraction of finite range makes contacts that are neither DMT's nor JKR's. Are forces, radii and curves "
+    "those of Maugis's equations, of boundary elements and of quadratures, for any profile, from one limit to the "
+    "other?",
     measure,
 )

@@ -97,8 +97,9 @@ def _springs(bench: Bench) -> Iterator[Row]:
 
 EXTREMES = Study(
     "extremes",
-    "Stiffness ratios 1e-6 to 1e6, radii to 1e9, 1 to 10⁶ particles, plate masses 1e-3 to 1e9",
-    "With parameters of very different magnitude one may be lost in round-off, the time step may follow the wrong "
-    "one, or a minimiser may stop too early.",
+    "Springs of 1e-6 to 1e6 times the bulk stiffness, radii to 1e9 LU, 1 to 10⁶ particles, plates of 1e-3 to 1e9 "
+    "particle masses",
+    "With parameters of very different magnitude one may be lost in round-off, the timestep may follow the wrong one,"
+    " or a minimiser may stop too early. Are forces and displacements the exact ones?",
     measure,
 )

@@ -137,7 +137,7 @@ def _second(scene: Path, bench: Bench) -> bool:
 
 FAULTS = Study(
     "faults",
-    "Killed, disk full, two runs in one folder",
-    "An interrupted run must not leave a result, or a folder that affects the next run.",
+    "Runs that are killed, a full disk, two runs in one folder",
+    "Does an interrupted run leave no result, and no folder that affects the next run?",
     measure,
 )

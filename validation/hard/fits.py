@@ -184,7 +184,7 @@ def _choices(bench: Bench) -> Iterator[Row]:
 FITS = Study(
     "fits",
     "Fits of force curves",
-    "Do the intervals that a fit states cover the true modulus and work of adhesion, and does it choose the right "
+    "Do the 95 % intervals of a fit contain the true modulus and work of adhesion, and does it choose the right "
     "contact model?",
     measure,
 )

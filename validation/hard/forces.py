@@ -119,7 +119,7 @@ def _forces(contact: Contact) -> tuple[Floats, Floats, tuple[float, float]]:
 FORCES = Study(
     "forces",
     "Forces of a whole deck",
-    "Fragments that are correct alone may be wrong together: a wrong bond type, an excluded pair, a wrong anchor. "
-    "The force on every particle of a complete deck is the gradient of its energy.",
+    "Fragments that are correct alone may be wrong together: a wrong bond type, an excluded pair, a wrong anchor. Is "
+    "the force on every particle of a complete deck the negative gradient of its energy?",
     measure,
 )

@@ -170,8 +170,8 @@ def _adhesive(bench: Bench) -> Iterator[Row]:
 FRICTION = Study(
     "friction",
     "Friction and adhesion on the rigid plane",
-    "The loading history matters where a load is removed and reapplied, over many cycles, and where a particle is "
-    "at the contact edge; an adhesive contact of few particles has a stepwise edge. Are the forces those of "
-    "Jenkins elements, and do the uncertainties agree with closed forms?",
+    "The loading history matters where a load is removed and reapplied, over many cycles, and where a particle is at "
+    "the contact edge; the contact edge of an adhesive contact of few particles moves in steps. Are the forces those "
+    "of Jenkins elements (springs with sliders), and the results within their uncertainties of closed forms?",
     measure,
 )

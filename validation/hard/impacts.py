@@ -123,8 +123,9 @@ def measure(bench: Bench) -> Findings:
 
 IMPACTS = Study(
     "impacts",
-    "Impacts, and an edge with a speed",
-    "How fast a body leaves, how long it touches and how hard it presses follow from motions of few variables, and a "
-    "pull-off at a velocity from the equation of its edge. Are the chain's numbers these, within their uncertainties?",
+    "Impacts, and a contact edge that recedes at a finite speed",
+    "Restitution, contact time and largest force follow from ordinary differential equations of few variables, and a "
+    "pull-off at a velocity from the equation of its edge. Are the results of the particles within their "
+    "uncertainties of these?",
     measure,
 )

@@ -109,16 +109,16 @@ def measure_tables(bench: Bench) -> Findings:
 CLASSES = (
     Study(
         "kinks",
-        "Slopes that jump inside the contact",
-        "At a kink every lattice has the force maximum at the same corner, and the pressure has no bound. Are numbers "
-        "within their uncertainties, and is there none for what is infinite?",
+        "Profiles whose slope jumps inside the contact",
+        "At a kink the force maximum is at the same corner on every lattice, and the pressure has no bound. Are "
+        "results within their uncertainties, and is no value reported for an infinite pressure?",
         measure,
     ),
     Study(
         "tables",
-        "Tables of known bodies",
-        "A table has the body at its points only, with some digits. Are displacement, radius and pull-off within their "
-        "uncertainties of the body's own?",
+        "Tables of points of known bodies",
+        "A table describes the body at its points only, with a limited number of digits. Are displacement, contact "
+        "radius and pull-off force within their uncertainties of those of the body itself?",
         measure_tables,
     ),
 )

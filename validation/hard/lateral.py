@@ -94,8 +94,8 @@ def _followed(stiffness: float, along: float | None, steps: int) -> tuple[float,
 
 LATERAL = Study(
     "lateral",
-    "Aligned chains that jump along x on a path",
+    "Aligned chains that buckle along x on a path",
     "A chain that loses its stability along x between two load steps ends in a state that depends on the steps. Does "
-    "a run say so, and only then?",
+    "the run warn of it, and only then?",
     measure,
 )

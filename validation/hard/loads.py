@@ -59,8 +59,8 @@ def _rows(bench: Bench, case: PairCase) -> Iterator[Row]:
 
 LOADS = Study(
     "loads",
-    "Loads of (1 ± 1e-5 … 1e-2) F_A",
-    "The contact stiffness vanishes with the square root of the distance from F_A, so that a small error of the "
-    "force is a large one of the displacement, and a creeping state looks like an equilibrium.",
+    "Tensile loads of (1 ± 1e-5 … 1e-2) F_A",
+    "The contact stiffness vanishes with the square root of the distance from F_A, so that a small error of the force"
+    " is a large one of the displacement, and a slowly moving state looks like an equilibrium.",
     measure,
 )

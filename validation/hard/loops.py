@@ -105,8 +105,8 @@ def _snap_distance(d: Floats, pairs: FoldedPairs) -> Floats:
 
 LOOPS = Study(
     "loops",
-    "Snap-in, snap-off and the dissipated energy",
-    "A path with load steps as wide as the range passes the instabilities: if particles are then in the wrong "
-    "state, the force and the dissipated energy are wrong without notice.",
+    "Snap-in, snap-out and the dissipated energy",
+    "A path with load steps as long as the range of the interaction passes the instabilities: if particles are then "
+    "in the wrong state, the force and the dissipated energy are wrong without a warning.",
     measure,
 )

@@ -85,6 +85,7 @@ def _sampled(folder: Path, samples: int, drag: float | str) -> tuple[Floats, Flo
 EQUIPARTITION = Study(
     MODES,
     "Equipartition of every mode and of the plate",
-    "A thermostat may have the correct mean temperature and the wrong energy of a single mode.",
+    "A thermostat may have the correct mean temperature and the wrong energy of a single mode. Do all modes and the "
+    "plate have the energy of equipartition?",
     measure_modes,
 )

@@ -163,8 +163,9 @@ def _time_step(neighbours: float, words: str) -> Row:
 
 MOTION = Study(
     "motion",
-    "Time steps from 0.1 to 1.01 of Verlet's limit, and energy without damping",
-    "A time step that is too long heats the particles, just below the limit by a small amount; a damping that "
-    "remains active, or a force that is not the gradient of an energy, makes the energy drift.",
+    "Timesteps from 0.1 to 1.01 of Verlet's stability limit, and energy without damping",
+    "A timestep that is too long heats the particles, just below the limit by a small amount; a damping that remains "
+    "active, or a force that is not the gradient of an energy, makes the energy drift. Are motion and energy the "
+    "exact ones?",
     measure,
 )

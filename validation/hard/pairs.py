@@ -172,29 +172,31 @@ CLASSES = (
     Study(
         "stiffness",
         "Stiffness ratio 0.3 to 100",
-        "Below 1 no pair snaps, and close to 1 the force has a kink that a coarse path misses; above 1 the force has "
-        "many maxima, of which the highest is F_A. Sharp and blunt bodies, 3 to 200 particles, tolerances 1e-2 to "
-        "1e-4, both methods.",
+        "The stiffness ratio is the largest negative stiffness of a pair's attraction over the stiffness of its two "
+        "springs in series. Below 1 no pair snaps, and close to 1 the force has a kink that a coarse path misses; "
+        "above 1 the force has many maxima, of which the highest is F_A. Sharp and blunt bodies, 3 to 200 particles, "
+        "tolerances 1e-2 to 1e-4, quasi-static and in time.",
         measure_stiffness,
     ),
     Study(
         "sharp",
-        "Random sharp scenes",
-        "With few particles and pairs about to snap a search may find the wrong force maximum. Is every result of a "
-        "hundred random scenes within its uncertainty?",
+        "Random scenes of 3 to 12 particles per body",
+        "With few particles and pairs about to snap a search may find a force maximum that is not the highest. Is "
+        "every result of a hundred random scenes within its uncertainty?",
         measure_sharp,
     ),
     Study(
         "similarity",
         "Similarity: lengths × 1e-9 … 1e6, energies × 1e-9 … 1e9",
-        "An absolute threshold in a program gives different reduced results for metres and nanometres. The same "
-        "results, or an error before the run.",
+        "An absolute threshold in a program gives different reduced results for metres and nanometres. Are the "
+        "reduced results of scaled scenes the same?",
         measure_similarity,
     ),
     Study(
         "core",
-        "Compression up to and past the core",
-        "The repulsive core is finite: beyond its maximum force one body passes through the other.",
+        "Compression up to the largest repulsion of the pairs and beyond",
+        "The repulsion of a pair is finite at distance 0: under a larger load one body passes through the other. Are "
+        "displacements below it within their uncertainties, and larger loads refused?",
         measure_core,
     ),
 )

@@ -63,7 +63,7 @@ def measure(bench: Bench) -> Findings:
 PLANE_ADHESIVE = Study(
     "plane_adhesive",
     "Random adhesive contacts on the rigid plane",
-    "JKR is for a paraboloid and moderate preloads. Are results within their uncertainties for any profile, under "
-    "tension, after a preload of a million times the pull-off force, and along paths with jumps?",
+    "JKR's closed form is that of a paraboloid. Are results within their uncertainties for any profile, under "
+    "tension, after a preload of a million times the pull-off force, and along paths with instabilities?",
     measure,
 )

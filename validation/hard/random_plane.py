@@ -67,7 +67,8 @@ def measure(bench: Bench) -> Findings:
 RANDOM_PLANE = Study(
     "random_plane",
     "Random scenes on the rigid plane, with kinks and loops",
-    "Are all numbers within their uncertainties, and those beyond the tolerance named, where a slope jumps inside the "
-    "contact, where a table stands for a body, along coarse loops with jumps, and in small cycles with slip?",
+    "Are all results within their uncertainties, and those whose uncertainty exceeds the tolerance named by a "
+    "warning, where the slope of the profile jumps inside the contact, where a table of points describes the body, "
+    "along coarse loops with instabilities, and in small cycles with slip?",
     measure,
 )

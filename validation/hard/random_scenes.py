@@ -193,7 +193,7 @@ def _exact(scene: dict[str, Any], run: Run | Refused) -> dict[str, float]:
 
 RANDOM = Study(
     "random",
-    "Random scenes",
+    "Random scenes of two chains that do not snap",
     "Is every result of two hundred random scenes within its uncertainty?",
     measure,
 )

@@ -139,8 +139,9 @@ def _order(bench: Bench, name: str, law: Material) -> Row:
 
 RELAXING = Study(
     "relaxing",
-    "Bodies that relax",
-    "Histories of a displacement or a force, in which the contact grows, is held, shrinks, ends and begins anew while "
-    "the surface recovers. Are forces, approaches, durations and losses those of Ting and of the creep compliance?",
+    "Viscoelastic bodies",
+    "In histories of a displacement or a force the contact grows, is held, shrinks, ends and begins anew while the "
+    "surface recovers. Are forces, displacements, contact times and dissipated energies those of Ting's theory and of"
+    " the creep compliance?",
     measure,
 )

@@ -147,7 +147,7 @@ def judged(case: Case, name: str, found: list[Quantity], exact: float) -> list[R
 SCANS = Study(
     "scans",
     "Noisy scans of known bodies",
-    "A scan has an offset, a tilt and noise. Are radii and forces of what is taken of it within their uncertainties, "
-    "and are these no wider than the noise asks for?",
+    "A scan has an offset, a tilt and noise. Are radii and forces of the fitted profile within their uncertainties, "
+    "and are these no wider than the noise requires?",
     measure,
 )

@@ -133,7 +133,7 @@ def _moved(pairs: FoldedPairs, places: Floats) -> Floats:
 SETTLING = Study(
     "settling",
     "Relaxation times just below and just above F_A",
-    "Close to F_A a contact creeps: loads just below and just above it are alike for a time that scales with the "
-    "inverse square root of the distance from F_A, and a run that stops too early confuses the two.",
+    "Under loads close to F_A, the time to equilibrium below it and the time to separation above it scale with the "
+    "inverse square root of the distance from F_A; a run that stops too early confuses the two.",
     measure,
 )

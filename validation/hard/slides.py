@@ -193,8 +193,10 @@ def _ends(bench: Bench) -> Iterator[Row]:
 
 SLIDES = Study(
     "slides",
-    "Slides back, at rest, too fast, smooth, unloaded, one by one, off the end",
+    "Slides with a drive that reverses, stops or is too fast, without slips, without a load, with particles that slip"
+    " singly, off the end",
     "A drive that reverses or stops, several slips in one load step, an integrator that lags by half a step, or a "
-    "plate that leaves its chain gives a smooth trace and a wrong friction.",
+    "plate that leaves its chain gives a smooth trace and a wrong friction. Are traces and mean friction those of an "
+    "independent integrator?",
     measure,
 )

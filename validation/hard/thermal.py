@@ -126,15 +126,15 @@ def measure_seeds(bench: Bench) -> Findings:
 CLASSES = (
     Study(
         "boltzmann",
-        "Thermal averages against Boltzmann's integral",
-        "A thermal result may be correct at zero temperature and wrong in its thermal part, which has a row of its"
-        " own.",
+        "Thermal averages and Boltzmann's integral",
+        "The mean displacement under noise may be correct at temperature 0 and wrong in its thermal part, which has a"
+        " row of its own. Is each within its uncertainty?",
         measure_boltzmann,
     ),
     Study(
         "seeds",
-        "Scatter over seeds against the uncertainty",
-        "Is a standard error neither too small nor too large?",
+        "Scatter over random seeds and the standard error",
+        "Is the standard error of a mean under noise neither too small nor too large for its scatter over seeds?",
         measure_seeds,
     ),
 )

@@ -69,7 +69,7 @@ def measure(bench: Bench) -> Findings:
 TRANSIENT = Study(
     "transient",
     "A force held while the plate moves",
-    "While a contact is on its way to equilibrium, the error of equilibrium says nothing. Are displacement, force and "
-    "radius within their uncertainties at every time, or not reported?",
+    "While a contact moves towards equilibrium, the residual of its forces is no bound of its errors. Are "
+    "displacement, force and radius within their uncertainties at every time, or not reported?",
     measure,
 )

@@ -236,7 +236,7 @@ def _jkr() -> Series:
 
 STUDY = Study(
     NAME,
-    "The adhesive contact beside JKR",
+    "Adhesion of two chains beside JKR",
     "The model may not be suited for the adhesive contact; further calculations will help to identify its limits. JKR "
     "holds for large, compliant spheres, that is for a large μ; its F̃-ã curve is met, and F_A and a_0 identify the "
     "material.",

@@ -175,7 +175,7 @@ def _panel(runs: Runs) -> Panel:
 
 STUDY = Study(
     NAME,
-    "Thermal detachment",
+    "Detachment force under thermal fluctuations over the loading rate",
     "The paper's model has stochastic forces on the particles (Section 3); its adhesion force is found without them. "
     "Under heat a contact lets go at a force that scatters, and that is the larger the faster it is pulled.",
     judge,

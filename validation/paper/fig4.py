@@ -185,7 +185,7 @@ def _stiffness(scene: Scene) -> float:
 
 FIG5 = Study(
     "fig5",
-    "Fig. 5: the iteration in time",
+    "Fig. 5: the adhesion force by iteration of the load in time",
     "A compressive force is applied and the plate comes to rest; then a tensile force: where an equilibrium is "
     "reached it "
     "is smaller than the adhesion force. Iterating yields the adhesion force and the critical radius.",

@@ -216,7 +216,7 @@ FIG7 = Study(
 )
 EXPONENTS = Study(
     "exponents",
-    "The exponents in the local limit",
+    "Exponents of F_A, a_0 and a_cr over R where only opposite particles interact",
     "F_A ∝ √R and a_0 ∝ √R, so that the work of adhesion that is identified depends on R, and the modulus does not.",
     judge_exponents,
     local_scenes,

@@ -340,7 +340,7 @@ FIG8B = Study(
 )
 JKR_OR_BARQUINS = Study(
     "jkr_or_barquins",
-    "JKR or Barquins?",
+    "Curves of force over radius beside JKR (3D) and Barquins (2D)",
     "For arbitrary N and R the three-dimensional theory (JKR) suits the results much better than the two-dimensional "
     "one (Barquins).",
     judge_both,

@@ -225,7 +225,7 @@ def _panels(runs: Runs) -> list[Panel]:
 
 STUDY = Study(
     NAME,
-    "Thermal friction",
+    "Thermal friction of one particle",
     "The paper's model has stochastic forces on the particles and a cantilever that pulls the plate (Section 3), and "
     "gives no result with either. What a single particle does under both is known.",
     judge,

@@ -150,7 +150,7 @@ def _which(stiffnesses: list[float]) -> str:
 
 MEAN_PRESSURE_STUDY = Study(
     "mean_pressure",
-    "The mean pressure at R = 1000, a = 35",
+    "The mean pressure at R = 1000 LU, a = 35 LU",
     "For R = 1000 and a = 35 the mean pressure is about 800 MPa.",
     judge_pressure,
     pressure_scenes,

@@ -95,11 +95,19 @@ def size_rows(found: Mapping[str, Mapping[int, Mapping[str, float]]]) -> list[Ro
     rows = []
     for method, sizes in found.items():
         costs = {size: each["cost"] for size, each in sizes.items()}
-        words = f"cost per particle and step, {method}, largest over smallest from N = {min(sizes)} to {max(sizes)}"
+        sizes_in_words = f"N = {min(sizes)} to {max(sizes)} particles per body"
+        words = f"CPU time per particle and step, {method}, largest over smallest for {sizes_in_words}"
         rows.append(at_most(words, spread(costs), SPREAD, ASKED, "processor caches", "set bound"))
         size, memory = max(sizes), sizes[max(sizes)]["memory"]
         rows.append(
-            at_most(f"GB of both processes, {method}, N = {size}", memory / 1e9, MEMORY / 1e9, ASKED, "–", "set bound")
+            at_most(
+                f"memory of program and LAMMPS [GB], {method}, N = {size}",
+                memory / 1e9,
+                MEMORY / 1e9,
+                ASKED,
+                "–",
+                "set bound",
+            )
         )
     return rows
 
@@ -125,7 +133,9 @@ def measure_outside(bench: Bench) -> Findings:
 
     def outside(words: str, limit: float, timed: Any) -> Row:
         value = statistics.median(timed() for _ in range(REPEATS))
-        return at_most(f"s outside LAMMPS: {words}", value, limit, ASKED, "imports; files and figures", "set bound")
+        return at_most(
+            f"wall time outside LAMMPS [s]: {words}", value, limit, ASKED, "imports; files and figures", "set bound"
+        )
 
     def command(figures: str) -> float:
         program, folder = Path(sys.executable).with_name("contact1d"), bench.folder / "run"
@@ -172,10 +182,10 @@ def rank_rows(method: str, size: int, alone: float, shared: float, off: float) -
     """Forces and times of one size."""
     words = f"{method}, {size} particles per body"
     return [
-        at_most(f"force on two ranks off that on one, over the largest: {words}", off, SAME, "the same contact",
-                "order of the sums"),
-        at_most(f"time of two ranks over one: {words} ({alone:.3g} s on one)", shared / alone, 1.0, "no more time",
-                "what two processors share", "set bound"),
+        at_most(f"difference of the forces on two MPI ranks and on one, over the largest force: {words}", off, SAME,
+                "the same contact", "order of the sums"),
+        at_most(f"wall time of the load steps on two MPI ranks over that on one: {words} ({alone:.3g} s on one)",
+                shared / alone, 1.0, "no more time", "what two processors share", "set bound"),
     ]  # fmt: skip
 
 

@@ -123,8 +123,8 @@ def measure(bench: Bench) -> Findings:
         lines.append(Series(name, found[:, 1], found[:, 0]))
         defaults.append(found[TOLERANCES.index(DEFAULT)])
         rows += [
-            at_most(f"error over the tolerance {tolerance:g}: {name}", error / tolerance, 1.0, "asked for", "the run",
-                    "closed form")
+            at_most(f"largest relative error over the tolerance {tolerance:g}: {name}", error / tolerance, 1.0,
+                    "asked for", "the run", "closed form")
             for tolerance, (error, _) in zip(TOLERANCES, found, strict=True)
         ]  # fmt: skip
     errors, times = np.transpose(defaults)

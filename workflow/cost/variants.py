@@ -96,7 +96,7 @@ def variants_of(scene: Scene) -> list[tuple[SceneEdit, Scene]]:
 
 
 def edited(scene: Scene, edit: SceneEdit) -> Scene | None:
-    """Return a new scene with an edit, or None where the result is no valid scene."""
+    """Return a new scene with an edit; None where the result is no valid scene, or an effect to leave out is absent."""
     with suppress(SceneError):
         return scene.with_(edit.values, without=edit.without)
     return None

@@ -144,18 +144,19 @@ def legs(displacements: Array) -> list[slice]:
 def equilibria(path: Path, apart: float, jumps: Sequence[float], spacing: float, finer: int) -> Path:
     """Return a path of equilibria that begins with separated bodies, dense enough for an integral of the work along it.
 
-    It begins just below the smaller one of `apart` and 0; smaller displacements of `path` are raised to this start. It
-    goes through the ends of all monotonic parts, with about 80 states, times `finer`, over all of the displacement, and
-    30 on both sides of each jump. Where there are tangential displacements it goes through all states of `path`, with
-    32 states, times `finer`, for each step that changes d, and `finer` for each other one, and none near jumps. Times
-    are 0.
+    It begins just below the smaller one of `apart` and 0; smaller displacements of `path` are raised to this start.
+    Without tangential displacements it goes through the ends of all monotonic parts, evenly within each: about 80
+    states, times `finer`, for the whole range of displacement, and so twice as many for a way there and back. Each time
+    it passes a jump, 30 more are on both sides of it, within one spacing and inside of the part. With tangential
+    displacements it goes through all states of `path`, with 32 states, times `finer`, for each step that changes the
+    displacement, and `finer` for each other one, and none near jumps. Times are 0.
 
     Args:
-        path: of a run.
+        path: of a run; it is not changed.
         apart: displacement [LU] below which the force is 0.
         jumps: displacements [LU] at which the force jumps.
         spacing: of the particles [LU].
-        finer: factor on the number of states.
+        finer: factor on the number of states, not on those near jumps.
     """
     start = min(0.0, apart) - ROUND_OFF * spacing  # apart
     displacements = np.append(start, np.maximum(path.displacement, start))

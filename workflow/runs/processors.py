@@ -93,11 +93,12 @@ def require_ranks(deck: Deck, ranks: int, fewest: int = 50) -> None:
     Args:
         deck: of the scene.
         ranks: number of MPI ranks.
-        fewest: particles of a body for each rank; with fewer, communication takes longer than their forces.
+        fewest: particles of the upper body for each rank; with fewer, communication takes longer than their forces.
 
     Raises:
-        RanksError: why not, and what to do: with noise, on a rigid plane, with distant anchors, with too few particles,
-            or without a launcher of MPI.
+        RanksError: why not, and what to do: with noise; on a rigid plane; with [horizontal] and springs to the bulk
+            that are stiffer along x than along z; with fewer than `fewest` particles for each rank; or where mpi4py or
+            a launcher of MPI is missing.
     """
     if ranks == 1:
         return

@@ -96,7 +96,7 @@ class Effect(Table):
 
 
 class Interaction(Effect):
-    """Effect: V(r) = A exp(−r/a) − B exp(−r/b) between opposite bodies."""
+    """Effect: V(r) = A exp(−r/a) − B exp(−r/b) between particles of opposite bodies."""
 
     is_modelled = keeps_springs = True
 
@@ -107,7 +107,9 @@ class Interaction(Effect):
     attraction: Exponential | None = None
     """attractive term, B and b; absent: no adhesion"""
     cutoff: Auto[Length] = "auto"
-    """distance beyond which no force acts, or "auto": by the tolerance"""
+    """distance beyond which no force acts, or "auto": so long that its truncation error is a small share of the
+    tolerance
+    """
 
 
 class Neighbours(Effect):
@@ -140,16 +142,18 @@ class Friction(Effect):
     how = "[friction] with its coefficient"
 
     coefficient: RatioOrZero
-    """largest tangential over normal force of a particle; before slip it has bodies.bulk_stiffness_tangential"""
+    """coefficient of friction μ: a particle slips where its tangential force would exceed μ times its normal force, and
+    until then has the stiffness bodies.bulk_stiffness_tangential
+    """
 
 
 class Rate(Table):
     """How the energy that opens an edge grows with its speed: G = W (1 + (v/v₀)ⁿ) (Maugis and Barquins)."""
 
     velocity: Velocity
-    """v₀, at which it is doubled"""
+    """speed v₀ of the edge at which G = 2W"""
     exponent: Ratio
-    """n, about 0.6 for elastomers"""
+    """exponent n, about 0.6 for elastomers"""
 
 
 class Adhesion(Effect):
@@ -174,8 +178,8 @@ class Adhesion(Effect):
     Dugdale, from DMT to JKR; absent: a range of zero, JKR
     """
     rate: Rate | None = None
-    """in a pull_off with a velocity, or a history of displacements: the edge recedes at a finite speed, and advances at
-    once; absent: at once
+    """in a pull_off with a velocity, or a history of displacements: finite speed at which the contact edge recedes; it
+    advances at once; absent: it recedes at once, too
     """
 
     @property
@@ -191,7 +195,7 @@ class Term(Table):
     """One term of a Prony series."""
 
     share: Annotated[float, POSITIVE, Le(1), DIMENSIONLESS]
-    """share of the instantaneous modulus that relaxes in this time"""
+    """share of the instantaneous modulus that relaxes with this time; all shares add up to 1 at most"""
     time: Duration
     """relaxation time τ"""
 
@@ -218,7 +222,9 @@ class Viscoelasticity(Effect):
     terms: Listed[Term] | None = None
     """Prony series of the instantaneous modulus, which [material] or bulk_stiffness gives"""
     retardation_time: Duration | None = None
-    """in place of terms: time T of a dashpot beside each spring, p ∝ E (u + T u′)"""
+    """in place of terms, for a Kelvin-Voigt body: retardation time T of a dashpot parallel to each spring, whose force
+    is proportional to u + T u′, u its compression
+    """
 
     @property
     def lasting(self) -> float:
@@ -237,7 +243,7 @@ class Viscoelasticity(Effect):
 
 
 class Damping(Effect):
-    """Effect: viscous damping of particles."""
+    """Effect: viscous damping of the particles."""
 
     is_modelled = keeps_springs = True
 
@@ -245,7 +251,7 @@ class Damping(Effect):
     how = '[damping] with coefficient = "auto"'
 
     coefficient: Auto[DampingCoefficient]
-    """drag force over velocity, or "auto": near critical"""
+    """drag force over velocity of a particle, or "auto": near critical"""
 
 
 class Noise(Effect):
@@ -291,15 +297,17 @@ class Plate(Effect):
     how = '[plate] with mass = "auto"'
 
     mass: Auto[Mass] = "auto"
-    """mass of the plate, or "auto" """
+    """mass of the plate, or "auto": that of all particles of the upper body"""
     free: Free = ("z",)
     """directions in which the plate may move: ["z"] or ["x", "z"]"""
     damping: Auto[DampingCoefficientOrZero] = "auto"
-    """drag force over velocity of the plate, or "auto" """
+    """drag force over velocity of the plate, or "auto": together with that of the particles near critical, 0 with
+    [noise] and in an impact
+    """
 
 
 class Cantilever(Effect):
-    """Effect: the plate is pulled along x through a spring whose far end moves steadily."""
+    """Effect: the plate is pulled along x through a spring whose far end is driven."""
 
     is_modelled = keeps_springs = True
 
@@ -309,4 +317,4 @@ class Cantilever(Effect):
     stiffness: Stiffness
     """stiffness of the spring"""
     velocity: Annotated[Velocity, OutOfRange(REVERSED)]
-    """velocity of the driven end"""
+    """velocity of the driven end; with experiment.path each leg has its own"""

@@ -77,9 +77,9 @@ class Path(Kind):
     history_is_given = True
 
     kind: Literal["path"]
-    """prescribed displacement, there and back"""
+    """prescribed displacements"""
     displacements: Displacements
-    """displacements, compression positive: a list or an even span"""
+    """displacements of the upper body, compression positive: a list, or a table for evenly spaced ones"""
     start: Literal["approach", "contact"] = "approach"
     """branch of the first point where adhesion has two: approach from afar, or unloading from the largest displacement
     """
@@ -115,7 +115,9 @@ class PullOff(Kind):
     repeats: RepeatCount | None = None
     """with [noise]: number of repeats, each with the next seed; absent: 1"""
     cycles: CycleCount | None = None
-    """times that the bodies are pressed together and pulled off, without [noise]; results of the last; absent: 1"""
+    """number of times that the bodies are pressed together and pulled off, without [noise]; results are those of the
+    last; absent: 1
+    """
     method: AnyMethod = None
 
     @property
@@ -156,13 +158,15 @@ class Slide(Kind):
     motion_is_result = True
 
     kind: Literal["slide"]
-    """normal force and cantilever; always dynamic"""
+    """sliding under a normal force, pulled by the cantilever; always dynamic"""
     normal_force: Force
     """normal force during sliding, compression positive; 0 or tensile where bodies attract each other"""
     distance: Length | None = None
     """distance of the driven end of the cantilever at cantilever.velocity; absent with a path"""
     path: Listed[Leg] | None = None
-    """legs [velocity, distance] of the driven end in place of one distance"""
+    """legs [velocity, distance] of the driven end in place of one distance: a negative velocity moves it back, at 0 it
+    rests for the time that cantilever.velocity takes for the distance
+    """
 
     def legs(self, velocity: float) -> tuple[Leg, ...]:
         """Return the legs (velocity [LU/TU], distance [LU] > 0) of the driven end: the given path.
@@ -213,7 +217,9 @@ class Tangential(Kind):
     displacements
     """
     displacements: Displacements | None = None
-    """tangential displacements, 0 where the load is applied: a list or an even span"""
+    """tangential displacements, from the position 0 at which the load is applied: a list, or a table for evenly spaced
+    ones
+    """
     cycles: Cycles | None = None
     """in place of displacements: closed cycles along x between two displacements ±u_m"""
 
@@ -259,7 +265,7 @@ class Hold(Kind):
     displacement: Displacement | None = None
     """displacement held, compression positive"""
     force: Force | None = None
-    """in place of the displacement: normal force held, compression positive; with [plate]"""
+    """in place of the displacement: normal force held, compression positive; needs [plate]"""
     duration: Duration
     """how long it is held"""
 
@@ -316,9 +322,9 @@ class History(Kind):
     kind: Literal["history"]
     """displacement or force over time"""
     displacement: Annotated[tuple[Moment, ...], Field(strict=False), MinLen(2)] | None = None
-    """points [time, displacement], straight between them"""
+    """points [time, displacement], with linear change between them"""
     force: Annotated[tuple[LoadedMoment, ...], Field(strict=False), MinLen(2)] | None = None
-    """in place of the displacement: points [time, force], straight between them"""
+    """in place of the displacement: points [time, force], with linear change between them"""
     steps: StepCount | None = None
     """load steps of each leg; absent: by accuracy.tolerance"""
 

@@ -88,23 +88,25 @@ class Measured(Shape):
 
     slow = True
     kind: Literal["table"]
-    """measured points, monotone cubics between them"""
+    """measured points, with monotone cubics between them or a fitted curve"""
     file: str | None = None
-    """CSV file with the columns r and z, or r [µm] and z [µm], read into the keys r and z, or x and z; from −x to x the
-    mean of both sides is taken
+    """file with the columns r and z, or x and z, if they have units as r [µm] and z [µm], or file of an instrument; of
+    positions from −x to x the mean of both sides is taken
     """
     scale: Length | None = None
-    """length of one unit of a file's numbers that has no units in it; absent: 1 LU"""
+    """length of one unit of the numbers in a file without units; absent: 1 LU"""
     units: Annotated[tuple[str, str], Field(strict=False)] | None = None
     """units of position and height of a file, such as ["µm", "nm"], in place of scale; with a minus for heights of a
     body seen from above: ["µm", "-nm"]
     """
     centre: Auto[SignedLength] | None = None
-    """position of the apex in the scan, or "auto": looked for, by both sides of it; absent: 0"""
+    """position of the apex in the scan, or "auto": where both sides of it are alike; absent: 0"""
     level: bool = False
     """whether a tilt of the scan is removed; needs a flat part, or both sides of a given centre"""
     smooth: Annotated[Length | Literal["none", "auto"], Field()] | None = None
-    """distance of the knots of a smooth curve that rises from the apex on, or "auto": by the noise of the scan"""
+    """distance of the knots of a smooth curve that rises from the apex on and replaces the points, or "auto": chosen by
+    the noise of the scan
+    """
     fit: Literal["none", "parabola", "circle", "power"] = "none"
     """shape that is fitted to the points in place of a smooth curve"""
     x: Coordinates | None = None
@@ -112,7 +114,7 @@ class Measured(Shape):
     r: Coordinates | None = None
     """radii of the points, from 0, rising"""
     z: Coordinates | None = None
-    """heights at these radii; the first one counts as 0"""
+    """heights at these radii or positions; that of the apex counts as 0"""
 
     @model_validator(mode="after")
     def _is_a_profile(self) -> Self:

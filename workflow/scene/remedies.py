@@ -31,8 +31,9 @@ def less_compression(scene: Scene, carried: float | None = None) -> Iterator[Sce
 def against_passing(scene: Scene) -> Iterator[SceneEdit]:
     """Yield edits of the scene against bodies that penetrate each other, each for itself, as far as they apply to it.
 
-    In this order: with noise a tenth of the temperature; no [horizontal], unless in a slide or with a plate that is
-    free along x; a third of the compressive force, where the experiment gives a single one. None may apply.
+    In this order: with noise a tenth of the temperature, as k_BT [FU·LU]; no [horizontal], unless in a slide or with a
+    plate that is free along x; a third of the compressive force [FU], where the experiment gives a single one. Numbers
+    are in units of the model, to three digits. None may apply; the scene is not changed.
     """
     if scene.noise:
         yield SceneEdit({"noise.temperature": float(f"{0.1 * scene.temperature:.3g}")})

@@ -129,7 +129,7 @@ class Parabola(Shape):
     """Profile of the upper body: z = x²/2R, of two curved bodies the gap, 1/R = 1/R₁ + 1/R₂."""
 
     kind: Literal["parabola"]
-    """z = x²/2R, the paper's circle"""
+    """z = x²/2R, a ball near its apex"""
     radius: Length
     """radius of curvature R at the apex; with a counter_radius R₁"""
     counter_radius: SignedLength | None = None
@@ -171,7 +171,7 @@ class Circle(Shape):
     """Profile of the upper body: an exact circle, z = R − √(R² − x²)."""
 
     kind: Literal["circle"]
-    """z = R − √(R² − x²), an exact circle"""
+    """z = R − √(R² − x²), a whole ball"""
     radius: Length
     """radius R"""
 
@@ -210,7 +210,7 @@ class Ellipsoid(Shape):
     kind: Literal["ellipsoid"]
     """z = b − b √(1 − x²/c²), an ellipsoid of revolution about the load"""
     radius: Length
-    """half axis c across the load"""
+    """half axis c perpendicular to the load"""
     half_axis: Length = Field(alias="height")
     """half axis b along the load"""
 
@@ -304,7 +304,7 @@ class Level(Shape):
 
 
 class Flat(Level):
-    """Profile of the upper body: z = 0 without end; its chain closes on itself (`bodies.periodic`)."""
+    """Profile of the upper body: z = 0 without end; its chain is periodic (`bodies.periodic`)."""
 
     kind: Literal["flat"]
     """z = 0 without end, with bodies.periodic"""
@@ -316,7 +316,7 @@ class FlatPunch(Level):
     kind: Literal["flat_punch"]
     """z = 0 within the radius, no body beyond it"""
     radius: Length
-    """radius, a whole number of half spacings"""
+    """radius, a whole number of half spacings and at least 1.5 spacings"""
 
     @property
     def reach(self) -> float:

@@ -96,7 +96,7 @@ class Elastic(Table):
     poisson_ratio: Poisson
     """Poisson's ratio ν"""
     yield_strength: Pascal | None = None
-    """yield strength Y, used to check validity only: the body remains elastic"""
+    """yield strength Y, for the validity check `yield` only: the body remains elastic"""
 
     @property
     def compliance(self) -> float:
@@ -113,19 +113,23 @@ class Material(Table):
     """Elasticity of the bodies; optionally the units of the model, or the surface energy that they follow from."""
 
     upper: Elastic | Literal["rigid"] | None = None
-    """the upper body; "rigid", or the lower one: of infinite modulus"""
+    """the upper body, or "rigid": of infinite modulus, which one of the two bodies may be"""
     lower: Elastic | Literal["rigid"] | None = None
-    """the lower body"""
+    """the lower body, or "rigid" """
     contact_modulus: Pascal | None = None
-    """E*, in place of the two bodies"""
+    """contact modulus E*, in place of upper and lower"""
     length_unit: Metre | None = None
-    """one LU in metres; absent: 1, where numbers have units"""
+    """one LU in metres; absent: 1 where the scene has numbers with units"""
     force_unit: Newton | None = None
-    """one FU in newtons, with bodies.bulk_stiffness = "auto"; absent: from the stiffness"""
+    """one FU in newtons, with bodies.bulk_stiffness = "auto"; absent: 1 where the scene has numbers with units; with a
+    given bulk_stiffness it follows from that and E*
+    """
     mass_unit: Kilogram | None = None
-    """one MU in kilograms, for masses, times and velocities with units"""
+    """one MU in kilograms; absent: 1 where masses, times or velocities have units"""
     surface_energy: SurfaceEnergy | None = None
-    """γ of one side, half the work of adhesion: both units then follow from the run by JKR (Eq. 9)"""
+    """γ of one side, half the work of adhesion, in a scene without units: LU and FU then follow from pull-off force and
+    zero-load radius of the run by JKR (Eq. 9 of the paper)
+    """
 
     @property
     def elastic(self) -> dict[str, Elastic]:
@@ -191,31 +195,33 @@ class Bodies(Table):
     """The two bodies: chains of particles, each particle held to its own bulk by a spring."""
 
     particles: Auto[ParticleCount]
-    """particles per body, or of the lower one, or "auto": as many as the contact needs"""
+    """particles of each body, with upper_particles those of the lower one, or "auto": as many as the contact needs"""
     given_spacing: Auto[Length] = Field(alias="spacing")
-    """distance of neighbouring particles, or on a rigid plane "auto": so small that all results meet
-    `accuracy.tolerance`
+    """distance of neighbouring particles, or on a rigid plane "auto": so small that the estimated discretisation error
+    meets `accuracy.tolerance`
     """
     profile: Profile
     """shape of the upper body"""
     reduction: Reduction = cast("Reduction", None)
-    """reduction of the 3D contact: "geike_popov" (profile as given) or "mdr" (transformed); absent: "mdr"
-    with a material, on a rigid plane and for every profile but a parabola, else "geike_popov"
+    """reduction of the contact to one dimension: "geike_popov" (profile as given) or "mdr" (transformed profile);
+    absent: "mdr" with a material, on a rigid plane and for every profile but a parabola, else "geike_popov"
     """
     bulk_stiffness: Auto[Stiffness] = "auto"
     """normal stiffness of each particle to its bulk, or "auto": from the material"""
     bulk_stiffness_tangential: Stiffness | None = None
-    """tangential stiffness of each particle to its bulk; absent: the normal one, or G*/E* of it where E and ν of both
-    bodies are known
+    """tangential stiffness of each particle to its bulk; absent: the normal one, times the ratio G*/E* of tangential
+    and normal contact modulus where E and ν of both bodies are known
     """
     mass: Mass = 1.0
-    """mass of a particle; matters only where something moves in time"""
+    """mass of a particle; has an effect in a dynamic run only, and none in an impact"""
     lower: Literal["particles", "rigid_plane", "rigid_chain"] = "particles"
     """lower body: "particles" like the upper one, a "rigid_plane", or a "rigid_chain" of particles without springs"""
     periodic: bool = False
-    """whether both bodies are flat and periodic along x"""
+    """whether both bodies are flat and periodic along x, in a slide"""
     upper_particles: AnyParticleCount | None = None
-    """particles of the upper body; absent: as many as the lower one has"""
+    """particles of the upper body; absent: as many as the lower one has, with particles = "auto" as many as the contact
+    needs
+    """
     upper_spacing: Length | None = None
     """distance of neighbouring particles of the upper body; absent: the spacing"""
     upper_offset: Displacement | None = None
@@ -293,8 +299,8 @@ class Output(Table):
 
     states: AllOr[StateCount]
     """number of states in states.lammpstrj, evenly among the load steps of curve.csv, or "all" of these; each has the
-    positions of all atoms and the force of the opposite body on them; without this table it has the reported states
-    only
+    positions of all atoms and the force of the opposite body on each particle; without this table the file has the
+    reported states only
     """
 
 

@@ -83,22 +83,21 @@ def rows_of(results: Sequence[Result]) -> list[Row]:
     """Our time over that of each boundary-element code at equal error, and the whole run by the clock."""
     rows = []
     for contact, key, what in (
-        ("hertz", "limit_force", "Hertz, 1 % of the largest force (rms)"),
-        ("hertz", "limit_relative", "Hertz, 1 % of each force (rms)"),
-        ("jkr", None, "adhesive, 1 % of the solver's own limit, any range"),
-        ("jkr", "theory_force", "JKR itself"),
+        ("hertz", "limit_force", "Hertz, rms error of 1 % of the largest force"),
+        ("hertz", "limit_relative", "Hertz, rms error of 1 % of each force"),
+        ("jkr", None, "adhesive, error of 1 % of the solver's own continuum limit"),
+        ("jkr", "theory_force", "JKR, the same error with respect to the closed form"),
     ):
         mine, others = ([one for one in results if one["contact"] == contact and (one["solver"] == OURS) is own]
                         for own in (True, False))  # fmt: skip
         for name in ELEMENTS:
             peers = [one for one in others if one["solver"] == name]
             if peers:
-                rows.append(
-                    _compared(f"{what}: {OURS} over {name}", mine, peers, key, ASKED[what.split()[0].strip(",")])
-                )
+                words, asked = f"CPU time of {OURS} over that of {name}: {what}", ASKED[what.split()[0].strip(",")]
+                rows.append(_compared(words, mine, peers, key, asked))
     hertz = quickest((one for one in results if one["contact"] == "hertz" and one["solver"] == OURS), "limit_force")
     wall = math.nan if hertz is None else float(hertz["wall"])
-    words = "s by the clock for Hertz's curve of 50 states, the whole run through Python"
+    words = f"wall time of {OURS} [s]: Hertz's curve of 50 states, the whole run through Python"
     return [*rows, at_most(words, wall, WHOLE, "asked for", "–", "set bound")]
 
 
