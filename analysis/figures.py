@@ -242,7 +242,8 @@ def body(
 ) -> Chart:
     """Return the chart of a traction on the three-dimensional body over r, in a panel for each state.
 
-    Values of the run of more than 8 times their median magnitude in the state, near a pole at the edge, are left out;
+    Values of the run of more than 8 times their median magnitude in the state, near a pole at the edge, are left out, none where the
+    median is 0;
     closed forms are drawn whole.
 
     Args:
@@ -254,7 +255,7 @@ def body(
     panels = []
     for state, columns in states.items():
         size = np.abs(columns[name])
-        shown = size <= 8.0 * np.median(size)  # a pole at the edge would hide the rest
+        shown = ~(size > 8.0 * (np.nanmedian(size) or np.inf))  # a pole at the edge would hide the rest
         r, value, spread = (columns[column][shown] for column in ("r", name, f"{name}_uncertainty"))
         series = lines(theories[state]) if state in theories else []
         series.append(Series(r, value, "this run", COMPRESSION, "o", dy=spread))

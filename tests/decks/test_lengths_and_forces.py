@@ -240,6 +240,11 @@ def test_an_automatic_lower_chain_is_as_long_as_the_upper_one_and_the_way_and_no
     assert atoms[UPPER][:, 0].mean() == pytest.approx(offset, abs=EXACT)
 
 
+def test_a_body_may_be_as_wide_as_its_own_spacing_lets_it() -> None:
+    atoms = deck(bodies={"profile": {"kind": "circle", "radius": 30.0}, "particles": 100, "upper_spacing": 0.5}).atoms
+    assert np.ptp(atoms[UPPER][:, 0]) == pytest.approx(99 * 0.5)
+
+
 @pytest.mark.parametrize("displacement", [-0.5, 0.3])
 def test_an_automatic_chain_of_bodies_that_only_repel_ends_a_tenth_and_two_particles_beyond_what_is_felt(
     displacement: float,

@@ -229,7 +229,7 @@ def test_a_map_has_a_line_for_each_curve(tmp_path: Path) -> None:
     assert float(table[0][f"{E}_low [Pa]"]) < MODULUS < float(table[0][f"{E}_high [Pa]"])
     low, high = (float(table[2][f"{W}_{end} [J/m²]"]) for end in ("low", "high"))
     assert low < WORK < high < 2.0 * low
-    assert (done.folder / "contact_modulus.png").is_file()
+    assert (done.folder / "material.contact_modulus.png").is_file()
 
 
 SOFT = 0.1 * STIFFNESS

@@ -79,6 +79,13 @@ def test_one_mistake_is_one_sentence(change: dict[str, Any], words: str, tmp_pat
     assert "\n" not in said
 
 
+def test_a_load_of_0_is_none_with_and_without_a_unit(tmp_path: Path) -> None:
+    folders = [
+        tmp_path / str(i) for i, load in enumerate((0, "0 N")) if from_material(TIP | {"load": load}, tmp_path / str(i))
+    ]
+    assert len({(folder / "scene.toml").read_text(encoding="utf-8") for folder in folders}) == 1
+
+
 def test_the_page_has_every_key(tmp_path: Path) -> None:
     page = (Path(__file__).parents[2] / "docs" / "identify.md").read_text(encoding="utf-8")
     table = page.split("## Keys")[1].split("## ")[0]

@@ -97,14 +97,14 @@ class LoadedState:
         return self.scene.bulk_stiffness / self.scene.bodies.spacing
 
     def heights(self, x: Array, shape: Shape | None = None) -> Array:
-        """Return c h(x), (n,) [FU/LU], at positions x (n,) [LU], of the body or of another `shape` in its place.
+        """Return w c h(w x), (n,) [FU/LU], at positions x (n,) [LU] of the body, or of another `shape` in its place.
 
         c is the stiffness of the springs per length, h the height of the shape above its apex under the reduction of
-        the scene (with the MDR the transformed one). Positions are taken as they are, also where the image is twice as
-        wide as the body.
+        the scene (with the MDR the transformed one), w the width of the image over that of the body.
         """
         bodies = self.scene.bodies
-        return self.layer * (bodies if shape is None else bodies.model_copy(update={"profile": shape})).height(x)
+        image = bodies if shape is None else bodies.model_copy(update={"profile": shape})
+        return self.image_ratio * self.layer * image.height(self.image_ratio * x)
 
     @cached_property
     def edge(self) -> float | None:
@@ -140,10 +140,10 @@ class LoadedState:
 
     @cached_property
     def body(self) -> Callable[[Array], Array] | None:
-        """Function of positions (n,) [LU] that returns κ h(x), (n,) [FU/LU], h the height under the reduction; cached.
+        """Function of positions (n,) [LU] that returns a multiple of `heights`, (n,) [FU/LU]; cached.
 
-        κ is the stiffness per length for linear springs, else −dq/dh at the axis, q the line load, or that stiffness if
-        h does not rise there. None where particles are coupled, or the lower body is no rigid plane; where the shape
+        For linear springs `heights` itself, else with the slope of the line load at the axis, or `heights` if they do
+        not rise there. None where particles are coupled, or the lower body is no rigid plane; where the shape
         has an edge, or is uncertain (a table or a scan); and where springs are not linear and fewer than 3 particles on
         a side carry a load.
         """

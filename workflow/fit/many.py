@@ -121,7 +121,7 @@ def _write(plan: FitPlan, rows: Sequence[dict[str, Any]], folder: Path) -> None:
 def _draw(plan: FitPlan, key: str, name: str, done: DataFrame, folder: Path) -> None:
     """Draw the histogram of a parameter, and its map where the curves have positions, to a PNG file in a folder.
 
-    The file has the last part of the dotted `key` as its name. Values have an SI prefix.
+    The file has the dotted `key` as its name. Values have an SI prefix.
 
     `name`: column of the parameter in the table `done`, whose rows are the curves that have it.
     """
@@ -138,4 +138,4 @@ def _draw(plan: FitPlan, key: str, name: str, done: DataFrame, folder: Path) -> 
         axes[1].set_aspect("equal")
         plots.describe(axes[1], "x", "y", zero=False)
         figure.colorbar(points, ax=axes[1], label=label)
-    plots.save_figure(figure, folder / f"{key.rpartition('.')[2]}.png")
+    plots.save_figure(figure, folder / f"{key}.png")

@@ -33,12 +33,13 @@ UNITS = {POINT: "m", OFFSET: "N", STIFFNESS: "N/m"}
 def write(result: FitResult, folder: Path) -> None:
     """Write fit.json, curve.csv, scene.toml and fit.png to an existing folder, in place of earlier ones.
 
-    Each file is written whole or not at all; all are in SI.
+    Each file is written whole or not at all; all are in SI. A number that is not finite is null in fit.json.
     """
     from pandas import DataFrame
 
     fit = result.fit
-    write_whole(folder / RECORD, json.dumps(document(result), indent=2, ensure_ascii=False) + "\n")
+    finite = json.loads(json.dumps(document(result)), parse_constant=lambda constant: None)
+    write_whole(folder / RECORD, json.dumps(finite, indent=2, ensure_ascii=False, allow_nan=False) + "\n")
     write_whole(folder / "scene.toml", tables_as_toml(fit.scene.tables))
     points = np.arange(fit.forces.size)
     table = DataFrame(

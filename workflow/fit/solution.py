@@ -195,13 +195,10 @@ def _starts(subject: Subject, outliers: Indices) -> list[Array]:
     """Return starts (p,) of a fit: for JKR, DMT and Hertz up to four of a global search, the best first.
 
     For Maugis these are the three best of JKR's and DMT's best fits at several ranges h₀, or both of them where the
-    range is no unknown. A start has the logarithm of the ratio of each positive unknown to its first guess, the ratio
+    range is no unknown; of JKR's alone for a body without a radius of curvature, such as a cone. A start has the logarithm of the ratio of each positive unknown to its first guess, the ratio
     of the contact point and of the offset to the range of the data.
 
     `outliers`: indices of points that are left out.
-
-    Raises:
-        AssertionError: for Maugis and a body without a radius of curvature, such as a cone.
     """
     problem = subject.problem.without(outliers)
     if not subject.model.limits:
@@ -209,8 +206,8 @@ def _starts(subject: Subject, outliers: Indices) -> list[Array]:
     is_range = np.array([name == RANGE for name in subject.names])
     ranges = np.arange(-4.0, 4.0, 1.5) if is_range.any() else np.zeros(1)  # log(h₀ / the given one)
     starts = []
-    for name in subject.model.limits:
-        limit = replace(subject, model=LAWS[name])
+    for model in (LAWS[name] for name in subject.model.limits if LAWS[name].applies(subject.scene)):
+        limit = replace(subject, model=model)
         u = global_search(limit.problem.without(outliers), limit.sought, limit.completed)[0]
         starts += [u + step * is_range for step in ranges]
     starts.sort(key=lambda u: float(np.abs(problem.residuals(u)).sum()))

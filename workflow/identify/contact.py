@@ -57,7 +57,7 @@ DEFAULTS = {
     "experiment.force": 1.0,
 }
 """Values of a chain on a rigid plane for all that a description does not give, by dotted keys of a scene."""
-NONE_AT_ZERO = ("surface_energy", "work_of_adhesion", "load")
+NONE_AT_ZERO = ("surface_energy", "work_of_adhesion")
 """Keys that count as absent if their value is 0."""
 
 
@@ -106,10 +106,7 @@ class AskedContact:
 
     @property
     def load(self) -> float | None:
-        """The load [N], compression positive; None where it is not given.
-
-        A load given as the number 0, without a unit, is 1 N, that of the scene by default.
-        """
+        """The load [N], compression positive; None where it is not given."""
         return self.scene.experiment.compression if "load" in self.given else None
 
     @property
@@ -212,7 +209,7 @@ def _without_unit(data: Mapping[str, Any], folder: Path) -> Iterator[Problem]:
 def _as_scene(data: Mapping[str, Any]) -> dict[str, Any]:
     """Return the tables of a chain on a rigid plane with the described values, and DEFAULTS for all others, unchecked.
 
-    A surface energy, work of adhesion or load of the number 0 counts as absent. Without materials E* is 1 Pa; a missing
+    A surface energy or work of adhesion of the number 0 counts as absent. Without materials E* is 1 Pa; a missing
     one of two bodies is rigid.
     """
     given = {SCENE_KEYS[key]: v for key, v in data.items() if key in SCENE_KEYS and (v or key not in NONE_AT_ZERO)}

