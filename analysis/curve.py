@@ -210,7 +210,9 @@ class States:
 
 
 def states_of(profiles: Sequence[Profile], kept: Sequence[int] | None = None, most_numbers: int = 200_000) -> States:
-    """Return the states of a curve, thinned evenly; the first and the last one stay, and the outer particles.
+    """Return the states of a curve: those of `kept`, else all, thinned evenly with the first and the last one.
+
+    Particles are thinned evenly beyond half of `most_numbers`, with both outer ones. Numbers are float32.
 
     Args:
         profiles: of each row of the curve, one at least, all with the same number of particles.
@@ -243,7 +245,7 @@ def write_states(path: Path, states: States) -> None:
 def read_states(path: Path) -> States:
     """Return the states in the file states.npz at `path`, arrays as they were written.
 
-    Raises OSError or ValueError where it is no such file, or lacks an array.
+    Raises OSError or ValueError where it is no such file, or lacks an array, zipfile.BadZipFile where it is cut short.
     """
     with np.load(path, allow_pickle=False) as kept:
         missing = [field.name for field in fields(States) if field.name not in kept]

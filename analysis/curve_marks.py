@@ -15,14 +15,14 @@ class Peak:
     """The force maximum of a sampled curve, tension positive.
 
     Attributes:
-        index: the highest sampled point.
+        index: the highest sampled point, from 0.
         tension: at that point [FU]; below 0 where all points are under compression.
         uncertainty: the sampling error of `smooth` [FU]; |tension| where the highest point is the first or the last.
         smooth: the tension at the vertex of the polynomial through the point and its neighbours [FU]; that of the point
             at an end of the curve, or where it jumps.
         position: the displacement of the vertex [LU]; of the sampled point at an end of the curve, or where it jumps.
-        misplaced: distance of `position` from the vertex of another polynomial [LU]; 0 at an end or where the curve
-            jumps.
+        misplaced: distance of `position` from the vertex of another polynomial [LU]; with one point only on a side,
+            from the sampled point; 0 at an end or where the curve jumps.
     """
 
     index: int
@@ -41,11 +41,11 @@ def largest_tension(displacement: Sequence[float], force: Sequence[float]) -> Pe
     """Return the largest tension −F of an unloading branch, with its position and sampling errors.
 
     Of equal tensions the first counts. Between samples the maximum of a smooth curve is that of the polynomial through
-    five points; the polynomial through three estimates its error, and the one through seven the error of its position.
-    Where a particle snaps after the maximum, tension rises right up to the snap, no faster than before the sampled
-    point: the sampled point is then the position, and the rise up to the next point the largest sampling error. At an
-    end of the curve it is the point itself, with its tension as the error. With one point only beside the maximum on
-    one side it is the parabola through three points.
+    five points; the polynomial through three estimates its error, and the one through seven, or else three, the error
+    of its position. With one point only beside the maximum on one side it is the parabola through three points,
+    compared with the sampled point. Where a particle snaps after the maximum, tension rises right up to the snap, no
+    faster than before the sampled point: the sampled point is then the position, and the rise up to the next point the
+    largest sampling error. At an end of the curve it is the point itself, with |tension| as the error.
 
     Args:
         displacement: falling, (n,) [LU].
@@ -75,8 +75,9 @@ def largest_tension(displacement: Sequence[float], force: Sequence[float]) -> Pe
 def _apart_from(d: Array, tension: Array, i: int) -> tuple[Array, Array, int]:
     """Return displacements and tensions without samples that nearly coincide with the inner one i, and its new index.
 
-    These are within 1e-3 of the width of up to three samples on each side of i. The first and the last sample stay. The
-    residual ε of two samples makes a slope of ε over their distance: over that width 1000 ε at most.
+    Left out are samples nearer to i than 1e-3 of the distance between the third sample before it and the third after it
+    (the first or the last one, where there are fewer). The first and the last sample stay. The residual ε of two
+    samples makes a slope of ε over their distance: over that distance of six samples 1000 ε at most.
 
     Args:
         d, tension: displacements, falling, and tensions, (n,).
@@ -89,10 +90,10 @@ def _apart_from(d: Array, tension: Array, i: int) -> tuple[Array, Array, int]:
 
 
 def _about(x: Array, y: Array, middle: int, neighbours: int) -> tuple[float, Array] | None:
-    """Return the width of the samples about one, and the coefficients of the polynomial through them.
+    """Return the width of the samples about one, and coefficients of the polynomial through them, lowest power first.
 
-    None where two neighbours are within 1e-5 of the width. The variable of the polynomial is x − x[middle] over the
-    width, its value y − y[middle], lowest power first.
+    None where two neighbours are within 1e-5 of the width. The variable of the polynomial is (x − x[middle])/width, its
+    value y − y[middle].
 
     Args:
         x, y: positions and values, (n,).

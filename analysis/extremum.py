@@ -48,10 +48,11 @@ class EstimatedPosition:
 def position_of_minimum(x: Array, y: Array, candidates: NDArray[np.intp]) -> EstimatedPosition:
     """Return the position of the minimum of y(x) near the lowest of the candidate samples, with its uncertainty.
 
-    Where the lowest is the first or the last sample of x it is that sample, uncertain by a spacing; `at_end` is true
-    then, and where a sample as low, but for noise, is the first or last one. The uncertainty covers the error in at
-    least 95 % of random closed-form cases (see the module), without noise and with white noise of up to 1 % of the
-    depth, and of skewed dips at least 0.3 spacings wide; where y jumps, the minimum is anywhere between two samples.
+    Where the lowest (of equal ones the first) is the first or the last sample of x it is that sample, uncertain by a
+    spacing; `at_end` is true then, and where a candidate as low, but for noise, is the first or last sample. The
+    uncertainty covers the error in at least 95 % of random closed-form cases (see the module), without noise and with
+    white noise of up to 1 % of the depth, and of skewed dips at least 0.3 spacings wide; where y jumps, the minimum is
+    anywhere between two samples.
 
     Args:
         x: positions, ascending, (n,), n >= 3.

@@ -50,16 +50,16 @@ COMPRESSIVE = ", compression positive"
 def path(x: Axis, along: Array, legs: Legs, *panels: Upwards, spread: Array | float = 0.0) -> Chart:
     """Return the chart of an experiment's path, stretch by stretch, a panel for each of `panels`, all over `x`.
 
-    A stretch of at most 25 points, and every one where `spread` is not 0, is drawn with markers, without lines where
+    A stretch of at most 25 points is drawn with markers, and all are where any `spread` is not 0, without lines where
     the panel has compared series; others are lines. Stretches without any finite position are left out. Of several
-    panels axes have no remark.
+    panels the axes upwards lose their remark.
 
     Args:
         x: the axis along x.
         along: what the path is drawn over, (n,), in the unit of that axis.
-        legs: stretches of the path: the name of each, such as loading or unloading, which determines its colour, and
-            the indices of its points.
-        panels: the main one first, which is the highest: axis, values (n,) in its unit, series drawn beside these.
+        legs: stretches of the path: (name, indices of its points); the name, such as loading, determines its colour,
+            that of unloading for an unknown name.
+        panels: the main one first, which is the highest: (axis, values (n,) in its unit, series drawn beside these).
         spread: uncertainty along x, (n,), in its unit.
     """
     drawn, spread = [], np.broadcast_to(spread, along.shape)
@@ -183,8 +183,8 @@ def stick_slip(
     Args:
         profiles: by state.
         coefficient: μ.
-        zones: by state the half-width of the stick zone and the position of the body along x [LU], and its direction,
-            1, -1 or 0.
+        zones: by state (half-width of the stick zone [LU], position of the body along x [LU], direction of its motion,
+            1, -1 or 0).
 
     Raises:
         KeyError: a state without a zone.

@@ -180,8 +180,8 @@ def slips(
     """Return the slips of a plate in order of time: across a barrier, or from a barrier into a minimum.
 
     A slip is an uninterrupted motion faster, in either direction, than `faster` times the drive, and longer than
-    `least` spacings. Empty without one. At high drag the plate slows down on the barrier itself, wherever that is: a
-    slip has no given position.
+    `least` spacings; one that goes on at the end of the series counts as far as it came. Empty without one. At high
+    drag the plate slows down on the barrier itself, wherever that is: a slip has no given position.
 
     Args:
         time, position: of the plate, shape (n,) [TU], [LU].
@@ -203,10 +203,10 @@ def largest_before(friction: Array, position: Array, spacing: float) -> tuple[fl
     """Return the largest friction [FU] until the plate has moved by one period, and its sampling error ≥ 0 [FU].
 
     Friction counts with its sign, at points less than `spacing` beyond the first one in +x. The friction rises smoothly
-    until the plate slips: the sampling error is less than the rise from the point before. Over the top of a barrier
-    that the plate passes without a slip it is a smooth function of the position: its maximum is that of the polynomial
-    through five points, with the difference to that through three as its error. The error is 0 where the first point is
-    the largest.
+    until the plate slips: the error is the rise from the point before, less the rise before that, but an eighth of it
+    at least; the whole rise where the largest is the second or the last point, and 0 where it is the first. Over the
+    top of a barrier that the plate passes without a slip friction is a smooth function of the position: its maximum is
+    that of the polynomial through five points, with the difference to that through three as its error.
 
     Args:
         friction: shape (n,) [FU].
@@ -228,9 +228,9 @@ def _summit(
 ) -> tuple[float, float] | None:
     """Return friction at a smooth maximum near the point `top`, and its uncertainty; None where it is not smooth.
 
-    Both are in the unit of `friction`. It is not smooth, either, where positions do not rise or there are too few
-    points on a side. Where a slip begins the points lie so far apart that the ratio of the largest to the smallest
-    curvature of friction over position is many times as large as the limit.
+    Both are in the unit of `friction`. None, too, where positions do not rise, where there are too few points on a
+    side, or where the curvature of friction over position is not negative everywhere. Where a slip begins the points
+    lie so far apart that the ratio of the largest to the smallest curvature is many times as large as the limit.
 
     Args:
         friction, position: shape (n,) each.

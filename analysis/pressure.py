@@ -117,11 +117,11 @@ def pressure_profile(
 def mean_pressure(profile: Profile, spacing: float, radius: float) -> float:
     """Return F / (pi a^2), the mean pressure of the three-dimensional contact that the model represents [FU/LU^2].
 
-    spacing of the particles [LU]; radius: contact radius a [LU]. F is the whole normal force, tension beyond a
-    included, because that is the force of Eq. (8). This is the paper's mean pressure: for R = 1000, a = 35 and the row
-    R = 1000 of Table 1, F = 1.950 F_A = 2.867 FU and F / (pi a^2) = 7.45e-4 FU/LU^2 = 784 MPa (paper: about 800 MPa),
-    while F / (2 a) has no unit of a pressure. Source: Geike and Popov 2007, Section 4. Valid for one contact.
-    Raises ValueError for a radius <= 0: a contact of no extent has no mean pressure.
+    spacing of the particles [LU]; radius: contact radius a [LU]. F is the whole normal force, compression positive,
+    tension beyond a included, because that is the force of Eq. (8). This is the paper's mean pressure: for R = 1000, a
+    = 35 and the row R = 1000 of Table 1, F = 1.950 F_A = 2.867 FU and F / (pi a^2) = 7.45e-4 FU/LU^2 = 784 MPa (paper:
+    about 800 MPa), while F / (2 a) has no unit of a pressure. Source: Geike and Popov 2007, Section 4. Valid for one
+    contact. Raises ValueError for a radius <= 0: a contact of no extent has no mean pressure.
     """
     if not radius > 0.0:
         raise ValueError(f"a mean pressure needs a contact radius above 0, got {radius}")

@@ -108,11 +108,11 @@ def compressive_radius(profile: Profile, residual: float = 0.0) -> ContactRadius
 def held_radius(profile: Profile) -> ContactRadius:
     """Return the contact radius [LU] of a profile whose pressure jumps to 0 at its edges, as JKR's.
 
-    The share of the last cell that lies inside the edge follows from the pressure of the last particle and the parabola
-    through the three before it. Where there are fewer, as in a contact a few spacings wide, or where that share is not
-    within 0 … 1, the edge is at the last loaded particle, within half a spacing. A particle is loaded where its
-    pressure is not exactly 0. Where all pressures are 0 the radius is 0 at the middle of the chain, uncertain by half a
-    spacing. `reaches_end` is true where an end of the chain is loaded.
+    The share of the last cell that lies inside the edge follows from the pressure of the last loaded particle and the
+    parabola through the three before it. With fewer than 5 loaded particles, or where that share is not within −0.05 …
+    1.05, the edge is at the last loaded particle, within half a spacing. A particle is loaded where its pressure is not
+    exactly 0. Where all pressures are 0 the radius is 0 at the middle of the chain, uncertain by half a spacing.
+    `reaches_end` is true where an end of the chain is loaded.
 
     Args:
         profile: of a chain of evenly spaced particles, n >= 3.
@@ -125,11 +125,11 @@ def held_radius(profile: Profile) -> ContactRadius:
 
 
 def whole_cells(profile: Profile, radius: ContactRadius) -> Array:
-    """Return the pressures, (n,) [FU/LU], with those of the two outermost loaded particles as if whole cells carried.
+    """Return the pressures, (n,) [FU/LU], with that of the outermost loaded particle on each side as of a whole cell.
 
-    There the pressure inside is extrapolated by the parabola through the next three particles; it is 0 for a particle
-    outside the edges of `radius`. With fewer than 8 loaded particles (p other than 0) all pressures are returned as
-    they are. The result is a copy.
+    It is extrapolated by the parabola through the next three particles inwards, and 0 for a particle outside the edges
+    of `radius`. Loaded particles are those with p other than 0; with fewer than 8 of them no pressure is changed. The
+    result is a copy in each case.
     """
     x, p = profile.x, profile.pressure.copy()
     held = np.flatnonzero(p != 0.0)
@@ -239,9 +239,10 @@ def _of_edges(
 def _zero(x: list[float], p: list[float], first: int, last: int, residual: float) -> EstimatedPosition:
     """Return the right edge of a contact, where p is 0, in the unit of x, with its uncertainty.
 
-    It is the end of the chain (`at_end`), uncertain by a spacing, if the last particle is loaded, and halfway to the
-    next particle, within half a spacing, where the parabola through the last three loaded particles has no falling zero
-    between the two, or fewer are loaded.
+    It is the falling zero of the parabola through the last three loaded particles, uncertain by the difference from
+    that of the three up to the last but one and by `residual`, at most by a spacing. It is halfway to the next
+    particle, within half a spacing, where the parabola has no such zero before that, or fewer are loaded. If the last
+    particle of the chain is loaded, it is that (`at_end`), uncertain by a spacing.
 
     Args:
         x, p: positions, and pressures over the largest one.

@@ -123,9 +123,9 @@ def _rising(x: Array, z: Array) -> tuple[Array, Array]:
 def one_pass(x: Array, z: Array) -> tuple[Array, Array]:
     """Return positions, rising, and heights of a scan, (n,) each; of a scan forth and back the mean of its passes.
 
-    The means are at the positions of the first pass, where all passes have points, between points linear. Of several
-    points of a pass at one position it is their mean. A pass with half of the points of the longest or fewer is left
-    out.
+    A pass with half of the points of the longest or fewer is left out. The means are at the positions of the first pass
+    that is left, where all passes have points, between points linear. Of several points of a pass at one position it is
+    their mean.
     """
     steps = np.flatnonzero(np.diff(x))
     turns = steps[np.flatnonzero(np.diff(np.sign(np.diff(x)[steps])))] + 1
@@ -151,7 +151,8 @@ def take(
 
     Args:
         x, z: positions and heights, (n,), growing away from the plane; a scan may go forth and back.
-        centre: position of the apex; None: it is fitted.
+        centre: position of the apex, the nearest point of the scan instead where it is outside of that; None: it is
+            fitted.
         level: whether a tilt is fitted and removed.
         length: distance of the knots of a smooth curve; None: by the noise. Not used with a named shape.
         shape: the named shape that is fitted; None: a smooth curve.

@@ -29,8 +29,8 @@ ROUND_OFF = 1e-10
 def stick_margin(profile: Profile, coefficient: float, direction: int) -> Array:
     """Return the part of μ p not used up in the direction of motion, (n,) ≥ 0 [FU/LU].
 
-    0 where a particle slips or is free; a tensile pressure counts as 0. A margin below 1e-10 of the largest μ p is 0,
-    too.
+    It is μ p less the shear against the motion, so up to 2 μ p after a reversal, and 0 where a particle slips or is
+    free; a tensile pressure counts as 0. A margin below 1e-10 of the largest μ p is 0, too.
 
     Args:
         profile: pressure p, compression positive, and shear of the lower body on the upper one, which is against the
@@ -45,11 +45,12 @@ def stick_margin(profile: Profile, coefficient: float, direction: int) -> Array:
 
 
 def stick_radius(profile: Profile, coefficient: float, direction: int) -> ContactRadius:
-    """Return the half-width c of the stick zone [LU], out to where the margin of μ p vanishes, with its uncertainty.
+    """Return the half-width c of the stick zone [LU], to where the margin of μ p vanishes, with edges and uncertainty.
 
-    Both are 0 where all particles slip. As a pressure without attraction, the margin is a smooth function of x inside
-    the zone and 0 outside: its zero is that of a parabola through the outermost particles that stick; without a zero
-    before the next particle it is halfway to that.
+    Value and uncertainty are 0 where all particles slip. As a pressure without attraction, the margin is a smooth
+    function of x inside the zone and 0 outside: its zero is that of a parabola through the outermost particles that
+    stick; without a zero before the next particle it is halfway to that. Where an end of the chain sticks it is the
+    edge, and `reaches_end` is true.
 
     Args:
         profile: pressure p and shear of the lower body on the upper one [FU/LU], n ≥ 3 particles.
@@ -134,8 +135,9 @@ def shear_load(
 ) -> LineLoad:
     """Return the even line shear through values at positions: a cubic spline in each zone between kinks, 0 at the edge.
 
-    At a kink it is the mean of the values extrapolated from the zones on both sides. A kink that leaves fewer than 3
-    positions on one side of it is left out, and so are values from the edge on.
+    At a kink it is the mean of the values extrapolated from the zones on both sides. Left out are kinks with fewer than
+    3 positions between the axis and them, or between them and the next kink farther out or the edge; and values from
+    the edge on.
 
     Args:
         x: positions, rising and the same on both sides of 0, shape (n,) [length].
@@ -185,7 +187,7 @@ def _height(x: Array, y: Array, within: int, beyond: int, kink: float) -> float:
 def _spline(
     positions: Array, values: Array, low: tuple[float, float], high: tuple[float, float], first: bool, apex: bool
 ) -> tuple[Array, Array]:
-    """Return where the cubics of a zone but the first begin, (m − 1,), and their coefficients in powers of x, (4, m).
+    """Return where the 2nd to mth cubic of a zone begin, (m − 1,), and coefficients of all m in powers of x, (4, m).
 
     The spline goes through the values and those at the borders; the lowest power comes first.
 

@@ -95,9 +95,9 @@ class DoubleExponential(PairPotential):
 
     @property
     def formula(self) -> str:
-        """V(r) as text, with amplitudes [FU·LU] and ranges [LU] to 17 significant digits.
+        """V(r) as text, "A exp(-r/a) - B exp(-r/b)" with numbers to 17 significant digits in place of these letters.
 
-        Without an attraction it has one term.
+        Amplitudes A and B are in FU·LU, ranges a and b in LU; without an attraction it is "A exp(-r/a)".
         """
         terms = f"{self.repulsion.amplitude:.17g} exp(-r/{self.repulsion.range:.17g})"
         if self.attraction is not None:
@@ -125,8 +125,9 @@ class DoubleExponential(PairPotential):
     def cutoff_for(self, share: float) -> float:
         """Return the distance r₀ + b ln(1/share) [LU], beyond which the force is small.
 
-        There it is about `share` (relative, > 0) of the force that the attraction, of range b, has at the force-free
-        distance r₀. Without attraction r₀ is 0, and b the range of the repulsion.
+        There it is about `share` (relative, > 0) of the force that the attraction alone, of range b, has at the
+        force-free distance r₀. Without attraction r₀ is 0, and b the range of the repulsion. A share above 1 gives less
+        than r₀.
         """
         start = self.force_free_distance() if self.attraction is not None else 0.0
         return start + self.longest_range * math.log(1.0 / share)

@@ -62,7 +62,10 @@ class Table:
         return math.sqrt(self.cell)
 
     def grid(self) -> Array:
-        """Return the squares r_L² [LU²] of the distances in space of all entries, rising in equal steps, (points,)."""
+        """Return the squares r_L² [LU²] of the distances in space of all entries, rising in equal steps, (points,).
+
+        The first is one step, less than ε², the last r_c² + ε².
+        """
         first = self.plane_offset**2 - INNER_CELLS * self.cell
         return np.asarray(first + self.cell * np.arange(self.points), dtype=np.float64)
 
@@ -70,8 +73,8 @@ class Table:
         """Return (r_L [LU], energy [FU·LU], F_table [FU]) of all entries, by rising distance r_L in space, (points,)
         each.
 
-        F_table is positive where particles repel each other; the energy is 0 at the cutoff. Nearer than the core the
-        force over the distance is constant.
+        F_table is positive where particles repel each other; the energy is 0 at the cutoff. F_table/r_L is constant
+        for distances in the plane below the core, and at the first four entries, r_L < ε, which no pair reaches.
         """
         squared = self.grid()
         distance = np.sqrt(squared)
@@ -100,9 +103,10 @@ class Table:
     # Cached, since a scene needs the errors of few tables often.
     @lru_cache(maxsize=64)  # noqa: B019  # a table is small, and equal by value
     def error_beyond(self, r_min: float, samples: int = 20_000) -> float:
-        """Return the largest absolute error of the interpolated force [FU] ≥ 0 for r_min ≤ r ≤ r_c; it is cached.
+        """Return max |F − f(r)| [FU] of the interpolated force F in the plane and the law's f for r_min ≤ r ≤ r_c.
 
-        `r_min`: [LU], > 0; `samples`: number of distances in geometric progression at which it is measured.
+        It is cached. `r_min`: [LU], > 0; `samples`: number of distances in geometric progression at which it is
+        measured, both ends included.
         """
         r = r_min * (self.cutoff / r_min) ** np.linspace(0.0, 1.0, samples)
         return float(np.abs(self.force(r) - self.law.force(r)).max())
@@ -141,20 +145,20 @@ def table_for(law: DoubleExponential, cutoff: float, closest: float, error: floa
 
 
 def write_table(table: Table, closest: float, path: Path) -> None:
-    """Write the LAMMPS table file atomically, over an existing one; its header states the interaction and the measured
-    error.
+    """Write the LAMMPS table file atomically, over an existing one: entries r_L [LU], energy [FU·LU] and F_table [FU].
 
-    `closest`: distance [LU] from which on that error holds.
+    Its header states the interaction and the measured error [FU]. `closest`: distance [LU] from which on that holds.
     """
     write_whole(path, _text(table, closest))
 
 
 @lru_cache(maxsize=4)  # scenes run one after the other mostly share their law, and 32 000 rows take 45 ms
 def _text(table: Table, closest: float) -> str:
-    """Return the text of the LAMMPS table file: comments, section, size, and a line (number, r_L, energy, force) per
-    entry.
+    """Return the text of the LAMMPS table file: comments, section, size, and a line for each entry.
 
-    The comments state the interaction and the largest error of the force beyond `closest` [LU]. It is cached.
+    A line has the number from 1 on, r_L [LU], energy [FU·LU] and F_table [FU], to 17 digits. The comments state the
+    interaction, cutoff and plane offset, also to 17 digits, and to 3 the largest error [FU] of the force beyond
+    `closest` [LU]. It is cached.
     """
     law = table.law
     distance, energy, force = table.entries()

@@ -18,8 +18,8 @@ class SceneEdit:
     """A change of a scene that may help.
 
     Attributes:
-        values: new values by dotted keys.
-        without: names of effects to leave out.
+        values: new values by the dotted keys of the scene, as "experiment.force".
+        without: names of sections to leave out, as "horizontal".
     """
 
     values: Mapping[str, object] = field(default_factory=dict)
@@ -138,8 +138,8 @@ class TensionError(UntrustedError):
     def __init__(self, force: float, most: float) -> None:
         """Store the pull-off force `most` [FU], positive, and both arguments as `args`, for pickling.
 
-        `force` is the required one [FU], tension negative. The message names both; the advice is "". The one suggested
-        edit sets experiment.force to −0.9 `most`, to three digits.
+        `force` is the required one [FU], tension negative. The message names both, to four digits; the advice is "".
+        The one suggested edit sets experiment.force to −0.9 `most` [FU], to three digits.
         """
         suggested = float(f"{-0.9 * most:.3g}")  # a tensile force that the contact sustains
         super().__init__(

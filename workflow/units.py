@@ -81,7 +81,7 @@ def scale_of(value: float, unit: str) -> tuple[float, str]:
 
     |value| × factor is from 1 to below 1000, after rounding of the value to six digits. In a compound unit (N/m) the
     first one takes the prefix, as in mN/m. The factor is 1 and the unit unchanged for 0, NaN and infinity, for a unit
-    that takes no prefix (kg, "1" and units of the model), and for values below 1e-24 or from 1e15 on.
+    that takes no prefix (kg, "1" and units of the model), and for magnitudes below 1e-24 or from 1e15 on.
     """
     power = 0
     if value and math.isfinite(value) and unit in WITH_PREFIX:
@@ -208,10 +208,10 @@ class Quantity:
     __pow__ = _calculated(pow)
 
     def __str__(self) -> str:
-        """Return `402.7 ± 1.3 MPa`: the uncertainty with two digits; an SI unit has a prefix, one of the model none.
+        """Return `402.7 ± 1.3 MPa`: the uncertainty with two digits, the value with the same decimals.
 
-        With an uncertainty of at most 1e-8 of the value it is the value alone, with up to five digits. Unit "1" is left
-        out.
+        An SI unit has the prefix of the larger one of |value| and uncertainty, a unit of the model none; "1" is left
+        out. With an uncertainty of at most 1e-8 of |value| it is the value alone, with up to five digits.
         """
         factor, unit = (
             (1.0, self.unit) if self.si is None else scale_of(max(abs(self.value), self.uncertainty), self.unit)
@@ -227,7 +227,7 @@ def rounded(value: float, uncertainty: float) -> str:
     """Return `value ± uncertainty`, without unit: the uncertainty with two digits, the value with the same decimals.
 
     For an uncertainty below 1e-9 or from 1e5 on both have a common exponent, `(1.23 ± 0.45)e+06`. Where the uncertainty
-    is not finite, or at most 1e-11 of the value, the value has up to ten digits instead.
+    is not finite, or at most 1e-11 of |value|, the value has up to ten digits instead.
     """
     if not math.isfinite(uncertainty) or uncertainty <= 1e-3 * EXACTNESS * abs(value):
         return f"{value:.10g} ± {uncertainty:.2g}"

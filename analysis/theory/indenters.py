@@ -283,9 +283,9 @@ class PowerLaw(Indenter):
         return float((wanted / (self.exponent * self._rise)) ** (1.0 / (self.exponent - 0.5)))
 
     def central_pressure(self, contact_radius: float) -> float:
-        """Return p(0) = E* kappa_n c a^(n-1)/pi n/(n-1) - sqrt(2 E* W/pi a) [stress], positive in compression.
+        """Return p(0) = E* kappa_n c n a^(n-1)/(pi (n-1)) - sqrt(2 E* W/(pi a)) [stress], positive in compression.
 
-        Infinite at a cone's tip (n = 1); 0 at a = 0 of any other body.
+        Infinite at a cone's tip (n = 1), whatever a and W are; 0 at a = 0 of any other body.
         """
         n, a = self.exponent, contact_radius
         if n == 1.0:

@@ -27,11 +27,12 @@ def sliding_displacement(friction: float, ratio: float, displacement: float) -> 
 
 
 def _amplitudes(positions: Sequence[float]) -> list[list[float]]:
-    """Return for each position the first remembered turn, or the position without one, and half of each later distance.
+    """Return a list for each position: the first remembered turn, then half of each later distance [length].
 
-    A turn is a position at which the motion reverses [length]. Later distances are those from turn to turn and from the
-    last turn to the position, with their signs [length]: none without a turn. A turn is forgotten where the path
-    reaches the turn before it, the first one where it reaches its mirror image, but for round-off.
+    A turn is a position at which the motion reverses. Later distances are those from turn to turn and from the last
+    turn to the position, with their signs. Without a turn the list has the position alone. A turn and the one before it
+    are forgotten where the path comes back to the latter, the first one where it reaches its mirror image, but for
+    round-off.
 
     Args:
         positions: of the path, which begins at 0 [length].
@@ -117,7 +118,8 @@ def mindlin_stick_path(positions: Sequence[float], contact_radius: float, slidin
     """Return the radius c of the stick zone [length] at each of the positions of a path from 0 under a constant load.
 
     In loading c² = a² (1 - |u|/u*). After a reversal at u_m all sticks again, c = a, and then c² = a² (1 - |u -
-    u_m|/2u*); c is 0 in full slip. [] without positions.
+    u_m|/2u*), until the path comes back to the turn before u_m, from which on c is as without both; c is 0 in full
+    slip. [] without positions.
 
     Args:
         positions: u, reached one after the other [length].

@@ -78,7 +78,10 @@ class Indented:
         return float(integral)
 
     def lost(self, end: float) -> float | None:
-        """Return the time after the maximum at which the contact is lost [time]; None where it is not before `end`."""
+        """Return the time after the maximum at which the contact is lost [time]; None where it is not before `end`.
+
+        `end`: a time after the first touch [time].
+        """
         from scipy.optimize import brentq
 
         if self._balance(self.touched, end) > 0.0:

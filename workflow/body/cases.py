@@ -172,7 +172,7 @@ class Case:
         """Contact radius a [LU] ≥ 0 that the closed form of the body (not the run) predicts for the state; cached.
 
         It is that at the displacement of the reported state where this is known, else under its force, without both at
-        F = 0; 0 where the closed form has no contact there, as beyond pull-off.
+        F = 0. It is at most the half-width of the body, and 0 where the closed form has no contact, as beyond pull-off.
 
         Raises:
             AssertionError: the profile has no closed form with a variable radius, as a flat punch.

@@ -18,13 +18,13 @@ def pressure(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressur
     """Return {"pressure": `Agreement`}: the relative difference of ∫ p dA of the body and the force of the run.
 
     The difference is |∫ p dA − F| over ∫ |p| dA of one state; of several the one that is largest relative to what is
-    allowed. Allowed is the uncertainty of pressure and force, and 1e-4 at least, for a profile given by a table or a
-    scan 1e-3. The force has the uncertainty of the forces of the run; under a given force the displacement has one,
-    which changes ∫ p dA. {} with an interaction, or without pressures.
+    allowed. Allowed is the relative uncertainty of pressure and force, and 1e-4 at least, for a profile given by a
+    table or a scan 1e-3. The force has the uncertainty of that load step, to which that of its displacement adds by the
+    stiffness; a state that is no load step has neither. {} with an interaction, or without pressures.
 
     Args:
         scene: the scene of the run.
-        outcome: its outcome, with marked states of the same names.
+        outcome: its outcome; KeyError where it has no marked state of a name.
         pressures: by the name of a state.
     """
     if scene.interaction is not None:

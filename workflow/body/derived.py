@@ -59,10 +59,11 @@ def first_of(results: Mapping[str, Quantity], *names: str) -> Quantity | None:
 
 
 def with_implied(scene: Scene, settings: Settings, outcome: Outcome) -> Outcome:
-    """Return a copy of the outcome with the results that the attraction of [interaction] implies; the same without one.
+    """Return a copy of the outcome with the results that the attraction of [interaction] implies.
 
-    Added are "separation_energy" [FU], the work w that separates a particle from the opposite chain, over the spacing,
-    and, of a profile with a radius of curvature and a contact radius above 0, "work_of_adhesion" [FU/LU].
+    Without such an attraction the copy is equal to the outcome. Added are "separation_energy" [FU], the work w that
+    separates a particle from the opposite chain, over the spacing, and, of a profile with a radius of curvature and a
+    contact radius above 0, "work_of_adhesion" [FU/LU].
     """
     quantities = implied(scene, settings, outcome.quantities)
     return _with_results(outcome, {name: (quantity, 0.0) for name, quantity in quantities.items()})
@@ -96,8 +97,9 @@ def implied(scene: Scene, settings: Settings, results: Mapping[str, Quantity]) -
 
     "separation_energy" is w/s [FU], the work that separates a particle from the opposite chain, over the spacing;
     "work_of_adhesion" [FU/LU] is W = w/(πsa), with the reduction of Geike and Popov 4w/(πsa). There is no W where the
-    profile has no radius of curvature, or the results have no radius a above 0. The uncertainty of W has its difference
-    from the W that follows by JKR from the pull-off force: the result "adhesion_force", or the one expected by the law.
+    profile has no radius of curvature, or the results have no radius a above 0. The uncertainty of W also includes its
+    difference from the W that follows by JKR from the pull-off force: the result "adhesion_force", or without it the
+    one expected by the law.
 
     Args:
         scene: the scene of the run.
@@ -168,9 +170,12 @@ def pressures_of(scene: Scene, outcome: Outcome) -> dict[str, BodyPressure]:
 
     Left out are states without a contact radius above 0, or with too few particles in contact. {} where the run
     represents no axisymmetric body: with noise, in a slide, of a flat profile, on a rigid chain, and with the reduction
-    of Geike and Popov, unless two equal spheres stand for it. The uncertainty of p includes those of displacement,
-    force and radii of the run; under linear springs on a plane, of a body without an edge, that of the contact radius
-    alone.
+    of Geike and Popov, unless two equal spheres stand for it. The uncertainty of p includes the relative ones of
+    displacement, force and radii of the run, added up; under linear springs on a plane, of a body without an edge, that
+    of the contact radius alone, in the state "critical" of the critical radius, if that is larger.
+
+    Raises:
+        ValueError: no radius can be read off a profile: too few particles, or tension where the law has none.
     """
     exact = outcome.exact
     shares = {
@@ -190,9 +195,10 @@ def pressures_of(scene: Scene, outcome: Outcome) -> dict[str, BodyPressure]:
 def _pressure_share(scene: Scene, outcome: Outcome, state: str) -> float:
     """Return the relative uncertainty (dimensionless) of a state's pressures due to the scene's uncertain numbers.
 
-    Of springs that are not linear, on a rigid plane, it is that of the pressure on the axis in the reduced model; else
-    that of c h(a)/a, with the stiffness c of the layer per length and the profile h under the reduction. The latter is
-    0 without a contact radius above 0, and of a body with an edge; 0, too, where all numbers are certain.
+    Of viscoelastic springs in a quasi-static run it is that of the pressure on the axis in the reduced model, in this
+    state, or where the model does not report it in the deepest one; else that of c h(a)/a, with the stiffness c of the
+    layer per length and the profile h under the reduction. The latter is 0 without a contact radius above 0, and of a
+    body with an edge; 0, too, where all numbers are certain.
 
     Args:
         scene: the scene of the run.
@@ -226,7 +232,8 @@ def with_body(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressu
     Added, as far as there are any, are "central_pressure", "peak_pressure" and, where the run has none, "mean_pressure"
     [FU/LU²], "contact_stiffness" [FU/LU], "adhesion_energy" [FU·LU] and "tabor_parameter"; pressures are those of the
     first of the states "deepest", "final", "zero_load". The outcome is returned as it is where the run represents no
-    axisymmetric body.
+    axisymmetric body: with noise, in a slide, of a flat profile, on a rigid chain, and with the reduction of Geike and
+    Popov, unless two equal spheres stand for it.
 
     Args:
         scene: the scene of the run.

@@ -94,7 +94,10 @@ def product(factor: float, unit: str, *powers: tuple[Quantity, float]) -> Quanti
     """Return `factor` times the product of quantities, each to its power, as a quantity in `unit`.
 
     The unit is taken as given, not computed. The uncertainty is, to first order, the sum of the absolute changes due to
-    each quantity.
+    each quantity; `factor` has none.
+
+    Raises:
+        ZeroDivisionError: a quantity is 0, and its power below 1.
     """
     value, spread = factor, 0.0
     for quantity, power in powers:

@@ -16,9 +16,10 @@ from contact1d.workflow.units import LENGTH, Scales
 def scan_entry(scene: Scene, scales: Scales) -> dict[str, Any]:
     """Return {"scan": entry of results.json} with the evaluation of a measured scan; {} where the profile is no scan.
 
-    The entry has "text", "shape" (of the fitted curve), "points" (their number), "centre", "offset", "tilt" [°],
-    "noise", "correlation_length", "patches" and, of a fitted parabola or circle, "radius". Lengths are {"value",
-    "uncertainty", "unit"}, in SI where the scales are known, else in LU.
+    The entry has "text" (a sentence, in SI where the scales are known), "shape" (of the fitted curve), "points" and
+    "patches" (their numbers), and as {"value", "uncertainty", "unit"} "tilt" [°] and the lengths "centre", "offset",
+    "noise", "correlation_length" and, of a fitted parabola or circle, "radius", in metres where the scales are known,
+    else in LU. Uncertainties of noise and correlation length are 0.
     """
     taken = scene.bodies.profile.taken
     if taken is None:
@@ -51,7 +52,7 @@ def misfit(scene: Scene) -> dict[str, str]:
     """Return {"scan_fit": warning} where the shape fitted to a scan misses it by more than the noise; else {}.
 
     {} also for a smooth curve through a scan, and where the profile is no scan. The warning has the RMS difference
-    [LU].
+    beyond the noise [LU], with three digits.
     """
     taken = scene.bodies.profile.taken
     if taken is None or not taken.missed:
@@ -75,8 +76,9 @@ def _radius(taken: Taken) -> tuple[float, float]:
 def in_words(taken: Taken) -> str:
     """Return the evaluation of a scan as a sentence without a full stop, lengths in LU.
 
-    It names the number of points, apex, offset and tilt (where it was fitted) that were removed, the fitted curve,
-    noise and correlation length, and in how many patches a plane would touch the measured surface.
+    It names the number of points, and whether they are on one side of the apex or on both; apex, offset and tilt [°],
+    where it was fitted, that were removed; the fitted curve, noise and correlation length, and in how many patches a
+    plane would touch the measured surface.
     """
     removed = [f"apex at {_length_text(*taken.centre)}", f"offset {taken.offset[0]:.4g} LU"]
     if taken.tilt[1] > 0.0:

@@ -58,7 +58,7 @@ class ClosedForm:
 
 
 def applying(case: Case) -> list[ClosedForm]:
-    """Return the closed forms whose conditions hold for a case, in the order of its law's families; [] for none."""
+    """Return the closed forms whose conditions hold for a case, in the order of its contact law; [] for none."""
     return _applying(case, case.law.closed_forms)
 
 
@@ -122,9 +122,9 @@ def _entry(form: ClosedForm, case: Case, scales: Scales) -> dict[str, Any]:
 def in_words(results: Mapping[str, Any], name: str) -> Iterator[str]:
     """Yield the prediction of each closed form for a result, with the deviation: `Hertz 110.37 µm (+0.001 %)`.
 
-    The deviation is that of the run from the prediction. Numbers are in SI with a prefix where the units are known,
-    else in units of the model; the deviation is left out for a prediction of 0. Nothing is yielded where no closed form
-    has the result.
+    The deviation is that of the run from the prediction, in per cent with two digits; it is left out for a prediction
+    of 0. Predictions have five digits, in SI with a prefix where the units are known, else in units of the model.
+    Nothing is yielded where no closed form has the result.
 
     Args:
         results: the content of results.json.
@@ -160,7 +160,10 @@ def _without_adhesion(kind: str, body: str) -> Callable[[Case], str]:
     """
 
     def applies(case: Case) -> str:
-        """Return "<body>, pressed without adhesion"; "" where the closed form does not hold."""
+        """Return "<body>, pressed without adhesion" for a profile of this kind on linear springs; else "".
+
+        "" also without a known force or displacement, and for a reduction of which the closed form is not.
+        """
         kept = case.scene.bodies.reduction == "mdr" or (case.radius is not None and case.scene.interaction is None)
         pressed = case.force is not None or case.displacement is not None
         holds = case.kind == kind and kept and pressed and case.is_elastic
@@ -234,7 +237,7 @@ def _punch_values(case: Case) -> Values:
 def _punch_pressure(case: Case, r: Array) -> Array:
     """Return p(r), (n,) [FU/LU²], compression positive, of a flat punch without adhesion, at radii r < a, (n,) [LU].
 
-    The pressure is infinite at the edge r = a.
+    The pressure is infinite at the edge r = a, NaN beyond.
     """
     punch, d = case.punch
     return punch.pressure(r, d)
@@ -285,9 +288,10 @@ def _adhesive_values(case: Case) -> Values:
     """Return the predictions of JKR, or its extension to the profile, for a body on a plane, by the names of results.
 
     "adhesion_force" [FU], a positive tension, "critical_radius", "zero_load_radius" and "fixed_grips_displacement"
-    (where the contact is lost under displacement control) [LU], "adhesion_energy" πa²W [FU·LU], and under a known force
-    that the contact sustains "contact_radius" and "displacement" [LU] and, if it is in contact, "mean_pressure"
-    [FU/LU²]. Of a paraboloid in contact also "central_pressure" and "peak_pressure", both p(0) [FU/LU²].
+    (where the contact is lost under displacement control; compression positive) [LU], "adhesion_energy" πa²W [FU·LU],
+    and under a known force that the contact sustains "contact_radius" and "displacement" [LU] and, if it is in contact,
+    "mean_pressure" [FU/LU²]. Of a paraboloid in contact also "central_pressure" and "peak_pressure", both p(0)
+    [FU/LU²].
 
     The radius a of "adhesion_energy" is that under the force; without a known force that at the displacement of the
     run, or if the run has no such result at F = 0; 0 beyond pull-off.
@@ -331,7 +335,10 @@ def _with_a_range(of_any: bool) -> Callable[[Case], str]:
     """
 
     def applies(case: Case) -> str:
-        """Return text with the Tabor parameter and the theory that holds there; "" where the form does not hold."""
+        """Return text with the Tabor parameter of an adhesive paraboloid and the theory that holds there.
+
+        "" for another profile, without a Tabor parameter, and, unless `of_any`, where it is one of JKR, above 5.
+        """
         mu = tabor(case)
         if mu is None or case.kind != "parabola" or (of_tabor(mu) is Theory.JKR and not of_any):
             return ""
@@ -349,7 +356,10 @@ def _by_tabor(theory: Theory) -> Callable[[Case], str]:
     """
 
     def applies(case: Case) -> str:
-        """Return text with the Tabor parameter of the interaction; "" where the closed form does not hold."""
+        """Return text with the Tabor parameter of the interaction; "" where it is one of another theory than `theory`.
+
+        "" also for another profile than a parabola, another reduction than the MDR, with [neighbours], or with noise.
+        """
         scene, mu = case.scene, tabor(case)
         sphere = case.kind == "parabola" and scene.bodies.reduction == "mdr"
         if mu is None or not sphere or scene.neighbours or scene.noise or of_tabor(mu) is not theory:

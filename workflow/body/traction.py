@@ -109,7 +109,9 @@ def body_pressures(
 ) -> dict[str, BodyPressure]:
     """Return p(r) of the given states by name; {} where the run represents no axisymmetric body.
 
-    A state without a contact radius above 0, or with too few particles in contact, is left out.
+    That is with noise, in a slide, of a flat profile, on a rigid chain, and with the reduction of Geike and Popov,
+    unless two equal spheres stand for it. A state without a contact radius above 0, or with too few particles in
+    contact, is left out.
 
     Args:
         scene: the scene of the run.
@@ -198,10 +200,10 @@ def _with_discretisation(
     """Return the error of p with the discretisation error added to `spread`, (n,) [FU/LU²].
 
     Added is the difference of p between levels of particles, for a single level |p|, but nothing for a single level of
-    a shape given by a formula: its edge alone is uncertain. On a plane under springs that are not linear, the error is
-    at least the change with the other half of the particles, |p|/(2m)² with m particles inside is added for a single
-    level of a shape given by a formula, and the error is 2.5 times the largest at seven radii around: that was measured
-    with rings that come into contact again, between whose particles a slope jumps.
+    a shape given by a formula: its edge alone is uncertain. On a plane under springs that are not linear, then
+    |p|/(2m)² is added for a single level of a shape given by a formula, with m particles on a side inside; the error is
+    at least the change with the other half of the particles; and last it becomes 2.5 times the largest at seven radii
+    around: that was measured with rings that come into contact again, between whose particles a slope jumps.
 
     Args:
         state: the line load of the state.
@@ -305,13 +307,14 @@ def _shape_error(
 def _bounded_pressures(
     state: LoadedState, fine: LineLoad, r: Array, levels: Sequence[Array], pressure: Callable[[Array], Array]
 ) -> dict[str, tuple[Quantity, int, Callable[[Array], Any]]]:
-    """Return "central_pressure" p(0) and "peak_pressure" [FU/LU²], each with its index in r and its reader of p.
+    """Return "central_pressure" p(0) and "peak_pressure" by name, each as (value [FU/LU²], its index in r, its reader).
 
-    Both are left out under a tip, and the peak where it is singular (at an edge or a kink), not above 0, or off the
-    axis of a contact too narrow for three levels. A pressure that does not converge over the levels is left out, or if
-    the shape is uncertain (a table or a scan) has an infinite uncertainty; that of a peak is infinite, too, where
-    another possible shape has a kink inside the contact. Else the uncertainty is 0, for the caller to fill in by index
-    and reader. "peak_pressure" is that of the vertex between radii.
+    The reader is a function that takes p, (n,), and returns the value: the first element or the largest. Both are left
+    out under a tip, and the peak where it is singular (at an edge or a kink), not above 0, or off the axis of a contact
+    too narrow for three levels. A pressure that does not converge over the levels is left out, or if the shape is
+    uncertain (a table or a scan) has an infinite uncertainty; that of a peak is infinite, too, where another possible
+    shape has a kink inside the contact. Else the uncertainty is 0, for the caller to fill in by index and reader.
+    "peak_pressure" is that of the vertex between radii.
 
     Args:
         state: the line load of the state.
@@ -371,8 +374,8 @@ def _nodes(state: LoadedState, edge: float, angles: int) -> tuple[Array, Array]:
     Args:
         state: the line load of the state.
         edge: the radius a of the contact [LU].
-        angles: Gauss nodes in each part between two kinks; a body whose shape is a table or whose springs are not
-            elastic is also divided in five, since a corner of its history is a kink of the line load.
+        angles: Gauss nodes in each part between two kinks; the radius of a body whose shape is a table or a scan, or
+            whose springs are not linear, is also divided in five: a corner of its history is a kink of the line load.
     """
     node, weight = gauss(angles)
     share = 0.5 * (node + 1.0)
@@ -459,7 +462,8 @@ def body_shears(
     """Return the shear traction q(r) of the reported states of a tangential experiment, by name; else {}.
 
     {} also with the reduction of Geike and Popov, and of a body with an edge, where the shear is as singular as the
-    pressure. A state without a contact radius above 0, or with too few particles in contact, is left out.
+    pressure. A state without a contact radius above 0, or with fewer than 3 particles in contact on a side, is left
+    out.
 
     Args:
         scene: the scene of the run.
@@ -490,10 +494,11 @@ def row_of(state: str, columns: Mapping[str, Array]) -> int:
 
 
 def _shear(scene: Scene, profile: Profile, edge: float, kinks: Sequence[float], stick: float) -> BodyShear | None:
-    """Return q(r) of a state, at 100 radii from 0 to the contact radius and the kinks.
+    """Return q(r) [FU/LU²] of a state, at 100 radii from 0 to the contact radius and at the kinks.
 
-    r = 0 is left out under a tip, where q is singular. None where fewer than 3 particles on a side are in contact, or
-    they are not symmetric. The uncertainty is the difference from every second particle, without enough of these |q|.
+    q resists a move to the right. r = 0 is left out under a tip, where q is singular. None where fewer than 3 particles
+    on a side are in contact, or they are not symmetric. The uncertainty is the difference from every second particle,
+    without enough of these |q|.
 
     Args:
         scene: the scene of the run.

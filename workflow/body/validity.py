@@ -65,8 +65,9 @@ class Check:
 def checks(scene: Scene, outcome: Outcome, quantities: Mapping[str, Quantity], scales: Scales) -> list[Check]:
     """Return the checks of a run at its widest state, in the order slope, half-width, Tabor parameter, yield.
 
-    Each is left out where it does not apply. [] where the run represents no axisymmetric body, or no state and no
-    result has a contact radius above 0.
+    Each is left out where it does not apply. [] where no state and no result has a contact radius above 0, and where
+    the run represents no axisymmetric body: with noise, in a slide, of a flat profile, on a rigid chain, and with the
+    reduction of Geike and Popov, unless two equal spheres stand for it.
 
     Args:
         scene: the scene of the run.
@@ -110,8 +111,9 @@ def _slope(case: Case, radius: float, limit: float = 0.1) -> Iterator[Check]:
 def _difference_of_ball(case: Case, radius: float) -> str:
     """Return in words how the contact radius of a ball differs from a paraboloid's under the same force.
 
-    The force is that of the paraboloid at the contact radius [LU], 0 at least. "" for other profiles than a parabola,
-    and for one with a counter_radius.
+    The text, to be appended to a sentence, begins with "; " and has the difference in per cent. The force is that of
+    the paraboloid at the contact radius [LU], 0 at least. "" for other profiles than a parabola, and for one with a
+    counter_radius.
     """
     profile = case.scene.bodies.profile
     if profile.kind != "parabola" or profile.counter_radius is not None:  # two balls are no profile here
@@ -179,10 +181,10 @@ def _tabor(case: Case) -> Iterator[Check]:
 def _yield(case: Case, outcome: Outcome, limit: float = 1.6) -> Iterator[Check]:
     """Yield one check of the largest pressure over the yield strength, dimensionless; a ball yields from `limit` on.
 
-    The strength is that of the weaker body, the pressure the largest of the results, of the state of the largest force,
-    and in closed form of a preload. Of a cone and a flat punch the value is infinite, and the check fails. Nothing
-    where no yield strength is given, or the size of the units in SI is unknown. The message is there also where the
-    check holds.
+    The strength is that of the weaker body; the pressure is the largest one of the results, of the state of the largest
+    force, and in closed form of a preload, 0 without any of these. Of a cone and a flat punch the value is infinite,
+    and the check fails. Nothing where no yield strength is given, or the size of the units in SI is unknown. The
+    message is there also where the check holds.
     """
     material, scales = case.scene.material, case.scales
     bodies = () if material is None else material.elastic.values()

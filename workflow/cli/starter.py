@@ -29,6 +29,8 @@ DATA: dict[str, Any] = tomllib.loads(Path(__file__).with_name("starter.toml").re
 def starter_scene(kind: str, profile: str | None = None, material: str | None = None) -> dict[str, Any]:
     """Return the tables of a scene of an experiment, to start from, by name; values are as in a scene file.
 
+    The tables in them are shared by all calls: the caller must not change them.
+
     Args:
         kind: experiment.
         profile: profile of the upper body; None: a parabola.

@@ -38,9 +38,10 @@ NAMES = {
 def quantities(results: Mapping[str, Any]) -> list[str]:
     """Return a line with the reduction to one dimension, and one for each result: name, value ± uncertainty, theory.
 
-    Values have their unit: in SI where the units are known, and LU and FU are printed where they are not 1 m and 1 N. A
-    result too uncertain is "not reported". Lines on a scan and on uncertain inputs are added where there are any, and
-    the first line is left out where `results`, the content of results.json, has no reduction.
+    Values have their unit: in SI, with a prefix, where the units are known, and LU and FU are printed where they are
+    not 1 m and 1 N. The uncertainty has two digits, the value as many decimals. A result too uncertain is "not
+    reported". Lines on a scan and on uncertain inputs are added where there are any, and the first line is left out
+    where `results`, the content of results.json, has no reduction.
     """
     lines = [f"  {'reduction':<31} {_reduction(results)}"] if "reduction" in results else []
     if scan := results.get("scan"):
@@ -133,9 +134,10 @@ LABELS = {**NAMES, "loaded_radius": "radius under load"}
 
 
 def regime(done: MaterialRun) -> Iterator[str]:
-    """Yield lines with the parameters of a contact in SI, the theory that holds, and the model.
+    """Yield lines with the parameters of a contact in SI, the theory that holds under its load, and the model.
 
-    The second of the three is absent for a contact that is no adhesive sphere.
+    Numbers have four digits, with prefixes, the Tabor parameter three. The second of the three lines is absent for a
+    contact that is no adhesive sphere.
     """
     contact, theories = done.contact, done.theories
     parameters = [f"E* = {prefixed(contact.contact_modulus, 'Pa')}"]
@@ -155,10 +157,10 @@ def regime(done: MaterialRun) -> Iterator[str]:
 
 
 def theory_table(done: MaterialRun, width: int = 18) -> Iterator[str]:
-    """Yield the lines of a table with the predictions of each theory [m], [N], with prefixes.
+    """Yield the lines of a table with the predictions of each theory [m], [N], four digits with prefixes.
 
-    The theory that holds is marked by *. A quantity that one of the theories lacks is left out. No lines without
-    theories of an adhesive sphere.
+    The theory that holds at the Tabor parameter, at any load, is marked by *. A quantity that one of the theories lacks
+    is left out. No lines without theories of an adhesive sphere.
 
     Args:
         done: the run of the contact.

@@ -59,8 +59,8 @@ class Branch(ContactBranch):
     def unloading(self) -> Trace:
         """The states since the loading last turned, as a trace by falling displacement.
 
-        Of several at the same displacement it has the latest. Only those above the limit point of the reduced model,
-        below which the contact is lost, are in it.
+        Of several at the same displacement it has the latest. Left out are those below the limit point of the reduced
+        model (the largest one below the largest displacement), where the contact is lost.
 
         Raises:
             IndexError: there are no states yet.
@@ -106,7 +106,11 @@ class Branch(ContactBranch):
         """Move to a displacement [LU] in approach steps, then hold it for `duration` [TU]; `force` is ignored.
 
         Each approach step is at most the longest move and takes `approach_steps` timesteps; its states are kept, too,
-        in a phase "approaching". States need not be at rest; the hold has up to 101. The displacement must not be None.
+        in a phase "approaching". States need not be at rest; the hold has up to 101. The displacement must not be None
+        (AssertionError). It begins at displacement 0.
+
+        Raises:
+            UntrustedError: bodies went through each other, or the contact reaches the end of the chain.
         """
         assert displacement is not None
         self.moves, name = True, self._phase
@@ -132,8 +136,9 @@ class Branch(ContactBranch):
     def reach(self, force: float, scale: float, accuracy: float = 1e-3) -> None:
         """Search for the state in which the contact carries an external `force` [FU], compression positive.
 
-        Load steps go on from the last state, and keep theirs, until the force differs by at most `accuracy` times the
-        relative tolerance times `scale` [FU], by half of that where F(d) is smooth.
+        Load steps go on from the last state, the first one at the same displacement (0 without states), and keep
+        theirs, until the force differs by at most `accuracy` times the relative tolerance times `scale` [FU], by half
+        of that where F(d) is smooth.
 
         Raises:
             UntrustedError: a state is not at rest, bodies went through each other, the force lies before the first
@@ -215,7 +220,7 @@ class Branch(ContactBranch):
             beyond: state beyond it; None where it is not known.
 
         Raises:
-            TensionError: in unloading, the bodies are beyond the cutoff, and no state had the tension.
+            TensionError: in unloading, the bodies are beyond the cutoff in the last state.
             UntrustedError: both states are at the same displacement (an instability), or there are too many load
                 steps.
         """

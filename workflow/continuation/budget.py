@@ -39,12 +39,13 @@ Array = NDArray[np.float64]
 def curve_errors(
     case: Reduction, trace: Trace, solver: Array, repeated: Mapping[str, Sequence[Trace]] | None = None
 ) -> dict[str, Values]:
-    """Return the errors of the points of curve.csv, (m,), by column and source: "force" [FU] and "displacement" [LU].
+    """Return the errors ≥ 0 of the points of curve.csv, (m,), by column and source: "force" [FU], "displacement" [LU].
 
-    At prescribed displacements there is only "force". Under a load an error of the force moves the body: only "solver"
-    and the sources of `repeated` remain at the force; all others stand, over the stiffness, at the displacement, where
-    these two have errors of their own, too. Under forces over time and in free motion both columns have their own
-    errors. Those of `repeated` are the differences of the traces, summed, times 1.25.
+    Both columns have "solver", at displacements that of the force over the stiffness dF/dd, and the sources of
+    `repeated`: |difference| from each trace, summed, times 1.25. "discretisation" (mostly not where the scene gives
+    the particles) and "input" (with uncertain inputs) are at the column that is not prescribed: at prescribed
+    displacements "force", and there is no column "displacement"; under forces over time, and under a load,
+    "displacement"; in free motion both.
 
     Args:
         case: the experiment on the reduced model of the scene.
@@ -105,10 +106,10 @@ def _above_neighbours(errors: Array, share: float = 0.5) -> Array:
 def sampling_errors(case: Reduction, trace: Trace, fewest: int = 200) -> Values:
     """Return the sampling error of each result, ≥ 0, by name in its unit, for displacements that the scene gives.
 
-    It is the change of the result on the reduced model from these load steps to dense ones, times 1.25 where the model
-    has the same particles as LAMMPS, on a rigid plane, else 1.5; then the largest change of four shifts of the steps
-    counts. A result that one of both lacks counts as 0 there. On a rigid plane the spacing is doubled where there are
-    too many forces, down to about `fewest` particles: steps miss as much on any spacing.
+    It is |change| of the result on the reduced model from these load steps to dense ones: in a quasi-static run on a
+    rigid plane, where the model has the particles of LAMMPS, times 1.25; else times 1.5, the largest of four, with the
+    steps shifted by 0, ¼, ½ and ¾ of their median. A result that one of both lacks counts as 0 there. On the plane the
+    spacing is doubled where there are too many forces, down to about `fewest` particles: steps miss as much on any.
     """
     model, errors = case.model, dict[str, float]()
     step = float(np.median(np.abs(np.diff(trace.displacement)))) if len(trace) > 1 else 0.0
@@ -131,7 +132,8 @@ class ForceErrors:
     """The errors of the forces of states, (m,) [FU], ≥ 0.
 
     Attributes:
-        common: similar at neighbouring states: the largest sum of residual forces, table, cutoff, stiffness of a plane.
+        common: similar at neighbouring states: the error by table and cutoff, or by the finite stiffness of a plane,
+            plus the largest sum of residual forces.
         turning: may differ between loading and unloading: residual forces are of either sign.
         law: the largest part of `common` that is due to the interaction or the plane [FU].
         anchor: displacement [LU] about which an error may change sign: that of the last marked state.
@@ -183,7 +185,8 @@ def budgeted(
 ) -> dict[str, Result]:
     """Return the results of a trace by name, each with its errors by source, in its own unit.
 
-    Every result has "solver" and "discretisation"; "time", "sampling", "input" and others stand where they apply.
+    Every result has "solver" and "discretisation". "input" is there with uncertain inputs, "sampling" where `sampled`,
+    the sources of `repeated`, in free motion "time", and any source of the function that reads results.
 
     Args:
         case: the experiment on the reduced model of the scene, with the function that reads results.
@@ -241,12 +244,13 @@ def _repetition_errors(
 
 
 def _perturbed(case: Reduction, trace: Trace, force_error: ForceErrors, sampled: bool, length: float) -> list[Trace]:
-    """Return traces that differ from `trace` by the errors of its forces, each in both directions.
+    """Return two to eight traces that differ from `trace` by the errors of its forces, in pairs: less, and plus.
 
-    First all forces are changed by ε; where `length` [LU] > 0, then by ε times the distance in displacement from the
-    last marked state over it, at most ±1; where `sampled`, then by the part that turns with the loading. States that
-    were to carry a force move along. Where forces have an error by the interaction, radii are also wider and narrower
-    by it, relative to the pull-off force, or without attraction to the largest force.
+    First ε = `common` is added to all forces; where `length` [LU] > 0, then ε times the distance in displacement from
+    the last marked state over `length`, at most ±1; where `sampled`, then `turning` with the sign of the step in
+    displacement. In these traces, states that were to carry a force are also moved up, as far as they may be from the
+    displacement of that force. Where forces have an error by the interaction or the plane, the last two have all radii
+    narrower and wider by it, relative to the pull-off force, or without attraction to the largest |force|.
     """
     shapes = [force_error.common]
     if length > 0.0:
@@ -275,7 +279,7 @@ def misread(trace: Trace) -> list[Trace]:
 def _detachment_errors(case: Reduction, trace: Trace) -> Array:
     """Return the error [LU] ≥ 0 of the position of a free body, (m,), whose contact is lost within a timestep.
 
-    ½ ΔF Δt/M (t − t₀), with ΔF the force at the limit point, the timestep Δt, the mass M of the body and t₀ the last
+    ½ |ΔF| Δt/M (t − t₀), with ΔF the force at the limit point, the timestep Δt, the mass M of the body and t₀ the last
     time with a force; 0 up to t₀, and everywhere without a limit point. The change with another timestep may vanish,
     since the contact is lost elsewhere in it.
     """

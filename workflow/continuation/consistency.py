@@ -31,9 +31,9 @@ AT_REST = 1e-8
 def plan(scene: Scene, states: Sequence[State], forces: Array) -> dict[str, Agreement]:
     """Return {"plan": agreement} of the forces of LAMMPS and of the model, (m,) [FU], of all load steps in order.
 
-    A difference below the round-off error of the loaded particles does not count. The remaining difference is divided
-    by the sum of the absolute forces of the particles in its step, to which 1e-5 of the largest sum of the run is
-    added, for an unloaded step. The load step with the largest quotient counts; 1e-9 is allowed.
+    |difference|, less the residual force times the number of loaded particles (at least 0), is divided by the sum of
+    the absolute forces of the particles in its load step, to which 1e-5 of the largest sum of the run is added, for an
+    unloaded step. The load step with the largest quotient counts; 1e-9 is allowed. `states`: one at least.
     """
     allowed, share = 1e-9, 1e-5  # differences of right runs are 4e-14 to 8e-11
     sizes = np.asarray([_load_sum(scene, state) for state in states])
@@ -51,9 +51,10 @@ def plan(scene: Scene, states: Sequence[State], forces: Array) -> dict[str, Agre
 def asked(scene: Scene, pairs: Sequence[tuple[float, float]], states: Sequence[State]) -> dict[str, Agreement]:
     """Return {"asked": agreement} of pairs of forces [FU], (required by the scene, carried by its state).
 
-    {} without pairs. The largest difference counts, less the largest round-off error of a state, over the largest
-    required force or sum of absolute forces of particles of a state, whichever is larger. Allowed are 1e-8 for planned
-    load steps on a rigid plane, else the tolerance of the scene.
+    {} without pairs. The largest |difference| counts, less the largest round-off error of a state (at least 0), over
+    the largest |required force| or sum of absolute forces of particles of a state, whichever is larger. Allowed are
+    1e-8 in a quasi-static run on a rigid plane whose effects the reduced model all has, else the tolerance of the
+    scene. `states`: one at least where there are pairs.
     """
     if not pairs:
         return {}
@@ -81,8 +82,9 @@ def _round_off(state: State) -> float:
 def balance(scene: Scene, states: Sequence[State]) -> dict[str, Agreement]:
     """Return {"balance": agreement} of the contact force with the forces that LAMMPS adds up on the plate.
 
-    {} where no state has this sum. The largest difference counts, less the residual forces of all upper particles, over
-    the largest sum of the absolute forces of particles of a state. Allowed are 1e-8 in equilibrium, 1e-4 in time.
+    {} where no state has this sum. The largest |difference| counts, less the state's residual force times the number of
+    upper particles (at least 0), over the largest sum of the absolute forces of particles of a state. Allowed are 1e-8
+    in a quasi-static run, 1e-4 in a dynamic one.
     """
     missing = [
         (max(abs(state.missing) - state.profile.x.size * state.residual, 0.0), state)
@@ -119,8 +121,9 @@ class Work:
 def energy(case: Reduction, work: Work, doubt: float = 0.0) -> dict[str, Agreement]:
     """Return {"energy": agreement} of the work of the plate with the energy that is stored and lost.
 
-    {} where the model has no energies. The difference is relative to the energy lost where that exceeds 5 % of all
-    work, else to all work, and to the energy stored where that is larger; of a free body, to its first kinetic energy.
+    {} where the contact law has no expression for its energies. The |difference| is relative to the energy lost where
+    that exceeds 5 % of all work ∫ |F| |dd|, else to all work, and to the energy stored where that is larger; of a free
+    body, to its first kinetic energy.
     Allowed are 1e-3 plus `doubt`, the relative uncertainty of the energy that the run reports; where the difference
     exceeds 1e-3, also four times what smaller steps and half the spacing change.
     """
@@ -142,9 +145,11 @@ def energy(case: Reduction, work: Work, doubt: float = 0.0) -> dict[str, Agreeme
 def _missing(model: Particles, work: Work, finer: int) -> tuple[float, float, float, float] | None:
     """Return (work neither stored nor lost, work, energy stored and lost, the scale of all), all [FU·LU].
 
-    None where the contact law has no expression for its energies. The scale is all work ∫ |F| |dd|, tangential
-    included, or the energy lost where that exceeds 5 % of it, but at least the energy stored; of a free body its first
-    kinetic energy. `finer`: factor on the number of states of the path; without effect on a free motion.
+    None where the contact law has no expression for its energies. The work is that of the plate from the first state
+    on, of a free body the loss of its kinetic energy; energies stored or lost before do not count. The scale is all
+    work ∫ |F| |dd|, tangential included, or the energy lost where that exceeds 5 % of it, but at least the energy
+    stored; of a free body its first kinetic energy. `finer`: factor on the number of states of the path; without effect
+    on a free motion.
     """
     path = work.path if work.kinetic else model.checked(work.path, finer)
     if (energies := model.energies(path)) is None:

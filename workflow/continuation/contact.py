@@ -80,7 +80,7 @@ class Contact:
         return tuple(self._phases)
 
     def begin(self, name: str, fragments: tuple[str, ...] = (), expected_steps: int | None = None) -> None:
-        """Begin a phase of load steps; its `fragments`, files of LAMMPS commands, run with its first load step.
+        """Begin a phase of load steps; its `fragments` of LAMMPS commands, by name, run with its first load step.
 
         `expected_steps`: timesteps of the whole phase, shown as progress; None where unknown. The `name` is used as it
         is.
@@ -107,8 +107,9 @@ class Contact:
         """Run load steps of the current phase, known beforehand, and return the measured state of each, in order.
 
         Args:
-            rows: of one kind; [] for none.
-            trusted: whether each state must be a result, and is checked; one before equilibrium is not.
+            rows: all of the same class; [] for none. Where all load steps are one run (quasi-static on a rigid plane)
+                only displacements (`Displace`) are run, others are left out.
+            trusted: whether each state must be a result, and is checked; False for states before equilibrium.
             moving: whether the motion itself is examined, so that nothing has to be at rest.
 
         Raises:
@@ -205,7 +206,7 @@ class Contact:
         return state
 
     def _measured(self, rows: Sequence[Row], first: int) -> list[State]:
-        """Run load steps one by one and return the state of each, in order, in units of the scene; nothing is checked.
+        """Run load steps one by one and return the state of each, in order, in LU, FU and TU; nothing is checked.
 
         `first`: number of the first one over all phases.
 
@@ -304,10 +305,10 @@ class Contact:
                 _ = state.radius
 
     def _values(self) -> dict[str, str]:
-        """Return the LAMMPS names of the numbers that are measured, besides those of atoms, with their units.
+        """Return {LAMMPS name: unit of the model} of the numbers that are measured, besides those of atoms.
 
-        Units are those of the scene. Always the plate's displacement and the timestep; with a plate, a cantilever, heat
-        baths or other effects theirs, too.
+        Always the plate's displacement "LU" and the timestep "1"; with a plate, a cantilever, heat baths or other
+        effects theirs, too.
         """
         names = {"plate_displacement": "LU", "step": "1"}
         if self.scene.plate:
@@ -323,15 +324,15 @@ class Contact:
         return EngineError(message, self._phases[-1].name, step, self.session.folder, "")
 
     def _state(self, phase: str, numbers: dict[str, float], atoms: dict[str, Array], number: int) -> State:
-        """Return the state of a load step, in units of the scene.
+        """Return the state of a load step, in LU, FU and TU.
 
         On a rigid plane the surface of a particle that lies below it is at the particle, and the depth 0; where
         particles are fixed in the upper body, that of a loaded particle is on the plane and the residual 0.
 
         Args:
             phase: its name.
-            numbers: measured quantities by name.
-            atoms: measured arrays by name, a row for each atom.
+            numbers: measured quantities by the names of `_values`, all of them, in LU, FU and TU.
+            atoms: arrays by the names of `ATOM_UNITS`, all of them, and "type", a row for each atom.
             number: of the load step over all phases.
 
         Raises:
@@ -385,7 +386,7 @@ class Contact:
         """Return the sum of contact and spring forces on the upper particles along z [FU], 0 in equilibrium.
 
         Compression of the contact is positive. None where it may differ from 0 or is unknown: without springs of the
-        upper particles, in time, and with long bonds.
+        upper particles, in a dynamic run, and with [horizontal] whose springs have another stiffness along x.
         """
         springs = atoms["type"] == ANCHORS["upper"]
         if not springs.any() or self.scene.method != "quasistatic" or self.settings.chains.far:

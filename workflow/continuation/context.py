@@ -225,7 +225,8 @@ class ContactBranch:
     def trace(self) -> Trace:
         """Return all states with displacements [LU], forces [FU] and times [TU], from which results are read.
 
-        Times are 0 of equilibria; in time, the number of the LAMMPS timestep times the timestep.
+        Times are 0 of equilibria, in a history on a rigid plane those of the history; of a motion in LAMMPS they are
+        the number of its timestep times the timestep.
 
         Raises:
             IndexError: there are no states.
@@ -301,8 +302,8 @@ class ContactBranch:
     def _turn(self, rises: bool) -> bool:
         """Record the direction of the next load steps; return whether it differs from the one before, True at first.
 
-        Where it differs, the next state begins a new part of the path. `rises`: whether the displacement, or the load,
-        rises next.
+        Where it differs, the next states have the next number in `legs`. `rises`: whether the displacement, or the
+        load, rises next.
         """
         direction = 1 if rises else -1
         turned, self._direction = direction != self._direction, direction
@@ -310,7 +311,7 @@ class ContactBranch:
         return turned
 
     def _append(self, states: Sequence[State]) -> None:
-        """Add states to those so far; after a turn of the loading they begin a new part of the path."""
+        """Add states to those so far, all with the last number in `legs`, or after a turn of the loading the next."""
         self.legs += [self._number + self._turned] * len(states)
         self.states += states
         self._turned = False

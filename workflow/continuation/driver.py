@@ -73,7 +73,8 @@ class Driver(Protocol):
     def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
         """Hold a displacement [LU], or else a force [FU], for a `duration` [TU]; the other one is None.
 
-        Compression is positive.
+        Compression is positive. In LAMMPS, displacement control needs the displacement and load control the force
+        (AssertionError for None); on the reduced model the displacement has priority.
 
         Raises:
             UntrustedError: a contact that is planned on a rigid plane, whose load steps take no time.

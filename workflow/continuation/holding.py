@@ -46,7 +46,7 @@ class Held:
         load: compression positive [FU].
         states: measured on the path, the last of them under the load.
         held: whether the contact carries the load at rest; else it is lost.
-        unbalance: |carried − load| at the end, and the force of the drag: particles lag behind the plate [FU].
+        unbalance: |carried − load| at the end [FU]; where `held`, plus |force of the drag| on plate and particles.
     """
 
     load: float
@@ -63,8 +63,12 @@ class Held:
 def stiffness_under(settings: Settings, load: float) -> float:
     """Return the contact stiffness dF/dd [FU/LU] under a load [FU], compression positive.
 
-    A tension counts as 0.998 of the force maximum at most, since the stiffness is 0 there. Where the tension has
-    several maxima, the result is that of all pairs in contact at the largest expected displacement, whatever the load.
+    A tension counts as 0.998 of the force maximum at most, since the stiffness is 0 there; without attraction it is 0
+    or NaN under a load of 0 or less. Where the tension has several maxima, the result is that of all pairs in contact
+    at the largest expected displacement, whatever the load.
+
+    Raises:
+        NotCarriedError: without adhesion, a compression that the body cannot carry.
     """
     if settings.has_several_maxima:
         return settings.law.stuck_stiffness(settings.largest_displacement)
@@ -89,9 +93,9 @@ def damping_under(settings: Settings, load: float) -> float:
 def overshoot(settings: Settings, mass: float, load: float, next_load: float) -> float:
     """Return by how much of its path a plate overshoots that goes from rest under `load` to `next_load` [FU].
 
-    exp(−πζ/√(1 − ζ²)), 0 … 1, of a linear oscillator with the stiffness under `load`, the largest one under tension,
-    and the drag under `next_load`; 0 where it does not oscillate. Loads are positive in compression; `mass`: of a
-    particle [MU].
+    exp(−πζ/√(1 − ζ²)), 0 … 1, of a linear oscillator with the contact stiffness under `load`, the largest one on the
+    path to a larger tension, and the drag under `next_load`; 0 where it does not oscillate. Loads are positive in
+    compression; `mass`: of a particle [MU].
     """
     moving = settings.motion.plate_mass + settings.chains.upper * mass
     drag = settings.drag(damping_under(settings, next_load))
@@ -105,7 +109,9 @@ def hold_row(scene: Scene, settings: Settings, load: float, scale: float, start:
     It is at rest where the contact force is within a tenth of the tolerance of `scale` [FU] of the load: with M the
     mass of the plate, N m that of the particles that move with it and c the drag on both, that force differs from the
     load by (M + N m) Z″ + c Z′; LAMMPS has M Z″ and Z′. LAMMPS also stops where the bodies have separated or went
-    through each other, and after ten settling times. `start`: the position at which the load is applied.
+    through each other, and after ten settling times, 20 timesteps at least.
+
+    `start`: the position at which the load is applied.
     """
     damping = damping_under(settings, load)
     inertia = _inertia(scene, settings)

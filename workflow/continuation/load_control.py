@@ -37,7 +37,8 @@ class LoadSearch:
     Attributes:
         tolerance: of the pull-off force, relative.
         guess: the expected pull-off force [FU].
-        overshoot: function of a tension that held: overshoot of the plate from there, over its path.
+        overshoot: function of a tension that held [FU]: by how much of its path, 0 … 1, a plate overshoots that goes
+            from there to the expected pull-off force.
         held: the outcomes of tensions that held, rising, the first of them F = 0.
         lost: the smallest tension that broke the contact [FU]; infinite before one did.
         broken: no larger tension holds [FU]; above `lost` by the momentum of the plate that it set going.
@@ -157,8 +158,12 @@ class LoadBranch(ContactBranch):
     def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
         """Hold a force [FU], compression positive, for a time [TU]; states need not be at rest.
 
-        A tension is applied to a contact at rest at F = 0, whose state is kept in a phase "approaching". `displacement`
-        is ignored; `force` must not be None.
+        A tension is applied to a contact at rest at F = 0, whose state is kept in a phase "approaching". The hold has
+        up to 101 states. `displacement` is ignored; `force` must not be None (AssertionError).
+
+        Raises:
+            UntrustedError: bodies went through each other, the contact reaches the end of the chain, or before a
+                tension it does not come to rest.
         """
         assert force is not None
         self.moves, name = True, self._phase

@@ -36,11 +36,11 @@ _top, _crossed = lru_cache(maxsize=4)(largest_tension), lru_cache(maxsize=4)(smo
 def unloading(branch: Trace, settings: Settings) -> dict[str, Reading]:
     """Return the results of a branch of falling displacement by name, with their errors; those it lacks are left out.
 
-    "adhesion_force" [FU] is the force maximum, as a positive tension, at the vertex of a smooth curve or at the last
-    load step before a jump; "critical_radius" [LU] the contact radius there; "zero_load_radius" and "cohesive_radius"
-    [LU], with an attraction that has a range, the radii where the force crosses 0; "work_of_separation" [FU·LU] the
-    work from there until the bodies are apart. A force maximum at an end of the branch counts only at the limit point,
-    where the contact is lost.
+    "adhesion_force" [FU] is the force maximum, a tension > 0, at the vertex of a smooth curve or at the last load step
+    before a jump; it is left out where it is the first state, or the last one and not at the limit point, where the
+    contact is lost. "critical_radius" [LU] is the contact radius there; "zero_load_radius" [LU] that where the force
+    crosses 0, and "cohesive_radius" [LU] the outer radius of the attraction there, if this reaches beyond the edge;
+    "work_of_separation" [FU·LU], only with an adhesion force, the work from there until the bodies are apart.
     """
     readings: dict[str, Reading] = {}
     peak, last = peak_of(branch), len(branch) - 1
@@ -82,7 +82,9 @@ def _separation(branch: Trace, peak: Peak, separated: float = 0.02, nodes: int =
     positions, forces = np.asarray([*held, (start, 0.0)]).T
 
     def work(nodes: int, every: int) -> float:
-        """Return the work [FU·LU] by so many nodes and one of `every` so many states; the law's own where it has one.
+        """Return the work [FU·LU] with this number of nodes, from states 0, `every`, 2 `every`, … and the last one.
+
+        Where the contact law knows the work, it is the law's.
 
         By Gauss's quadrature over u, d = d_end + (d₀ − d_end) u²: a limit point has an infinite slope.
         """
@@ -171,9 +173,9 @@ def _zero_load(branch: Trace) -> dict[str, Reading]:
 
 
 def early_detachment(branch: Trace, peak: Peak, settings: Settings) -> float:
-    """Return by how much [LU] ≥ 0 the load step after the force maximum may separate a pair before its limit point.
+    """Return how far [LU of gap] ≥ 0 before its limit point the load step after the force maximum may separate a pair.
 
-    0 where no pair snaps.
+    Of a maximum at the last state, due to the residual force alone. 0 where no pair snaps.
     """
     d = branch.displacement
     return settings.premature_detachment(float(d[peak.index] - d[min(peak.index + 1, len(d) - 1)]))
@@ -183,9 +185,10 @@ def missed_tension(branch: Trace, peak: Peak, settings: Settings, positions: int
     """Return the tension [FU] ≥ 0 that premature detachment misses at the force maximum `peak` of a branch.
 
     It is the slope before the maximum times the displacement by which the next load step may separate a pair early;
-    where pairs snap, at least by how much the reduced model exceeds the states at so many `positions` between the load
-    steps around the maximum: just before a pair separates, its force may have passed its maximum. 0 where the maximum
-    is the first or the last state.
+    where pairs snap, and the curve jumps after the maximum, at least by how much the largest tension of the reduced
+    model at so many `positions` from the state before to the one after it exceeds its larger one at the maximum and the
+    state before: just before a pair separates, its force may have passed its maximum. 0 where the maximum is the first
+    or the last state.
     """
     d, force, i = branch.displacement, branch.force, peak.index
     if not 0 < i < len(d) - 1:

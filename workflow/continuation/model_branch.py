@@ -79,9 +79,9 @@ class ModelBranch:
     def visit(self, positions: Sequence[float] | Array, along: Sequence[float] | Array | None = None) -> None:
         """Go to displacements [LU] plus `shift`, compression positive, with dense positions between them, all at x = 0.
 
-        With one position for each step, also where denser ones would need more than 2·10⁶ forces, it goes to positions
-        `along` x [LU] as well. Without earlier states the path begins at the first displacement. The loading turns
-        where the last displacement lies on the other side of the state before.
+        They are `dense` for each step, fewer where that would need more than 2·10⁶ forces; with one for each step it
+        goes to positions `along` x [LU] as well. Without earlier states the path begins at the first displacement. The
+        loading rises if the last displacement is at least that of the state before.
         """
         wanted = np.asarray(positions, dtype=np.float64) + self.shift
         before = self._rows[-1].displacement if self._rows else float(wanted[0])
@@ -134,9 +134,9 @@ class ModelBranch:
         """Hold a displacement [LU], or a force [FU] on a free plate, for a time [TU]: add the first and the last state.
 
         Their times are 0 and `duration`; under a displacement both are at it. Under a force (compression positive) they
-        are after the first timestep, from rest, and after the time, of plate and particles on the reduced model; a
-        compressive force is applied at displacement 0, a tension at F = 0, to which load steps lead. Nothing is added
-        where both are None; the displacement has priority.
+        are after the first timestep, from rest, and after the time, of plate and particles on the reduced model (both
+        in equilibrium after more than 20 000 timesteps); a compressive force is applied at displacement 0, a tension
+        at F = 0, to which load steps lead. Nothing is added where both are None; the displacement has priority.
         """
         if displacement is not None:
             self._add(np.asarray([displacement, displacement]), time=(0.0, duration))
@@ -148,7 +148,9 @@ class ModelBranch:
             self._add(swing(self.scene, self.settings, self.model, start, force, duration), time=(0.0, duration))
 
     def follow(self, history: History) -> None:
-        """Go through the displacements or forces of a history over time, with dense steps, as one part of the path.
+        """Go through the displacements [LU] or forces [FU] of a history over time [TU], with dense steps.
+
+        All states are one part of the path, whatever the turns of the loading; displacements are not shifted.
 
         Mark the last state of each phase that has a mark.
         """

@@ -155,10 +155,10 @@ class Refinement:
 
 @dataclass(frozen=True)
 class Outcome:
-    """The outcome of one experiment.
+    """The outcome of one experiment, in units of the model.
 
     Attributes:
-        results: by name.
+        results: by name, each with its unit.
         states: every state that is reported, in order.
         marked: the states that are reported with their profiles, by name.
         phases: the schedule.
@@ -241,8 +241,8 @@ def in_words(shares: Mapping[str, float], tolerance: float) -> str:
 def unmet(results: Mapping[str, Result], tolerance: float, without: Iterable[str] = ()) -> dict[str, float]:
     """Return the relative uncertainties that exceed the tolerance, by name, without the part that the scene gives.
 
-    Left out are prescribed results and those whose scale (|value| without a `scale`) is 0, but for radii: their share
-    is then infinite. {} where all are met.
+    Left out are prescribed results and those whose scale (|value| without a `scale`) is 0. Of the latter, names that
+    end in "radius" stay, with infinity, where they have an error. {} where all are met; in the order of `results`.
 
     Args:
         results: by name.

@@ -60,9 +60,10 @@ class Plan:
 
     @cached_property
     def _columns(self) -> dict[str, Array]:
-        """The numbers that LAMMPS reads for each load step, (m,), by name, in units of the scene, to 15 digits; cached.
+        """The numbers that LAMMPS reads for each load step, (m,), by name, to the 15 digits of its input; cached.
 
-        Names are those of the law, "displacement" [LU] always.
+        "displacement" [LU]; by the contact law also "place" along x [LU]; contact radius "edge", outer radius of the
+        attraction "reach" and "height" [LU]; or "duration" [TU] and final "velocity" [LU/TU].
         """
         return self.deck.as_read(self.model.prescribed(self.path))
 
@@ -88,7 +89,8 @@ class Plan:
     def checks(self, case: Reduction, states: Sequence[State], doubt: float = 0.0) -> dict[str, Agreement]:
         """Return {"plan": …, "energy": …}: the agreement of forces with the model, and of its work with its energies.
 
-        {} where the model lacks an effect of the scene, without "energy" where it has no energies. `case`: the
+        {} where the model lacks an effect of the scene; "plan" alone where the contact law has no expression for its
+        energies. `case`: the
         experiment on the reduced model; `states`: of all load steps; `doubt`: the relative uncertainty of the energy
         that the run reports.
         """
@@ -101,8 +103,8 @@ class Plan:
     def measured(self, contact: Contact) -> list[State]:
         """Run all load steps in LAMMPS and return a state for each, in order.
 
-        The law's contact edges, the round-off errors that it adds to residuals, and times [TU] of the path are put in,
-        where it has them.
+        Where the contact law computes contact edges, these and the round-off errors that it adds to residuals are put
+        in; times [TU] are those of the path, 0 of equilibria.
 
         Raises:
             EngineError: LAMMPS failed.
@@ -125,7 +127,7 @@ class Plan:
 
 
 def _zoned(bodies: Bodies, spring: float, state: State, edge: float, reach: float, *further: float) -> Profile:
-    """Return the profile of a state with its contact edge and the outer radius of the attraction, `reach` [LU].
+    """Return the profile of a state with its contact radius `edge` and outer radius `reach` of the attraction [LU].
 
     Where the attraction reaches beyond the edge, upper surfaces inside it are on the plane, others at the height of the
     body on its springs, but not below the plane; else they stay. `spring`: stiffness of a particle [FU/LU]; `further`:
@@ -206,10 +208,14 @@ class PlannedBranch(ContactBranch):
         self._driven.mark(name)
 
     def checks(self, case: Reduction, doubt: float) -> dict[str, Agreement]:
-        """Return the checks of the states by name, as far as they apply: "balance", "plan" and "energy".
+        """Return the checks of the states by name: "balance", "plan" and "energy".
 
-        They compare the contact force with the sum on the plate, with the reduced model, and work with energy. `case`:
-        the experiment on the reduced model; `doubt`: the relative uncertainty of the energy that the run reports.
+        They compare the contact force with the sum on the plate, where LAMMPS has it; with the reduced model, unless
+        this lacks an effect of the scene; and then also work with energy, where the contact law has one. `case`: the
+        experiment on the reduced model; `doubt`: the relative uncertainty of the energy that the run reports.
+
+        Raises:
+            AttributeError: before `finish`.
         """
         return super().checks(case, doubt) | self.plan.checks(case, self.states, doubt)
 

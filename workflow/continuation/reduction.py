@@ -135,7 +135,7 @@ class Reduction:
 
     @cached_property
     def results_and_pressures(self) -> Values:
-        """The results by name, and where springs are not linear ln p(0) of the states that are reported; cached.
+        """The results by name, and with [neighbours], [viscoelasticity] or [noise] ln p(0) of marked states; cached.
 
         p(0) is the pressure on the axis [FU/LU²] but for a constant factor. The names of the logarithms are "ln p " and
         that of the state, "ln p " alone for the deepest state; one without pressure on the axis is left out. With
@@ -166,8 +166,8 @@ class Reduction:
     def _lattices(self) -> tuple[list[Particles], list[Particles]]:
         """Models of the same body: (with particles elsewhere or on other spacings, on finer spacings); cached.
 
-        The finer spacings are a half and a quarter, where cells at the contact edge carry a share of their load, else
-        there are none. Both lists are empty where the scene gives the particles and cells do not do so.
+        The finer spacings are a half and a quarter, of an adhesive contact on a rigid plane and of a body with
+        dashpots; of others there are none. Both lists are empty for these others where the scene gives the particles.
         """
         bodies = self.scene.bodies
         is_chosen = bodies.particles == "auto" and bodies.own_count is None  # else positions are part of the scene
@@ -180,9 +180,10 @@ class Reduction:
     def lattice(self) -> Values:
         """The discretisation error ≥ 0 of each result, by name in its unit; cached.
 
-        {} where the scene gives the particles, unless cells at the contact edge carry a share of their load. It is 1.25
-        times the largest change with other positions of the particles, or times the error that a half and a quarter of
-        the spacing show where that is larger. A result that another lattice does not have counts as 0 there.
+        {} where the scene gives the particles, except of an adhesive contact on a rigid plane and of a body with
+        dashpots. It is 1.25 times the largest |change| with other positions of the particles, or times the error that a
+        half and a quarter of the spacing show where that is larger. A result that another lattice does not have counts
+        as 0 there. With `passed` states, by column (m,).
         """
         shifted, finer = self._lattices
         if not (shifted or finer):
@@ -197,12 +198,13 @@ class Reduction:
 
     @cached_property
     def moves(self) -> tuple[Move, ...]:
-        """Two moves, to both ends, of each number with ±, and of each pair of bodies that bounds the profile.
+        """Two moves, to both ends, of each number with ±, then of each deviation of the profile, a pair of bodies.
 
-        Changes are those of the results on the reduced model, relative to the mean of both ends; cached. A number with
-        ± below 5 % is moved by 5 %, since the reader has errors, and its changes are scaled back to first order. From 5
-        % on, and where the wider move is no contact, changes are relative to the scene itself. A pair of bodies of
-        which one is no contact is left out. () where nothing is uncertain.
+        Changes are those of the results on the reduced model, from the mean of both ends; cached. A number with a
+        relative ± below 5 % is moved by 5 %, since the reader has errors, and its changes are scaled back to first
+        order. From 5 % on, and where the wider move is no contact, changes are from the scene itself. A deviation of
+        which one body is no contact is left out. () where nothing is uncertain. With `passed` states, changes are by
+        column, (m,).
 
         Raises:
             SettingsError: an end of a number with ± is no contact.
@@ -252,8 +254,8 @@ class Reduction:
     def _results_of(self, scene: Scene) -> Values:
         """Return the results of the model of another scene by name, in their units.
 
-        Where springs are not linear they include logarithms of pressures on the axis. With `passed` states they are
-        columns (m,).
+        With [neighbours], [viscoelasticity] or [noise] they include logarithms of pressures on the axis. With `passed`
+        states they are columns (m,).
 
         Raises:
             SettingsError: the scene is no contact.
@@ -264,8 +266,9 @@ class Reduction:
     def inputs(self) -> Values:
         """The uncertainty ≥ 0 due to the inputs, by name in the result's unit; cached.
 
-        Numbers with ± and pairs of bodies add in squares; to their sum the changes with other curves through the points
-        of a profile are added. 0 where nothing is uncertain.
+        Numbers with ± and deviations of the profile add in squares; to the root of their sum the |changes| with other
+        curves through the points of a profile are added. 0 where nothing is uncertain. With `passed` states, by column
+        (m,).
 
         Raises:
             SettingsError: too few curves through the points of a profile are a contact, so that no error is known;

@@ -127,11 +127,12 @@ class ReplayedBranch(Branch):
         self._stretches.append(Stretch(self._number, phase, len(self.states) - 1, force))
 
     def _about_maximum(self, window: float, first: bool, count: int = 8) -> list[float]:
-        """Return falling displacements [LU] of the unloading, in steps of `window`/`count` [LU] about its maximum.
+        """Return displacements [LU] of the unloading: of the present states, and in a window about its force maximum.
 
-        The window goes that far, or as far as a pair may separate early, to either side; outside it, the displacements
-        of the present states. None in the window is above the end of an earlier part of the unloading. `first`: whether
-        the states are those of the first search; then all states of at least 95 % of the maximum are in the window.
+        First those of the states on both sides of the window, falling, then those in it, falling in steps of
+        `window`/`count` [LU]. It extends by `window` [LU], or as far as a pair may separate early, to either side; none
+        in it is above the end of an earlier part of the unloading. `first`: whether the states are those of the first
+        search; then all positions with at least 95 % of the maximum are in the window.
         """
         trace, peak = self.unloading, self.peak
         d, force = trace.displacement, trace.force
@@ -175,6 +176,8 @@ class ReplayedBranch(Branch):
     def _replay(self, falling: list[float]) -> None:
         """Close the contact and repeat its load steps in a new one, the last unloading at displacements `falling` [LU].
 
+        These may be in any order, and are run from the largest to the smallest.
+
         Each part of the path goes straight to its end, the last until the bodies part. Replaces the states, and updates
         marks and targets and the numbers of parts in place.
 
@@ -212,9 +215,10 @@ class ReplayedBranch(Branch):
     def _agrees(self, before: Peak, critical: State) -> bool:
         """Return whether two repetitions have the same force maximum, and the latest has the required states.
 
-        Forces may differ by the tolerance of the search, relative, or for a required force of 0 that of the maximum,
-        and the contact radius at the maximum by its tolerance or half its uncertainty. `before`: the maximum of the
-        former repetition; `critical`: the state at that of the latest.
+        At most the tolerance of the search, relative to the maximum, may be: its change, its own error, and what the
+        tension of `critical` lacks of it; relative to each required force (of 0, to the maximum): the difference from
+        it; relative to the contact radius, or half its uncertainty: its change from `critical` to the maximum.
+        `before`: the maximum of the former repetition; `critical`: the state at that of the latest.
         """
         peak = self.peak
         allowed = self.tolerance * peak.smooth

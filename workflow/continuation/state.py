@@ -45,7 +45,7 @@ class State:
         step: number of the LAMMPS timestep at its end.
         pushed: force of other effects that presses the upper body onto the lower one [FU].
         plate_velocity: of the approach [LU/TU], negative while the bodies separate; 0 where its position is prescribed.
-        cantilever_force: force of the cantilever [FU]; 0 without one.
+        cantilever_force: force of the cantilever on the plate along x [FU], positive towards +x; 0 without one.
         missing: force that LAMMPS adds up on the plate beyond those that are known [FU]; None: not available.
         time: of a history [TU]; 0 for an equilibrium.
         motion: of a slide, the quantities of `contact.MOTION` and `contact.HEAT` by name, in the units that stand

@@ -49,7 +49,7 @@ class Perturbation:
     Attributes:
         force: added to each force, (m,) or the same for all [FU].
         radius_shift: added to each radius, in multiples of its uncertainty, (m,) or the same for all.
-        radius_factor: by which all radii are multiplied.
+        radius_factor: by which radii are multiplied, those without uncertainty excepted.
         moved: added to displacements; lengths follow with their slope, (m,) or the same for all [LU].
     """
 

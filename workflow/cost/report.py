@@ -46,13 +46,14 @@ class VariantRuns:
     """The runs of a variant of a scene, and its errors against the reference.
 
     Attributes:
-        results: results by name, the same in every run.
+        results: results by name, in units of the model, of the last run.
         cpu_runs: CPU time of each run, of LAMMPS and the program together, without figures [s].
         warnings: names of the warnings, then of the results that miss the tolerance.
         failure: why there are no numbers, "" where there are.
         edit: what is changed in the scene, in the form that `contact1d run` accepts; the varied key first.
         errors: relative errors of the main results against the reference, by name; empty where the runs failed.
-        dominant: the largest source in the budget of the result with the largest error.
+        dominant: the largest source of error of the result with the largest error, "solver of contact_radius"; ""
+            without errors.
     """
 
     results: Mapping[str, Result] = field(default_factory=dict)
@@ -70,9 +71,9 @@ class VariantRuns:
 
     @property
     def change(self) -> tuple[str, str]:
-        """The varied key and its value as text, `accuracy.tolerance` and `0.01`, or "without" and the effect left out.
+        """(Varied key, its value) as text, `accuracy.tolerance` and `0.01`, or "without" and the effect left out.
 
-        Of several varied keys it is the first; without any change the second text is "".
+        Of several varied keys it is the first; without any change the two are "without" and "".
         """
         setting, value = next(iter(self.edit.values.items()), ("without", "".join(self.edit.without)))
         return setting, str(value)
@@ -103,23 +104,26 @@ class CostRecord:
 
     @property
     def baseline(self) -> VariantRuns:
-        """The runs of the scene without a change: the first row that only sets the scene's own tolerance."""
+        """The runs of the scene without a change: the first row that only sets the scene's own tolerance.
+
+        StopIteration where there is none.
+        """
         return next(row for row in self.rows if row.edit.values == {"accuracy.tolerance": self.tolerance})
 
     def new_warnings(self, variant: VariantRuns) -> list[str]:
-        """Return the names of warnings of a variant that the scene without a change does not have, in order.
+        """Return the names of a variant's warnings that the scene without a change lacks, in order; [] for none.
 
-        [] for none.
+        The names of results that miss the tolerance are among them.
         """
         return [name for name in variant.warnings if name not in self.baseline.warnings]
 
     @property
     def advice(self) -> str:
-        """A sentence with the cheapest change of the scene that is within the tolerance and without new warnings.
+        """A sentence with the variant of least CPU time that is within the tolerance and has no new warnings.
 
-        Where the scene itself is within the tolerance, a change must save 0.1 s and 10 % of the time at least;
-        otherwise the sentence says to keep the scene. Where neither the scene nor a variant is within the tolerance it
-        says so.
+        Where the scene itself is within the tolerance, a variant must save at least 0.1 s and at least 10 % of the
+        time; otherwise the sentence says to keep the scene. Where neither the scene nor a variant without new warnings
+        is within the tolerance, it says that none is.
         """
         # CPU time [s], and its part of that of the scene, which a change saves at least to be recommended.
         saved_s = saved_share = 0.1
@@ -144,8 +148,8 @@ def table(record: CostRecord) -> list[tuple[str, ...]]:
     """Return the table of a study as text: a header of 6 columns, then a row for each variant, in order.
 
     The columns are the varied key, its value (of the scene itself with "(as it is)"), largest relative error, median
-    CPU time [s], that time over the scene's, and the dominant error with up to two new warnings. Of a variant that
-    failed the three numbers are "", and the last cell has the reason.
+    CPU time [s], that time over the scene's ("nan" where the scene failed), and the dominant error with up to two new
+    warnings. Of a variant without errors the three numbers are "", and the reason is in place of the dominant error.
     """
     rows: list[tuple[str, ...]] = [("setting", "value", "true error", "CPU time", "of the scene's", "dominant error")]
     baseline = record.baseline

@@ -27,10 +27,10 @@ from contact1d.workflow.scene import Scene
 
 
 def run_once(scene: Scene, folder: Path) -> VariantRuns:
-    """Return the results, CPU time [s] and warnings of one run of a scene, or the reason why it failed.
+    """Return the results [model units], CPU time [s] and warnings of one run of a scene, or the reason why it failed.
 
-    Warnings are followed by the names of results that miss the tolerance. A failed run, by any Contact1dError, has a
-    `failure` and no results; other errors are raised. It runs in a folder of this process in `folder`.
+    Warnings are followed by the names of results that miss the tolerance. A run that ends with a Contact1dError has a
+    `failure`, and no results and time; other errors are raised. It runs in a folder of this process in `folder`.
     """
     began = time.process_time()
     try:
@@ -48,7 +48,8 @@ def measure(
 ) -> list[VariantRuns]:
     """Return the runs of each scene, in order, from rounds in which all run, so that a slow machine slows all of them.
 
-    CPU times are those of all rounds, results and warnings those of the last one.
+    CPU times are those of all rounds, results, warnings and failure those of the last one. Without a round, for
+    `repeats` of 0, they are empty.
 
     Args:
         scenes: at least one.
@@ -102,9 +103,10 @@ def cost_of(scene: Scene, folder: Path, repeats: int, workers: int, progress: Pr
 def reference_of(
     scene: Scene, folder: Path, levels: int = 4, longest_s: float = 10.0
 ) -> tuple[float, Mapping[str, Result]]:
-    """Return tolerance and main results, by name, of the finest reference with numbers; none is of size 0.
+    """Return (accuracy.tolerance, main results by name [model units]) of the finest reference that has numbers.
 
-    The change from the reference before is one of the errors of a result (`model`).
+    Results of size 0 are left out. The change from the reference before is the error `model` of a result, 0 in the
+    first one.
 
     Args:
         scene: the scene of the study.
@@ -113,7 +115,7 @@ def reference_of(
         longest_s: CPU time of a reference [s] after which no finer one is run.
 
     Raises:
-        RunError: no reference that is finer than the scene gives numbers.
+        RunError: no reference that is finer than the scene gives numbers other than 0.
     """
     finest, last, refined = math.inf, dict[str, Result](), scene
     for _ in range(levels):
@@ -139,7 +141,7 @@ def with_errors(runs: VariantRuns, reference: Mapping[str, Result]) -> VariantRu
     """Return a copy of the runs with relative errors against the reference, and the dominant source of the largest.
 
     The errors are of the results of the reference, by name; the source is a text, "solver of contact_radius". Where the
-    runs lack a result of the reference they have a `failure` and no errors.
+    runs lack a result of the reference, the copy has a `failure`, that of the runs or "no <name>", and no errors.
     """
     if missing := [name for name in reference if name not in runs.results]:
         return replace(runs, failure=runs.failure or f"no {missing[0]}")
@@ -156,7 +158,7 @@ def _error(result: Result, best: Result, largest_share: float = 0.1) -> Error:
 
     Where the uncertainty of the reference and the statistical error of the result together exceed `largest_share` of
     the error, they are added to it, and it is an upper bound. The part of the uncertainty by numbers with ± in the
-    scene does not count.
+    scene does not count. ZeroDivisionError for a reference of size 0.
     """
     error = abs(result.value - best.value)
     uncertainty = best.uncertainty - best.given + result.errors.get("statistics", 0.0)

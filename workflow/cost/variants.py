@@ -68,24 +68,26 @@ SETTINGS = {
 
 
 def numbers_of(scene: Scene) -> dict[str, float]:
-    """Return the numbers that a scene gives, by dotted keys, in units of the model.
+    """Return the numbers of a scene other than 0, given or by default, by dotted keys; whole numbers are int.
 
-    A key that is absent or "auto" is left out.
+    They are in units of the model, those of [material] in SI. Items of lists have an index, `displacements[1]`. Left
+    out are keys that are "auto", or absent without a number as default.
     """
     return {place.path: place.value for place in Place(scene.model_dump(by_alias=True), WHOLE) if place.is_number}
 
 
 def settings_of(scene: Scene) -> dict[str, Setting]:
-    """Return the numerical settings that a scene gives as numbers, by dotted keys, the tolerance first.
+    """Return the settings of a scene that are numbers, by dotted keys, the tolerance first, which has a default.
 
-    Left out are those on "auto", absent, or on which the physics of this scene depends.
+    They are tolerance, particles, spacing, cutoff, steps, damping and seed. Left out are those on "auto", absent, or on
+    which the physics of this scene depends.
     """
     numbers = numbers_of(scene)
     return {key: setting for key, setting in SETTINGS.items() if key in numbers and setting.is_numerical(scene)}
 
 
 def variants_of(scene: Scene) -> list[tuple[SceneEdit, Scene]]:
-    """Return each valid variant of a scene with its edit, in units of SI where LU and FU are known.
+    """Return (edit, edited scene) of each valid variant of a scene; edits are in SI where LU and FU are known.
 
     They are in the order of the settings and their factors, then a quasi-static motion, then each effect left out. The
     scene itself is among the tolerances, with the factor 1; variants that are no valid scene are left out.
@@ -105,9 +107,9 @@ def edited(scene: Scene, edit: SceneEdit) -> Scene | None:
 def scaled(scene: Scene, key: str, factor: float | None) -> SceneEdit:
     """Return the edit that scales a number of a scene by a factor, or sets it to "auto" if the factor is None.
 
-    A count changes by an even number. With the spacing h bulk stiffnesses per particle change as h, that of neighbour
-    springs and the number of particles as 1/h. Numbers are rounded to 12 digits. A number that is not given, or 0, is
-    left out, so that the edit may be empty.
+    A count (int) changes by the nearest even number. With the spacing h bulk stiffnesses per particle change as h, that
+    of neighbour springs and the number of particles as 1/h. Other numbers are rounded to 12 digits, in units of the
+    model. A number that the scene lacks, or that is 0 or "auto", is left out, so that the edit may be empty.
     """
     if factor is None:
         return SceneEdit({key: "auto"})
@@ -123,10 +125,11 @@ def scaled(scene: Scene, key: str, factor: float | None) -> SceneEdit:
 
 
 def finer(scene: Scene) -> Scene:
-    """Return the scene with tolerance, spacing and steps finer, as far as its rules allow.
+    """Return the scene with tolerance, spacing, particles and steps finer, as far as its rules allow.
 
-    One after the other: an edit that gives no valid scene is left out. A motion becomes quasi-static where time is no
-    physics, and noise gets another seed. Without any valid edit it is the scene itself.
+    One edit follows the other; one that gives no valid scene is left out. A cutoff of attracting particles becomes
+    "auto", a motion quasi-static without damping and plate where such a scene is valid, and noise gets another seed.
+    Without any valid edit it is the scene itself.
     """
     settings = settings_of(scene)
     for edit in [*(scaled(scene, key, setting.finer) for key, setting in settings.items()), *quasistatic(scene)]:

@@ -61,7 +61,9 @@ class Deck:
 
     @cached_property
     def parts(self) -> tuple[Contribution, ...]:
-        """The parts (fragments, variables) of bodies, lower body, effects and method, in deck order; cached.
+        """The parts (fragments, variables) of bodies, lower body, effects, method and units, sorted by stage; cached.
+
+        With an interaction also that of larger bins, where the box needs them. Numbers are in units of the deck.
 
         Raises:
             SettingsError: the box of an interaction has too many bins for LAMMPS.
@@ -105,23 +107,26 @@ class Deck:
         return title + "\n" + "\n".join(blocks)
 
     def begin(self, phase: str, fragments: Sequence[str] = ()) -> str:
-        """Return the LAMMPS commands before the rows of a phase: its name as variable row_phase, and `fragments`."""
+        """Return the LAMMPS commands before the rows of a phase: its name as variable row_phase, and `fragments`.
+
+        `fragments`: names of files in `lammps_inputs/fragments`, of which the commands are taken, in order.
+        """
         return indexed({"row_phase": phase}) + commands(fragments)
 
     def row(self, kind: type[Row]) -> str:
-        """Return the LAMMPS commands of one row of a kind: displacement or load, then measurement.
+        """Return the LAMMPS commands of one row of a kind: motion, measurement, line of curve.txt, and kept state.
 
-        Without the commands after a measurement. They use the variables of the row, which must be defined before. Where
-        rows are steps of one run, they are those of the whole run.
+        A state is kept only with `[output]`. The commands that end a measurement are left out. The variables of the row
+        must be defined before. Where rows are steps of one run (`stepped`), the commands are those of the whole run.
         """
         return commands(self._row(kind))
 
     def as_read(self, columns: Mapping[str, NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:
-        """Return numbers of load steps as LAMMPS reads them from a list: rounded to 15 digits in units of the deck.
+        """Return numbers of load steps as LAMMPS reads them from a list: to 15 significant digits in units of the deck.
 
         Args:
-            columns: arrays, (m,), by the name of a field of a row, "displacement" for instance; before and after in
-                units of the scene. They are unchanged.
+            columns: arrays, (m,), by the name of a field of a row, "displacement" for instance, in units of the scene,
+                as the returned ones, which are new arrays by the same names.
 
         Raises:
             KeyError: no field with a unit has this name.
@@ -139,10 +144,10 @@ class Deck:
     def in_one_run(self, rows: Sequence[Row], skips: Sequence[int] = ()) -> str:
         """Return the LAMMPS commands of rows that are positions of the plate, all in one run.
 
-        The variables of the rows are defined before, and deleted after it.
+        The text defines the variables of the rows, in units of the deck, before the run, and deletes them after it.
 
         Args:
-            rows: all of one kind, one at least.
+            rows: all of one kind, one at least, with numbers in units of the scene.
             skips: 1 for each row whose state is not written, 0 for the others; by default all are written. It has no
                 effect without `[output]`, where no states are kept.
         """
@@ -157,9 +162,8 @@ class Deck:
     def values(self, row: Row, first: bool) -> str:
         """Return LAMMPS text that defines the variables of one row, in units of the deck.
 
-        Where states are kept and rows are no steps of one run, row_append is among them: every state is written.
-
-        `first`: whether no state has been written before it.
+        With `[output]`, unless rows are steps of one run (`stepped`), row_append is among them: "no", which begins the
+        file of states, if no state has been written before (`first`), else "yes", which appends.
         """
         texts = (*row.texts(self.units.to_deck), NEW if first else APPENDED)
         return indexed(dict(zip(self._columns(type(row)), texts, strict=False)))
@@ -167,14 +171,15 @@ class Deck:
     def row_end(self, kind: type[Row]) -> str:
         """Return the LAMMPS commands after the measurement of a row of a kind, and those that delete its variables.
 
-        Where rows are steps of one run, only the latter.
+        Where rows are steps of one run (`stepped`), only the latter.
         """
         return commands(self._measured) + deleted(self._columns(kind))
 
     def state(self, first: bool) -> str:
         """Return the LAMMPS commands that write the state of the last row to states.lammpstrj.
 
-        "" where that is written already: rows are steps of one run, and the scene has `[output]`.
+        They begin and end a measurement of their own. "" where the state is written already: rows are steps of one run
+        (`stepped`), and the scene has `[output]`.
 
         `first`: whether no state has been written before, so that the file is begun anew.
         """
@@ -198,8 +203,8 @@ class Deck:
     def schedule(self, phases: Sequence[Phase]) -> str:
         """Return the LAMMPS text of loops over the rows of phases, with the states that phases write at their ends.
 
-        Each phase must have rows. Of rows that are steps of one run there is one run for each phase. Nothing is
-        checked.
+        Each phase must have rows; "" without phases. Of rows that are steps of one run there is one run for each phase
+        in place of the loop. Whether the names of fragments and variables fit together is not checked.
         """
         blocks, first = list[str](), True
         for phase in phases:
@@ -216,7 +221,11 @@ class Deck:
 
     @property
     def _output(self) -> tuple[str, ...]:
-        """The names of the fragments at the end of the head that set up the output, in order."""
+        """The names of the fragments at the end of the head that set up the output, in order.
+
+        ("output",); where rows are steps of one run (`stepped`) "output_swept", with `[output]` also "output_states",
+        both with "_in_units" behind them where the deck has other units than the scene, and "set_up".
+        """
         if not self.stepped:
             return ("output",)
         return (self._named("output_swept"), *[self._named("output_states")] * self.keeps, "set_up")
@@ -228,16 +237,16 @@ class Deck:
     def _columns(self, kind: type[Row]) -> tuple[str, ...]:
         """Return the names of the LAMMPS variables that each row of a kind has, in order.
 
-        "row_append" is the last one where states are kept and rows are no steps of one run.
+        "row_append" is the last one with `[output]`, unless rows are steps of one run (`stepped`).
         """
         return (*kind.columns(), *["row_append"] * (self.keeps and not self.stepped))
 
     def _row(self, kind: type[Row]) -> tuple[str, ...]:
         """Return the names of the fragments of a row of this kind, in order: motion, measurement, line of curve, state.
 
-        Without those after the measurement; the state only where states are kept. Where rows are steps of one run:
-        those of the run, before which one names the rows whose states are kept. A hold with adhesion begins with one
-        that restores the contact.
+        Without those after the measurement; the state only with `[output]`. A displacement by short moves, or of pairs
+        that snap in, has a fragment of its own; a `Hold` with adhesion begins with one that restores the contact. Where
+        rows are steps of one run (`stepped`): with `[output]` "steps/keep", then "steps/sweep" or that of the kind.
         """
         step, kept = kind.step, [self._state] * self.keeps
         if kind is Displace and not self.stepped:
@@ -257,7 +266,7 @@ class Deck:
 
     @property
     def _measuring(self) -> tuple[str, ...]:
-        """The names of the fragments before a measurement, in order; () where rows are steps of one run."""
+        """The names of the fragments before a measurement, in order; () where rows are steps of one run (`stepped`)."""
         if self.stepped:
             return ()
         measure = "steps/measuring_energy" if self.scene.cantilever else "steps/measuring"
@@ -265,7 +274,7 @@ class Deck:
 
     @property
     def _measured(self) -> tuple[str, ...]:
-        """The names of the fragments after a measurement, in order; () where rows are steps of one run."""
+        """The names of the fragments after a measurement, in order; () where rows are steps of one run (`stepped`)."""
         if self.stepped:
             return ()
         return ("steps/measured", *(name for part in self.parts for name in part.step_end))
@@ -293,7 +302,7 @@ class Deck:
         )
 
     def _check(self) -> dict[str, str]:
-        """Return what defines each name of the head: the name of a fragment, or of a part in brackets, "[plate]".
+        """Return what defines each name of the head, by the name: a fragment, or a part in brackets, as "[plate]".
 
         Every variable is defined once, before it is needed, and used; every ID is defined once; there is one
         `pair_style` and one `atom_style` at most, and no group has two integrators.
@@ -349,7 +358,7 @@ class Deck:
 
 
 def _define(owners: dict[str, str], name: str, owner: str) -> None:
-    """Add the owner of a name to `owners`, in place; nothing where it is there already.
+    """Add the owner of a name to `owners`, in place; no change where the name has this owner already.
 
     Raises:
         DeckError: the name has another owner.

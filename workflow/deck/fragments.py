@@ -28,8 +28,8 @@ class Fragment:
     Attributes:
         name: the file's name without `.lmp`.
         text: the whole file.
-        needs: names of the LAMMPS variables that must be defined before it.
-        defines: IDs and names that it defines.
+        needs: names of the LAMMPS variables that must be defined before it, in the order of the header.
+        defines: names of variables, and IDs of fixes, computes, dumps and groups, that it defines.
         redefines: IDs and names of earlier fragments that it defines anew.
     """
 
@@ -80,7 +80,7 @@ def used_variables(commands: str) -> set[str]:
 
 
 def _names(line: re.Match[str] | None) -> tuple[str, ...]:
-    """Return the names in a header line, without what is in brackets and without "-"; () where the line is missing."""
+    """Return the names in a header line in order, without "-" and text in brackets (…); () if the line is missing."""
     if line is None:
         return ()
     return tuple(word for word in re.sub(r"\([^)]*\)", " ", line[1]).split() if word != "-")
@@ -120,6 +120,9 @@ def commands(names: Sequence[str]) -> str:
 
 
 def listed(name: str, texts: Sequence[str], per_line: int = 6) -> str:
-    """Return LAMMPS text `variable NAME index …` with its values, `per_line` of them on each line, continued by "&"."""
+    """Return LAMMPS text `variable NAME index …` with its values, `per_line` of them on each line, continued by "&".
+
+    `texts`: the values in order, one at least.
+    """
     lines = [" ".join(texts[start : start + per_line]) for start in range(0, len(texts), per_line)]
     return f"variable        {name} index " + " &\n                ".join(lines) + "\n"

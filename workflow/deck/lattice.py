@@ -31,9 +31,9 @@ class Body:
 
     Attributes:
         name: "lower" or "upper".
-        particles: undeformed positions at displacement 0.
-        anchors: the bulk's ends of the bulk springs, shape (0, 3) where particles are fixed in the body.
-        far_anchors: the bulk's ends of the long bonds, shape (N, 3), or (0, 3).
+        particles: undeformed positions at displacement 0, shape (N, 3).
+        anchors: the bulk's ends of the bulk springs, shape (N, 3), or (0, 3) where particles are fixed in the body.
+        far_anchors: the bulk's ends of long bonds, which make springs stiffer along x or z, shape (N, 3), or (0, 3).
     """
 
     name: str
@@ -64,8 +64,10 @@ def bodies(scene: Scene, settings: Settings) -> tuple[Body, ...]:
     """Return the bodies of a scene at displacement 0, (lower, upper); on a rigid plane (upper,) alone.
 
     Each has the positions of its particles, (N, 3) [LU], of the anchors of their springs, which a rigid chain and a
-    body with fixed particles lack, (0, 3), and of far anchors for springs that are stiffer along x or z. The upper apex
-    is at z = settings.forces.rest, the lower body at z = 0. A periodic body is in the box of one period around 0.
+    body with fixed particles lack, (0, 3), and of far anchors where springs have another stiffness along x than along
+    z, else (0, 3). The upper apex is at z = settings.forces.rest, the lower body at z = 0; y is 0, of the upper body
+    with an interaction a small offset, and what moves with a plate is shifted along y by 5e-4 of the chain's length,
+    with alternating sign. Positions of a periodic upper body are in one period around 0.
     """
     x = particle_positions(settings.chains.upper, scene.bodies.own_spacing)
     flat = np.zeros_like(x)
@@ -90,9 +92,10 @@ def period(scene: Scene, settings: Settings) -> float:
 
 
 def start_offset(scene: Scene, settings: Settings) -> float:
-    """Return the position of the upper body's middle along x [LU]: as given, else 0, in a slide within half a spacing.
+    """Return the position of the upper body's middle along x [LU]: as given, else 0.
 
-    In a slide particles begin between those of a lower chain: on top of them the equilibrium is unstable.
+    In a slide on a lower chain, without a given one, it is within half a spacing of 0, of either sign, so that
+    particles begin between those of the chain: on top of them the equilibrium is unstable.
     """
     bodies = scene.bodies
     if bodies.upper_offset is not None:
@@ -105,11 +108,13 @@ def start_offset(scene: Scene, settings: Settings) -> float:
 
 
 def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body:
-    """Return a body with anchors, moved so that neighbour springs have no force on the undeformed chain.
+    """Return a body with anchors at its particles, moved against forces of neighbour springs on the undeformed chain.
 
-    Without anchors where particles are fixed in the body. Far anchors are there only where particles may move along x
-    and springs have another stiffness along x than along z. With a plate what moves with it, particles or anchors of
-    the upper body, is shifted out of the plane of motion by small amounts.
+    The move is 0 in a periodic body, and along x without [horizontal]. No anchors, (0, 3), where particles are fixed in
+    the body. Far anchors are there only where particles may move along x and springs have another stiffness along x
+    than along z: settings.chains.far [LU] from the particles, along −x where the tangential stiffness is the larger,
+    else along z away from the other body. With a plate the upper atoms that move with it, anchors or fixed particles,
+    are also shifted along y.
 
     `particles`: positions, (N, 3) [LU].
     """
@@ -139,7 +144,9 @@ def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body
 def _staggered(particles: Array, scene: Scene) -> Array:
     """Return the shift of a plate's atoms along y, out of the plane of motion, (N, 3) [LU]; 0 without a plate.
 
-    Its magnitude is 5e-4 of the chain's length, with + for the first atom and alternating sign.
+    Its magnitude is 5e-4 of the chain's length, N spacings, with + for the first atom and alternating sign.
+
+    `particles`: of which N is the number, (N, 3).
     """
     shift = np.zeros_like(particles)
     if scene.plate:

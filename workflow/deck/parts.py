@@ -27,8 +27,8 @@ CHOSEN_BINS = ("far_bin", "wide_bin")
 def rigidly_mounted(scene: Scene, settings: Settings) -> list[Contribution]:
     """Return the deck parts (fragments, variables) of an upper body with fixed particles over a rigid plane.
 
-    The plane has the springs of the particles. A list of body, plane, and motion in single steps of one run; in a
-    dynamic scene of body, plane, measured force and clock.
+    The plane has the springs of the particles. A list, in this order, of body, plane, and motion by one timestep for
+    each load step; in a dynamic scene of body, plane, measured force and clock.
     """
     if not scene.is_stepped:
         clock = Contribution("dynamic", Stage.MOTION, ("clock",), {"time_step": number(settings.motion.time_step)})
@@ -43,7 +43,8 @@ def rigidly_mounted(scene: Scene, settings: Settings) -> list[Contribution]:
 def free_to_move(scene: Scene, settings: Settings) -> list[Contribution]:
     """Return the deck parts (fragments, variables) of bodies with free particles, each on the spring of its bulk.
 
-    A list of bodies, guide and method, and as the scene has them the rigid plane, the rigid chain and the periodic box.
+    A list of bodies, guide (the fixes that keep particles from moving along y, without [horizontal] also along x) and
+    method, and as the scene has them of the rigid plane, the rigid chain and the periodic box, in this order.
     """
     softer = min(settings.forces.bulk_stiffness, scene.tangential_stiffness)
     coefficient = softer if settings.chains.far else settings.forces.bulk_stiffness
@@ -62,7 +63,7 @@ def free_to_move(scene: Scene, settings: Settings) -> list[Contribution]:
 
 
 def bins(scene: Scene, settings: Settings, parts: Sequence[Contribution], most: int = 4_000_000) -> list[Contribution]:
-    """Return the part that enlarges the bins of LAMMPS's neighbour lists, so that the box has `most` at most; or [].
+    """Return [part], one that enlarges the bins of LAMMPS's neighbour lists, so that the box has `most` at most; or [].
 
     [] where it has no more anyway: then the edge of a bin is half the reach of the forces, LAMMPS's choice, or what one
     of the `parts` has set, if that is larger. Else the edge is doubled until it suffices, but to 50 times the shortest
@@ -103,9 +104,9 @@ def unit_conversion(units: DeckUnits) -> Contribution:
 
 
 def plane_depth(scene: Scene, settings: Settings) -> float:
-    """Return the depth of the wall's origin below the plane, positive [LU]: 1000 times the largest displacement.
+    """Return the depth of the wall's origin below the plane, positive [LU].
 
-    Or 1000 spacings, where these are more.
+    It is 1000 times the larger one of the largest displacement and the spacing of the lower body.
     """
     return 1e3 * max(settings.largest_displacement, scene.bodies.spacing)
 
@@ -113,8 +114,8 @@ def plane_depth(scene: Scene, settings: Settings) -> float:
 def _plane(fragment: str, scene: Scene, settings: Settings) -> Contribution:
     """Return the deck part of a rigid plane: a one-sided wall with its stiffness, by the fragment of this name.
 
-    Positions [LU] and stiffnesses [FU/LU] are in units of `scene` and `settings`. The fragment "rigid_plane" has the
-    whole stiffness besides the half.
+    Variables are the z of the wall's origin, below 0, its reach, of the same magnitude, and half its stiffness, for
+    "rigid_plane" also the whole, in the units [LU], [FU/LU] of `scene` and `settings`.
     """
     depth = plane_depth(scene, settings)
     variables = {
@@ -128,7 +129,11 @@ def _plane(fragment: str, scene: Scene, settings: Settings) -> Contribution:
 
 
 def _method(scene: Scene, settings: Settings) -> Contribution:
-    """Return the deck part of the method: relaxation by the minimiser in a quasi-static scene, else motion in time."""
+    """Return the deck part of the method: relaxation by the minimiser in a quasi-static scene, else motion in time.
+
+    Variables are the residual force, the most iterations and the first step of a relaxation, and, where the
+    minimiser is to make short moves, their length and the residual up to which it does; of a motion the timestep.
+    """
     if scene.method == "quasistatic":
         variables = {
             "force_tolerance": number(settings.forces.residual),
@@ -148,9 +153,10 @@ def _method(scene: Scene, settings: Settings) -> Contribution:
 def margins(scene: Scene, settings: Settings) -> tuple[float, float, float]:
     """Return the free space along x, y and z [LU] on each side between the bodies and the walls of the box.
 
-    These are whole numbers: 20 spacings and the excursion along x, 1 LU along y; along z ten spacings or cutoffs and
-    twice the largest displacement, ten times as much for a free plate with noise or in a slide, and the largest
-    prescribed separation. More where the box would be thin compared with bins or long bonds.
+    They are rounded up to whole numbers: along x 20 spacings and the largest displacement of the drive or the path
+    along x, along y 1 LU; along z ten spacings or ten cutoffs, whichever is more, and twice the largest displacement,
+    both ten times as much for a free plate with noise or in a slide, and the largest prescribed separation. More where
+    the box would be thin compared with bins or long bonds.
     """
     spacing = scene.bodies.spacing
     side = 20.0 * spacing + scene.experiment.excursion

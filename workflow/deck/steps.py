@@ -62,7 +62,7 @@ class Displace(Row):
 
 @dataclass(frozen=True)
 class Cohere(Displace):
-    """The plate is set to a displacement [LU], with a contact edge that adhesion with a range has there.
+    """The plate is set to a displacement [LU], with the contact edge there of adhesion with a range or a rate.
 
     Attributes:
         edge, reach: distances up to which the bodies touch and attract each other [LU].
@@ -77,7 +77,7 @@ class Cohere(Displace):
 
 @dataclass(frozen=True)
 class Spend(Displace):
-    """The plate reaches a displacement [LU] after a duration [TU] with a velocity [LU/TU]."""
+    """The plate reaches a displacement [LU] after a duration [TU] with a velocity [LU/TU], positive in approach."""
 
     step: ClassVar[str] = "sweep_timed"
     duration: float
@@ -118,7 +118,7 @@ class UnderLoad(Row):
 
 @dataclass(frozen=True)
 class Launch(Row):
-    """The plate begins to move down at a velocity [LU/TU], for a number of timesteps."""
+    """The plate moves for a number of timesteps, at first towards the plane at a velocity [LU/TU] > 0."""
 
     step: ClassVar[str] = "launch"
     velocity: float
@@ -151,8 +151,8 @@ class Hold(Row):
         start: 1: the position is saved, -1: the saved position is restored first, 0: neither.
         load: on the plate [FU].
         damping: coefficient of a particle [FU·TU/LU].
-        drag: coefficient of the moving bodies over their inertia's share [FU·TU/LU].
-        rest: unbalanced force below which the plate is at rest [FU].
+        drag: that of plate and particles together, over the ratio of the moving mass to the plate's [FU·TU/LU].
+        rest: the plate is at rest where its mass times |acceleration| plus `drag` times |velocity| is below it [FU].
         parted, through: displacements [LU] below and above which LAMMPS stops.
         steps: largest number of timesteps.
     """
@@ -180,7 +180,7 @@ class Phase:
         rows: all of one kind.
         state: whether every atom's position and force are written after the last row.
         begin: fragments that come before the first row.
-        kept: with `[output] states`, whether the state of each row is kept; None: all are.
+        kept: with `[output] states`, whether the state of each row is kept, one for each row; None: all are.
     """
 
     name: str
@@ -193,7 +193,8 @@ class Phase:
 def numbered(name: str, taken: Sequence[str]) -> str:
     """Return the name of a phase: "loading", and where that is taken, "loading_2", "loading_3", …
 
-    `taken`: names of the phases before it; each that is `name` alone or with a number counts.
+    The number is one more than that of the names in `taken`, those of the phases before it, that are `name` alone or
+    `name` and "_…". `name` itself has no "_".
     """
     count = 1 + sum(phase.partition("_")[0] == name for phase in taken)
     return name if count == 1 else f"{name}_{count}"
@@ -206,7 +207,8 @@ SWEPT: tuple[type[Row], ...] = (Displace, Cohere, Spend, Draw)
 def swept(columns: Mapping[str, NDArray[np.float64]]) -> list[Row]:
     """Return the rows of load steps on a rigid plane with these columns, (m,), by field name: a row for each element.
 
-    Names and their order choose the kind of row. Numbers are in units of the scene.
+    Names and their order choose the kind of row: `Displace`, `Cohere`, `Spend` or `Draw`. Numbers are in units of the
+    scene.
 
     Raises:
         StopIteration: no kind of row has these fields.
@@ -230,13 +232,14 @@ NONE, NEW, APPENDED = "none", "no", "yes"
 def chosen(rows: Sequence[int], wanted: int | str, marked: Collection[int] = ()) -> list[int]:
     """Return the numbers of the rows to keep, rising: all, or as many as `wanted`, evenly spaced, with the `marked`.
 
-    The first and the last are kept. Marked rows that are among `rows` take the place of the nearest others, but not of
-    the first and the last; of too many there are more than `wanted`. All where that is "all", or there are no more.
+    All where `wanted` is "all" or no less than their number. The first and the last are kept. A marked row takes the
+    place of the nearest other one that is neither marked nor the first or the last; without such a one it is added, so
+    that there are more than `wanted`.
 
     Args:
         rows: numbers of the rows, rising.
         wanted: number of rows, 2 at least, or "all".
-        marked: numbers of rows that are kept in any case.
+        marked: numbers of rows that are kept in any case; those that are not among `rows` are ignored.
     """
     if wanted == "all" or len(rows) <= int(wanted):
         return list(rows)
@@ -275,9 +278,9 @@ def appended(phase: Phase, in_one_run: bool, first: bool) -> list[str]:
     """Return `row_append` of each row of a phase: "none" writes no state, "no" begins the file, "yes" appends to it.
 
     Of the last row of a phase with a state it is "none", since the phase writes that state itself, unless rows are
-    `in_one_run`. The others are written where `phase.kept` has them; without it all are.
-
-    `first`: whether no frame has been written before it.
+    `in_one_run`. The others are written where `phase.kept` is true; where that is None all are. "no" is that of one row
+    at most, the first that is written, and only if `first`: no frame has been written before the phase. [] of a phase
+    without rows and state; with a state it must have rows.
     """
     wanted = _kept(phase)
     if phase.state and not in_one_run:
@@ -290,9 +293,9 @@ def appended(phase: Phase, in_one_run: bool, first: bool) -> list[str]:
 
 
 def skipped(phase: Phase) -> list[int]:
-    """Return 0 for each row of a phase whose state is kept and 1 for the others, where rows are steps of one run.
+    """Return a number for each row of a phase whose rows are steps of one run: 0 where its state is kept, else 1.
 
-    Kept are the rows of `phase.kept`, without it all, and the last row where the phase writes its state.
+    Kept are the rows where `phase.kept` is true, all where it is None, and the last row where the phase has a state.
     """
     return [int(not keep) for keep in _kept(phase)]
 
@@ -300,7 +303,7 @@ def skipped(phase: Phase) -> list[int]:
 def _kept(phase: Phase) -> list[bool]:
     """Return whether the state of each row of a phase is kept, by `phase.kept`; without it all are.
 
-    Always of the last one where the phase writes its state.
+    Always of the last one where the phase has a state; then it must have rows.
     """
     wanted = list(phase.kept) if phase.kept is not None else [True] * len(phase.rows)
     if phase.state:
@@ -312,11 +315,11 @@ def leave_out(folder: Path, phases: Sequence[Phase], in_one_run: bool) -> None:
     """Rewrite states.lammpstrj in a folder without the frames of rows that are not kept; whole or not at all.
 
     The run has written one frame for each row, and one more where a phase has a state and rows are not `in_one_run`; of
-    the last row of such a phase the latter is kept.
+    the last row of such a phase the latter is kept. Phases without rows have none.
 
     Raises:
         FileNotFoundError: there is no such file.
-        ValueError: the file has another number of frames.
+        ValueError: the file has another number of frames; it is left as it was.
     """
     wanted: list[bool] = []
     for phase in (phase for phase in phases if phase.rows):

@@ -37,10 +37,10 @@ class System:
     """Atoms and bonds as arrays.
 
     Attributes:
-        types: shape (atoms,).
+        types: atom type, 1 to 7, of each atom, in the order of atom numbers, shape (atoms,).
         positions: shape (atoms, 3) [LU].
-        bonds: rows (type, atom, atom), shape (bonds, 3).
-        bond_names: name of each bond type, in order.
+        bonds: rows (bond type, atom number, atom number), counted from 1, shape (bonds, 3).
+        bond_names: name of each bond type, in order, of "bulk", "neighbours" and "far"; () without bonds.
         masses: mass of each atom type [MU], in order.
         box: lower and upper corner, shape (2, 3) [LU].
         radius: radius of the atoms [LU] where they are spheres; 0 where they are points.
@@ -67,17 +67,18 @@ def assemble(
     """Return the atoms and bonds of the bodies, and the box around them.
 
     Atoms are numbered from 1, particles first, then anchors, far anchors and driver, each of the lower body first.
-    Particles have bonds to their anchors and far anchors, if they have any. Atoms are points (radius 0). The masses are
-    those of atom types 1 to 4, with far anchors or a driver to 6, with a driver to 7.
+    Particles have bonds to their anchors and far anchors, if they have any; kinds without bonds have no type. Atoms are
+    points (radius 0). The masses are those of atom types 1 to 4, with far anchors or a driver to 6, far anchors with
+    1e-12 of an anchor's, with a driver to 7, an anchor's.
 
     Args:
         bodies: (lower, upper), or on a rigid plane (upper,).
-        neighbours: whether neighbouring particles are bonded.
+        neighbours: whether neighbouring particles are bonded, of bodies with anchors.
         particle_mass: [MU].
         anchor_mass: [MU]; the plate's mass over its number of anchors.
         margin: free space along x, y and z [LU] between atoms and the walls of the box, on each side.
         driver: whether the plate has a driver, in the middle of the upper anchors.
-        period: length of a periodic box along x [LU]; 0 where the box is not periodic.
+        period: length of a periodic box along x [LU], which is then around 0; 0 where the box is not periodic.
     """
     far, groups = len(bodies[-1].far_anchors) > 0, _groups(bodies, driver)
     positions = np.concatenate([*groups.values()])
@@ -105,8 +106,8 @@ def assemble(
 def _groups(bodies: Sequence[Body], driver: bool) -> dict[int, NDArray[np.float64]]:
     """Return the positions [LU] of the atoms by their type, (N, 3) each, in the order of their numbers.
 
-    A body without anchors has an empty group of them, (0, 3). There are no groups of far anchors where the upper body
-    lacks them.
+    A body without anchors has an empty group of them, (0, 3). There is no group of far anchors where the upper body
+    lacks them; where it has them, that of a body without them is empty.
 
     `driver`: whether the middle of the upper anchors is a further atom, (1, 3).
     """
@@ -130,7 +131,9 @@ def _nexts(chain: Integers, periodic: bool) -> tuple[Integers, Integers]:
 def write_data(system: System, title: str, path: Path) -> None:
     """Write a LAMMPS data file for `atom_style bond`, without bonds `atomic`, or `sphere` where atoms have a radius.
 
-    Whole or not at all; a file that is there is replaced. `title`: its first line, behind "# ".
+    Numbers are those of `system`, to 17 significant digits. Masses of spheres are in the file as diameter and density.
+    With bonds each atom has the molecule ID 1, unless it is a sphere. The file is written whole or not at all, in place
+    of an earlier one. `title`: its first line, behind "# ".
     """
     with whole(path) as part, part.open("w") as file:
         file.write(f"# {title}\n\n{len(system.types)} atoms\n{len(system.masses)} atom types\n")
@@ -176,7 +179,7 @@ def _write_rows(file: TextIO, template: str, *columns: NDArray[np.float64] | Int
 
 
 def write_system(deck: Deck, folder: Path) -> None:
-    """Write the input files of a deck to a folder, in units of the deck; each whole or not at all.
+    """Write the input files of a deck to an existing folder, in deck units; each whole, in place of an earlier one.
 
     These are system.data, with an interaction interaction.table, and the file of constants of each particle that a
     contact law needs, such as adhesion.cells, where it has any.
@@ -208,7 +211,8 @@ def write_system(deck: Deck, folder: Path) -> None:
 def _write_columns(columns: Mapping[str, NDArray[np.float64]], path: Path) -> None:
     """Write numbers of each particle, (n,) by name, for `variable atomfile`, the columns below each other.
 
-    Each is a block with its name as a comment, its length, and lines "atom number, value". Whole or not at all.
+    Each is a block: a comment with its name, the number n, and n lines of atom number, from 1 on, and value, which
+    reads back to the same double. The file is written whole or not at all.
     """
     blocks = []
     for name, column in columns.items():

@@ -67,9 +67,9 @@ class DeckUnits:
         return value * self.of(unit) if self.are_rescaled else value
 
     def scene(self, scene: Scene) -> Scene:
-        """Return a scene with its numbers in deck units, without [material], with the stiffnesses that follow from it.
+        """Return a new scene with its numbers in deck units, without [material] and uncertainties (±).
 
-        The scene itself where the units are its own. Uncertainties (±) are left out.
+        It has the normal and tangential stiffness of a spring as numbers. The scene itself where the units are its own.
         """
         if not self.are_rescaled:
             return scene
@@ -82,7 +82,7 @@ class DeckUnits:
         return Scene.model_validate(data)
 
     def settings(self, settings: Settings) -> Settings:
-        """Return the settings in deck units, except for the contact law, which keeps those of the scene.
+        """Return new settings in deck units, except for `law`, the contact law, which keeps those of the scene.
 
         The settings themselves where the units are those of the scene.
         """
@@ -111,7 +111,7 @@ class DeckUnits:
         return replace(record, **changed)
 
     def _law(self, law: DoubleExponential) -> DoubleExponential:
-        """Return an interaction in deck units; without attraction where it has none."""
+        """Return a new interaction, amplitudes and ranges in deck units; without attraction where it has none."""
         terms = [
             None if term is None else Exponential(self.to_deck(term.amplitude, "FU·LU"), self.to_deck(term.range, "LU"))
             for term in (law.repulsion, law.attraction)
@@ -135,8 +135,9 @@ def _factor(length: float, force: float, unit: str) -> float:
 def units_for(scene: Scene) -> DeckUnits:
     """Return the units of a deck: the scene's own where these suit LAMMPS, else powers of ten.
 
-    Length: where the spacing, or with an interaction the range of its repulsion, is not 0.01 to 100 LU. Force: where
-    the stiffness of a particle's bulk spring times that length is not 1e-4 to 1e4 FU.
+    Length: where the spacing, or with an interaction the range of its repulsion, is not 0.01 to 100 LU, the next
+    lower power of ten, with an interaction ten times that. Force: where the stiffness of a particle's bulk spring times
+    one unit of length is not 1e-4 to 1e4 FU, the nearest power of ten. Else each is 1.
     """
     terms = scene.interaction
     shortest = scene.bodies.spacing if terms is None else terms.repulsion.range

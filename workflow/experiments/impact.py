@@ -123,7 +123,8 @@ def _peak(trace: Trace, column: Array, near: int = 2) -> float:
     """Return the maximum of a column in its unit, by a polynomial through `near` states on both sides of the largest.
 
     It is at least the largest value. Only states from the first one with a force on count; where the maximum is next to
-    that, the polynomial's value at time 0, the first touch, counts as well. There must be a state with a force.
+    that, the polynomial's value at time 0, the first touch, counts as well. There must be a state with a force, and at
+    least 2 `near` further states after the first such one.
     """
     first = int(np.flatnonzero(trace.force)[0])
     time, column = trace.time[first:], column[first:]

@@ -14,7 +14,8 @@ from contact1d.workflow.scene import Scene
 def with_planned_output(scene: Scene, phases: tuple[Phase, ...]) -> tuple[Phase, ...]:
     """Return a planned schedule in which the load steps are marked whose states `[output]` requires.
 
-    They are evenly spaced, with the ends of phases that write a state. The same phases are returned without `[output]`.
+    They are evenly spaced over all load steps, with the last ones of phases that write a state. The phases are copies
+    with `kept` set; the same phases are returned without `[output]`.
     """
     if scene.output is None:
         return phases
@@ -25,6 +26,7 @@ def with_planned_output(scene: Scene, phases: tuple[Phase, ...]) -> tuple[Phase,
 def with_output(context: RunContext, outcome: Outcome) -> Outcome:
     """Return the outcome with a schedule in which the load steps are marked whose states `[output]` requires.
 
+    They are evenly spaced over the load steps of the outcome's states, with the last ones of phases that write a state.
     The file of states in the run folder is rewritten without the others. The same outcome is returned, and no file is
     changed, without `[output]`.
     """

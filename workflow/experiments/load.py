@@ -38,7 +38,8 @@ class LoadExperiment(Scripted[Load]):
         tolerances.
 
         Raises:
-            UntrustedError: the result can't be trusted, or the contact does not sustain the force.
+            UntrustedError: the contact does not sustain the force; bodies pass through each other, or do not come to
+                rest; or the contact reaches the end of its chain.
             EngineError: LAMMPS failed.
         """
         scene, settings = context.deck.scene, context.deck.settings
@@ -119,12 +120,15 @@ class ThermalLoad(LoadExperiment):
     main_results = ("displacement", "contact_radius")
 
     def run(self, context: RunContext) -> Outcome:
-        """Sample until the standard error of the mean displacement meets the tolerance, and return the outcome.
+        """Add samples, 200 at a time, until the mean displacement is certain enough, and return the outcome.
 
-        After 2000 samples at most: then with a warning "statistics" where it does not.
+        So it is where its standard error is within the tolerance, relative to the larger one of the expected largest
+        displacement and the distance of the apexes at displacement 0. After 2000 samples it ends in any case, with a
+        warning "statistics" where the error is larger.
 
         Raises:
-            UntrustedError: the bodies separate, the mean force misses the load, or a state is no result.
+            UntrustedError: the bodies separate or pass through each other, the mean force misses the load, or the
+                contact reaches the end of its chain.
             EngineError: LAMMPS failed.
         """
         scene = context.deck.scene

@@ -133,9 +133,10 @@ class Motion:
     def results(self) -> dict[str, Result]:
         """The results of the slide by name, as far as the drive has moved, with errors by source; cached.
 
-        Always "slips" (a number), "cantilever_work", "dissipated_energy" and "stored_energy" [FU·LU]; with three whole
-        periods "mean_friction" and "mean_cantilever_force", on a slide of one moving leg that passes a spacing
-        "static_friction" and "static_cantilever_force" [FU]; with noise "plate_temperature" [FU·LU].
+        Always "slips" (a number), "cantilever_work", "dissipated_energy" and "stored_energy" [FU·LU]. With three whole
+        periods on the last leg that moves "mean_friction" and "mean_cantilever_force"; where the drive moves on one leg
+        only, and the plate by a spacing, "static_friction" and "static_cantilever_force" [FU]. With noise
+        "plate_temperature" [FU·LU].
         """
         results = self._energies() | {"slips": Result(float(len(self.slips)), NUMBER, {"statistics": 0.0})}
         if self.moving:
@@ -157,7 +158,10 @@ class Motion:
         """Return "mean_friction" and "mean_cantilever_force" [FU], positive against and along the motion of the drive.
 
         They are means over whole periods of the last leg on which the drive moves, after its run-in; {} where it has
-        fewer than three.
+        fewer than three periods.
+
+        Raises:
+            IndexError: the drive has not moved.
         """
         velocity, leg = self.moving[-1]
         if len(self.periods) < friction.FEWEST_PERIODS:
@@ -183,7 +187,10 @@ class Motion:
         """Return "static_friction" and "static_cantilever_force" [FU], the largest until the plate moved by a spacing.
 
         They are positive against and along the motion of the drive. {} where the drive moves on more than one leg, or
-        the plate has moved by less than a spacing at the end.
+        the plate is at the end less than a spacing from its start, in the direction of the drive.
+
+        Raises:
+            ValueError: the drive has not moved.
         """
         (velocity, leg), *later = self.moving
         sign, spacing = math.copysign(1.0, velocity), self.scene.bodies.spacing
@@ -199,8 +206,8 @@ class Motion:
     def _temperature(self) -> dict[str, Result]:
         """Return "plate_temperature", M ⟨(V − ⟨V⟩)²⟩/2 [FU·LU], of the plate's motion along x and z in the last leg.
 
-        M is the mass of the plate, V its velocity. Slips are part of it. The last leg may be one on which the drive
-        rests.
+        It is an energy, k_BT. M is the mass of the plate, V its velocity, along z with the mean 0. Slips are part of
+        it. The last leg may be one on which the drive rests.
         """
         _, leg = self.legs[-1]
         mass, count = self.settings.motion.plate_mass, 20
@@ -220,8 +227,8 @@ class Motion:
         """Message why the plate does not slide, or not yet steadily, on the one leg on which the drive moves.
 
         "" where it does. It does not where the leg has fewer than three periods, the plate has moved along +x by less
-        than a spacing, or its mean velocity after the run-in differs from that of the drive by more than 10 %, or one
-        slip.
+        than a spacing, or its distance after the run-in differs from that of the drive by more than 10 %, and by more
+        than the largest of several slips.
 
         Raises:
             ValueError: the drive moves on no leg, or on several.
@@ -250,7 +257,7 @@ class Motion:
 
     @property
     def _swing(self) -> str:
-        """End of a message: the period of the plate on its cantilever is as long as the slide; "" if it is shorter."""
+        """End of a message, from ". " on: the plate's period on its cantilever is as long as the slide; else ""."""
         swing, time = cantilever_swing(self.scene, self.settings), self.series["time"][-1]
         if swing < time:
             return ""

@@ -53,11 +53,14 @@ class PathExperiment(Scripted[Path]):
     def run(self, context: RunContext) -> Outcome:
         """Run the schedule, and return the states that the scene asks for and the results with their error budget.
 
-        The states "deepest" and "final" are marked. Where particles may move along x the path is run again in half the
-        steps.
+        The states "deepest", that of the largest displacement, and "final" are marked. Where pairs snap, results also
+        use the intermediate states after the first one that the scene asks for. In a quasi-static scene whose
+        particles may move along x the path is run again in half the steps; warnings are about missing results and
+        buckling.
 
         Raises:
-            UntrustedError: the result can't be trusted.
+            UntrustedError: bodies pass through each other, particles are not at rest, or the contact reaches the end of
+                its chain.
             EngineError: LAMMPS failed.
         """
         scene, settings = context.deck.scene, context.deck.settings
@@ -103,15 +106,16 @@ class PathExperiment(Scripted[Path]):
 
         Raises:
             EngineError: LAMMPS failed.
-            UntrustedError: a state is no result.
+            UntrustedError: in a state bodies pass through each other, particles are not at rest, or the contact reaches
+                the end of its chain.
         """
         phases = self.planned(contact.scene, contact.settings)
         return contact.replay(phases, relaxed=contact.scene.method == "dynamic")
 
     def rows(self, scene: Scene, settings: Settings, positions: Positions) -> tuple[Row, ...]:
-        """Return the load steps at positions, one for each.
+        """Return the load steps at positions, one for each: `Displace`, in time `DisplaceInTime`.
 
-        In time each lasts 14 times the relaxation time of a particle.
+        In time each lasts 14 times the relaxation time of a particle, rounded up to timesteps.
         """
         if scene.method == "quasistatic":
             return displacements([position for position, _ in positions])
@@ -140,8 +144,9 @@ class PathExperiment(Scripted[Path]):
     def _in_half_steps(self, context: RunContext, model: Particles) -> dict[str, list[Trace]]:
         """Return {"instability": [trace of a second run of the path in half the steps]}.
 
-        The trace has the states of the first run alone. {} where no particle can move along x, and in time. Chains that
-        may buckle along x jump to another equilibrium between two load steps, and the equilibrium depends on the steps.
+        The trace has the states at the displacements of the first run alone. {} without [horizontal], and in time.
+        Chains that may buckle along x jump to another equilibrium between two load steps, and the equilibrium depends
+        on the steps.
         """
         scene, deck = context.deck.scene, context.deck
         if not scene.horizontal or scene.method != "quasistatic":
@@ -200,8 +205,8 @@ class PathExperiment(Scripted[Path]):
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """Return the schedule that runs: a phase for each part of rising or falling displacement.
 
-        They are "loading" and "unloading", the latter also where the displacement stays. Repeated names have a number,
-        "loading_2". The state at the end of each phase is written.
+        They are "loading" and "unloading", the latter also where the displacement stays, and the first one is "loading"
+        in any case. Repeated names have a number, "loading_2". The state at the end of each phase is written.
         """
         if scene.is_stepped:
             return self._plan(Deck(scene, settings), reduced(scene, settings)).phases
@@ -234,8 +239,9 @@ class PathExperiment(Scripted[Path]):
     ) -> dict[str, str]:
         """Return warnings of missing results by name; {} without attraction, or where the path reaches all of them.
 
-        "no_energy": too few load steps for the energy that is lost; "no_peak": no force maximum; "no_zero_load": the
-        force does not cross 0, or the path never unloads.
+        "no_energy": a path with a snap-in or a separation has too few load steps for the energy that is lost there;
+        "no_peak": no force maximum within the last unloading; "no_zero_load": the force does not cross 0 in it. Both of
+        the latter where the path never unloads and has neither.
         """
         if not case.model.law.attracts(case.scene):
             return {}
@@ -271,7 +277,7 @@ class ThermalPath(PathExperiment):
         """Run the path and return its outcome, with a table "means" of the mean forces [FU] and their standard errors.
 
         Raises:
-            UntrustedError: a mean state is no result.
+            UntrustedError: in a mean state bodies pass through each other, or the contact reaches the end of its chain.
             EngineError: LAMMPS failed.
         """
         outcome = super().run(context)
@@ -283,7 +289,7 @@ class ThermalPath(PathExperiment):
         At an intermediate position it is the last state there.
 
         Raises:
-            UntrustedError: a mean state is no result.
+            UntrustedError: in a mean state bodies pass through each other, or the contact reaches the end of its chain.
             EngineError: LAMMPS failed.
         """
         scene, settings = contact.scene, contact.settings
@@ -375,9 +381,10 @@ def _deepest(trace: Trace) -> dict[str, Reading]:
 def _adhesion(trace: Trace, settings: Settings) -> dict[str, Reading]:
     """Return the results of the last phase of unloading, by name; without one, those of the last phase of the trace.
 
-    {} without unloading where pairs snap, or the force of a contact jumps: the tension during loading is that of the
-    snap-in. Where the law has a limit point "fixed_grips_displacement" [LU] is added, if the phase passes the loss of
-    contact.
+    As far as the phase has them: "adhesion_force" [FU], a positive tension, "critical_radius", "zero_load_radius",
+    "cohesive_radius" [LU], "work_of_separation" [FU·LU] and, of a law with a limit point under displacement control,
+    "fixed_grips_displacement" [LU]. {} without unloading where pairs snap, or the force of a contact jumps: the tension
+    during loading is that of the snap-in.
     """
     unloadings = [name for name in trace.phase if name.startswith("unloading")]
     if not unloadings and (settings.snaps or trace.model.jumps):
@@ -450,9 +457,10 @@ def stretches(positions: Sequence[float]) -> list[tuple[str, list[float]]]:
 def positions_of(scene: Scene, settings: Settings) -> list[tuple[float, bool]]:
     """Return a list of (displacement [LU], whether the scene asks for it) of all states in order.
 
-    It is cached, and must not be changed. The others are intermediate, no farther apart than the settings allow. Where
-    pairs snap, a path begins before the first snap-in. With `start = "contact"` it then goes to the largest
-    displacement before the first one.
+    It is cached, and must not be changed. The others are intermediate, no farther apart than the settings allow. The
+    path begins at 0, which is not in the list, or at its first displacement where that is below 0; where pairs snap the
+    list begins with a displacement before the first snap-in. With `start = "contact"` it then goes to the largest
+    displacement, not asked for there, before the first one of the scene.
     """
     experiment, estimate, before = scene.experiment, settings.law, 0.0
     assert isinstance(experiment, Path)

@@ -179,7 +179,8 @@ class ThermalPullOff(PullOffExperiment):
         """Run the pulls of all seeds and return the outcome with the mean detachment force.
 
         Raises:
-            UntrustedError: the bodies separate before the pull or not at all, or a state is no result.
+            UntrustedError: the bodies separate before the pull or not at all, or have passed through each other before
+                it, or the contact then reaches the end of its chain.
             EngineError: LAMMPS failed.
         """
         return pull_off_thermal(context, self.given(context.deck.scene))

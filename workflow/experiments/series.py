@@ -76,7 +76,10 @@ class Series:
         return self.chosen(np.union1d(0, np.arange(len(self))[::-2]))
 
     def parts(self, count: int) -> Series:
-        """Return the means over `count` parts of about equal length, in order, as a series without integrals."""
+        """Return the means over `count` parts of about equal length, in order, as a series without integrals.
+
+        With fewer records than parts the means of empty parts are NaN.
+        """
         split = {name: np.array_split(values, count) for name, values in self.columns.items()}
         return Series({name: np.asarray([part.mean(axis=0) for part in parts]) for name, parts in split.items()})
 
@@ -108,9 +111,9 @@ def measured(
 ) -> dict[str, Result]:
     """Return the results of a reader with their errors, by name.
 
-    The error "statistics" is that of a jackknife over the blocks, of a single block that of its value. The errors of
-    the reader are kept, and replace those of the same source. A result that is missing without a block, or in a repeat,
-    counts as 0 there.
+    The error "statistics" is `error` of the n values n θ − (n − 1) θ₋ᵢ of a jackknife over the blocks, of a single
+    block that of its value θ. The errors of the reader are kept, and replace those of the same source. A result that is
+    missing without a block, or in a repeat, counts as 0 there.
 
     Args:
         blocks: nearly independent of each other.

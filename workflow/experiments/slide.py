@@ -56,8 +56,8 @@ class SlideExperiment(Experiment[Slide]):
         From the first load step of the drive on `context.left` has the outcome up to the end, also of a run that fails.
 
         Raises:
-            UntrustedError: the plate does not come to rest under the load, a state is no result, the plate runs off the
-                lower body, or separates; without a given path, it never slides steadily.
+            UntrustedError: the plate does not come to rest under the load, runs off the lower body, or separates;
+                bodies pass through each other; or, without a given path, the plate never slides steadily.
             EngineError: LAMMPS failed.
         """
         scene, settings = context.deck.scene, context.deck.settings
@@ -110,7 +110,8 @@ class SlideExperiment(Experiment[Slide]):
 
         Raises:
             PartedError: the bodies separate under it.
-            UntrustedError: the plate does not come to rest along z or along x, or a state on the way is no result.
+            UntrustedError: the plate does not come to rest along z or along x; on the way bodies pass through each
+                other, or the contact reaches the end of a chain.
             EngineError: LAMMPS failed.
         """
         phase = self.loading(contact.scene, contact.settings, force)
@@ -161,7 +162,8 @@ class ThermalSlide(SlideExperiment):
 def outcome_of(motion: Motion, states: list[State], phases: tuple[Phase, ...]) -> Outcome:
     """Return the outcome of a finished slide, or of the part before a failure, with its tables "slips" and "friction".
 
-    The last state is marked "final". "friction" has a row for each load step, without the start.
+    The last state is marked "final". "slips" has the columns "time" [TU] of its end, "place" and "size" [LU] of each
+    slip, "friction" the columns of the motion's series, with a row for each load step, without the start.
     """
     tables = {
         "slips": {name: tuple(getattr(slip, name) for slip in motion.slips) for name in ("time", "place", "size")},
@@ -222,7 +224,7 @@ def _settled_along_x(contact: Contact, force: float, scale: float, state: State)
 
     Raises:
         RestlessError: it does not come to rest.
-        UntrustedError: a state is no result.
+        UntrustedError: bodies pass through each other, or the contact reaches the end of a chain.
     """
     scene, settings = contact.scene, _loading_settings(contact.settings)
     steps = max(1, round(settings.motion.settle_time / settings.motion.time_step))

@@ -60,8 +60,8 @@ class TangentialExperiment(Scripted[Tangential]):
         The last one is marked "final", and "farthest" the first one of the largest |position| along x.
 
         Raises:
-            UntrustedError: the result can't be trusted, as where tangential forces are not those of each particle's
-                history.
+            UntrustedError: tangential forces are not those of each particle's history, or the contact reaches the end
+                of its chain.
             EngineError: LAMMPS failed.
         """
         scene, settings = context.deck.scene, context.deck.settings
@@ -97,16 +97,20 @@ class TangentialExperiment(Scripted[Tangential]):
         )
 
     def script(self, branch: Driver, scene: Scene) -> None:
-        """Visit the displacements and positions of the scene on the reduced model, but for those without an effect."""
+        """Visit the displacements and positions of the scene on the reduced model, in phases of one direction along x.
+
+        Those in between on a straight path at constant displacement, which change no later state, are left out.
+        """
         model = cast("SlidingSprings", branch.model)
         for name, stretch in stretches(load_steps(scene, model.chain, branch.settings, sparse=True)):
             branch.begin(name)
             branch.visit(*zip(*(stop for stop, _ in stretch), strict=True))
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
-        """Return the results of the last state by name, on the scales of Σ |s_i| and its work.
+        """Return the results of the last state by name.
 
-        s_i is the tangential force of a particle. "normal_force", compression positive, and "tangential_force" [FU],
+        Those near 0 have as the scale of their uncertainty the largest Σ |s_i| or its work, s_i the tangential force of
+        a particle. "normal_force", compression positive, and "tangential_force" [FU],
         with which the body resists a move to the right, "contact_radius", 0 without contact, and "stick_radius" [LU],
         "dissipated_energy" [FU·LU] since the start and, with cycles, "dissipated_energy_per_cycle" of the last one. The
         round-off of tangential forces adds up along the history, by 1e-13 of the largest Σ |s_i| in each load step.
@@ -209,7 +213,8 @@ class SlidState:
 def slid_states(trace: Trace, scene: Scene) -> list[SlidState]:
     """Return the friction of each state of a trace, in order; the first one is under the normal load alone.
 
-    The dissipated energy is added up from 0 in the first state. The model of the trace must be one of friction.
+    The dissipated energy is added up from 0 in the first state, by the slip of each particle that follows from its
+    spring and slider; `wrong` compares its force with these. The model of the trace must be one of friction.
     """
     coefficient, spacing, stiffness, _ = _springs(trace)
     rows: list[SlidState] = []
@@ -240,9 +245,10 @@ def _springs(trace: Trace) -> tuple[float, float, float, float]:
 def _energy(rows: Sequence[SlidState], error: float, scene: Scene) -> Reading:
     """Return the energy [FU·LU] dissipated from the first state of `rows` to the last, with its errors.
 
-    Where it is within the `error` due to the error of tangential forces [FU·LU], no particle slips: an annulus between
-    the outermost particles may then slip unseen, and dissipate at most its force times its slip. Below 1e-5 of the work
-    that counts as 0, and it is 0 of a body with an edge, which sticks or slips as a whole.
+    Where it is within the `error` due to the error of tangential forces [FU·LU], no particle slips. An annulus between
+    the outermost particles may then slip unseen: at most its force times its slip is a further error. Where that is
+    below 1e-5 of the work Σ |s_i| |Δu|, the energy counts as prescribed, with this work as the scale of its
+    uncertainty; so it does of a body with an edge, which sticks or slips as a whole.
     """
     dissipated = rows[-1].dissipated - rows[0].dissipated
     if abs(dissipated) > error:
@@ -258,10 +264,11 @@ def _energy(rows: Sequence[SlidState], error: float, scene: Scene) -> Reading:
 def _unseen_slip(rows: Sequence[SlidState], scene: Scene) -> tuple[float, float]:
     """Return (force [FU], distance [LU]) ≥ 0 at most of the slip between the outermost particles, where none slips.
 
-    The annulus that slips is as wide as k_t u/(μ Δf) spacings, with Δf the difference of the normal forces of the two
-    outermost particles, and one at most, or three at both edges together; its forces are below k_t u and μ f, and it
-    slips by as much as the sliders are moved beyond what a rising load lets them carry, k_t |Δu| − μ k_n Δd. The force
-    is 0 of a body with an edge, and where no state has more than two particles in contact.
+    The annulus that slips is k_t u/(μ Δf) spacings wide, one at most: u is the largest |position| along x, Δf the
+    difference of the normal forces of the two outermost particles on a side. The force is that share of the smaller one
+    of k_t u and μ f, f the normal force of the inner one of the two, times 3 for both edges. The distance adds up, over
+    all states, by how much the sliders move beyond what a rising load lets them carry, |Δu| − μ k_n Δd/k_t if above 0.
+    The force is 0 of a body with an edge, and where no state has more than two particles in contact.
     """
     coefficient, spacing, stiffness, normal = _springs(rows[0].trace)
     outer = [np.sort(row.trace.profile(row.state).pressure) for row in rows]
@@ -374,7 +381,7 @@ def stretches(steps: Sequence[tuple[Stop, bool]]) -> list[tuple[str, list[tuple[
 def _contact_error(scene: Scene, settings: Settings) -> float:
     """Return the error [FU] ≥ 0 of tangential forces by particles that come into contact between two load steps.
 
-    0 where each such particle has a load step.
+    It adds up over the path. 0 where each particle that comes into contact or leaves it has a load step of its own.
     """
     assert isinstance(scene.experiment, Tangential)
     chain, most, error = _chain(scene, settings), _most_between(settings), 0.0

@@ -60,7 +60,7 @@ def blocks_of(samples: Sequence[State]) -> Series:
     """Return the means over 20 parts of the samples, in order, as a series; 20 samples at least are needed.
 
     Its columns are "displacement" [LU], "force", that of the contact, and "carried", the load that it balances [FU],
-    and those of the profile, (20, particles).
+    (20,), and those of the profile by the names of its fields, (20, particles).
     """
     profiles = recorded([sample.profile for sample in samples], PROFILE_COLUMNS)
     return Series(recorded(samples, ("displacement", "force", "carried")) | profiles).parts(BLOCKS)
@@ -111,11 +111,14 @@ def thermal_load(context: RunContext, load: float, most_samples: int = 2_000) ->
     """Run a contact under a load [FU], compression positive, with noise, and return the outcome: means of the samples.
 
     Its results are "displacement" [LU], "force" [FU] and, in contact, "contact_radius" [LU] and "mean_pressure"
-    [FU/LU²]. Samples are added, 200 at a time, until the standard error of the displacement meets the tolerance; with a
-    warning "statistics" where `most_samples` do not.
+    [FU/LU²]. Samples are added, 200 at a time, until the standard error of the displacement is within the tolerance,
+    relative to the larger one of the expected largest displacement and the distance of the apexes at displacement 0;
+    with a warning "statistics" where `most_samples` do not reach it. The mean state is marked "final"; the table
+    "samples" also has those of the run-in.
 
     Raises:
-        UntrustedError: the bodies separate, the mean force misses the load, or a state is no result.
+        UntrustedError: the bodies separate or pass through each other, the mean force misses the load, or the contact
+            reaches the end of its chain.
         EngineError: LAMMPS failed.
     """
     scene, settings = context.deck.scene, context.deck.settings

@@ -70,6 +70,8 @@ class Segment:
 class ForceCurve:
     """Positions z [LU], rising towards the sample, and forces F [FU], compression positive, (n,), in the order of time.
 
+    In a fit LU and FU are m and N.
+
     Attributes:
         positions, forces: z and F.
         turn: number of points of the approach, which come first.
@@ -98,7 +100,9 @@ class ForceCurve:
         """Return positions in `points` of the largest jump of the force: (last point before it, first point after it).
 
         None without a jump. A jump is a change between neighbouring points that, less the running median of 15 changes,
-        is more than six times 1.4826 times the median of the absolute changes. It may take several points.
+        is more than six times the usual one, 1.4826 times the median magnitude of all such differences. Changes next to
+        it belong to it that are three times the usual one and a fifth of the largest, so that it may take several
+        points.
 
         Args:
             points: indices in the curve, at least two.

@@ -298,7 +298,8 @@ def _turn(z: Array, segment: Series | None) -> int:
 
     Args:
         z: positions, rising towards the sample, (n,).
-        segment: words or numbers of the points; None: no such column.
+        segment: words of the points in lower case, such as "approach" or "0" and "retract" or "1"; None: no such
+            column.
 
     Raises:
         DataError: a segment has fewer than ten points, the words are unknown, the retraction comes first, or z is

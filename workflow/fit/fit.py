@@ -64,9 +64,9 @@ class FitResult:
 
     @property
     def bracket(self) -> tuple[float, float]:
-        """The positions z of the piezo [m], the lower one first, before and after the snap-out of the retraction.
+        """The positions z of the piezo [m] at the last point before and the first after the snap-out, lower one first.
 
-        (NaN, NaN) where the force has no jump there.
+        (NaN, NaN) where the force of the retraction has no jump.
         """
         segment = self.fit.curve.segments[1]
         if segment.jump is None:
@@ -170,9 +170,9 @@ def _steps(plan: FitPlan, file: Path, curve: ForceCurve, progress: Progress) -> 
 def _warn_of_fit(result: FitResult, largest_misfit: float = 3.0) -> None:
     """Add warnings to the result, by name: "snap_out", "misfit", "contact_point" and "prior", as far as they apply.
 
-    These are a predicted snap-out outside the measured one, a reduced χ² above `largest_misfit`, a contact point
-    outside the curve, and parameters with a ± in the base scene. The reduced χ² of the right model is below 2 where the
-    noise has a memory of 20 in 1000 points.
+    These are a predicted snap-out farther outside the two points of the measured one than their distance, a reduced χ²
+    above `largest_misfit`, a contact point outside the curve, and parameters with a ± in the base scene. The reduced χ²
+    of the right model is below 2 where the noise has a memory of 20 in 1000 points.
     """
     base_fit = result.fit
     segment, snap = base_fit.curve.segments[1], float(base_fit.jumps_at(base_fit.solution.values)[1])

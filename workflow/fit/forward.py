@@ -109,8 +109,9 @@ class Branch:
         """Return F [FU], compression positive, at positions z [LU] of the piezo from the contact point, (m,).
 
         Beyond the last state it is that of the last state. Below the least z of the branch the contact is lost: F falls
-        to 0 over `pitch`, centred there. Where the bodies are `held`, F goes on below the least z with three times the
-        slope of the branch's first quarter.
+        to 0 over `pitch`, centred there. Where the bodies are `held`, F goes on below the least z with three times its
+        mean slope from there to the state at which it has risen by a quarter of its magnitude (to the next state where
+        F ≥ 0).
 
         Args:
             positions: z of the piezo from the contact point, (m,) [LU], in any order.

@@ -138,7 +138,8 @@ def entries(fit: Fitted, keys: Iterable[str]) -> dict[str, Any]:
 def modulus_words(fit: Fitted) -> str:
     """Return a sentence, without a full stop, on which modulus is fitted: E*, or E with the assumed ν of its body.
 
-    Of several fitted moduli it is on the first one. Without any it says that the modulus is that of the base scene.
+    It has the number of ν, but not that of the modulus. Of several fitted moduli it is on the first one. Without any it
+    says that the modulus is that of the base scene.
     """
     key = next((key for key in fit.plan.fit.parameters if key.endswith("_modulus")), None)
     if key is None:
@@ -206,10 +207,11 @@ def chart(result: FitResult) -> Chart:
 
 
 def lines(result: FitResult) -> list[str]:
-    """Return the lines of a fit's results for a terminal, in SI with prefixes.
+    """Return the lines of a fit's results for a terminal, in SI with prefixes, numbers with four digits at most.
 
-    These are the title, each number that has a 95 % interval, the fitted modulus in words, the noise with reduced χ²
-    and number of outliers, and the contact models by criterion, the most likely first.
+    These are the title, each number that has a 95 % interval (parameters and contact point) with its two ends, the
+    fitted modulus in words, the noise with reduced χ² and number of outliers, and the contact models by criterion, less
+    the least one, the most likely first.
     """
     fit, best = result.fit, result.fit.solution.best
     shown = [fit.plan.fit.title]

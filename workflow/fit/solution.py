@@ -194,9 +194,10 @@ def compared(fit: Fitted, model: ContactModel) -> Fitted:
 def _starts(subject: Subject, outliers: Indices) -> list[Array]:
     """Return starts (p,) of a fit: for JKR, DMT and Hertz up to four of a global search, the best first.
 
-    For Maugis these are the three best of JKR's and DMT's best fits at several ranges h₀, or both of them where the
-    range is no unknown; of JKR's alone for a body without a radius of curvature, such as a cone. A start has the logarithm of the ratio of each positive unknown to its first guess, the ratio
-    of the contact point and of the offset to the range of the data.
+    For Maugis these are the three best of twelve: JKR's and DMT's best fits, each at six ranges h₀ from e^−4 to e^3.5
+    times the given one; or both fits where the range is no unknown. Those of DMT are left out for a body without a
+    radius of curvature, such as a cone. A start has the logarithm of the ratio of each positive unknown to its first
+    guess, the ratio of the contact point and of the offset to the range of the data.
 
     `outliers`: indices of points that are left out.
     """

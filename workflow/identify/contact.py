@@ -243,7 +243,7 @@ def _rank(problem: Problem) -> int:
 def _length(data: Mapping[str, Any], key: str, problems: list[Problem]) -> float | None:
     """Return a length [m]; None if it is absent or no length.
 
-    Of one below 0 or infinite the problem is appended, and the value returned nevertheless.
+    Of one below 0, infinite or NaN the problem is appended, and the value returned nevertheless.
 
     Args:
         data: the description; a text has a unit, a number is in [m].

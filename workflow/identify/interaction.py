@@ -203,8 +203,8 @@ def estimated(scene: Scene, target: Target) -> Scene:
 def start(scene: Scene, target: Target) -> Array:
     """Return the natural logarithms of the factors (of amplitudes, of ranges), (2,), that give the target.
 
-    It is given by independent pairs of particles, without a run. F_A is monotone in the amplitudes, and a₀ in the range
-    at that F_A: two nested bracketed searches.
+    They give F_A and a₀ of independent pairs of particles, without a run. F_A is monotone in the amplitudes, and a₀ in
+    the range at that F_A: two nested bracketed searches.
 
     Raises:
         IdentifyError: no interaction of this shape has the target; the message has the nearest a₀ at the same F_A.
@@ -254,8 +254,8 @@ def _root(
     Args:
         function: function of the logarithm of a factor.
         start: first logarithm.
-        step: first step; each next one is twice as long.
-        last_step: longest step.
+        step: distance of both ends of the first interval from `start`; that of each next one is twice as long.
+        last_step: largest such distance.
         error: error of the logarithm; the reduced model is no more accurate.
 
     Raises:

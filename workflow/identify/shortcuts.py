@@ -50,7 +50,7 @@ class Contact:
     def load(self, force: list[Any], folder: AnyPath | None = None) -> list[Run]: ...
 
     def load(self, force: Any, folder: AnyPath | None = None) -> Run | list[Run]:
-        """Return the finished run under a force, which presses, or pulls if it is negative: a text with a unit, or [N].
+        """Return the run under a force, which presses, or pulls if it is negative: a text with a unit, or [N].
 
         A list of forces gives a list of runs, in their order, in the subfolders 1, 2, … of the folder. Without a
         folder, each run folder is temporary, and figures are not drawn.
@@ -58,6 +58,7 @@ class Contact:
         Raises:
             SceneError: the scene is invalid.
             SettingsError: its numbers lead to no computable system.
+            FolderError: the folder holds something else, or another run is active in it.
             RunError: the run failed, or the contact does not sustain the force.
         """
         if isinstance(force, list):
@@ -73,6 +74,7 @@ class Contact:
         Raises:
             SceneError: the scene is invalid, as without adhesion.
             SettingsError: its numbers lead to no computable system.
+            FolderError: the folder holds something else, or another run is active in it.
             RunError: the run failed.
         """
         return run(self.scene("pull_off", preload=preload), folder)
@@ -86,6 +88,7 @@ class Contact:
         Raises:
             SceneError: the scene is invalid.
             SettingsError: its numbers lead to no computable system.
+            FolderError: the folder holds something else, or another run is active in it.
             RunError: the run failed.
         """
         return run(self.scene("path", displacements=displacements), folder)
@@ -104,6 +107,7 @@ class Contact:
         Raises:
             SceneError: the scene is invalid.
             SettingsError: its numbers lead to no computable system.
+            FolderError: the folder holds something else, or another run is active in it.
             RunError: the run failed.
         """
         return run(self.scene("tangential", friction, normal_force=normal_force, **experiment), folder)

@@ -120,7 +120,7 @@ def _down(value: float) -> str:
 def require_size(contact: AskedContact, radius: float) -> None:
     """Check that a contact radius [m] is at most 0.6 of the radius of a sphere; any other body passes.
 
-    Nothing is returned.
+    Of two curved bodies it is the smaller radius that counts. Nothing is returned.
 
     Raises:
         IdentifyError: it is larger; the message has the largest share.

@@ -94,10 +94,10 @@ def elements_of(scene: Scene, x: Array) -> JenkinsElements:
 
 
 def stops(experiment: Tangential, elements: JenkinsElements) -> list[Stop]:
-    """Return (normal displacement, position along x) [LU] of the first load, at position 0, and of the end of each load
-    step.
+    """Return (normal displacement, position along x) [LU] of the start, and of the end of each load step, in order.
 
-    Where the experiment prescribes normal forces, `elements` give the displacements that carry them.
+    The start has the displacement of the first load step, at position 0. Where the experiment prescribes normal forces,
+    `elements` give the displacements that carry them.
     """
     normal = experiment.places()
     if not normal:
@@ -196,7 +196,8 @@ class SlidingSprings(Springs):
     def _slid(self, path: Path) -> tuple[Array, Slip]:
         """Return (normal forces in each state, (m, n) [FU] ≥ 0; slip of each load step, (m − 1, n)) along a path.
 
-        The tangential force of a slip is that of the springs, positive after a motion along +x; it is 0 in the first
+        A slip has the tangential force at the end of the step [FU], the distance slipped [LU] and the work dissipated
+        [FU·LU]. The force is that of the springs, positive after a motion along +x; it begins with 0 in the first
         state.
         """
         chain = self.chain

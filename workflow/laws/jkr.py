@@ -57,7 +57,7 @@ def _from_share(share: float, middle: float) -> tuple[float, float]:
     """Return (q, κ), dimensionless, of a cell of which the `share` φ = q + κ q (1 − q) is in contact at its limit
     point.
 
-    q is 1 − 1e-9 at most. κ is that of 401 values in −1 … 1 with which φ is nearest to the mean of `share` and 1 at the
+    q is 1 − 1e-9 at most. κ is that one of 401 even values in −1 … 1 with which φ is nearest to (`share` + 1)/2 at the
     height `middle`.
 
     Args:
@@ -155,8 +155,9 @@ class Jkr(Law):
         It is an instance of the class on which this is called: Jkr, Receding or Maugis.
 
         Raises:
-            SettingsError: the contact would be wider than 0.9 of a body without an edge, its edge would jump, or the
-                range or rate of a subclass cannot be resolved.
+            SettingsError: the contact would be wider than 0.9 of a body without a vertical edge, its contact edge would
+                jump (not of Maugis), Maugis' attraction would exceed the body, or the range or rate of a subclass
+                cannot be resolved.
         """
         covered = 0.9  # radius of a contact that covers its body, over where the body ends
         given, load = max([0.0, *scene.experiment.places()]), scene.experiment.compression or 0.0

@@ -119,8 +119,9 @@ class Law(ABC):
         """Return the law of a scene whose lower body is a rigid plane, an instance for an upper body of this profile.
 
         Raises:
-            SettingsError: an adhesive contact would be as wide as the body, its edge would jump, or its range or rate
-                changes nothing that is resolved. Laws without adhesion raise nothing.
+            SettingsError: an adhesive contact would be wider than 0.9 of a body without a vertical edge, its attraction
+                would exceed the body, its edge would jump, or its range or rate changes nothing that is resolved. Laws
+                without adhesion raise nothing.
         """
 
     @abstractmethod
@@ -240,8 +241,8 @@ class Law(ABC):
         """Return F(d), (m,) [FU], of the whole body at displacements (m,) [LU], both positive in compression.
 
         F = ∫ f dx/spacing over the width in which particles have a force, by the trapezoidal rule at 401 positions.
-        Where pairs snap, f is that of pairs that have snapped in, as in unloading. 0 where no particle interacts; a gap
-        below the least one of the grid has the force there.
+        Where pairs snap, the force f of a particle is that of a pair that has snapped in, as in unloading. 0 where no
+        particle interacts; an undeformed gap below the least one of the law's grid has the force there.
 
         Raises:
             OverflowError: an unbounded body is too wide compared with its spacing.
@@ -307,8 +308,8 @@ class Law(ABC):
     def stopped(self, energy: float) -> float:
         """Return the displacement [LU] at which the work ∫₀ᵈ F dd of the contact is an `energy` ≥ 0 [FU·LU].
 
-        The integral is by the trapezoidal rule at 200 displacements. Infinite where the work up to `deepest_known`, the
-        end of the known F(d), is less.
+        The integral is by the trapezoidal rule at 200 displacements. 0 for an energy of 0; infinite where the work up
+        to `deepest_known`, the end of the known F(d), is less.
 
         Raises:
             OverflowError: an unbounded body is too wide compared with its spacing.
@@ -330,12 +331,13 @@ class Law(ABC):
         return deepest * float(brentq(lambda share: stored(share * deepest) - energy, 0.0, 1.0))
 
     def radius_rate(self, displacement: float) -> float:
-        """Return da/dd, dimensionless, of the contact radius at a displacement [LU], by a central difference.
+        """Return da/dd, dimensionless, of the contact radius at a displacement [LU], by a central difference over ± a
+        thousandth of |d|, or of the spacing where that is larger.
 
         The radius is here that of the largest tension under the undeformed profile; on a rigid plane without adhesion
         that of the contact, of particles that only repel each other that of the cutoff. Of Jkr and Receding it is a(d),
-        of Maugis the radius c(d) up to which the attraction acts. 0 where the half-width is one spacing, since the apex
-        has a larger gap, or that of the body.
+        of Maugis the radius c(d) up to which the attraction acts. 0 where this is one spacing on both sides, as where
+        the gap at the apex is larger, or the half-width of the body.
         """
         edge, step = float(self.gap[int(self.force.argmin())]), DIFFERENCE * max(abs(displacement), self.spacing)
         ends = self.half_widths(np.asarray([displacement - step, displacement + step]), edge)
@@ -351,8 +353,8 @@ class Law(ABC):
         are cached.
 
         For a tension above 0.998 of the largest one the stiffness at 0.998 of it, since it is 0 at the maximum. Without
-        attraction a force of 0 or less has no stiffness: 0 or NaN. Of laws without adhesion the function raises
-        NotCarriedError for a compression that the body cannot carry.
+        attraction a force of 0 or less gives 0 or NaN. Of laws without adhesion the function raises NotCarriedError for
+        a compression that the body cannot carry.
         """
         return cache(self._stiffness_under)
 
@@ -360,7 +362,7 @@ class Law(ABC):
         """Return dF/dd [FU/LU] of the whole body under a force [FU], compression positive.
 
         For a tension above 0.998 of the largest one the stiffness at 0.998 of it. Without attraction a force of 0 or
-        less has no stiffness: 0 or NaN.
+        less gives 0 or NaN.
 
         Raises:
             NotCarriedError: F(d) does not reach a force > 0 before the particles coincide.
@@ -471,11 +473,11 @@ class Law(ABC):
         return max(1.0, width / self.spacing) * self.stiffness
 
     def parted(self, share: float) -> float:
-        """Return the displacement [LU], below that of the force maximum, at which the tension has fallen below `share`
-        of it.
+        """Return the displacement [LU] below that of the force maximum at which, in further separation, the tension
+        first falls below `share` of its maximum.
 
         `share`: relative, 0 … 1. The displacement is one of 400 from the onset of the interaction to F = 0; where the
-        tension falls below `share` at none of them, as for 0, it is that of the onset.
+        tension is below `share` at none of them, as for 0, and without attraction it is that of the onset.
         """
         displacements, forces = self._tensions
         peak = int(forces.argmin())
@@ -496,10 +498,9 @@ class Law(ABC):
 
     @cached_property
     def _largest_tension(self) -> tuple[float, float]:
-        """(Displacement [LU], tension [FU]) at the largest tension, positive, by a scan of 40 displacements and a finer
-        one.
+        """(Displacement [LU], tension −F [FU]) where the tension is largest: > 0, or without attraction 0 or less.
 
-        Without attraction the tension is 0 or negative.
+        By a scan of 40 displacements from the onset of the interaction to r₀, and a second one of 40 around its best.
         """
         low, high = self._apart, self.rest
         for _ in range(2):
@@ -564,8 +565,11 @@ def stopped_at(scene: Scene, law: Law, softer: float = 1.0) -> float:
     """Return the displacement [LU] at which a body that hits the plane is at rest: ∫F dd = ½ M v² · `softer`.
 
     0 of an experiment without an impact; infinite where the work up to the end of the known F(d) is less. F is that of
-    the elastic body; `softer`, a factor, is how many times softer the actual one is. The mass M of an impact must be a
-    number.
+    the elastic body; `softer`, a factor, is how many times softer the actual one is.
+
+    Raises:
+        AssertionError: an impact without a plate, or with an automatic mass M.
+        OverflowError: an unbounded body is too wide compared with its spacing.
     """
     if not isinstance(scene.experiment, Impact):
         return 0.0

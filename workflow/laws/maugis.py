@@ -168,8 +168,9 @@ class Maugis(Zoned):
 
         A position is the index of a point of `curve`, with a fraction between two points; −1 stands for separated
         bodies. The contact begins at the position `start`, by default separated. Where d turns along the curve it jumps
-        to the next position with the same d; separated bodies stay so until d exceeds −h₀, where the attraction begins.
-        Beyond the last point of the curve the position is that point.
+        to the position with the same d that is next in loading, and previous in unloading: −1 if there is none.
+        Separated bodies stay so until d reaches −h₀, where the attraction begins. For d beyond the last point of the
+        curve the position is that point.
         """
         d = self.curve.displacement
         first = -math.inf if start == APART else float(np.interp(start, np.arange(d.size), d))
@@ -199,7 +200,8 @@ class Maugis(Zoned):
         """Return the states (a, c, d, F), (m,) each, at displacements (m,) [LU], solved to all digits.
 
         `positions`: index of the nearest point of `curve` with a fraction, (m,), or −1 of separated bodies, of which a,
-        c and F are 0. Where no solution is found the nearest solved contact gives a, the curve c.
+        c and F are 0. Where no solution is found, a is that of the solved contact next to it, with c by a and d; before
+        contact c is linear in the curve. d is as given in any case.
         """
         guess = self.states_at(positions)
         edge, width = np.zeros_like(displacements), np.zeros_like(displacements)
@@ -403,7 +405,8 @@ class Maugis(Zoned):
         """Return the energy [FU·LU] that a jump between two positions on the curve dissipates.
 
         A position is the index of a point of `curve`, with a fraction; −1, of separated bodies, counts as 0. The jump
-        begins at the first limit point from `before` on. 0 where d is monotonic between them but for round-off.
+        goes from the first limit point, from `before` on, to where the contact arrives at the same d; the energy is the
+        difference of these two states. 0 where d is monotonic between the positions but for round-off.
         """
         low, high = sorted((math.ceil(max(before, 0.0)), math.ceil(max(after, 0.0))))
         if self._falls[high] == self._falls[low]:
@@ -512,8 +515,8 @@ class MaugisCells(ZonedCells):
         """Return the falling displacements, (k,) [LU], of load steps in unloading from `start` to `end` [LU].
 
         The start is not among them, the end is the last. They are at `count` equal steps of the contact radius down to
-        0, or to that at which the contact is lost: a stiff contact is lost in a small part of the displacement. Where
-        that comes before `end`, half as many at equal steps of d follow.
+        0, or to that at which the contact is lost: a stiff contact is lost in a small part of the displacement. Those
+        at or below `end` are left out. Where all are above it, `count` // 2 at equal steps of d follow down to it.
         """
         touching = self.law.held.edge > 0.0
         a, d = self.law.held.edge[touching], self.law.held.displacement[touching]
@@ -525,7 +528,8 @@ class MaugisCells(ZonedCells):
         """Return ∫ −F dd [FU·LU] in unloading from `start` [LU] to where the contact is lost, positive where tension
         prevails.
 
-        By the trapezoidal rule over points of the curve and its jumps; of these one of `every` so many, and the start.
+        By the trapezoidal rule over the points of the curve in unloading, both ends of its jumps included; of all these
+        points one of `every` so many, from the least d on, and the start.
         """
         d, force = self.law.held.displacement, self.law.held.force
         last = int(np.searchsorted(d, start))
@@ -545,8 +549,8 @@ class MaugisCells(ZonedCells):
 
     @property
     def critical_displacement(self) -> float:
-        """Displacement [LU] of the force maximum: that of the solved contact, or before contact that of a point of the
-        curve.
+        """Displacement [LU] of the largest tension: that of the solved contact, or where it comes before contact, that
+        of a point of the curve in unloading.
         """
         law, edge = self.law, np.asarray([self.law.critical_radius])
         if edge[0] > 0.0:

@@ -71,7 +71,8 @@ Ahead = tuple[float, Array, Array, Array]
 
 
 class Memory:
-    """The state of viscoelastic particles: surface displacements, and lengths of the springs in the arms.
+    """The state of viscoelastic particles: surface displacements, and lengths of the springs in the Maxwell elements
+    (arms) of a Prony series.
 
     Displacements d and surface displacements u are positive in compression.
 
@@ -79,7 +80,7 @@ class Memory:
         displacement: d of the body [LU].
         surface: u of each particle, (n,) [LU].
         outer: u in the untouched part of its cell, into which the contact may grow, (n,) [LU].
-        arms: s_j, (arms, n) [LU].
+        arms: s_j, length of the spring of each Maxwell element, (arms, n) [LU]; (0, n) with dashpots.
     """
 
     def __init__(self, law: Viscoelasticity, cells: Edges) -> None:

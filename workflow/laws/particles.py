@@ -72,12 +72,12 @@ class Particles(ABC):
         return False
 
     def lattices(self, is_pointed: bool) -> tuple[list[Particles], list[Particles]]:
-        """Return (particles of the same body moved against its apex or unevenly scaled, particles on finer spacings).
+        """Return (moved, finer): new particles of the same body at other positions, to sample the discretisation error.
 
-        The finer ones have a half and a quarter of the spacing; there are none where cells do not share their load at
-        an edge. The moved ones are first, of a body with kinks or one that `is_pointed`, as a cone, those with 0.93 and
-        0.86 of the spacing. Then come those shifted by each of `phases` against the apex, unless there are finer ones;
-        of a body with kinks those shifted by 0.375, 0.25, 0.125 and 0 spacings in any case.
+        The second list has those at a half and a quarter of the spacing; it is empty unless `shares_edges`. The first
+        list begins, for a body with kinks or one that `is_pointed`, as a cone, with those at 0.93 and 0.86 of the
+        spacing. Then it has those shifted against the apex: by 0.375, 0.25, 0.125 and 0 spacings for a body with kinks;
+        else by each of `phases` where the second list is empty, and none where it is not.
         """
         kinks, finer = self.law.profile.kinks, (0.5, 0.25) if self.shares_edges else ()
         phases = MORE_PHASES if kinks else () if finer else self.phases
@@ -99,7 +99,8 @@ class Particles(ABC):
         """Return the forces in load steps by their columns, (m,) each, named as `prescribed` names them.
 
         They are the sums of the normal forces, (m,) [FU], compression positive, and a function of the index of a load
-        step that gives those of each particle, (n,) [FU]. The path begins with separated bodies.
+        step that gives those of each particle, (n,) [FU]. The path begins with separated bodies. A missing column
+        raises KeyError; others are ignored.
         """
 
     def follow(self, path: Path) -> Followed:
@@ -143,15 +144,15 @@ class Particles(ABC):
     def refined(self, history: History) -> History:
         """Return a history with further moments on both sides of displacements at which the force jumps.
 
-        The same object where the force is prescribed or never jumps.
+        The same object where the force is prescribed, or jumps at no displacement.
         """
         return history if history.by_force or not self.jumps else history.refined_at(self.jumps)
 
     def moments(self, deepest: float, velocity: float, count: int) -> Array:
         """Return the times, (count,) [TU], rising from 0 on, of load steps of a pull-off at a `velocity` [LU/TU].
 
-        It begins at the displacement `deepest` [LU]. By default the times are at equal intervals, up to the
-        displacement `apart`, below which there is no force.
+        It begins at the displacement `deepest` [LU]. By default the times are at equal intervals, both ends included,
+        up to the displacement `apart`, below which there is no force. Receding has others, up to 2 · `count` + 1.
         """
         return np.linspace(0.0, (deepest - self.apart) / velocity, count)
 
@@ -257,9 +258,9 @@ class Particles(ABC):
     def displacement_at(self, force: float) -> float:
         """Return the largest displacement [LU] at which a force [FU], compression positive, is carried in unloading.
 
-        Of a tension that is never carried, the displacement of the force maximum. The search ends a tenth of the
-        largest expected displacement and of the spacing beyond that displacement; for a force that is larger there,
-        this end is returned.
+        Of a tension that is never carried, the displacement of the force maximum. The search ends at the largest
+        expected displacement `deepest` plus 0.1 · (|`deepest`| + spacing); for a force larger than there, this end is
+        returned.
         """
         low, high = self.apart, self.deepest + 0.1 * (abs(self.deepest) + self.law.spacing)
         rounds, cuts = 5, 24

@@ -24,9 +24,10 @@ class Path:
     """States of the plate along its path; arrays (m,).
 
     Attributes:
-        displacement, along: normal and tangential displacement [LU].
+        displacement, along: normal displacement, compression positive, and tangential one, along +x [LU].
         time: time of each state [TU]; 0 where the states are equilibria.
-        velocity: at the end of each load step [LU/TU]; None: displacements are straight between the states.
+        velocity: normal velocity at the end of each load step [LU/TU]; None: displacements are straight between the
+            states.
     """
 
     displacement: Array
@@ -44,7 +45,7 @@ class History:
         time: times, rising [TU].
         values: displacements [LU], or forces [FU] where `by_force`; compression positive.
         by_force: whether the force is prescribed.
-        marks: names under which the last states of phases are reported.
+        marks: {name of a phase: name under which its last state is reported}.
     """
 
     phases: tuple[str, ...]
@@ -74,10 +75,11 @@ class History:
         )
 
     def refined_at(self, displacements: Sequence[float], aside: float = 1e-6) -> History:
-        """Return this history, of displacements, with two further moments where it passes one of `displacements` [LU].
+        """Return this history, of displacements, with further moments around each passage of one of `displacements`.
 
-        They are before and after the passage, where a force jumps, by `aside` of the interval (relative); the second is
-        no later than the end of the interval. An interval that begins at the displacement gets none for it.
+        In each interval that passes one [LU], where a force jumps, there are two: before and after the passage, by
+        `aside` of the interval (relative). An interval that ends there has the first one only, and one that begins
+        there none.
         """
         moments = [np.arange(float(len(self.phases)))]
         for displacement in displacements:
@@ -90,8 +92,8 @@ class History:
     def path(self, model: Particles) -> Path:
         """Return the path of the body over the times of this history, without tangential displacement.
 
-        Its displacements are the values, without velocities; under prescribed forces displacements and velocities are
-        those that the particles `model` compute.
+        Its displacements are the values, without velocities. Under prescribed forces displacements are those that the
+        particles `model` compute; velocities, too, of a viscoelastic body, and else None.
         """
         displacement, velocity = self.values, None
         if self.by_force:
@@ -116,7 +118,9 @@ class Followed:
         total: sum of their normal forces, (m,) [FU], compression positive.
         force: function of the index of a displacement: the normal force of each particle there, (n,) [FU].
         shear: function of that index: tangential forces (n,) [FU]; None where no tangential path is prescribed.
-        zone: edge data of a `ZonedProfile` for each state, (m,); None where the particles' forces show the edge.
+        zone: for each state, (m,) each, contact radius a [LU], radius of the attraction [LU], jump of the line load at
+            a [FU/LU]; of a viscoelastic body also the error of a [LU] and the line load of a thin layer inside of it
+            [FU/LU]. None where the particles' forces show the edge.
         round_off: of the force of one particle, beyond that of its position, (m,) [FU].
     """
 
@@ -145,11 +149,11 @@ def equilibria(path: Path, apart: float, jumps: Sequence[float], spacing: float,
     """Return a path of equilibria that begins with separated bodies, dense enough for an integral of the work along it.
 
     It begins just below the smaller one of `apart` and 0; smaller displacements of `path` are raised to this start.
-    Without tangential displacements it goes through the ends of all monotonic parts, evenly within each: about 80
-    states, times `finer`, for the whole range of displacement, and so twice as many for a way there and back. Each time
-    it passes a jump, 30 more are on both sides of it, within one spacing and inside of the part. With tangential
-    displacements it goes through all states of `path`, with 32 states, times `finer`, for each step that changes the
-    displacement, and `finer` for each other one, and none near jumps. Times are 0.
+    Without tangential displacements each monotonic part goes evenly from one end to the other, with about 80 · `finer`
+    states times its share of the whole range of displacement: 160 · `finer` for a way there and back. Each passage of a
+    jump has up to 60 more, 30 on each side, within one spacing and inside of the part. With any tangential displacement
+    it goes through all states of `path`: 32 · `finer` states for each step that changes the normal displacement, the
+    one from the start included, `finer` for each other step, and none near jumps. Times are 0, velocities None.
 
     Args:
         path: of a run; it is not changed.

@@ -18,7 +18,8 @@ class RadiusRule(ABC):
 
     Attributes:
         bodies: bodies of the scene.
-        share: pressure over the largest one that counts as 0 (relative).
+        share: error of each pressure over the largest one (relative); `Compressed` and `Given` add its effect to the
+            uncertainty of a radius where the pressure falls to 0.
         ends_with_chain: whether the end of the chain may cut the contact.
         jump: line load [FU/LU] just inside the edge; None where the particles show it.
     """
@@ -73,7 +74,8 @@ class Compressed(RadiusRule):
         is compressed. None without a compressed particle.
 
         Raises:
-            ValueError: a particle carries tension beside one that is compressed, or there are fewer than 3.
+            ValueError: a particle carries tension beside one that is compressed, there are fewer than 3, or a pressure
+                is infinite.
         """
         return compressive_radius(profile, self.share) if profile.pressure.max() > 0.0 else None
 
@@ -90,7 +92,7 @@ class Held(RadiusRule):
         pressures are 0.
 
         Raises:
-            ValueError: there are fewer than 3 particles.
+            ValueError: there are fewer than 3 particles, or a pressure is not finite.
         """
         return held_radius(profile) if profile.pressure.any() else None
 
@@ -110,8 +112,9 @@ class Given(RadiusRule):
     def of(self, profile: Profile) -> ContactRadius | None:
         """Return the contact radius with its uncertainty and edges [LU]; None where all pressures are 0.
 
-        Of a `ZonedProfile` it is its own edge, 0 of bodies that attract each other and do not touch. Of another profile
-        it is the radius of the largest tension, or without tension that at which the pressure falls to 0.
+        Of a `ZonedProfile` it is its own edge with its own uncertainty, 0 of bodies that attract each other and do not
+        touch. Of another profile it is the radius of the largest tension, or without tension that at which the pressure
+        falls to 0.
 
         Raises:
             ValueError: a profile without an edge has fewer than 3 particles.
@@ -154,8 +157,8 @@ class InTension(RadiusRule):
     def is_cut(self, profile: Profile) -> bool:
         """Return whether the chain ends too near to the contact.
 
-        So it is where the largest tension is at the first or last particle, or where the pressure there has more than
-        half of the largest magnitude.
+        So it is where the largest tension is that of the first or last particle, or where the pressure of one of these
+        has more than half of the largest magnitude.
         """
         pressure = profile.pressure
         largest = float(pressure.min())

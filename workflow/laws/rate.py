@@ -51,7 +51,7 @@ class Receding(Zoned):
         `wanted` and `load` are not used.
 
         Raises:
-            SettingsError: the experiment is so slow that the contact is JKR's, G/W − 1 < 1e-8.
+            SettingsError: the experiment is so slow that the contact is JKR's, (v/v₀)ⁿ < 1e-8 with its velocity v.
         """
         rate = scene.the(Adhesion).rate
         assert rate
@@ -95,7 +95,7 @@ class Receding(Zoned):
         return np.where(root.success, root.x, super().radii(displacements))
 
     def _edge_velocity(self, edge: float, displacement: float) -> float:
-        """Return the edge velocity da/dt ≤ 0 [LU/TU] at a contact radius `edge` and a displacement [LU].
+        """Return the edge velocity da/dt ≤ 0 [LU/TU] at a contact radius `edge` > 0 and a displacement [LU].
 
         0 where the energy release rate is at most the work of adhesion, or where the edge is pressed, d ≥ g(a).
         """
@@ -135,8 +135,9 @@ class Receding(Zoned):
     def edges(self, times: Array, displacements: Array) -> Array:
         """Return contact radii a, (m,) [LU], at times (m,) [TU] along displacements (m,) [LU].
 
-        The path begins with separated bodies, and is linear in between. Radii are 0 before the first touch and from
-        pull-off to the next touch; an edge that advances is in equilibrium.
+        The path begins with separated bodies, and is linear in between. The bodies touch at the displacement 0. Radii
+        are 0 before the first touch and from pull-off to the next touch; an edge that advances is in equilibrium, also
+        below 0 if it has not been lost.
         """
         radii, edge, turns = np.zeros_like(times), 0.0, np.flatnonzero(np.diff(np.sign(np.diff(displacements)))) + 1
         for first, last in pairwise([0, *turns.tolist(), times.size - 1]):
@@ -156,13 +157,14 @@ class Receding(Zoned):
     def pull_off_times(self, start: float, velocity: float, count: int) -> Array:
         """Return rising times [TU] from 0 on of a pull from equilibrium at a constant velocity, up to separation.
 
-        They are at `count` equal steps of the contact radius and as many of the time, without repetition; the last is
-        the first one found without contact.
+        They are `count` times at equal intervals of the contact radius, from the start to the last one found with
+        contact, and `count` at equal intervals of time between the same two, without repetition. After these one more
+        follows, the first one found without contact.
 
         Args:
-            start: displacement [LU].
+            start: displacement at the time 0 [LU].
             velocity: of the pull [LU/TU], > 0.
-            count: number of times of each kind.
+            count: number of times of each kind, both ends included.
         """
         edge, least = float(self.radii(np.asarray([start]))[0]), self.fixed_grips[1]
         end = (start - least) / velocity
@@ -236,16 +238,17 @@ class RecedingCells(ZonedCells):
         """Return the rising times [TU] from 0 on of load steps of a pull-off from `deepest` [LU] at a `velocity`
         [LU/TU].
 
-        They are at `count` equal steps of the contact radius and as many of the time, without repetition, up to
-        separation; the last is the first one found without contact.
+        They are `count` times at equal intervals of the contact radius, from the start to the last one found with
+        contact, and `count` at equal intervals of time between the same two, without repetition. After these one more
+        follows, the first one found without contact.
         """
         return self.law.pull_off_times(deepest, velocity, count)
 
     def refined(self, history: History) -> History:
         """Return a history with further moments on both sides of a touch, and at equal steps of an edge that recedes.
 
-        `history`: of displacements. A touch is a passage of the displacement 0; a step of the edge is 0.01 of the
-        largest contact radius.
+        `history`: of displacements; all its moments remain. A touch is a passage of the displacement 0, in either
+        direction; a step of the edge is 0.01 of the largest contact radius.
         """
         looks = 20  # edges computed from one moment to the next
         edge_step = 0.01  # over the largest radius

@@ -102,9 +102,9 @@ class Relaxing(Independent):
     def sticking(self, mass: float, velocity: float, time: float) -> tuple[str, str] | None:
         """Return (why a body sticks after an impact, the remedy) as texts; None where it rebounds.
 
-        Dashpots, T dF/dd, stop a body where F = M v/T, and it then creeps out at the velocity d/T: it sticks below 1e-5
-        of the impact velocity. A material that flows, so that twice the time is twice the creep, has no energy left for
-        a rebound.
+        With dashpots, whose force is T dF/dt, a body stops where the elastic F = M v/T, at a displacement d, and then
+        creeps out at the velocity d/T: it sticks where this is below 1e-5 of v. With a Prony series it sticks where the
+        creep in twice the `time` is more than 1.96 times that in the `time`: such a material flows.
 
         Args:
             mass: M of the body [MU].
@@ -265,7 +265,8 @@ class RelaxingSprings(Particles):
     def _jumps(self, edge: Array, displacement: Array, velocity: Array) -> Array:
         """Return the line load just inside the edge, (m,) [FU/LU] ≥ 0, that dashpots parallel to the springs cause.
 
-        0 of a Prony series, without contact, and where the body moves back, velocity < 0.
+        0 of a Prony series, without contact, where the body moves back, velocity < 0, and where the load is less than
+        that of 1e-6 of the displacement, which is round-off.
 
         Args:
             edge: contact radius, (m,) [LU].

@@ -93,8 +93,8 @@ class Splined(Tabulated):
 
 
 def tabulated(profile: Profile, spacing: float, kind: type[Tabulated] = Tabulated) -> Tabulated:
-    """Return the table of a profile of finite half-width: at 0, at 1000 positions up to the half-width, and near its
-    kinks.
+    """Return a table, of the class `kind`, of a profile of finite half-width: at 0, at 1000 positions up to the
+    half-width, and at and near its first 100 kinks. It has all kinks of the profile.
 
     The 1000 are in geometric progression from 0.01 spacings on. Linear interpolation then has an error of 1e-4 of the
     height of a parabola, for a half-width of 0.1 to 1e10 spacings; closer to the apex than 0.01 spacings the profile is

@@ -48,12 +48,13 @@ def require_room(bodies: Bodies) -> None:
 
 
 def require_body(bodies: Bodies, largest: float, particles: int) -> None:
-    """Refuse a chain, or a contact at the displacement `largest` [LU], that is wider than the profile.
+    """Refuse a chain that is wider than the profile, or a contact that would be at the displacement `largest` [LU].
 
-    Refused too is a profile (after reduction) that falls within the chain, by more than 1e-5 of its height between
-    neighbours of 2001 positions, since the contact would have several parts. A contact that is wider than its chain,
-    but not than its profile, is not refused here, and a body with a vertical edge never. `particles`: number of the
-    upper chain.
+    The latter reaches the height of the last particle of the longest chain that fits on a bounded profile. Refused too
+    is a profile (after reduction) that falls within the chain, by more than 1e-5 of its rise between neighbours of 2001
+    positions, since the contact would have several parts. A contact that is wider than its chain, but not than its
+    profile, is not refused here, and a body with a vertical edge never. `particles`: number of the upper chain, at the
+    spacing of the lower one.
 
     Raises:
         SettingsError: names the most particles, the largest displacement, or the position at which the profile
@@ -91,6 +92,8 @@ def require_body(bodies: Bodies, largest: float, particles: int) -> None:
 def _most_particles(bodies: Bodies) -> int:
     """Return the number of particles of the longest chain, 3 or an even number, that the profile is wide enough for.
 
+    They are at the spacing of the upper chain; 3 also where not even these fit.
+
     Raises:
         OverflowError: the profile is unbounded.
     """
@@ -101,7 +104,8 @@ def decay_length(scene: Scene) -> float:
     """Return the decay length ℓ [LU] of the displacement of a chain near a point load; 0 without neighbour springs.
 
     Outside of the load, k u_i = k_n (u_{i+1} − 2 u_i + u_{i−1}) has the solutions exp(±x/ℓ), cosh(s/ℓ) = 1 + k/(2 k_n):
-    for stiff neighbours ℓ = s √(k_n/k).
+    for stiff neighbours ℓ = s √(k_n/k). k_n is the stiffness of a neighbour spring, s the spacing of the lower chain, k
+    the bulk stiffness of a particle, or with [horizontal] the tangential one where that is smaller.
     """
     if not scene.neighbours:
         return 0.0
@@ -112,10 +116,10 @@ def decay_length(scene: Scene) -> float:
 def reflected(scene: Scene, estimate: Law, largest: float, particles: int) -> float:
     """Return the share of a displacement that the end of the chain reflects, exp(−2 L/ℓ), 0 … 1.
 
-    0 without neighbour springs; 1 where the chain ends within the contact. L is the distance [LU] of the end of the
-    chain from the contact edge (with an attraction, from the largest tension) at the displacement `largest` [LU], below
-    0 as at 0. ℓ [LU] is the decay length of a displacement along the chain. `estimate`: the contact law; `particles`:
-    of the upper chain.
+    0 without neighbour springs; with them 1 where the chain ends within the contact. L is the distance [LU] of the end
+    of the chain from the contact edge (with an attraction, from the largest tension) at the displacement `largest`
+    [LU], below 0 as at 0. ℓ [LU] is the decay length of a displacement along the chain. `estimate`: the contact law;
+    `particles`: number of the upper chain, at the spacing of the lower one.
     """
     decay = decay_length(scene)
     beyond = 0.5 * particles * scene.bodies.own_spacing - _edge(estimate, largest)
@@ -151,7 +155,8 @@ def _edge(estimate: Law, largest: float) -> float:
     """Return the half-width [LU] up to the largest tension; without attraction, that of the contact.
 
     It is where the undeformed gap is that of the least force of the law; one spacing where the gap at the apex is
-    larger. `largest`: displacement [LU], compression positive, below 0 as at 0.
+    larger. Of an adhesive body on a rigid plane the contact radius, with a range of adhesion that of the attraction.
+    `largest`: displacement [LU], compression positive, below 0 as at 0.
     """
     return estimate.half_width(max(largest, 0.0), float(estimate.gap[int(estimate.force.argmin())]))
 
@@ -170,7 +175,8 @@ def significant_gap(estimate: Law, largest: float, share: float) -> float:
 def chain_length(scene: Scene, estimate: Law, largest: float, share: float) -> int:
     """Return the number of particles of an automatic chain, at whose end force and reflection are at most a share.
 
-    It is even, and the chain no wider than the profile. A body with a vertical edge has as many as fit into it.
+    It is even, and the chain no wider than the profile, even if force or reflection at its end are then larger. A body
+    with a vertical edge has as many as fit into it.
 
     Args:
         scene: whose chain it is.
@@ -215,8 +221,8 @@ def reaches_too_far(scene: Scene, cutoff: float) -> bool:
 def require_apex(scene: Scene, particles: int, cutoff: float) -> None:
     """Refuse a chain whose particles next to the apex lie more than 1000 times the cutoff [LU] above it.
 
-    Where the spacing is larger than the cutoff, it counts in place of it. A chain of an odd number of `particles` has
-    one at the apex and is never refused.
+    Where the spacing (of the lower chain) is larger than the cutoff, it counts in place of it. A chain of an odd number
+    of `particles` has one at the apex and is never refused.
 
     Raises:
         SettingsError: names the particles' height [LU].
@@ -252,7 +258,8 @@ def require_travel(scene: Scene, largest: float, cutoff: float) -> None:
 def require_memory(scene: Scene, particles: int, cutoff: float) -> None:
     """Refuse a system of more than 10⁷ particles of a body, or that exceeds the physical memory of this machine.
 
-    `particles`: of each body; `cutoff`: of the interaction [LU], 0 without one.
+    Needed are 2000 bytes a particle of one body, its opposite one and anchors included, and 8 for each opposite one
+    within the cutoff. `particles`: of each body; `cutoff`: of the interaction [LU], 0 without one.
 
     Raises:
         SettingsError: names the number of particles, or the memory needed and that of the machine [GB].
@@ -312,8 +319,8 @@ def _steps(rows: float) -> str:
 def require_rows(scene: Scene, longest_move: float, drive: Sequence[DriveLeg]) -> None:
     """Refuse a path of more than 10⁶ load steps: tangential ones, states of a slide, or prescribed displacements.
 
-    An approach takes additional load steps of `longest_move` [LU] at most; infinite: none. `drive`: legs of a slide, ()
-    for any other experiment.
+    Prescribed displacements begin with 0, and all approaches together take as many additional load steps as their sum
+    has lengths `longest_move` [LU], none for an infinite one. `drive`: legs of a slide, () for any other experiment.
 
     Raises:
         SettingsError: names the number of load steps.
@@ -361,7 +368,7 @@ def require_steps(steps: Iterable[int]) -> None:
 def in_words(scene: Scene, particles: int, cutoff: float) -> str:
     """Return a note for the user on a system so large that a run takes minutes; "" for a usual one.
 
-    Large are 20 000 particles per body; where each has more than ten opposite ones within the cutoff, fewer in
+    Large are 20 000 particles per body or more; where each has more than ten opposite ones within the cutoff, fewer in
     proportion. `particles`: of each body; `cutoff`: of the interaction [LU], 0 without one.
     """
     large, usual_partners = 20_000, 10.0
@@ -375,8 +382,8 @@ def in_words(scene: Scene, particles: int, cutoff: float) -> str:
 
 
 def _partners(scene: Scene, particles: int, cutoff: float) -> float:
-    """Return the number (not rounded) of opposite particles within the cutoff [LU] of one, at most `particles`.
+    """Return the estimated number (not rounded) of opposite particles within the cutoff r_c [LU] of one: 2 r_c/s + 2.
 
-    0 for a cutoff of 0, that of a rigid plane.
+    s is the spacing of the lower chain. At most `particles`; 0 for a cutoff of 0, that of a rigid plane.
     """
     return min(particles, 2.0 * cutoff / scene.bodies.spacing + 2.0) if cutoff else 0.0

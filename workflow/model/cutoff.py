@@ -28,8 +28,8 @@ def slide_cutoff(law: DoubleExponential, spacing: float, load: float, tolerance:
     """Return the cutoff [LU] at which a pair's force is a tenth of the tolerance of the largest tangential force.
 
     The latter is that on a particle that slides over a rigid row of opposite ones. The pair's force is that of the
-    attraction alone, without one of the repulsion. The result is kept between the longest range of the interaction and
-    40 times that.
+    attraction alone, or of the repulsion where there is no attraction. The result is kept between the longest range of
+    the interaction and 40 times that.
 
     Args:
         law: interaction of a pair.
@@ -46,9 +46,9 @@ def slide_cutoff(law: DoubleExponential, spacing: float, load: float, tolerance:
 def largest_holding_force(law: DoubleExponential, spacing: float, load: float) -> float:
     """Return the largest |F_x| [FU] ≥ 0 of a particle that moves over a rigid straight row of opposite particles.
 
-    Its height is fixed at the largest of 400 at which, midway between two of them, it carries the `load` [FU],
-    compression positive; where none does, at the smallest. The maximum is taken over 33 positions along x within half a
-    `spacing` [LU].
+    Its height is fixed at the largest of 400, from 0.01 to 10 times the longest range, at which it carries the `load`
+    [FU], compression positive, or more, midway between two of them; where none does, at the smallest. The maximum is
+    taken over 33 positions along x within half a `spacing` [LU].
     """
     reach = math.ceil(REACH * law.longest_range / spacing) + 1
     row: Array = np.asarray(spacing * np.arange(-reach, reach + 1), dtype=np.float64)
@@ -81,8 +81,8 @@ def cutoff_for(scene: Scene, law: DoubleExponential, share: float, tolerance: fl
 
     That is r₀ + b ln(1/share), r₀ = 0 without attraction: beyond it a pair's force is below about `share` (relative) of
     the force at r₀ of the term of longest range b alone. In a slide it is at least the one at which a pair's force is a
-    tenth of `tolerance` (relative) of the largest tangential force, unless the first has more than 5000 opposite
-    particles within it.
+    tenth of `tolerance` (relative) of the largest tangential force on a particle without load, unless the first has
+    more than 5000 opposite particles within it.
 
     Raises:
         StopIteration: the scene has no interaction.

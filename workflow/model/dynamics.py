@@ -39,7 +39,7 @@ class DriveLeg:
     Attributes:
         rows: measured states.
         steps: timesteps from one state to the next, a multiple of 5.
-        velocity: velocity of the drive [LU/TU]; 0 where it rests.
+        velocity: velocity of the drive along x [LU/TU], negative along −x; 0 where it rests.
         time_step: timestep [TU]; rows × steps of it are exactly the leg's duration.
     """
 
@@ -85,14 +85,15 @@ class Motion:
 def motion_of(
     scene: Scene, tolerance: float, estimate: Law, largest: float, particles: int, stiffest: float, still_step: float
 ) -> Motion:
-    """Return masses, drags, timesteps and the legs of a slide, for a motion of the scene in time.
+    """Return masses, drags, timesteps, settling time and the legs of a slide, for a motion of the scene in time.
 
-    The timestep is the smaller one of those that a particle and the plate allow; in an impact a thousandth of the time
-    to the deepest displacement at the impact velocity, or less; shortened to a whole part of the duration. An automatic
-    mass of the plate is that of all its particles; 0 without a plate. Automatic drag is critical for 0.6 of the contact
-    stiffness. The settling drag is larger, and its timestep shorter, where automatic drag would let particles
-    oscillate; in a slide it is the one under which the plate is loaded. `damped_stiffness` is 0 in a slide and where
-    the scene gives the damping.
+    The timestep is the smaller one of those that a particle and the plate allow, in an impact a thousandth of the time
+    to the deepest displacement at the impact velocity (below a tolerance of 1e-3 less); shortened to a whole part of
+    the duration. An automatic mass of the plate is that of all its particles; 0 without a plate. Automatic drag is
+    critical for 0.6 of the contact stiffness, without a plate half the critical one of a particle on its spring. With
+    automatic [damping] the settling drag is at least the critical one of a particle in the stiffest contact, and its
+    timestep short enough for it; else both are the usual ones. In a slide the settling drag is that under which the
+    plate is loaded. `damped_stiffness` is 0 in a slide and without automatic [damping].
 
     Args:
         scene: whose motion it is.
@@ -192,7 +193,7 @@ def _product(scene: Scene, tolerance: float, still_step: float) -> float:
     """Return the largest ω Δt (dimensionless) of a timestep.
 
     In a slide 0.2, below a tolerance of 1e-3 less with its square root; in any other motion in time `still_step`; of a
-    quasi-static scene 0.5. Effects of the scene, as noise, may lower it by the relative `tolerance`.
+    quasi-static scene 0.5. With [noise] it is √(`tolerance`/0.4) at most, `tolerance` relative.
     """
     if scene.experiment.motion_is_result:
         # Measured on 24 random slides: mean friction off by 1e-6 to 9e-5 of itself, by 5e-4 where that is 1e-4 of a
@@ -207,10 +208,10 @@ def _product(scene: Scene, tolerance: float, still_step: float) -> float:
 def _drags(scene: Scene, particles: int, critical: float, plate_mass: float) -> tuple[float, float]:
     """Return the drags [FU·TU/LU] (of a particle, of the plate): those of the scene, or automatic ones.
 
-    An automatic one of a particle is `critical` [FU·TU/LU], that of plate and particles together, over their number;
-    without a plate √(k m), half the critical one of the particle on its spring. 0 without [damping]. An automatic one
-    of the plate is what is missing from `critical`, or more where a plate lighter than its particles would oscillate
-    against them; 0 without a plate, with noise, and in an impact. `plate_mass` [MU].
+    That of a particle is 0 without [damping]. If automatic it is `critical` [FU·TU/LU], the drag of plate and particles
+    together, over their number; without a plate √(k m), half the critical one of the particle on its spring. An
+    automatic one of the plate is `critical` less the drag of all particles, or more where a plate lighter than its
+    particles would oscillate against them; 0 without a plate, with noise, and in an impact. `plate_mass` [MU].
     """
     mass, damping = scene.bodies.mass, 0.0
     if scene.damping:
@@ -234,7 +235,7 @@ def _relative_drag(plate: float, particles: float, rate: float) -> float:
     0 for a plate as heavy as all particles or heavier. In that oscillation a plate of mass M = `plate` [MU] leaves the
     particles, N m = `particles` [MU] together with the drag `rate` · N m, `rate` in [1/TU], the share M/(M + N m): next
     to nothing, if it is light, so that drag on particles does not end it. With the drag c on the plate the decay rate
-    is [rate · M + c N m/M] / 2(M + N m); c makes it that of M = N m, c = 0.
+    is [rate · M + c N m/M] / 2(M + N m); c = ½ `rate` M (1 − M/N m) makes it that of M = N m, c = 0.
     """
     return 0.5 * rate * plate * max(0.0, 1.0 - plate / particles)
 
@@ -242,9 +243,9 @@ def _relative_drag(plate: float, particles: float, rate: float) -> float:
 def drive_steps(scene: Scene, longest: float) -> tuple[DriveLeg, ...]:
     """Return the legs of the drive of a slide in order; () for any other experiment.
 
-    Each has a whole number of measured states, 20 to 50 per spacing of the lower chain and one at least, and from one
-    to the next a multiple of 5 timesteps of at most `longest` [TU]. A leg of velocity 0 lasts as long as its distance
-    takes at the velocity of the cantilever.
+    Each has a whole number of measured states, 20 to 50 per spacing of the lower chain and one at least, its start not
+    counted, and from one to the next a multiple of 5 timesteps of at most `longest` [TU]. A leg of velocity 0 lasts as
+    long as its distance takes at the velocity of the cantilever.
     """
     experiment = scene.experiment
     if not isinstance(experiment, Slide):

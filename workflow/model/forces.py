@@ -32,8 +32,8 @@ def loading_step_of(most: float, step: float) -> float:
 def plane_stiffness_of(scene: Scene, tolerance: float) -> float:
     """Return the one-sided stiffness of the rigid plane [FU/LU] per particle; 0 where the lower body is no rigid plane.
 
-    It is the bulk stiffness of a particle where particles are fixed in the upper body. Where effects need bonds of the
-    particles, it is 1/tolerance (relative) times their bulk stiffness plus what effects add to that.
+    It is the bulk stiffness k of a particle; with [neighbours] or [noise], whose particles move on bonds of their own,
+    it is (k + 4 k_n)/tolerance, with the stiffness k_n of a neighbour spring, 0 without [neighbours].
     """
     if scene.bodies.lower != "rigid_plane":
         return 0.0
@@ -41,7 +41,7 @@ def plane_stiffness_of(scene: Scene, tolerance: float) -> float:
 
 
 def stiffest_of(scene: Scene) -> float:
-    """Return the bulk stiffness of a particle plus the largest stiffnesses that effects add to it, summed [FU/LU]."""
+    """Return the bulk stiffness of a particle [FU/LU], with [neighbours] plus 4 times that of a neighbour spring."""
     return scene.bulk_stiffness + sum(effect.added_stiffness for effect in scene.present)
 
 
@@ -116,15 +116,15 @@ class Forces:
     def share(self, scene: Scene) -> float:
         """Return the relative error of a force, before a run, since the plane is not quite rigid.
 
-        It is what effects add to the stiffness of a particle over that of the plane; 0 where they add none.
+        It is 4 times the stiffness of a neighbour spring over that of the plane; 0 without [neighbours].
         """
         return sum(effect.added_stiffness for effect in scene.present) / self.plane_stiffness
 
     def error(self, scene: Scene, profile: Profile) -> float:
         """Return the error of the contact force of a state [FU] ≥ 0, by the finite stiffness of the plane.
 
-        It is |Σ F_z| of the upper particles times what effects add to a particle's stiffness over that of the plane; 0
-        where they add none.
+        It is |Σ F_z| of the upper particles times 4 k_n/k, with the stiffnesses k_n of a neighbour spring and k of the
+        plane; 0 without [neighbours].
         """
         return self.share(scene) * abs(scene.bodies.spacing * float(profile.pressure.sum()))
 
@@ -217,7 +217,8 @@ class Chains:
 
     Attributes:
         upper, lower: particles of the upper and of the lower body; the latter is not used for a rigid plane.
-        far: length of the long bond that makes normal and tangential stiffness differ [LU]; 0 where they do not.
+        far: length of the long bond that makes normal and tangential stiffness differ [LU]; 0 where they do not, and
+            without [horizontal].
     """
 
     upper: int

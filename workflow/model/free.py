@@ -35,7 +35,7 @@ def swing(scene: Scene, settings: Settings, model: Particles, start: float, load
     than 20 000 timesteps, both numbers are the equilibrium under the load.
 
     Raises:
-        IndexError: the duration is less than half a timestep.
+        IndexError: the duration is half a timestep or less.
     """
     total = sum(settings.steps_of(duration))
     if total > MOST_STEPS:
@@ -64,8 +64,8 @@ def stretch(settings: Settings, velocity: float) -> int:
 def is_over(displacement: Sequence[float], force: Sequence[float], flight: int = FLIGHT) -> bool:
     """Return whether a body has rebounded, or moves down again after it moved up.
 
-    It has rebounded where the last `flight` states have no force and the last of them moves away. In the other case its
-    motion has turned at least twice, also in contact.
+    It has rebounded where the last `flight` states have no force and the displacement of the last is less than that
+    before. Else its direction has turned at least twice, with or without contact; equal displacements are no turn.
 
     Args:
         displacement: of the states so far, two at least [LU], compression positive.
@@ -80,9 +80,12 @@ def is_over(displacement: Sequence[float], force: Sequence[float], flight: int =
 def impact(scene: Scene, settings: Settings, model: Particles, velocity: float, dense: int = 1) -> Path:
     """Return the path of an impact on the reduced model, from displacement 0 at a `velocity` [LU/TU] to free flight.
 
-    It also ends where the body moves down again, and after 20 000 states. Displacements [LU], times [TU] and velocities
-    [LU/TU], (m,), positive in approach, have `dense` states for each one of a run in LAMMPS. Velocity Verlet of M d″ =
-    −F(d, time), without drag, takes 16 steps for each state of a run. The scene's plate has a mass M that is a number.
+    It also ends where the body moves down again, and after 20 000 states. Displacements [LU], times [TU] from 0 on and
+    velocities [LU/TU], (m,), positive in approach, have `dense` states for each one of a run in LAMMPS. Velocity Verlet
+    of M d″ = −F(d, time), without drag, takes 16 steps for each state of a run.
+
+    Raises:
+        AssertionError: the scene has no plate, or one with an automatic mass M.
     """
     assert scene.plate
     assert scene.plate.mass != "auto"

@@ -59,7 +59,7 @@ least moment of inertia must be more than 1e-7 of the largest, and is 12 STAGGER
 
 @dataclass(frozen=True, eq=False)
 class Settings:
-    """The numbers of one run; units as in the scene. Two are equal if they are the same object.
+    """The numbers of one run, in the scene's LU, FU and TU. Two are equal if they are the same object.
 
     Attributes:
         tolerance: relative tolerance of the main results; that of a refined pass is smaller than the scene's.
@@ -68,7 +68,7 @@ class Settings:
         chains: numbers of particles.
         increments: displacement increments of a search.
         motion: timestep, masses and damping.
-        largest_displacement: largest displacement that the predictor expects [LU].
+        largest_displacement: largest displacement that the contact law predicts, or that is prescribed [LU].
     """
 
     tolerance: float
@@ -104,7 +104,7 @@ class Settings:
     def has_several_maxima(self) -> bool:
         """Whether the tensile force has several maxima: pairs separate one by one, with a snap-out or nearly so.
 
-        False on a rigid plane unless its law snaps. Cached.
+        False on a rigid plane. Cached.
         """
         return self.snaps or (self.is_smooth and self.law.maxima_distance(self.chains.upper) < math.inf)
 
@@ -117,8 +117,8 @@ class Settings:
     def strongest(self) -> tuple[float, float]:
         """(Distance [LU], tension [FU] ≥ 0) at the force maximum of one particle opposite a chain.
 
-        By the contact law on its grid of distances, which ends at the cutoff; on a rigid plane the distance is 0. The
-        tension is 0 without attraction.
+        By the contact law on its grid of distances, which ends at the cutoff. Without attraction it is (cutoff, 0), on
+        a rigid plane (0, 0), also with adhesion.
         """
         force = self.law.force
         peak = int(force.argmin())
@@ -181,7 +181,8 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
 
     Raises:
         SettingsError: the numbers are so far apart that no chain, table or timestep follows from them, a limit of
-            size is exceeded, or the bodies cannot carry the load.
+            size is exceeded, an adhesive contact has no solution for the body, the body sticks after an impact, or the
+            bodies cannot carry the load.
     """
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
@@ -204,10 +205,11 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
 def slower(scene: Scene, settings: Settings, factor: float = 2.0) -> list[tuple[Scene, Settings]]:
     """Return one or two pairs (scene, settings) of the same motion, to estimate its error in time.
 
-    The first has timesteps `factor` times as long (a whole part of a given duration) and, where particles have bonds on
-    a rigid plane, a plane `factor` times softer. The second has the usual timestep or a longer one, automatic drags
-    times `factor` and automatic masses times its square; it is missing where that changes no number of the motion. An
-    error of first order in these changes by its own amount at least.
+    The first has timesteps `factor` times as long (a whole part of a given duration) and, with [neighbours] or [noise]
+    on a rigid plane, a plane `factor` times softer. The second has the usual timestep or a longer one, automatic drags
+    times `factor` and automatic masses times its square; it is missing where that changes no number of the motion. The
+    mass of particles counts as automatic where the scene does not give it and it has an effect. An error of first order
+    in these changes by its own amount at least.
     """
     usual, forces, duration = settings.motion, settings.forces, scene.experiment.lasts
     longer = whole_steps(factor * usual.time_step, duration)
@@ -233,7 +235,7 @@ def _stopped(scene: Scene, law: Law, rounds: int = 4) -> float:
     """Return the displacement [LU] at which a body that hits the plane is at rest, deeper where it relaxes meanwhile.
 
     0 for any experiment but an impact; infinite beyond the displacement up to which the law knows the force. `rounds`:
-    most iterations of the displacement and the time of the impact.
+    number of iterations of the displacement with the time of the impact, 1 at least; none changes an elastic body's.
 
     Raises:
         SettingsError: the body sticks to the plane instead of rebounding.
@@ -270,7 +272,7 @@ def _bond_on_plane(stiffness: float, plane: float) -> float:
 def _require_carried(scene: Scene) -> None:
     """Refuse a load beyond N A/a, the repulsion of N pairs at zero distance, with its amplitude A and range a.
 
-    Nothing is refused with automatic numbers of particles, or where displacements are prescribed.
+    N is the number of the upper body. Nothing is refused where it is automatic, or where displacements are prescribed.
 
     Raises:
         NotCarriedError: has N A/a [FU] as `most`.
@@ -292,7 +294,7 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
     `tolerance`: relative; `calibration`: shares of it that each number may use up.
 
     Raises:
-        SettingsError: a limit of size, or an impact after which the body sticks.
+        SettingsError: a limit of size, no solution of the law for this body, or an impact after which the body sticks.
         NotCarriedError: a load beyond the repulsion.
         OverflowError, FloatingPointError, ZeroDivisionError: the magnitudes in the scene differ too much.
     """
@@ -323,9 +325,9 @@ def _chosen(scene: Scene, tolerance: float, calibration: Calibration) -> Setting
 def _forces(scene: Scene, tolerance: float, calibration: Calibration) -> tuple[Forces, Law]:
     """Return (the forces on a particle, the contact law), before chains and table are chosen.
 
-    On a rigid plane the forces are springs and plane, and the bond of a particle that is not fixed in its body is
-    stiffer, so that with the plane in series it has the given stiffness. Of opposite chains they have the interaction,
-    its cutoff and a preliminary table. Force scale and residual are 0 in both. `tolerance`: relative.
+    On a rigid plane the forces are springs and plane; with [neighbours] or [noise] the bond of a particle is stiffer
+    than given, so that with the plane in series it has the given stiffness. Of opposite chains they have the
+    interaction, its cutoff and a preliminary table. Force scale and residual are 0 in both. `tolerance`: relative.
 
     Raises:
         SettingsError: the cutoff reaches too far, or the law has no solution for this body.

@@ -41,7 +41,7 @@ def animate(folder: AnyPath, out: AnyPath | None = None, frames_per_second: int 
         frames_per_second: states per second.
 
     Raises:
-        FolderError: the folder holds no run, or one of a single state.
+        FolderError: the folder holds no run, or one of a single state or without states.npz.
         RunError: the run failed.
         Contact1dError: the suffix is neither .gif nor .mp4, or MP4 is wanted without ffmpeg.
     """

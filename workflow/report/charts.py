@@ -70,7 +70,7 @@ def charts_of(runs: Mapping[str, Mapping[str, Chart]]) -> list[Data]:
 
 
 def _fit(charts: Sequence[Chart], least_share: float = 0.05) -> bool:
-    """Return whether each chart covers `least_share` of the common axes of all, along x and y.
+    """Return whether each chart covers `least_share` of the common axes of all, along x and along y.
 
     Less would be a line or a dot. Each has one panel; axes are compared by their ends.
     """
@@ -189,9 +189,9 @@ def moving(run: Run, states: States) -> list[Chart]:
 def path_of(run: Run, states: States) -> Data:
     """Return what a slider needs, by name: `words`, a text for each state, `start`, and `charts` in plotly's form.
 
-    The main curve is mostly force over displacement. `words` have the position on it, the branch, and the contact
-    radius where there is one. `start` is the index of the state that is shown first, that of the largest |y| of the
-    main curve. `charts` are the main curve with a mark, the line load and the bodies.
+    The main curve is mostly force over displacement. `words` have the position on it in five digits, the branch, and
+    the contact radius where there is one. `start` is the index among `states` of the one that is shown first, that of
+    the largest |y| of the main curve. `charts` are the main curve with a mark, the line load and the bodies.
     """
     charts = moving(run, states)
     curve = charts[0].panels[0]

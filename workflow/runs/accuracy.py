@@ -24,8 +24,10 @@ def accuracy_warnings(scene: Scene, outcome: Outcome) -> dict[str, str]:
     """Return the warnings, name and message, of results that are not reported or miss the tolerance of the scene.
 
     Names are `unknown` (not reported), `lattice` (the discretisation error alone exceeds the tolerance) and `tolerance`
-    (the others). Empty where all meet it, and for experiments whose results are means under noise, whose standard error
-    is their uncertainty. The forces of a path count as one result.
+    (all errors together do, without those of numbers with ± and of two formulas that differ). Each has all of its
+    results in one message; one is missing where it has none. Empty where all meet the tolerance, and for experiments
+    whose results are means under noise, whose standard error is their uncertainty. The forces of a path count as one
+    result.
     """
     if kind_of(scene).is_statistical:
         return {}

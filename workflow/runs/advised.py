@@ -96,7 +96,8 @@ def run(
 def mended(reader: Reader, error: SceneError, progress: Progress) -> SceneError:
     """Return a new error of a scene, with the outcome of its first suggested fix in the hint of its first problem.
 
-    The same error where it suggests none that makes the scene valid. The fix is tried for at most 4 s of LAMMPS.
+    The same error where it suggests none that makes the scene valid. The fix is tried for at most 4 s of LAMMPS in each
+    pass.
 
     Args:
         reader: returns the scene with an edit; raises SceneError.
@@ -141,8 +142,8 @@ def in_words(edit: SceneEdit) -> str:
 def _tried(reader: Reader, error: Contact1dError, progress: Progress) -> str:
     """Return a sentence, without a full stop, on the trial of the first change of an error that gives a valid scene.
 
-    It says that the change gives a result, or that it has none within 4 s and which others were not tried. "" where no
-    change gives a valid scene.
+    It says that the change gives a result, or that it has none within 4 s in each pass of LAMMPS and which others with
+    a valid scene were not tried. "" where no change gives a valid scene.
 
     Args:
         reader: returns the scene with an edit; raises SceneError.
@@ -169,7 +170,7 @@ def _tried(reader: Reader, error: Contact1dError, progress: Progress) -> str:
 
 
 def _attempt(scene: Scene) -> None:
-    """Run a scene once in a temporary folder, without refinement and retries, for at most 4 s of LAMMPS.
+    """Run a scene once in a temporary folder, without refinement and retries, for at most 4 s of LAMMPS in each pass.
 
     Nothing is returned, and no file is left.
 

@@ -52,6 +52,9 @@ def charts(run: Run) -> dict[str, Chart]:
 
     They are in SI base units where the units are known, else in units of the model. A figure for which the run has no
     data is missing.
+
+    Raises:
+        KeyError: the run failed and has no tables.
     """
     scales, bodies = run.scales, run.scene.bodies
     title = run.scene.title + ("" if bodies.reduction == "mdr" else f"\n(reduction {bodies.reduction})")
@@ -149,7 +152,7 @@ def _charts(run: Run) -> Iterator[tuple[str, Chart]]:
 def path_chart(run: Run, columns: Mapping[str, Array] | None = None, **references: Sequence[Series]) -> Chart:
     """Return the chart of columns over the first one, a panel for each, by default of the main curve.
 
-    In units of the model; each leg of the path is a line.
+    In units of the model; each leg of the path is a series of its own, with markers where it has at most 25 points.
 
     Args:
         run: with its tables in units of the model.
@@ -174,10 +177,11 @@ def _samples(run: Run) -> Chart:
 
 
 def _under_load(run: Run) -> Iterator[tuple[str, Chart]]:
-    """Yield the charts of the force [FU] over displacement [LU] and over contact radius [LU], compression positive.
+    """Yield ("force_displacement", its chart) and ("force_radius", its chart): F [FU] over d and over a [LU].
 
-    Of a sphere whose F_A and a₀ > 0 are known the latter has F/F_A over a/a₀; of any other body it is left out where
-    the radius has fewer than two different values above 0. `run` has its tables in units of the model.
+    Compression is positive. Of a sphere whose F_A and a₀ > 0 are known the latter has F/F_A over a/a₀; of any other
+    body it is left out where the radius has fewer than two different values above 0. `run` has its tables in units of
+    the model.
     """
     curve, theory, scale, tension = run.curve, _theory(run), _pull_off(run), run.results.get("adhesion_force")
     references = figures.lines(*((name, d, force) for name, _, d, force in theory))
@@ -212,7 +216,8 @@ def _ting(run: Run, over: str) -> list[Series]:
 def _pull_off(run: Run) -> tuple[float, float] | None:
     """Return (F_A [FU], tension positive, a₀ > 0 [LU]) of the run; None where either is missing or a₀ is 0.
 
-    Where the run reports lengths of the one-dimensional image as well, a₀ is that of the image, as in its curve.
+    Where the run stands for two equal spheres, and reports both their a₀ and that of the one-dimensional image, twice
+    as wide, it is that of the image, as in its curve.
     """
     force, radius = run.results.get("adhesion_force"), run.results.get("zero_load_radius")
     radius = run.results.get(f"{IMAGE}zero_load_radius", radius)
@@ -222,7 +227,7 @@ def _pull_off(run: Run) -> tuple[float, float] | None:
 def _zones(run: Run, states: Iterable[str]) -> dict[str, tuple[float, float, int]]:
     """Return (stick radius [LU], tangential displacement [LU], direction of motion) of states by name, from the curve.
 
-    The direction is that of the last motion along x, 1 or −1, and 0 where there was none.
+    The direction is that of the last motion along x up to the state, 1 or −1, and 0 where there was none.
     """
     zones, displacements = {}, run.curve.tangential_displacement
     for state in states:
@@ -249,7 +254,9 @@ def _body_theory(run: Run, marks: Mapping[str, Mapping[str, float]]) -> dict[str
     """Return {state: (name, r [LU], p [FU/LU²])} of the first closed form of the pressure, compression positive.
 
     The state is the first reported one that touches, r from just above 0 to just inside its contact radius, (300,)
-    each. {} where no closed form applies.
+    each. {} where no closed form applies, or no reported state is in `marks`.
+
+    `marks`: by state the radii by name [LU], of which the contact radius is needed.
     """
     case = Case(run.scene, run.results)
     for state in (name for name in REPORTED if name in marks):
@@ -275,11 +282,12 @@ def _mindlin(run: Run) -> list[Series]:
 
 
 def _theory(run: Run) -> list[tuple[str, Array, Array, Array]]:
-    """Return a list of the one (name, a [LU], d [LU], F [FU]) of the body's closed form, compression positive.
+    """Return a list of the one (name, a [LU], d [LU], F [FU]) of the body's closed form, (400,), compression positive.
 
     Empty where there is none. For two chains without a closed form it is JKR's with the run's own F_A and a₀. The image
     x²/2R₁ on springs E* per length is the contact of R = 2R₁; its a₀ is twice that of the two spheres. JKR is drawn up
-    to 1.3 a₀, on a plane from the radius at which fixed grips separate.
+    to 1.3 a₀, on a plane from the radius at which fixed grips separate; Hertz and others without adhesion from a = 0 to
+    the largest displacement of the run.
     """
     scene, half, case, pull_off = run.scene, run.scene.bodies.plane_radius, Case(run.scene, run.results), _pull_off(run)
     radius, work, forms = 2.0 * (half or 0.0), scene.work_of_adhesion, applying(case)

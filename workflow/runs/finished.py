@@ -108,7 +108,7 @@ class Run:
 
     @property
     def curve(self) -> Columns:
-        """The measured states, an element for each: every column of curve.csv, in SI where the scene has units.
+        """The states of the loading history, one element each: all columns of curve.csv, SI where the scene has units.
 
         Raises:
             KeyError: the run failed and has no tables.
@@ -120,6 +120,9 @@ class Run:
         """The columns of friction.csv of a slide; of a tangential experiment those of the curve; empty of any other.
 
         In SI where the scene has units, else in units of the model.
+
+        Raises:
+            KeyError: a tangential run that failed, which has no tables.
         """
         return self.curve if self.scene.experiment.goes_along else self.tables.get("friction", Columns({}))
 
@@ -197,6 +200,7 @@ class Run:
 
         Raises:
             ValueError: the run has no such figure; the message says which it has.
+            KeyError: the run failed and has no tables.
         """
         drawable = charts(self)
         name = name or next(iter(drawable))
@@ -220,11 +224,11 @@ class Run:
         return atoms(self.folder, state)
 
     def to_json(self, path: AnyPath | None = None) -> str:
-        """Return the text of results.json, and write it to a file `path`, unless that is None."""
+        """Return the text of results.json, and write it to a file `path`, replacing an earlier one, if given."""
         return _written(as_json(self.document), path)
 
     def to_csv(self, path: AnyPath | None = None, table: str = "results") -> str:
-        """Return a table as CSV text, and write it to `path`, unless that is None.
+        """Return a table as CSV text, and write it to `path`, in place of an earlier file, unless that is None.
 
         Columns in SI have their unit in the header. Numbers have all digits, NaN is an empty cell.
 
@@ -248,12 +252,12 @@ class Run:
         return _written("\n".join([r"\begin{tabular}{ll}", *lines, r"\end{tabular}", ""]), path)
 
     def to_xarray(self, table: str = "curve") -> Dataset:
-        """Return one of `tables` as an xarray.Dataset, variables along the dimension "row" with their SI units.
+        """Return "results" or one of `tables` as xarray.Dataset, variables along the dimension "row" with SI units.
 
         Variables in units of the model have no unit. The attributes are the title, and the results as text.
 
         Args:
-            table: "results" or a name in `tables`.
+            table: "results", with variables name, value, uncertainty and unit, or a name in `tables`.
 
         Raises:
             Contact1dError: xarray isn't installed.

@@ -66,7 +66,7 @@ def chart(table: Mapping[str, Any]) -> Chart:
 def in_words(document: Mapping[str, Any]) -> list[str]:
     """Return lines on the inputs of results.json for a terminal: a heading, then the inputs, the largest change first.
 
-    Changes are in percent. [] where the document has no inputs.
+    Changes are in percent, in two digits. [] where the document has no inputs.
     """
     rows = [
         ({name: change for name, change in row.items() if name not in INPUT_COLUMNS}, row)

@@ -29,9 +29,9 @@ def run_many(
         workers: runs at a time on this machine; None: as many as there are processors. Ignored with an executor.
 
     Returns:
-        An entry for each pair, in the order given: a `Run`, or a `RunError` with the folder and the message of whatever
-            error `run` raised. After an error the others run, unless a process was killed: then its executor ends, and
-            each scene that has not run gives an error.
+        An entry for each pair, in the order given: a `Run`, whose `outcome` is None, or a `RunError` with the folder
+            and the message of whatever error `run` raised. After an error the others run, unless a process was killed:
+            then its executor ends, and each scene that has not run gives an error.
     """
     pairs = list(scenes)
     if executor is None:
@@ -42,9 +42,11 @@ def run_many(
 
 
 def completed(pairs: Sequence[tuple[AnyScene, AnyPath]], executor: Executor) -> Iterator[tuple[int, Entry]]:
-    """Yield (index among the pairs, its run or RunError) for each pair, as it is done.
+    """Yield (index among the pairs, its run or RunError) for each pair, in the order in which they end.
 
-    A pair whose folder an earlier one has gives an error, without a run, as does one that the executor does not run.
+    Before these come errors, without a run, of a pair whose folder an earlier one has, and of one that the executor
+    does not accept. A pair whose process is killed, or that the executor accepts and does not run, gives an error as
+    well.
     """
     futures: dict[Future[Entry], int] = {}
     taken = set()

@@ -65,9 +65,9 @@ def implausible(scene: Scene, scales: Scales, quantities: Mapping[str, Quantity]
     Empty where there are none. Several messages of one name are joined by "; ".
 
     Args:
-        scene: with or without a material; without one only results are checked.
+        scene: one without a [material] has no numbers that are checked.
         scales: of LU and FU in SI; where they are unknown, numbers with these units, and results, are not checked.
-        quantities: the results by name, in units of the model.
+        quantities: the results by name, in units of the model, of which radii below 0.1 nm are reported.
     """
     warnings: dict[str, list[str]] = {}
     for name, message in (*_moduli(scene), *_numbers(scene, scales), *_radii(scales, quantities)):

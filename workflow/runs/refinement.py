@@ -23,12 +23,13 @@ from contact1d.workflow.scene import Scene
 def refined(context: RunContext, outcome: Outcome, ratio: float = 5.0, most: int = 2) -> tuple[Deck, Outcome]:
     """Return (deck, outcome) of the finest of up to `most` repeats with finer settings, made while these help.
 
-    They help while a main result misses the tolerance, and its uncertainty fell by more than a fifth in the last
-    repeat. A path that the scene gives is not refined, since its load steps limit the results, nor are means under
-    noise, which are sampled until their standard errors are small: deck and outcome are then those that were given,
-    without a record of refinement. If a finer pass fails, the pass before is returned, and the record says how it
-    ended. Time and steps of all passes are added to those of `context`, and files of a finer pass replace those in its
-    folder.
+    They help while a main result misses the tolerance, and not just a radius by its interpolation between particles,
+    and the uncertainty of one of these fell by more than a fifth in the last repeat. A path that the scene gives is not
+    refined, since its load steps limit the results, nor are means under noise, which are sampled until their standard
+    errors are small: deck and outcome are then those that were given, without a record of refinement. Else the outcome
+    has one, with 0 repeats where none was needed. If a finer pass fails, the pass before is returned, and the record
+    says how it ended. Time and steps of all passes are added to those of `context`, and files of a finer pass replace
+    those in its folder.
 
     Args:
         context: of the run, with its deck.

@@ -31,9 +31,10 @@ from contact1d.workflow.scene.tables import (
 def punch(d: Draft) -> Rows:
     """Yield the rules of a flat punch, whose edge is half a spacing beyond its last particle.
 
-    A rule is (dotted key, whether it is broken, what is wrong, suggested fix); unbroken ones are yielded, too. No rule
-    for another profile, and where radius or spacing are not known or automatic; only the first where the radius over
-    the spacing is infinite.
+    The radius over the spacing is finite, a whole number of halves and at least 1.5; a number of particles that is
+    given is twice that. A rule is (dotted key, whether it is broken, what is wrong, suggested fix); unbroken ones are
+    yielded, too. No rule for another profile, or where radius or spacing is unknown or "auto"; only the first where it
+    is broken.
     """
     radius, spacing = d["bodies.profile.radius"], d["bodies.spacing"]
     if d.profile != "flat_punch" or radius is None or spacing in (None, "auto"):
@@ -92,7 +93,7 @@ def reduction(d: Draft) -> Rows:
 
 
 def periodic_lengths(d: Draft) -> Rows:
-    """Yield the rules of springs and lengths of two periodic chains, which have a common period.
+    """Yield the rules of two periodic chains: the tangential stiffness is at most the normal one, lengths are equal.
 
     A rule is (dotted key, whether it is broken, what is wrong, suggested fix); unbroken ones are yielded, too. No rule
     for other bodies; none of springs unless both stiffnesses are given; none of lengths where numbers of particles or

@@ -21,11 +21,11 @@ from contact1d.workflow.scene.tables import Tables
 
 
 def mend_words(scene: Place) -> None:
-    """Report and correct every misspelt or unknown word of a scene, in place.
+    """Report (in `scene.problems`) and correct, in place, every misspelt or unknown word of a scene; return nothing.
 
     A key that is similar to an allowed one is moved there, unless that has a value; other unknown keys are removed.
     Texts become the allowed word or table of that name that they are similar to, and remain where there is none. A list
-    of values that a table may be becomes the table.
+    in place of a table that may be one, [velocity, distance], becomes the table if it has a value for each key.
     """
     for place in chain((scene,), scene):
         _mend_word(place)
@@ -155,7 +155,11 @@ def _report(place: Place, details: ErrorDetails) -> None:
 
 
 def _hint(place: Place) -> str:
-    """Return the suggested fix for a value of the wrong type, or the names that it may have; "" where none is known."""
+    """Return the suggested fix for a value of the wrong type; "" where none is known.
+
+    It is for a text in place of a number ("write a number without quotes"), for 2.0 in place of 2, and for a table of
+    the scene, "write it as [plate], its keys below"; else "names: …" with the names that a table may have.
+    """
     given, allowed, text = place.value, place.allowed, text_of(place.allowed)
     if isinstance(given, str) and allowed.type in (int, float):
         if any(map(str.isdigit, given)):

@@ -27,8 +27,8 @@ UNIT_KEYS = {"LU": "length_unit", "FU": "force_unit", "MU": "mass_unit"}
 def convert(scene: Place) -> bool:
     """Replace the texts with units of a scene by numbers in LU, FU, MU and TU, or in units of SI where keys have these.
 
-    That is done in place. Return whether the scene has such texts, right or wrong, apart from keys with an error
-    reported before. Sizes of LU, FU and MU that texts need and [material] lacks are put into it as 1. Errors are
+    That is done in place. Return whether the scene has such texts, right or wrong, at keys without an error reported
+    before. Sizes of LU, FU and MU that texts need and [material] lacks are put into it as 1. Errors are
     reported; their keys, and those whose numbers are then unknown, are marked as wrong and keep their texts.
     """
     texts = [place for place in numbers_in(scene) if place.is_text and place.sound]
@@ -47,9 +47,9 @@ def convert(scene: Place) -> bool:
 
 
 def _si_value(place: Place) -> Fraction | None:
-    """Return the exact quantity of a text in its unit of SI; a temperature in K or °C as k_B T [J].
+    """Return the exact quantity of a text in the unit of SI of its key; a temperature in K or °C as k_B T [J].
 
-    None, and reported, where the text is no quantity of an allowed dimension.
+    None where the text is no quantity of an allowed dimension, which is reported; the key is then marked as wrong.
     """
     try:
         value, dimension = si_value(place.value, *place.unit.texts)
@@ -76,7 +76,7 @@ def _scales(scene: Place, texts: list[Place]) -> dict[str, Fraction] | None:
     """Return the exact sizes of LU [m], FU [N] and MU [kg] by name, at least those that `texts` need; None if unknown.
 
     Unknown sizes are reported here, or where tables are checked if [material] or a size in it is wrong. An absent
-    [material], and sizes that it lacks, as 1, are added to the scene.
+    [material], and sizes that it lacks, as 1, are added to the scene. `texts`: texts with units, at least one.
     """
     material = scene.inside["material"]
     if material.absent:
@@ -92,11 +92,12 @@ def _scales(scene: Place, texts: list[Place]) -> dict[str, Fraction] | None:
 
 
 def _chosen_scales(draft: Draft, texts: list[Place]) -> dict[str, Fraction] | None:
-    """Return the exact sizes of LU [m], FU [N] and MU [kg] by name: those that `texts` need, mostly all of LU and FU.
+    """Return the exact sizes of LU [m], FU [N] and MU [kg] by name: LU and FU, and MU if `texts` need it.
 
-    Sizes that the scene lacks are 1 and are put into it. FU is not: with bulk_stiffness beside elastic moduli it
-    follows from these. None where plain numbers are mixed with units, or FU is needed although it follows: both are
-    reported. Also where a given size is no positive number.
+    Those that the scene lacks are 1, and are put into it. With a number as bulk_stiffness beside elastic moduli, from
+    which FU follows, it is those alone that `texts` need, with MU all three, and FU is not put in. None, and reported,
+    where the scene has numbers without units in LU, FU or MU whose size it does not give, or where FU is needed
+    although it follows. None also where a given size is no positive number.
     """
     given, elastic = draft.scene.find("bodies.bulk_stiffness"), draft.holds("elastic")
     stiffness = given if given and given.value != "auto" and elastic else None  # FU follows from it and the moduli

@@ -90,7 +90,7 @@ class Effect(Table):
     def largest_phase(self, tolerance: float) -> float:
         """Return the largest ω·Δt [rad] with which the effect is exact to a relative tolerance.
 
-        Infinite for all effects but [noise].
+        Infinite for all effects but [noise], of which it is √(tolerance/0.4).
         """
         return math.inf
 
@@ -238,7 +238,7 @@ class Viscoelasticity(Effect):
 
     @property
     def shortest_time(self) -> float:
-        """The retardation time [TU], or without one the shortest relaxation time of the Prony series."""
+        """The retardation time [TU], or without one the shortest relaxation time [TU] of the Prony series."""
         return self.retardation_time or min(term.time for term in self.terms or ())
 
 
@@ -267,7 +267,10 @@ class Noise(Effect):
     """seed of the random forces"""
 
     def largest_phase(self, tolerance: float) -> float:
-        """Return the largest ω·Δt [rad] with which mean squares of displacements are exact to a relative tolerance."""
+        """Return the largest ω·Δt [rad] with which mean squares of displacements are exact to a relative tolerance.
+
+        It is √(tolerance/0.4), by a measured error of fix langevin with fix nve.
+        """
         bias = 0.4  # relative error of ⟨u²⟩ over (ω Δt)² with fix langevin and fix nve, measured at ω Δt = 0.1: 0.4 %
         return math.sqrt(tolerance / bias)
 

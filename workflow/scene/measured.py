@@ -49,8 +49,9 @@ def is_scan(profile: Mapping[str, Any], keys: Mapping[str, Any] = SCAN_KEYS) -> 
 def fault_of(r: tuple[float, ...], z: tuple[float, ...]) -> str | None:
     """Return why radii r and heights z [LU] are no profile, with the suggested fix; None if they are one.
 
-    There must be as many radii as heights. Radii must begin at 0 and rise, without a step above ten times the median
-    one; no height may be below the first, and one must be above it.
+    There must be as many radii as heights, at least two (ValueError for one). Radii must begin at 0 and rise, without a
+    step above ten times the median one; no height may be below the first, and one must be above it. The first of these
+    that is not met is returned.
     """
     if len(r) != len(z):
         return f"must have as many radii as heights, not {len(r)} and {len(z)}"
@@ -162,9 +163,9 @@ class Measured(Shape):
 
     @property
     def taken(self) -> Taken | None:
-        """The curve that is fitted to the scan, with its parameters [LU]; None where the points are no scan.
+        """The curve that is fitted to the scan, with its parameters in powers of LU; None where the points are no scan.
 
-        It is there, too, where the points of the scan are kept.
+        It is there, too, where the points of the scan are kept (only centred or levelled).
 
         Raises:
             ScanError: the points determine no such curve.
@@ -200,14 +201,15 @@ class Measured(Shape):
     def height(self, x: Array) -> Array:
         """Return the height [LU] of the measured body above its apex at positions x [LU]; same shape.
 
-        It is constant beyond the end of the body.
+        It is constant beyond the end of the points or the scan. NaN beyond the radius of a fitted circle that ends
+        before its scan.
         """
         return self.body.height(x)
 
     def transformed(self, x: Array) -> Array:
         """Return the height g(x) [LU] of the measured body after the MDR transform at positions x [LU]; same shape.
 
-        It is constant beyond the end of the body.
+        It is constant beyond the end of the points or the scan.
         """
         return self.body.transformed(x)
 
@@ -225,9 +227,9 @@ class Measured(Shape):
     def alternatives(self) -> tuple[Shape, ...]:
         """Other bodies that the points may mean, as a tuple.
 
-        Where the points are kept, two or five: with chords or corners between the points, and where heights have few
-        digits with heights moved by half a digit. Of a curve with a given distance of its knots it is the curve with
-        half of it, of another curve there is none.
+        Where the points are kept, two or five: with chords and with corners between the points, and where heights have
+        nine digits or fewer three with heights moved by half a digit. Of a curve with a given distance of its knots it
+        is one, the curve with half of it (ScanError where the points determine none); of another curve there is none.
         """
         if not self.is_curve:
             return self.body.alternatives

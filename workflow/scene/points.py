@@ -331,9 +331,8 @@ class Smoothed(Piecewise):
     def kinks(self) -> tuple[float, ...]:
         """Middles [LU], rising, of the intervals between knots in which the slope jumps; empty without any.
 
-        There it rises at more than eight times its mean rate. The mean rate is the largest slope over the radius of the
-        last knot. What is infinite at a kink is then no number that depends on the distance of the knots. In the first
-        interval, at the apex, the slope may rise by any amount.
+        There it rises at more than eight times its mean rate, which is the largest slope over the radius of the last
+        knot. In the first interval, at the apex, the slope may rise by any amount: it is never among them.
         """
         cells = zip(pairwise(self.knots), pairwise(self.slopes), strict=True)
         steep = Points.sharp * max(self.slopes) / self.reach

@@ -43,10 +43,10 @@ Row = tuple[int, list[str]]
 def take_points(scene: Place, folder: Path) -> dict[str, list[float]]:
     """Return the lists r and z, or x and z, of the file in `folder` that the profile of a scene names.
 
-    Both are in one unit, which is put into the scene as the profile's `scale` where none is given: a text, "1 µm", or
-    without units in the file 1, one LU. Empty where the profile names no file; where it has lists of its own beside it,
-    and where the file, its units or the scale are wrong, which is reported. Of a profile with such an error only its
-    kind remains in the scene.
+    Both are in one unit, which is put into the scene as the profile's `scale` where none is given: a text, "1 µm", of
+    the file's names or of the key `units`, or without units 1, one LU. Empty where the profile names no file; where it
+    has lists of its own beside it, and where the file, its units or the scale are wrong, which is reported. Of a
+    profile with such an error only its kind remains in the scene.
     """
     profile, file, scale, units = (scene.find(f"bodies.profile{key}") for key in ("", ".file", ".scale", ".units"))
     if not profile or not file or not scale or not units or not isinstance(file.value, str):
@@ -130,13 +130,13 @@ def put_points(scene: Place, lists: dict[str, list[float]]) -> None:
 
 
 def read_profile(path: Path, scan: bool) -> tuple[dict[str, list[float]], str | None, float]:
-    """Return (lists of a measured profile, unit of positions, ratio of the unit of heights to it).
+    """Return (lists of a measured profile by name, unit of positions, ratio of the unit of heights to it).
 
     The lists are "r" and "z", rising from the axis out, where points may begin at the edge, and those from −x to x are
     folded into the mean of both sides. Of a `scan`, and of an instrument's file, they are "x" and "z", all points in
-    their order. The unit is a text, "1 µm"; without units it is None, which stands for LU, and the ratio 1. Messages
-    name lines and never quote them: a path in a scene may point at any file. Lines that begin with #, empty lines and
-    lines before the table are skipped, columns of other names ignored.
+    their order. Numbers are as in the file, heights in their own unit. The unit is a text, "1 µm"; without units it is
+    None, which stands for LU, and the ratio 1. Messages name lines and never quote them. Lines that begin with #, empty
+    lines and lines before the table are skipped, columns of other names ignored.
 
     Raises:
         UnreadableError: there is no such file, or it is no text, or has more than 8 MB.
@@ -182,8 +182,8 @@ def _from_the_axis(r: list[float], z: list[float]) -> dict[str, list[float]]:
 def rows_in(lines: list[str], most: int = 100_000) -> list[Row]:
     """Return (line number from 1, cells as text) of each line of a file that has content.
 
-    Lines that begin with # are left out, and a first line "sep=;". Where no number has a decimal point, decimal commas
-    become points.
+    Lines that begin with # are left out, and a first line that names a separator, "sep=;". Where no number of the file
+    has a decimal point, decimal commas become points.
 
     Args:
         lines: of the file.
@@ -280,7 +280,8 @@ def units_of(names: list[str], below: list[str], columns: Sequence[int]) -> tupl
 
     Args:
         names: of all columns, with units or without.
-        below: cells of the next line, which counts as that of units where it has no digits and the names no units.
+        below: cells of the next line, which counts as that of units where it has a cell for each name, none of them
+            empty or with a digit, and the names of `columns` have no units.
         columns: indices of the columns.
     """
     units = [match[2].strip() if (match := NAME.match(names[column].strip('" '))) else "" for column in columns]
@@ -330,18 +331,19 @@ def _column_of(line: int, words: list[str], allowed: tuple[str, ...]) -> int:
 
 
 def _rising(values: list[float]) -> bool:
-    """Return whether each value exceeds the one before it; True of fewer than two."""
+    """Return whether each value exceeds the one before it, so that equal ones do not rise; True of fewer than two."""
     return all(after > before for before, after in pairwise(values))
 
 
 def _folded(x: list[float], z: list[float]) -> tuple[list[float], list[float]]:
     """Return (radii, heights): the mean of both sides of a profile with rising positions x from −x to x.
 
-    Radii rise from the middle on: from 0 for an odd number of points, from half a step for an even one.
+    Radii rise from the middle on: from 0 for an odd number of points, from half a step for an even one. At least two
+    points are needed, else ZeroDivisionError.
 
     Raises:
-        ProfileFileError: positions differ by more than 0.001 of a mean step, or heights by more than 5 % of the
-            profile's.
+        ProfileFileError: the two sides differ: positions by more than 0.001 of a mean step, or heights by more than 5 %
+            of the highest over the lowest.
     """
     positions, heights = (list(zip(values, values[::-1], strict=True))[len(x) // 2 :] for values in (x, z))
     difference, height, problem = max(abs(right - left) for right, left in heights), max(z) - min(z), ""

@@ -92,7 +92,8 @@ class Scene(Tables):
     def moved(self, key: str, factor: float) -> Scene:
         """Return a copy of the scene with the number at a dotted key times a factor, unchecked; its ± are unchanged.
 
-        A flat punch keeps its number of particles: given spacing and stiffness change with its radius.
+        A flat punch keeps its number of particles: with its radius a given spacing, and with that a given normal
+        stiffness, change by the same factor.
 
         Raises:
             KeyError: there is no such key.
@@ -119,7 +120,8 @@ class Scene(Tables):
             keywords: more changes, the keys' dots written as two underscores; they have priority.
 
         Raises:
-            SceneError: the changed scene is not valid, or an effect to remove is absent; with every problem at once.
+            SceneError: the changed scene is not valid, or an effect to remove is absent, with every problem at once; or
+                `changes` is no mapping.
         """
         given: object = {} if changes is None else changes
         if not isinstance(given, Mapping):

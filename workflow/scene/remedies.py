@@ -10,10 +10,10 @@ from contact1d.workflow.scene.read import Scene
 
 
 def less_compression(scene: Scene, carried: float | None = None) -> Iterator[SceneEdit]:
-    """Yield an edit of the scene with a smaller compressive force of the experiment [FU], to three digits.
+    """Yield one edit of the scene with a smaller compressive force of the experiment [FU], to three significant digits.
 
-    Nothing is yielded where the experiment gives no single compressive force: a displacement, a tensile force, or a
-    list of forces.
+    Nothing is yielded where the experiment gives no single compressive force: displacements, a force ≤ 0, a list of
+    forces, or a history of them.
 
     Args:
         scene: with the experiment.
@@ -46,9 +46,9 @@ def against_passing(scene: Scene) -> Iterator[SceneEdit]:
 def longer_chain(scene: Scene) -> Iterator[SceneEdit]:
     """Yield edits of the scene against a contact that reaches the end of its chain, each for itself.
 
-    First more particles: twice as many of the upper chain, if its number is given and it is not periodic, with an
-    automatic number of lower ones; else an automatic number, if that is not automatic yet. Then a third of the
-    compressive force, where the experiment gives a single one. None may apply.
+    First more particles: twice as many of the upper chain, if its number is given and it is not periodic, with "auto"
+    as number of lower ones; else "auto" as number of particles, unless it is that already. Then a third of the
+    compressive force [FU], to three digits, where the experiment gives a single one. None may apply.
     """
     bodies = scene.bodies
     if bodies.upper_particles is not None and not bodies.periodic:

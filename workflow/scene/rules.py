@@ -44,11 +44,11 @@ from contact1d.workflow.scene.tables import (
 
 
 def _interaction(d: Draft) -> Rows:
-    """Yield the rules of range and amplitude of an attraction, and of a cutoff that is a number.
+    """Yield the rules b > a and A/a > B/b of an attraction, and that a cutoff exceeds the force-free distance.
 
-    A rule is (dotted key, whether it is broken, what is wrong, suggested fix) and for the first two the changes by
-    dotted key each of which helps; unbroken ones are yielded, too. No rule where amplitudes or ranges are unknown; only
-    the first, of the range, where that is broken.
+    A rule is (dotted key, whether it is broken, what is wrong, suggested fix), and for the first two a fifth item,
+    changes by dotted key [model units] each of which helps; unbroken ones are yielded, too. No rule where amplitudes or
+    ranges are unknown; only the first, of the range, where that is broken; none of a cutoff that is "auto" or wrong.
     """
     attraction, repulsion = "interaction.attraction", "interaction.repulsion"
     A, a, B, b = (d[f"{term}.{key}"] for term in (repulsion, attraction) for key in ("amplitude", "range"))
@@ -94,8 +94,9 @@ def _tension(d: Draft) -> Rows:
 def _normal_loads(d: Draft) -> Rows:
     """Yield the rules of the points of cycles, and of the normal forces or displacements of a tangential path.
 
-    A rule is (dotted key, whether it is broken, what is wrong, suggested fix); unbroken ones are yielded, too. Only the
-    first, of the points, for other experiments, and where it is broken or normal loads are unknown or given twice.
+    Points are a multiple of 4; normal loads are one, or as many as there are displacements; and one is above 0. A rule
+    is (dotted key, whether it is broken, what is wrong, suggested fix); unbroken ones are yielded, too. Only the first,
+    of the points, for other experiments, and where it is broken or normal loads are unknown or given twice.
     """
     given = [key for key in ("experiment.normal_force", "experiment.normal_displacement") if key in d]
     points = d["experiment.cycles.points"] or 0
@@ -165,10 +166,11 @@ def _needed(name: str, by: str) -> Row:
 
 
 def _excluded(d: Draft) -> Rows:
-    """Yield the rules of effects that an experiment excludes, and of those that exclude each other on a rigid plane.
+    """Yield a rule for each effect that the experiment excludes, then for effects that exclude each other on a plane.
 
     A rule is (name of the effect, True, what is wrong, suggested fix): it always counts as broken, and is reported only
-    where the scene has the effect. No rule of the former where the experiment is unknown.
+    where the scene has the effect, which is not asked here. None of the former where the experiment is unknown, none of
+    the latter where the lower body is no rigid plane.
     """
     possible = (kind for kind, table in KINDS.items() if not table.excludes.keys() & {*d.effects})
     alternative = next((f', or use kind = "{kind}"' for kind in possible), "")

@@ -145,7 +145,7 @@ def _either(words: tuple[str, ...]) -> str:
 
 
 def _range(allowed: Allowed) -> str:
-    """Return the range of a number as text with a blank before it, " from 0 to 1" or " greater than 0"; or ""."""
+    """Return the range of a number as text with a blank before it, " from 0 to 1" or " greater than 0"; "" without."""
     bounds = _bounds(allowed, RANGES)
     if {"minimum", "maximum"} <= bounds.keys():
         return f" from {bounds['minimum']:.10g} to {bounds['maximum']:.10g}"

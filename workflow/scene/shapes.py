@@ -96,9 +96,9 @@ class Shape(Table):
 
     @property
     def coarser(self) -> tuple[Shape, ...]:
-        """Bodies through fewer points, in place of an alternative that is no contact.
+        """Bodies through every second point, and through the others, by which the error due to the points is estimated.
 
-        Only those of measured profiles whose points are kept; empty for all others.
+        Two, one or none, of measured profiles whose points are kept; empty for all others.
         """
         return ()
 
@@ -113,7 +113,7 @@ class Shape(Table):
 
     @property
     def taken(self) -> Taken | None:
-        """The curve that is fitted to a scan, with its parameters; None for a profile that is no scan."""
+        """The curve that is fitted to a scan, also where the points are kept; None for a profile that is no scan."""
         return None
 
     @property

@@ -176,11 +176,12 @@ def default_reduction(has_material: bool, lower: str, profile: str) -> Reduction
 def wider_than_body(profile: Mapping[str, Any]) -> float | None:
     """Return the half-width of the paper's image over the contact radius of the body on a plane under the same force.
 
-    (2κ_n)^{1/(n+1)} for z ∝ xⁿ, dimensionless; None for punches, flats and measured profiles, and for a power without
-    an exponent.
+    (2κ_n)^{1/(n+1)} for z ∝ xⁿ, dimensionless; None for punches, flats, measured and unknown profiles, and for a power
+    without an exponent.
 
     Args:
-        profile: with the keys of a scene file. Of a circle or an ellipsoid the factor is that of its parabola.
+        profile: with the keys of a scene file; KeyError without "kind". Of a circle or an ellipsoid the factor is that
+            of its parabola.
     """
     exponents = {"cone": 1.0, "parabola": 2.0, "circle": 2.0, "ellipsoid": 2.0, "power": profile.get("exponent")}
     n = exponents.get(profile["kind"])
@@ -392,9 +393,9 @@ class Tables(Table):
 
     @property
     def keeps_springs(self) -> bool:
-        """Whether all effects keep the line load inside a contact as that of linear springs, regardless of its edge.
+        """Whether the line load inside a contact is that of independent linear springs, wherever its edge is.
 
-        All but [neighbours], [viscoelasticity] and [noise] do; True without effects.
+        False with [neighbours], [viscoelasticity] or [noise], else True.
         """
         return all(effect.keeps_springs for effect in self.present)
 
@@ -417,8 +418,8 @@ class Tables(Table):
         """Stiffness k [FU/LU] of each particle to its bulk along z: given, else that of the material.
 
         Two chains in series, or one on a rigid plane or chain, make the layer c: k = 2 c h or c h, with the spacing h;
-        c is E* with the MDR and E*/2 with "geike_popov". AssertionError where the material lacks the sizes of LU or FU,
-        or no spacing was chosen yet.
+        c is E* with the MDR and E*/2 with "geike_popov". AssertionError where the scene has no material or this lacks
+        the size of LU or FU, or where the spacing is still "auto".
         """
         given = self.bodies.bulk_stiffness
         if given != "auto":
@@ -457,7 +458,7 @@ class Tables(Table):
     def is_stepped(self) -> bool:
         """Whether particles follow the plate without relaxation, so that load steps are timesteps of one run.
 
-        That is in a quasi-static run on a rigid plane without [neighbours].
+        That is in a quasi-static run on a rigid plane without [neighbours] ([noise] makes a run dynamic).
         """
         return self.stands and self.method == "quasistatic"
 

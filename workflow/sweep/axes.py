@@ -64,9 +64,10 @@ class Axis:
 
     @cached_property
     def cells(self) -> tuple[Any, ...]:
-        """The values as cells of the table: floats, of texts with units in SI, if all are such and of one unit; cached.
+        """The values as cells of the table: floats, in base units of SI if they are texts with units; cached.
 
-        Else numbers and texts as they are, and others (True, False, tables, lists) as text in TOML.
+        That is where all are finite numbers, or all are texts with one unit in SI. Else numbers and texts, also with
+        units, are left as they are, and others (True, False, tables, lists) become text in TOML.
         """
         return self.numbers[0] or tuple(
             value if isinstance(value, str | int | float) and not isinstance(value, bool) else as_toml(value)
@@ -103,9 +104,10 @@ class SweepPlan:
         return self._combined(axis.values for axis in self.axes)
 
     def cells(self) -> Iterator[tuple[Any, ...]]:
-        """Yield the values of each point in order as cells of the table, a tuple with one for each axis: numbers in SI.
+        """Yield the values of each point in order as cells of the table, a tuple with one for each axis.
 
-        Words are as they are, others as text in TOML.
+        Those of an axis of numbers are floats; those of an axis of texts with one unit in SI are floats in base units
+        of SI. Other numbers and texts are as they are, tables, lists, True and False as text in TOML.
         """
         return self._combined(axis.cells for axis in self.axes)
 
@@ -113,7 +115,7 @@ class SweepPlan:
         """Yield a tuple of one item of each column for each point: all combinations, the last column quickest, or zip.
 
         Raises:
-            ValueError: side by side (zip), where the columns have different lengths.
+            ValueError: side by side (zip), at the end of the shortest column, where the columns have different lengths.
         """
         return itertools.product(*columns) if self.combine == "product" else zip(*columns, strict=True)
 
@@ -123,7 +125,7 @@ Rule = tuple[bool, str, str, object, str]
 
 
 def _broken(rules: Iterable[Rule]) -> list[Problem]:
-    """Return the problems of the rules that are broken, in their order; [] where none is."""
+    """Return a `Problem` for each rule that is broken, in their order, with the given value in TOML; [] without any."""
     return [
         Problem(path, message, None if given is None else shown(given), hint)
         for broken, path, message, given, hint in rules
@@ -134,8 +136,8 @@ def _broken(rules: Iterable[Rule]) -> list[Problem]:
 def read_sweep(source: AnySweep) -> SweepPlan:
     """Return the sweep that a TOML file, by its path, or a mapping with the keys of such a file describes.
 
-    The base scene is not checked. Paths in it are relative to the folder of the sweep file, or of the scene file that
-    it names; for a mapping to the current folder.
+    The base scene is not checked. Paths in it are relative to the folder of the sweep file, for a mapping to the
+    current one; where the sweep names a scene file, to the folder of that.
 
     Raises:
         SceneError: all problems of the sweep file; or those of the base scene's file, if it can't be read.
@@ -160,9 +162,9 @@ def read_sweep(source: AnySweep) -> SweepPlan:
 
 
 def _of_file(tables: Mapping[str, Any]) -> Iterator[Rule]:
-    """Yield each rule of the keys at the top of a sweep file, with whether it is broken.
+    """Yield each rule of the keys at the top of a sweep file, broken or not; none of the content of an axis.
 
-    All rules are yielded, also those that are met; none of the content of an axis.
+    A rule is (whether it is broken, key, what is wrong, value given or None, suggested fix).
     """
     title, combine, axes = tables.get("title", ""), tables.get("combine", "product"), tables.get("axes")
     scene, base = tables.get("scene"), tables.get("base")
@@ -182,18 +184,21 @@ def _of_file(tables: Mapping[str, Any]) -> Iterator[Rule]:
 
 
 def _unknown(table: Mapping[str, Any], allowed: Sequence[str], where: str = "") -> Iterator[Rule]:
-    """Yield the rule of each key of a table, broken where it is not among the `allowed` ones.
+    """Yield a rule for each key of a table, broken where the key is not among the `allowed` ones.
 
-    `where` precedes the name of the key in its path, such as "axes[0].".
+    A rule is (whether it is broken, key, what is wrong, None, suggested fix). `where` precedes the name of the key in
+    its path, such as "axes[0].".
     """
     for key in table:
         yield key not in allowed, where + key, "unknown key", None, suggestion(key, allowed)
 
 
 def _of_axis(table: Any, where: str) -> Iterator[Rule]:
-    """Yield each rule of the table of one axis, with whether it is broken; only one, broken, where it is no table.
+    """Yield each rule of the table of one axis, broken or not; only one, broken, where it is no table.
 
-    `where`: its path in the sweep file, such as axes[0].
+    A rule is (whether it is broken, key, what is wrong, value given or None, suggested fix). Those of the ends (from,
+    to, steps, scale) are yielded only without `values`, and one broken rule in place of them where an end or steps is
+    missing. `where`: its path in the sweep file, such as axes[0].
     """
     if not isinstance(table, Mapping):
         yield True, where, "must be a table with key and values", table, ""
@@ -216,9 +221,10 @@ def _of_axis(table: Any, where: str) -> Iterator[Rule]:
 
 
 def _of_span(table: Mapping[str, Any], where: str) -> Iterator[Rule]:
-    """Yield each rule of an axis that is given by its ends, with whether it is broken.
+    """Yield each rule of an axis that is given by its ends, broken or not.
 
-    `table` has the keys from, to and steps; `where`: its path in the sweep file, such as axes[0].
+    A rule is (whether it is broken, key, what is wrong, value given, suggested fix). `table` has the keys from, to and
+    steps, else KeyError; scale is "linear" where it is absent. `where`: its path in the sweep file, such as axes[0].
     """
     given, steps, scale = (table["from"], table["to"]), table["steps"], table.get("scale", "linear")
     ends, _ = Axis("", given).numbers
@@ -235,9 +241,10 @@ def _of_span(table: Mapping[str, Any], where: str) -> Iterator[Rule]:
 
 
 def _of_axes(axes: Sequence[Axis], combine: str) -> Iterator[Rule]:
-    """Yield each rule of all axes together, with whether it is broken: different keys, lengths, number of points.
+    """Yield each rule of all axes together, broken or not: different keys, lengths, number of points.
 
-    Lengths must be equal only side by side (zip), and the number of points is limited to a million only in a product.
+    A rule is (whether it is broken, key, what is wrong, value given or None, suggested fix). Lengths must be equal only
+    side by side (zip), and the number of points is limited to a million only in a product.
     """
     keys, lengths = [axis.key for axis in axes], [len(axis.values) for axis in axes]
     for i, key in enumerate(keys):
@@ -251,10 +258,10 @@ def _of_axes(axes: Sequence[Axis], combine: str) -> Iterator[Rule]:
 
 
 def _span(table: Mapping[str, Any]) -> tuple[Any, ...]:
-    """Return the steps + 1 values of an axis given by its ends, which are exact: evenly spaced, or in equal ratios.
+    """Return the steps + 1 values of an axis given by its ends: evenly spaced, or with scale "log" in equal ratios.
 
-    They are whole numbers if ends and all values of a linear axis are whole; texts if the ends are, those between in
-    base units of SI; else floats. Values between are rounded to 12 digits.
+    They are int if the ends are int and all values of a linear axis are whole; texts if the ends are, both as given and
+    those between in base units of SI; else floats. The ends are exact, values between are rounded to 12 digits.
     """
     given, steps, scale = (table["from"], table["to"]), table["steps"], table.get("scale", "linear")
     ends, unit = Axis("", given).numbers
@@ -286,7 +293,7 @@ class Point:
     """A point of a sweep.
 
     Attributes:
-        values: the value of each axis.
+        values: the value of each axis, in the order of the axes, as the sweep file has it.
         scene: its scene; None where the values give no valid one.
         name: name of its run folder; "" without a scene.
         reason: why there is no scene; "" where there is one.
@@ -334,7 +341,7 @@ def require_keys(plan: SweepPlan) -> None:
 
 
 def name_of(scene: Scene) -> str:
-    """Return the first 16 hexadecimal digits of the SHA-256 of the scene without its title.
+    """Return the first 16 hexadecimal digits of the SHA-256 of the scene, with its defaults and without its title.
 
     Among a million points two names agree with a probability of 3e-8.
     """

@@ -35,15 +35,16 @@ DARK_TO_LIGHT = ("#440154", "#46327e", "#365c8d", "#277f8e", "#1fa187", "#4ac16d
 
 
 def sweep_charts(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> dict[str, Chart]:
-    """Return by name the chart of each result that changes, over the first axis with several values but the seed.
+    """Return a chart by result name, over the first axis with several values that is not the seed.
 
     They are in SI base units where these are known, else in units of the model. A result that changes by at most 1e-6
-    of its largest value, or that no run has, has no chart. Axes of positive values over a factor of 20 are logarithmic.
+    of its largest magnitude, or that no run has, has no chart. An axis of a chart is logarithmic if its values are
+    above 0 and span a factor of 20 or more.
 
     Args:
-        folder: folder of the sweep, with its table.
+        folder: folder of the sweep, with its table; FileNotFoundError without it.
         plan: the sweep.
-        units: the unit of each result, by name.
+        units: the unit of each result of the table, by name; others have no chart.
     """
     negligible_change = 1e-6  # relative: a result that a scene prescribes changes only by the accuracy of a search
     along, _ = roles_of(plan)
@@ -59,7 +60,9 @@ def sweep_charts(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> dic
 
 
 def _points(folder: Path, plan: SweepPlan, names: Iterable[str], places: Mapping[str, float]) -> dict[str, DataFrame]:
-    """Return by result a table with a row for each value, of runs and of closed forms; no entry without a value.
+    """Return a table by result name, with a row for each value of a run, and for that of each closed form of that run.
+
+    A result without a value has no entry.
 
     Column `label` has the values of the axes that distinguish lines ("" without any), `form` the name of the closed
     form ("" of a run), `place` the abscissa: a number of the axis along x, or the position of a word in it. `value` and
@@ -68,7 +71,7 @@ def _points(folder: Path, plan: SweepPlan, names: Iterable[str], places: Mapping
     Args:
         folder: folder of the sweep, with its table.
         plan: the sweep.
-        names: results.
+        names: results, each a column of the sweep's table, else KeyError.
         places: position of each word of the axis along x; empty where that has numbers.
     """
     from pandas import DataFrame
@@ -90,10 +93,12 @@ def _points(folder: Path, plan: SweepPlan, names: Iterable[str], places: Mapping
 
 
 def _lines(points: DataFrame) -> list[Series]:
-    """Return lines of the closed forms, then the runs as points in their colours, one series for each label.
+    """Return a line for each label and closed form, then a series of points for each label, the runs, in its colour.
 
-    Their values are in the unit of the table. Runs that differ by their seed alone are one point, the mean with its
-    standard error; a single one has its uncertainty.
+    Values are in the unit of the table, over rising abscissas. Runs of one label and abscissa (they differ by their
+    seed) are one point, the mean with its standard error; a single one has its uncertainty. A line has 200 points where
+    it has three abscissas or more, and all these and its values are above 0, else those of the runs; one alone is a
+    cross.
     """
     labels, forms = points.label.unique().tolist(), points.form.unique().tolist()
     theories, runs = [], []
@@ -132,17 +137,17 @@ def _dense(x: Array, values: Array, points: int = 200) -> tuple[Array, Array]:
 def roles_of(plan: SweepPlan) -> tuple[Axis, list[Axis]]:
     """Return (the axis along x, the axes that distinguish lines, [] for none).
 
-    Along x is the first axis, others distinguish lines; side by side (zip) there is one line. The seed and axes of one
-    value count as neither; where there are no others the first axis is along x.
+    Along x is the first axis that has several values and is not the seed (noise.seed), or without any the first axis of
+    all. The others of these distinguish lines, in order; none does side by side (zip).
     """
     axes = [axis for axis in plan.axes if axis.key != SEED and len(axis.values) > 1] or list(plan.axes[:1])
     return axes[0], [] if plan.combine == "zip" else axes[1:]
 
 
 def label_in(axis: Axis, cell: str) -> str:
-    """Return the text of a table's cell in a legend: in SI with a prefix if the axis has a unit, else unchanged.
+    """Return the text of a table's cell in a legend: unchanged, or of an axis with one unit "2.5 µm", with a prefix.
 
-    A number in SI has five digits.
+    `cell` is then a number in base units of SI, of which five digits are written; ValueError if it is none.
     """
     unit = axis.numbers[1]
     return str(Quantity(float(cell), 0.0, unit)) if unit else cell

@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 Task = tuple[Scene, Path]
+"""A checked scene and its run folder."""
 
 
 @dataclass(frozen=True)
@@ -55,8 +56,8 @@ class Sweep:
 
     Attributes:
         folder: folder with results.csv, figures, and a run folder for each point in runs/.
-        counts: number of points that ended as `done`, `failed`, `refused`, or are `missing`.
-        quantities: unit of each result, by name; the table has columns <name> and <name>_uncertainty.
+        counts: number of points by status, `done`, `failed`, `refused` or `missing`, without those that no point has.
+        quantities: unit of each result, of SI or of the model, by name; the table has <name> and <name>_uncertainty.
     """
 
     folder: Path
@@ -97,9 +98,10 @@ def sweep(
     Args:
         source: a sweep file, by its path, or its tables.
         folder: folder of the sweep; points that ran in it earlier are kept, also those that failed.
-        executor: "local", "slurm", or anything with the interface of `concurrent.futures`.
-        workers: processes, or jobs of Slurm, at a time; None: as many as there are processors.
-        figures: whether to draw, or the format: "png" (the same as True), "svg" or "pdf".
+        executor: "local", "slurm", or a `concurrent.futures.Executor`, which stays open.
+        workers: processes, or jobs of Slurm, at a time; None: as many as there are processors here, 16 for an executor
+            of the caller.
+        figures: whether to draw, or the format: "png" (the same as True), "svg" or "pdf"; not after an interruption.
         progress: informed of each point; None: nobody is.
         partition: partition of Slurm; None: its default.
 
@@ -108,6 +110,7 @@ def sweep(
         FolderError: the folder holds another sweep or something else, or this sweep is active in it.
         ExecutorError: there is no such executor, or it refuses a job.
         OSError: the disk is full.
+        Contact1dError: pyarrow isn't installed, which the Parquet file of 100 000 points or more needs.
     """
     plan = read_sweep(source)
     require_keys(plan)
@@ -149,8 +152,9 @@ def _record(plan: SweepPlan) -> str:
 
 
 def _continues(folder: Path, record: str, progress: Progress) -> bool:
-    """Return whether the folder holds a sweep with the same base scene and keys of axes, in order; values may differ.
+    """Return whether the folder holds a sweep with the same base scene and the same keys of axes, in the same order.
 
+    The values of axes, their combination (product or zip) and the title may differ.
     A record that can't be read is replaced where there are runs, and `progress` says so: True then, False without runs.
     `record`: text of the sweep file of today.
     """
@@ -170,7 +174,8 @@ def _missing(plan: SweepPlan, folder: Path, rows: list[str | Answer], progress: 
     Args:
         plan: the sweep.
         folder: folder of the sweep.
-        rows: list that gets the folder name of each point, in order, or the refusal of one without a valid scene.
+        rows: list to which the name of the run folder of each point is added, in order, or the outcome `refused` of one
+            without a valid scene.
         progress: informed of refusals, of points that are done and of those with the scene of an earlier one.
     """
     seen = set()
@@ -226,7 +231,8 @@ def _through(
         tasks: scenes with their folders.
         chunk: tasks that are submitted together.
         window: chunks that run or wait.
-        broken: list that gets the tasks of a process that died; no further task is then submitted.
+        broken: list to which the tasks of a process that died are added, without an outcome; no further task is then
+            submitted, and those remain in `tasks`.
 
     Raises:
         OSError: the disk is full.
@@ -276,9 +282,9 @@ def attempt_all(tasks: Sequence[Task]) -> list[Answer]:
 
 
 def _attempt(scene: Scene, folder: Path) -> Answer:
-    """Return the outcome of a scene after running it: done, refused (no valid scene or settings), or failed, with why.
+    """Return the outcome of a scene after running it: done, refused (no valid scene or settings), or failed.
 
-    It has no results, which are in the run folder.
+    Its reason is the message of the error, "" of `done`. It has no results, which are in the run folder.
 
     Raises:
         OSError: the disk is full, which stops all other points, too.
@@ -300,7 +306,7 @@ def _finish(plan: SweepPlan, folder: Path, rows: Sequence[str | Answer], answers
     Args:
         plan: the sweep.
         folder: folder of the sweep.
-        rows: folder name or refusal of each point so far, in order; the others are `missing`.
+        rows: name of the run folder, or outcome `refused`, of each point so far, in order; the others are `missing`.
         answers: outcomes that were not `done`, by folder name; those in run folders have priority.
 
     Raises:
@@ -352,6 +358,9 @@ def workplace_of(
 ) -> Workplace:
     """Return the executor for the points of a sweep, and how many it is given at a time; it is opened when it is used.
 
+    Points are submitted one by one, up to 4 for each worker at a time; to Slurm in jobs of 100 points, one for each
+    worker.
+
     Args:
         executor: "local", "slurm", or one that the caller opened and will close.
         workers: processes here, or jobs at a time; None: as many as there are processors, 16 for an executor of the
@@ -400,6 +409,7 @@ def _partition(wanted: str | None) -> str:
 
     Raises:
         ExecutorError: Slurm doesn't answer, or has no such partition.
+        FileNotFoundError: there is no `sinfo` on this machine.
     """
     from subprocess import run
 

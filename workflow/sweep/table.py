@@ -39,7 +39,8 @@ class Answer:
         status: `done`, `failed`, `refused` (no valid scene), or `missing` (not run yet).
         reason: why it is not done, or its warnings.
         run: run folder, relative to that of the sweep; empty where there is none.
-        results: the reported results, by name.
+        results: the reported results by name, each in SI where the scene gives its unit's size, else in units of the
+            model.
     """
 
     status: str
@@ -49,10 +50,10 @@ class Answer:
 
 
 def answer_in(folder: Path) -> Answer | None:
-    """Return the outcome of the run in a folder of a sweep, "done" or "failed", with its results in SI where known.
+    """Return the outcome of the run in a run folder, "done" or "failed"; None if results.json is missing or invalid.
 
-    Its reason is the message of the error, or the names of warnings, "" without any. None where no run ended there or
-    its results.json is invalid.
+    Its results are in SI where the scene gives the size of their unit, else in units of the model; those without a
+    value are left out. Its reason is the message of the error, or "warnings: " and their names, or "" without any.
     """
     document = document_in(folder)
     if not document:
@@ -66,18 +67,18 @@ def answer_in(folder: Path) -> Answer | None:
 def write_table(
     folder: Path, axes: Sequence[Axis], rows: Callable[[], Iterable[tuple[tuple[Any, ...], Answer]]]
 ) -> dict[str, str]:
-    """Write results.csv, in SI where it is known, in two passes over the runs with a single run in memory.
+    """Write results.csv, in two passes over the runs with a single run in memory; an earlier file is replaced.
 
-    A result that a run lacks, or whose unit differs from that in the first run that has it, is left empty. An earlier
-    file is replaced.
+    Columns are the axes, status, reason, run, and each result with its uncertainty; one in SI has its unit in its name.
+    A result that a run lacks, or whose unit differs from that in the first run that has it, is left empty.
 
     Args:
         folder: folder of the sweep.
         axes: axes of the sweep.
-        rows: returns the rows in order, each time anew: cells of the axes, and the outcome.
+        rows: returns the rows in order, each time anew: (cells of the axes, outcome).
 
     Returns:
-        The unit of each result, by name.
+        The unit of each result by name, of SI or of the model, from the first run that has it; {} without results.
     """
     units = _units(answer for _, answer in rows())
     columns = [column for name in units for column in columns_of(name)]
@@ -103,9 +104,10 @@ def columns_of(name: str) -> tuple[str, str]:
 
 
 def frame_of(folder: Path) -> DataFrame:
-    """Return the table of a sweep as a pandas.DataFrame, a row for each point, texts without the mark for spreadsheets.
+    """Return results.csv of a sweep as a pandas.DataFrame, a row for each point, in order.
 
-    A column in SI has its unit in its name, as in `radius [m]`. Empty cells are NaN.
+    A column in SI has its unit in its name, as in `radius [m]`; without one, results are in units of the model. Empty
+    cells are NaN. Texts lack the apostrophe by which no spreadsheet takes them for a formula, `'=1+1` in the file.
 
     Raises:
         FileNotFoundError: the folder has no results.csv.
@@ -116,9 +118,10 @@ def frame_of(folder: Path) -> DataFrame:
 
 
 def write_parquet(folder: Path) -> None:
-    """Write the table in results.csv as results.parquet as well, in place of an earlier one.
+    """Write the table in results.csv as results.parquet as well, in place of an earlier one; NaN for empty cells.
 
     Raises:
+        FileNotFoundError: the folder has no results.csv.
         Contact1dError: pyarrow isn't installed.
     """
     if find_spec("pyarrow") is None:
@@ -151,9 +154,12 @@ def read_record(folder: Path) -> SweepPlan:
 
 
 def units_in(folder: Path) -> dict[str, str]:
-    """Return the unit of each result of a sweep by name, in SI where it is known, from the first run that has it.
+    """Return the unit of each result of a sweep by name, of SI or of the model, from the first run that has it.
 
     The runs of the table in `folder` are read; points that did not run have none. Empty without results.
+
+    Raises:
+        FileNotFoundError: the folder has no results.csv.
     """
     return _units(filter(None, (answer_in(folder / row["run"]) for row in read_table(folder))))
 
@@ -170,7 +176,10 @@ def _units(answers: Iterable[Answer]) -> dict[str, str]:
 def counts_in(folder: Path) -> dict[str, int]:
     """Return how many points of a sweep's table ended as `done`, `failed`, `refused`, or are `missing`, by status.
 
-    Counts of 0 are left out.
+    A status that no point has is left out.
+
+    Raises:
+        FileNotFoundError: the folder has no results.csv.
     """
     return dict(Counter(row["status"] for row in read_table(folder)))
 
@@ -178,10 +187,10 @@ def counts_in(folder: Path) -> dict[str, int]:
 def read_table(folder: Path) -> Iterator[dict[str, str]]:
     """Yield the rows of results.csv as dicts: cells as text, "" for empty ones, by the names of columns without units.
 
-    Texts lack the mark for spreadsheets.
+    Texts lack the apostrophe by which no spreadsheet takes them for a formula, `'=1+1` in the file.
 
     Raises:
-        FileNotFoundError: at the first row; the folder has no results.csv.
+        FileNotFoundError: with the first row that is asked for; the folder has no results.csv.
     """
     with (folder / TABLE).open(newline="", encoding="utf-8") as file:
         rows = csv.reader(file)

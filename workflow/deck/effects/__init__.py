@@ -38,12 +38,12 @@ class Contribution:
 
     Attributes:
         name: the effect, the scene's table.
-        stage: where its fragment stands.
+        stage: order of its fragments among those of all parts.
         fragments: names in `lammps_inputs/fragments`, in order.
         variables: LAMMPS variables that the fragments need, name to value.
         pair_style: its part of the shared slot `pair_style`, or "".
         atom_style: its part of the shared slot `atom_style`, where atoms have more than bonds, or "".
-        step_begin, step_end: fragments around every measurement.
+        step_begin, step_end: names of fragments before and after every measurement.
         integrates: the atom group whose motion its fragment integrates, or "": a group has one integrator at most.
         pushes: the LAMMPS variable of a force [FU] other than contact and load that presses the upper body onto the
             lower one, or "".
@@ -62,14 +62,14 @@ class Contribution:
 
 
 def number(value: float) -> str:
-    """Return a number as LAMMPS text that reads back to the same double: "0.1", "1e-09"."""
+    """Return a number as LAMMPS text that reads back to the same double: "0.1", "1e-09"; a whole one as "2.0"."""
     return repr(float(value))
 
 
 def sphere_radius(scene: Scene, settings: Settings) -> float:
     """Return the radius [LU] of particles that are spheres, which friction needs; 0 where they are points.
 
-    It is four times the largest displacement or the spacing, whichever is larger.
+    It is four times the larger one of the largest displacement and the spacing of the lower body.
     """
     deepest = max(settings.largest_displacement, scene.bodies.spacing)
     return 4.0 * deepest if scene.friction else 0.0  # a wall loses a sphere that overlaps it further
@@ -86,7 +86,8 @@ def skin(scene: Scene) -> float:
 def first_upper_anchor(scene: Scene, settings: Settings) -> int:
     """Return the atom ID, counted from 1, of the first upper anchor.
 
-    It comes after the particles of both bodies and the lower anchors, which a rigid chain and a rigid plane lack.
+    It comes after the particles of both bodies and the lower anchors; a rigid chain has no anchors, a rigid plane no
+    atoms. Where particles are fixed in the upper body there is no atom of this ID.
     """
     below = {"particles": 2, "rigid_chain": 1, "rigid_plane": 0}[scene.bodies.lower]
     return settings.chains.upper + below * settings.chains.lower + 1

@@ -12,8 +12,10 @@ from contact1d.workflow.scene import Adhesion, Scene
 def adhesion(scene: Scene, settings: Settings) -> Contribution:
     """Return the deck part (fragments, variables) of adhesion to a rigid plane, in the units of the arguments.
 
-    One without fragments where W is 0; the fragment "cohesion" with a range or a rate, else "adhesion". The constants
-    of each particle are in a separate file.
+    One without fragments and variables where W is 0. With a range or a rate it is the fragment "cohesion", with the
+    stiffness of a particle, that per length, E*, and the stress σ₀, 0 without a range. Else "adhesion", with that
+    stiffness and the displacements from which on bodies touch and below which they have separated. The constants of
+    each particle are in a separate file.
     """
     effect, stiffness = scene.the(Adhesion), {"adhesion_stiffness": number(scene.bulk_stiffness)}
     if not effect.work:

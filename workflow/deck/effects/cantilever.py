@@ -15,8 +15,9 @@ from contact1d.workflow.scene import Cantilever, Scene
 def cantilever(scene: Scene, settings: Settings) -> Contribution:
     """Return the deck part (fragments, variables) of the spring along x and its drive, in the units of the arguments.
 
-    Velocity and timestep are lists with a value for each leg of the drive. The fragments that start the drive and begin
-    further legs are those of phases, and not in it.
+    Variables are the atom ID of an upper anchor, the stiffness, the drag of a particle and of the plate, and as lists,
+    with a value for each leg of the drive, velocity and timestep. A fragment after each measurement adds up energies.
+    The fragments that start the drive and begin further legs are those of phases, and not in it.
     """
     legs = settings.motion.drive
     velocities, clocks = [leg.velocity for leg in legs], [leg.time_step for leg in legs]

@@ -8,7 +8,7 @@ from contact1d.workflow.scene import Scene
 def damping(scene: Scene, settings: Settings) -> Contribution:
     """Return the deck part (fragments, variables) of the drag on the particles, in the units of the arguments.
 
-    With noise it has neither, since the thermostat includes this drag.
+    With noise it has no fragment and no variable, since the thermostat includes this drag.
     """
     if scene.noise:
         return Contribution("damping", Stage.DRAG, ())

@@ -8,7 +8,8 @@ from contact1d.workflow.scene import Friction, Scene
 def friction(scene: Scene, settings: Settings) -> Contribution:
     """Return the deck part (fragments, variables) of friction on a rigid plane, in the units of the arguments.
 
-    It has the `atom_style` sphere: the particles are spheres in system.data.
+    Variables are the normal stiffness of the plane, the tangential one of a particle, μ, and the height z of the wall,
+    the negative radius of the particles. It has the `atom_style` sphere: particles are spheres in system.data.
     """
     variables = {
         "friction_normal_stiffness": number(settings.forces.plane_stiffness),

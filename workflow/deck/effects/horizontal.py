@@ -10,8 +10,9 @@ from contact1d.workflow.scene import Scene
 def horizontal(scene: Scene, settings: Settings) -> Contribution:
     """Return the deck part (fragments, variables) of the motion of particles along x.
 
-    Where springs are as stiff along x as along z it has no variables. Else also the bonds to the far anchors, with
-    their type, half the difference of the stiffnesses, length and the edge of bins, in the units of the arguments.
+    The fragment "horizontal" without variables where springs are as stiff along x as along z. Else also "far", the long
+    bonds that make up the difference, with their type, half the difference of the stiffnesses, length and the edge of
+    the bins of LAMMPS's neighbour lists, in the units of the arguments.
     """
     if settings.chains.far == 0.0:
         return Contribution("horizontal", Stage.SPRINGS, ("horizontal",))

@@ -8,8 +8,11 @@ from contact1d.workflow.scene import Scene
 def interaction(scene: Scene, settings: Settings) -> Contribution:
     """Return the deck part (fragments, variables) of the pair forces between opposite particles.
 
-    It has the `pair_style` table. Fragments around each measurement add up the forces on each particle. AssertionError
-    where the settings have no table.
+    It has the `pair_style` table, and as variable the skin of the neighbour lists, in the units of the arguments.
+    Fragments around each measurement add up the forces on each particle.
+
+    Raises:
+        AssertionError: the settings have no table.
     """
     assert settings.forces.table
     return Contribution(

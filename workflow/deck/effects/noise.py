@@ -8,9 +8,10 @@ from contact1d.workflow.scene import Noise, Scene
 def noise(scene: Scene, settings: Settings) -> Contribution:
     """Return the deck part (fragments, variables) of the Langevin thermostat of the particles.
 
-    Where the plate has a drag, also of a thermostat of one anchor. `fix langevin` takes the relaxation time m/γ, in the
-    units of the arguments. In a slide there are also a stronger drag for the time before the drive, where settings have
-    one, and fragments around each measurement that count the heat; in other experiments there are none of these.
+    Variables are k_BT, the relaxation time m/γ that `fix langevin` takes, in the units of the arguments, and the seed.
+    Where the plate has a drag, there is also a thermostat of one of its anchors. In a slide there are also the drag for
+    the time before the drive, where that is another one, and fragments around each measurement that count the heat; in
+    other experiments there are none of these.
     """
     variables = {
         "noise_temperature": number(scene.the(Noise).temperature),

@@ -8,9 +8,10 @@ from contact1d.workflow.scene import Plate, Scene
 def plate(scene: Scene, settings: Settings) -> Contribution:
     """Return the deck part (fragments, variables) of the rigid plate, in the units of the arguments.
 
-    Its mass, in system.data, and its drag are distributed over its anchors. The drag is 0 where there is noise, whose
-    thermostat has it. A plate of one anchor has a fragment of its own; one that a spring retracts also that of the
-    spring, and a wide one with an interaction that of larger bins.
+    Variables are the drag per anchor, 0 where there is noise, whose thermostat has it, and as a word of LAMMPS whether
+    the plate is free along x. Its mass is in system.data, distributed over its anchors. A plate of one anchor has a
+    fragment of its own; one that a spring retracts also that of the spring, and a wide one with an interaction that of
+    larger bins.
     """
     anchors = settings.chains.upper * (1 if settings.chains.far == 0.0 else 2)
     alone = anchors == 1

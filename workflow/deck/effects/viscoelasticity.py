@@ -11,9 +11,10 @@ from contact1d.workflow.scene import Scene, Viscoelasticity
 def viscoelasticity(scene: Scene, settings: Settings) -> Contribution:
     """Return the deck part (fragments, variables) of the viscoelastic springs, in the units of the arguments.
 
-    Fragments and variables for each term of the Prony series, in their order; with a retardation time those of springs
-    with a parallel dashpot. Load steps that are timesteps of one run have their own durations, else each lasts a
-    timestep of the motion.
+    Variables are the stiffness of the plane, the part of it that lasts, and share and time of each term of the Prony
+    series, each with fragments of its own, in their order; with a retardation time, in place of these, that time, with
+    the fragments of springs with a parallel dashpot. Load steps that are timesteps of one run have their own durations,
+    else each lasts a timestep of the motion.
     """
     effect, rows = scene.the(Viscoelasticity), scene.is_stepped
     fragments = ["elapsed_rows" if rows else "elapsed_steps"]
