@@ -242,9 +242,8 @@ def body(
 ) -> Chart:
     """Return the chart of a traction on the three-dimensional body over r, in a panel for each state.
 
-    Values of the run of more than 8 times their median magnitude in the state, near a pole at the edge, are left out, none where the
-    median is 0;
-    closed forms are drawn whole.
+    Values of the run of more than 8 times their median magnitude in the state, near a pole at the edge, are left out,
+    none where the median is 0; closed forms are drawn whole.
 
     Args:
         name: of the traction, and of its column.

@@ -85,6 +85,7 @@ UNREADABLE = {
     "names of another table": ("a:hunter2,b,c\n0,0,0\n", "line 1: the names of its 3 columns are not known"),
     "names only": ("r,z\n", "has no points"),
     "half a body": ("-1.5,2.25\n-0.5,0.25\n0.5,0.25\n1.5,2.25\n", "at least 4 points from the axis out, not 2"),
+    "one point left of the axis": ("-1.0,0.5\n", "at least 4 points from the axis out, not 1"),
     "no axis": (
         "-2.5,6\n-1.5,2\n-0.5,0\n0.5,0\n1.5,2\n2.5,6\n3.5,9\n-3,9\n",
         "radii must increase; -3 LU follows 3.5 LU",

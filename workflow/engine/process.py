@@ -90,7 +90,7 @@ class WorkerProcess:
     Attributes:
         ranks: number of its MPI ranks.
         pid: its process id; that of the launcher for several ranks.
-        last_output: the first 4000 bytes of its output, as text, once its end was found; "" before.
+        last_output: the last 4000 bytes of its output, as text, once its end was found; "" before.
     """
 
     def __init__(self, ranks: int) -> None:
@@ -225,13 +225,13 @@ class WorkerProcess:
     def _release(self) -> None:
         """Wait for the end of the worker, and release its files and memory; a second call only waits.
 
-        The first 4000 bytes of its output and its last timestep and steps are kept.
+        The last 4000 bytes of its output and its last timestep and steps are kept.
         """
         self._process.wait()
         self._connection.close()
         if not self._board_map.closed:
-            self._output.seek(0)
-            self.last_output = self._output.read(4000).decode(errors="replace").strip()
+            self._output.seek(max(0, self._output.seek(0, os.SEEK_END) - 4000))
+            self.last_output = self._output.read().decode(errors="replace").strip()
             self._last_board = self._board[0], self._board[1]
             self._board.release()
             self._board_map.close()

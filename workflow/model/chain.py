@@ -53,8 +53,7 @@ def require_body(bodies: Bodies, largest: float, particles: int) -> None:
     The latter reaches the height of the last particle of the longest chain that fits on a bounded profile. Refused too
     is a profile (after reduction) that falls within the chain, by more than 1e-5 of its rise between neighbours of 2001
     positions, since the contact would have several parts. A contact that is wider than its chain, but not than its
-    profile, is not refused here, and a body with a vertical edge never. `particles`: number of the upper chain, at the
-    spacing of the lower one.
+    profile, is not refused here, and a body with a vertical edge never. `particles`: number of the upper chain.
 
     Raises:
         SettingsError: names the most particles, the largest displacement, or the position at which the profile

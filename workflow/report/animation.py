@@ -8,6 +8,7 @@ from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -41,7 +42,7 @@ def animate(folder: AnyPath, out: AnyPath | None = None, frames_per_second: int 
         frames_per_second: states per second.
 
     Raises:
-        FolderError: the folder holds no run, or one of a single state or without states.npz.
+        FolderError: the folder holds no run, or one of a single state or without states.npz that can be read.
         RunError: the run failed.
         Contact1dError: the suffix is neither .gif nor .mp4, or MP4 is wanted without ffmpeg.
     """
@@ -54,7 +55,11 @@ def animate(folder: AnyPath, out: AnyPath | None = None, frames_per_second: int 
     kept = run.folder / "states.npz"
     if not kept.is_file() or len(run.curve.force) < 2:
         raise FolderError(f"{folder} has a single state; an animation needs a path, pull_off, tangential or slide")
-    _draw(run, read_states(kept), path, frames_per_second)
+    try:
+        states = read_states(kept)
+    except (OSError, ValueError, BadZipFile) as error:
+        raise FolderError(f"{kept} cannot be read ({error}): run the scene again") from None
+    _draw(run, states, path, frames_per_second)
     return path
 
 

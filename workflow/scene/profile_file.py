@@ -172,7 +172,7 @@ def _from_the_axis(r: list[float], z: list[float]) -> dict[str, list[float]]:
         raise ProfileFileError(
             "its heights increase and its radii do not: the columns may be swapped; name them r and z"
         )
-    if r[0] < 0.0 and _rising(r):
+    if r[0] < 0.0 and _rising(r) and len(r) >= FEWEST_POINTS:
         r, z = _folded(r, z)
     if len(r) < FEWEST_POINTS:
         raise ProfileFileError(f"must have at least {FEWEST_POINTS} points from the axis out, not {len(r)}")
