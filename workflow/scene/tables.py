@@ -289,7 +289,7 @@ class Bodies(Table):
 
 
 class Accuracy(Table):
-    """Accuracy of the results; determines every numerical setting that the scene leaves open."""
+    """Accuracy of the results, for which the program chooses every numerical setting that the scene leaves open."""
 
     tolerance: RelativeTolerance = 1e-3
     """relative error allowed in the main results"""
