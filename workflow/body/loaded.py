@@ -99,8 +99,10 @@ class LoadedState:
     def heights(self, x: Array, shape: Shape | None = None) -> Array:
         """Return w c h(w x), (n,) [FU/LU], at positions x (n,) [LU] of the body, or of another `shape` in its place.
 
-        c is the stiffness of the springs per length, h the height of the shape above its apex under the reduction of
-        the scene (with the MDR the transformed one), w the width of the image over that of the body.
+        h is the height [LU] above the apex, with the MDR the transformed one; c the stiffness per length of one chain
+        (`layer`) [FU/LU²]; w is `image_ratio`: 2 where results are those of two equal spheres (Geike and Popov), else
+        1. Beyond the end of the profile it is NaN of a circle or an ellipsoid without the MDR, else finite without
+        meaning.
         """
         bodies = self.scene.bodies
         image = bodies if shape is None else bodies.model_copy(update={"profile": shape})

@@ -172,10 +172,12 @@ def significant_gap(estimate: Law, largest: float, share: float) -> float:
 
 
 def chain_length(scene: Scene, estimate: Law, largest: float, share: float) -> int:
-    """Return the number of particles of an automatic chain, at whose end force and reflection are at most a share.
+    """Return the number of particles of an automatic upper chain, at whose ends force and reflection are at most a
+    share.
 
-    It is even, and the chain no wider than the profile, even if force or reflection at its end are then larger. A body
-    with a vertical edge has as many as fit into it.
+    Of a flat punch, or another body with a vertical edge, it is as many as fit into it (`own_count`), even or odd,
+    whatever the other arguments. Of all others it is even, at the upper chain's spacing, with some more than are
+    needed, and the chain no wider than the profile, even if force or reflection at its end are then larger.
 
     Args:
         scene: whose chain it is.

@@ -170,9 +170,10 @@ class Settings:
 
 @lru_cache(maxsize=1)  # a scene whose spacing is chosen has its settings then
 def settings_for(scene: Scene, tolerance: float | None = None, calibration: Calibration | None = None) -> Settings:
-    """Return the settings of a scene, with a choice of every number that it leaves open.
+    """Return the settings of a scene, with a choice of every number that it leaves open but the spacing.
 
-    The latest result is cached: the same arguments return the same object.
+    An automatic spacing must have been replaced before (`with_spacing`). The latest result is cached: the same call
+    returns the same object.
 
     Args:
         scene: whose numbers are left open.
@@ -181,8 +182,9 @@ def settings_for(scene: Scene, tolerance: float | None = None, calibration: Cali
 
     Raises:
         SettingsError: the numbers are so far apart that no chain, table or timestep follows from them, a limit of
-            size is exceeded, an adhesive contact has no solution for the body, the body sticks after an impact, or the
-            bodies cannot carry the load.
+            size is exceeded, the profile falls within its chain or is covered by the contact, an adhesive contact has
+            no solution for the body, the body sticks after an impact, or the bodies cannot carry the load.
+        AssertionError: the spacing is "auto".
     """
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):

@@ -111,10 +111,12 @@ def _are_equal(first: tuple[str, float], second: tuple[str, float]) -> bool:
 
 
 def put_points(scene: Place, lists: dict[str, list[float]]) -> None:
-    """Replace the file of a profile by its points, in the scene: `lists` times the profile's scale [LU].
+    """Replace, in place, the table bodies.profile of a scene that names a file by one with the file's points.
 
-    The scale is a number by then. The keys file, scale and units are removed. Nothing is done without points or where
-    the profile has an error; points that are too large for a float are reported, and the profile remains.
+    It then has its kind, those of the keys centre, level, smooth and fit that it had, and the `lists` by their names, r
+    or x, and z, each number times the profile's scale [LU]; file, scale and units are gone. The scale must be a number
+    by then. Nothing is done if `lists` is empty or the profile has an error. Where a product is too large for a float,
+    that is reported at the scale, and the profile remains as it is.
     """
     profile = scene.find("bodies.profile")
     if not lists or not profile or not profile.sound:

@@ -67,10 +67,12 @@ def _parts(value: object) -> tuple[Any, Any] | None:
 
 
 def _read(place: Place, value: Any, spread: Any) -> tuple[Any, Fraction]:
-    """Return (value as a scene has it, half-width over its magnitude).
+    """Return (value as a scene has it, half-width over the magnitude of the value, exact).
 
-    The value is a float, or a text where it has a unit. The second is 0 for a value of 0, except with "%"; negative for
-    a negative half-width.
+    The value is a float if neither has a unit, or of a plain value with a half-width in %. Of "10 ± 0.1 mm" it is the
+    text "10 mm", with the unit of the half-width. A value that is no plain number is returned as written; with "%" it
+    is not checked. The magnitude of a temperature is the absolute one, 293.15 K of "20 °C". The second is 0 for a value
+    of 0, except with "%", and negative for a negative half-width.
 
     Args:
         place: key of the number.
@@ -78,7 +80,9 @@ def _read(place: Place, value: Any, spread: Any) -> tuple[Any, Fraction]:
         spread: half-width as written, with a unit, "%" or neither.
 
     Raises:
-        UnitTextError: one of them is no number, the units do not fit, or a half-width is a temperature in °C or °F.
+        UnitTextError: the half-width has no number; or without "%" the value is no number or quantity, a unit does not
+            fit the key, the value has a unit and the half-width has none, or the half-width is a temperature in °C or
+            °F.
     """
     number, half, text, units = _plain(value), _plain(spread), str(spread).strip(), place.unit.texts
     if not any(map(str.isdigit, text)):

@@ -49,10 +49,12 @@ class Axis:
 
     @cached_property
     def numbers(self) -> tuple[tuple[float, ...], str]:
-        """The values as (numbers, their common unit); those of texts with units in base units of SI; cached.
+        """The values as (numbers, their common unit), ((0.001, 2e-06), "m") of "1 mm" and "2 µm"; cached.
 
-        The unit is "" of plain numbers. ((), "") if a value is neither a finite number nor a text with a unit, if
-        numbers and texts are mixed, or if units differ.
+        Numbers stay, with the unit "". Texts with units are converted to the unit of SI of their dimension ("m", "N",
+        "J"; "1" of a percentage), so that mm and µm do not differ; but angles, and dimensions without a name in
+        `si_text`, keep number and unit, 80.0 and "°". ((), "") if a value is neither a finite number nor a text with a
+        unit, if numbers and texts are mixed, or if the units so obtained differ, as ° and rad.
         """
         if all(map(_is_number, self.values)):
             return tuple(map(float, self.values)), ""
