@@ -245,6 +245,15 @@ def test_a_body_may_be_as_wide_as_its_own_spacing_lets_it() -> None:
     assert np.ptp(atoms[UPPER][:, 0]) == pytest.approx(99 * 0.5)
 
 
+@pytest.mark.parametrize(("own", "particles"), [(None, 30), (None, 31), (0.5, 30), (1.3, 20)])
+def test_a_slide_begins_with_the_first_particle_half_way_between_two_opposite_ones(
+    own: float | None, particles: int
+) -> None:
+    atoms = written(slide(upper_offset=None, upper_spacing=own, particles=60, upper_particles=particles)).atoms
+    phase = (atoms[UPPER][:, 0].min() - atoms[LOWER][0, 0]) / SPACING
+    assert phase % 1.0 == pytest.approx(0.5)
+
+
 @pytest.mark.parametrize("displacement", [-0.5, 0.3])
 def test_an_automatic_chain_of_bodies_that_only_repel_ends_a_tenth_and_two_particles_beyond_what_is_felt(
     displacement: float,

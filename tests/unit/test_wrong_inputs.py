@@ -95,7 +95,7 @@ DOUBTFUL = [
     odd(E, "210 Pa", "softer than any gel: was 210 GPa meant?", "210 GPa"),
     odd(R, "50 m", "no ball of such a radius is smooth: check its unit", "50 mm"),
 ]  # fmt: skip
-"""Values that are allowed and look wrong; `test_plausibility` has their limits."""
+"""Values that are allowed and look wrong."""
 
 
 def lines(scene: Any, *set_: str) -> list[str]:
