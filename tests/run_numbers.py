@@ -1,9 +1,9 @@
 """The numbers of every run that a test makes, beside those of the record.
 
 A run is known by its scene, a fit by its data. What is compared is what it leaves: results with their uncertainties,
-closed forms, checks of validity, the number of steps and of warnings, and of each column of its tables two sums. Not
-compared are a run that the record does not have, thermal fluctuations, scenes that were run in more than one way, and
-numbers that another processor's arithmetic changed.
+closed forms, checks of validity, the number of steps, numbers in warnings, and of each column of its tables two sums.
+Not compared are a run that the record does not have, thermal fluctuations, scenes that were run in more than one way,
+and numbers that another processor's arithmetic changed.
 
 `RUN_NUMBERS=renew make test` writes the record anew. `RUN_NUMBERS=drop make test` takes out of it what this processor
 has otherwise; another one's arithmetic is had by GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F
@@ -29,8 +29,8 @@ import pytest
 RECORD = Path(__file__).with_name("run_numbers.json.gz")
 MOVED, WIDENED, SUMMED = 0.02, 0.02, 1e-4
 """What a result may move in its uncertainty; this, and a sum over a column, relatively."""
-ROUND_OFF, STEPS = 1e-7, 0.02
-"""Relative, of the largest result or column of the same unit; of numbers of steps."""
+ROUND_OFF = 1e-7
+"""Relative, of the largest result or column of the same unit."""
 LEFT_OUT = ("scene", "timing", "versions", "consistency", "units", "si", "deviation", "warnings")
 TEXTS = re.compile(r"[-+\d.eE]*|[-+]?inf|nan")
 Numbers = dict[str, tuple[float, float, str]]
@@ -72,7 +72,9 @@ def moved(now: Numbers, before: Mapping[str, tuple[float, float, str] | None]) -
             continue
         old, told, unit = kept
         least = ROUND_OFF * sizes[unit]
-        share = {"column": WIDENED if "uncertainty" in name else SUMMED, "steps": STEPS}.get(unit, MOVED)
+        share = {"column": WIDENED if "uncertainty" in name else SUMMED, "steps": WIDENED, "said": WIDENED}.get(
+            unit, MOVED
+        )
         size = old if unit == "steps" else told
         if not (abs(value - old) <= share * size + least and abs(doubt - told) <= WIDENED * told + least):
             found[name] = f"{value:.9g} ± {doubt:.4g}, before {old:.9g} ± {told:.4g}"
@@ -105,10 +107,11 @@ class NumbersOfRuns:
             return
         found = dict(leaves(document)) | dict(columns(Path(arguments[0]).parent))
         if timing := document.get("timing"):
-            found |= {
-                "steps": (timing["steps"], 0.0, "steps"),
-                "warnings": (len(document["warnings"]), 0.0, "warnings"),
-            }
+            found["steps"] = timing["steps"], 0.0, "steps"
+        for warning in document["warnings"]:
+            numbers = [float(text) for text in re.findall(r"\d+(?:\.\d+)?(?:e[-+]?\d+)?", warning["message"])]
+            named = f"warning {warning['name']}"
+            found |= {f"{named} {i}": (x, x, "said") for i, x in enumerate([float(len(numbers)), *numbers])}
         self._new.append(key_of(document))
         self.made.setdefault(self._new[-1], []).append(found)
 

@@ -93,15 +93,17 @@ def doubt_of_the_image(scene: Scene) -> dict[str, str]:
 def product(factor: float, unit: str, *powers: tuple[Quantity, float]) -> Quantity:
     """Return `factor` times the product of quantities, each to its power, as a quantity in `unit`.
 
-    The unit is taken as given, not computed. The uncertainty is, to first order, the sum of the absolute changes due to
-    each quantity; `factor` has none.
+    The unit is taken as given, not computed. The uncertainty is the largest change of the size of the product as each
+    quantity grows by its own; of a power below 1 to first order. `factor` has none.
 
     Raises:
         ZeroDivisionError: a quantity is 0, and its power below 1.
     """
     value, spread = factor, 0.0
     for quantity, power in powers:
-        part = quantity.value**power
-        change = power * quantity.value ** (power - 1.0) * quantity.uncertainty
-        value, spread = value * part, spread * abs(part) + abs(value * change)
+        part, size = quantity.value**power, abs(quantity.value)
+        change = (size + quantity.uncertainty) ** power - size**power
+        if power < 1.0:
+            change = abs(power * part / quantity.value) * quantity.uncertainty
+        value, spread = value * part, spread * abs(part) + (abs(value) + spread) * change
     return Quantity(value, spread, unit)
