@@ -1,9 +1,9 @@
 """The numbers of every run that a test makes, beside those of the record.
 
 A run is known by its scene, a fit by its data. What is compared is what it leaves: results with their uncertainties,
-closed forms, checks of validity, the number of steps, numbers in warnings, and of each column of its tables two sums.
-Not compared are a run that the record does not have, thermal fluctuations, scenes that were run in more than one way,
-and numbers that another processor's arithmetic changed.
+closed forms, checks of validity, numbers of steps and in warnings, the commands of its deck, and of each column of its
+tables two sums. Not compared are a run that the record does not have, thermal fluctuations, scenes that were run in
+more than one way, and numbers that another processor's arithmetic changed.
 
 `RUN_NUMBERS=renew make test` writes the record anew. `RUN_NUMBERS=drop make test` takes out of it what this processor
 has otherwise; another one's arithmetic is had by GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F
@@ -60,6 +60,13 @@ def columns(folder: Path) -> Iterator[tuple[str, tuple[float, float, str]]]:
                 yield f"{path.name} {name}", (math.fsum(values), math.fsum(map(abs, values)), "column")
 
 
+def deck(text: str) -> float:
+    """A number for the commands of a deck, without comments and computed numbers, which have many digits."""
+    commands = [line for line in text.splitlines() if not line.startswith("#")]
+    known = re.sub(r"\d[\d.]*\d{4}[\d.]*(?:e[-+]?\d+)?", "", "\n".join(commands))
+    return float(int(hashlib.sha256(known.encode()).hexdigest()[:12], 16) % 1_000_000)
+
+
 def moved(now: Numbers, before: Mapping[str, tuple[float, float, str] | None]) -> dict[str, str]:
     """What differs by more than it may, or is missing on one side, by its name."""
     found = dict.fromkeys(now.keys() ^ before.keys(), "missing")
@@ -108,6 +115,7 @@ class NumbersOfRuns:
         found = dict(leaves(document)) | dict(columns(Path(arguments[0]).parent))
         if timing := document.get("timing"):
             found["steps"] = timing["steps"], 0.0, "steps"
+            found["deck"] = deck(Path(arguments[0]).with_name("in.lammps").read_text(encoding="utf-8")), 0.0, "deck"
         for warning in document["warnings"]:
             numbers = [float(text) for text in re.findall(r"\d+(?:\.\d+)?(?:e[-+]?\d+)?", warning["message"])]
             named = f"warning {warning['name']}"
