@@ -157,11 +157,8 @@ def sweep_points(name: str) -> dict[tuple[float, ...], Scene]:
 
 def machine() -> str:
     """Kind of machine, without names: "x86_64 with 2 processors (AMD EPYC) under Linux"."""
-    known = (
-        re.search(r"^model name\s*:\s*([^\d\n]*)", CPUINFO.read_text(encoding="utf-8"), re.M)
-        if CPUINFO.exists()
-        else None
-    )
+    text = CPUINFO.read_text(encoding="utf-8") if CPUINFO.exists() else ""
+    known = re.search(r"^model name\s*:\s*([^\d\n]*)", text, re.M)
     words = re.sub(r"\(.*?\)", "", known[1]).strip() if known else ""
     kind = f" ({words})" if words else ""
     return f"{platform.machine()} with {os.cpu_count()} processors{kind} under {platform.system()}"

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
+Values = Array | Sequence[float]
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999933")
 """Okabe and Ito's colours, and one more."""
 MARKERS = "osD^vP*Xh"
@@ -34,9 +35,9 @@ class Series:
     """Points with a name; `spread` their uncertainty or None."""
 
     name: str
-    x: Array
-    y: Array
-    spread: Array | None = None
+    x: Values
+    y: Values
+    spread: Values | None = None
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,6 @@ class Panel:
         log: which axes are logarithmic, letters of "xy".
         title: in a corner.
         lines: whether the runs are lines, too.
-        coloured: whether the lines of theory have the colours of the runs, one for each.
         bound: where a dashed line is drawn across.
         mark: where a dotted one is drawn upright.
         view: limits of y.
@@ -63,7 +63,6 @@ class Panel:
     log: str = ""
     title: str = ""
     lines: bool = False
-    coloured: bool = False
     bound: float | None = None
     mark: float | None = None
     view: tuple[float | None, float | None] | None = None
@@ -82,27 +81,19 @@ def figure(caption: str, *panels: Panel) -> dict[str, Drawing]:
     return {"": Drawing(caption, panels)}
 
 
-def figure_of(drawing: Drawing) -> Figure:
-    """The panels side by side."""
+def save(drawing: Drawing, path: Path) -> None:
+    """Draw the panels side by side, and save them whole or not at all."""
     figure = new_figure(ONE if len(drawing.panels) == 1 else TWO)
     axes = figure.subplots(1, len(drawing.panels), squeeze=False)[0]
     for axis, panel in zip(axes, drawing.panels, strict=True):
         _draw(axis, panel)
-    return figure
-
-
-def save(drawing: Drawing, path: Path) -> None:
-    """Draw, and save whole or not at all."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    save_figure(figure_of(drawing), path)
+    save_figure(figure, path)
 
 
 def _draw(axis: Axes, panel: Panel) -> None:
     for i, one in enumerate(panel.theory):
-        colour = COLOURS[i % len(COLOURS)] if panel.coloured else THEORY
-        style = "" if len(one.x) == 1 else "-" if panel.coloured or not i else ("--", ":")[i % 2]
-        marker = "" if style else "+"
-        axis.plot(one.x, one.y, marker + style, markersize=14, color=colour, linewidth=1.2, label=one.name or None)
+        style = "+" if len(one.x) == 1 else ("--", ":")[i % 2] if i else "-"
+        axis.plot(one.x, one.y, style, markersize=14, color=THEORY, linewidth=1.2, label=one.name or None)
     for i, one in enumerate(panel.runs):
         colour, style = COLOURS[i % len(COLOURS)], "-" if panel.lines else MARKERS[i % len(MARKERS)]
         axis.errorbar(

@@ -81,12 +81,13 @@ def agreement(rows: Sequence[Row]) -> str:
 
 def margins_of(record: Record) -> dict[str, list[float]]:
     """By class, the distance of each judged row from its reference over what is allowed, 1 at most."""
-    found = {}
-    for answer in record.answers:
-        shares = [one.off / one.allowed for one in answer.rows if one.standing == "judged" and one.allowed > 0.0]
-        if kept := [share for share in shares if math.isfinite(share)]:
-            found[answer.name] = kept
-    return found
+    found = {
+        answer.name: [
+            one.off / one.allowed for one in judged(answer.rows) if one.allowed > 0.0 and math.isfinite(one.off)
+        ]
+        for answer in record.answers
+    }
+    return {name: shares for name, shares in found.items() if shares}
 
 
 def worst_deviation(rows: Iterable[Row]) -> float:

@@ -1,4 +1,4 @@
-"""A study: scenes, rows and a figure. One runner for the paper's studies, the hard cases and speed, and one record.
+"""A study: scenes, rows, and a figure. One runner for the paper's studies, the hard cases and speed, and one record.
 
 Scenes that a study names beforehand are run several at a time, each once for all studies; others as they are asked for
 (`Bench.run`). A finished run of the same scene and versions is not made again. The record is written as each study
@@ -20,12 +20,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from validation import doors
 from validation.age import today
 from validation.doors import Quantity, Run, Scene
-from validation.figures import Drawing, Panel, Series, figure, save
+from validation.figures import Drawing, save
 from validation.row import Bound, Reference, Row, at_most, verdicts
 
 Scenes = dict[str, Scene]
@@ -34,8 +32,6 @@ PATIENCE, FULL_PATIENCE = 180, 3600
 """Seconds of a run, LAMMPS and all else: what hangs has failed. The long form goes on beside other work for hours."""
 LONGEST = 160
 """Characters of a refusal in a row."""
-DRAWN = 1e-6
-"""Error over the allowed one that is drawn at least."""
 NOTHING = Quantity(math.nan, math.nan, "")
 """Stands for a result of a run that failed."""
 
@@ -132,9 +128,15 @@ class Bench:
 
 @dataclass(frozen=True)
 class Rows:
-    """Makes rows with the runs that they rest on and these runs' warnings."""
+    """Makes rows with the runs that they rest on and these runs' warnings.
+
+    Attributes:
+        runs: by name.
+        despite: why a row stands beside a warning of its runs, by the warning's name, where the row says nothing else.
+    """
 
     runs: Mapping[str, Run]
+    despite: Mapping[str, str] = field(default_factory=dict)
 
     def __call__(
         self,
@@ -147,9 +149,9 @@ class Rows:
         despite: Mapping[str, str] | None = None,
         **more: Any,
     ) -> Row:
-        """A row; `on`: names of its runs, `despite`: why it stands beside a warning of theirs, by name."""
+        """A row; `on`: names of its runs, `despite`: in place of the maker's."""
         warned = sorted({str(one["name"]) for run in on for one in self.runs[run].document.get("warnings", ())})
-        answers = {warning: (despite or {}).get(warning, "") for warning in warned}
+        answers = {warning: (despite or self.despite).get(warning, "") for warning in warned}
         if isinstance(value, Quantity):
             more = {"uncertainty": value.uncertainty, "unit": value.unit} | more
         return Row(name, float(value), reference, bound, runs=tuple(on), warnings=answers, **more)
@@ -261,13 +263,9 @@ def conduct(
     runs = folder / "runs"
     runs.mkdir(parents=True, exist_ok=True)
     started, workers = time.perf_counter(), workers or doors.cores()
-    shared = [study for study in chosen if study.scenes]
-    if shared:
+    if shared := [study.scenes for study in chosen if study.scenes]:
         paper = Bench(runs, runs).paper
-        needed: Scenes = {}
-        for study in shared:
-            assert study.scenes is not None
-            needed |= study.scenes(paper)
+        needed = {name: scene for scenes in shared for name, scene in scenes(paper).items()}
         tell(f"{len(needed)} runs")
         doors.finish(needed, runs, workers)
     known = _earlier(folder)
@@ -314,7 +312,7 @@ def answered(study: Study, folder: Path, full: bool) -> Answer:
         words = f"ended by {type(error).__name__}: {error}"
         found = Findings([at_most(words, math.nan, 0.0, "a study ends with rows", evidence="set bound")])
     captions = {}
-    for suffix, drawing in (found.figures or margins(found.rows)).items():
+    for suffix, drawing in found.figures.items():
         file = f"{study.name}{'_' * bool(suffix)}{suffix}.png"
         save(drawing, folder / file)
         captions[file] = drawing.caption
@@ -323,15 +321,6 @@ def answered(study: Study, folder: Path, full: bool) -> Answer:
         study.name, study.title, study.question, found.text, captions, list(found.rows), count,
         "full" if full else "quick", now.date, time.perf_counter() - started, now.commit,
     )  # fmt: skip
-
-
-def margins(rows: Sequence[Row]) -> dict[str, Drawing]:
-    """The figure of a study that draws none of its own: what each of its rows is off, over what it allows."""
-    with np.errstate(divide="ignore"):
-        off = np.asarray(np.clip(1.0 / np.array([row.margin for row in rows]), DRAWN, 1.0 / DRAWN), dtype=np.float64)
-    shown = Series("rows", np.arange(1.0, off.size + 1.0), off)
-    caption = "What each row is off over what it allows, in the order of the table; dashed: the bound"
-    return figure(caption, Panel("row", "error over the allowed one", [shown], log="y", bound=1.0))
 
 
 def found(run: Run, name: str) -> Quantity:
@@ -360,7 +349,6 @@ def over_claim(run: Run | Refused, name: str, exact: float, slack: float = 0.0) 
     return error / quantity.uncertainty if quantity.uncertainty > 0.0 else (0.0 if error == 0.0 else math.inf)
 
 
-def claim_row(words: str, run: Run | Refused, name: str, exact: float, source: str, slack: float = 0.0) -> Row:
+def claim_row(words: str, run: Run | Refused, name: str, exact: float, source: str) -> Row:
     """Error of a result over what the run claims, at most 1."""
-    value = over_claim(run, name, exact, slack)
-    return at_most(words, value, 1.0, source, said("what the run claims", run))
+    return at_most(words, over_claim(run, name, exact), 1.0, source, said("what the run claims", run))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from validation.references.grains import Impact, coeff_restitution, restoring, spheres, tsuji, viscoelastic
 
@@ -21,29 +21,36 @@ class Model:
     """A damped one.
 
     Attributes:
-        name: as in the manual.
-        words: of `pair_coeff`, with {} for the coefficient.
-        law: what the model states, solved by its coefficient.
+        damping: as in the manual.
+        force: what the model states, solved by its coefficient, and by whether it is limited.
+        limited: whether it has limit_damping.
     """
 
-    name: str
-    words: str
-    law: Callable[[float], Impact]
+    damping: str
+    force: Callable[[float, bool], Impact]
+    limited: bool = False
+
+    @property
+    def name(self) -> str:
+        """The keywords."""
+        return self.damping + " limit_damping" * self.limited
+
+    @property
+    def words(self) -> str:
+        """Of `pair_coeff`, with {} for the coefficient."""
+        return f"{HERTZ} {{}} damping {self.name}"
+
+    def law(self, coefficient: float) -> Impact:
+        """What the model states."""
+        return self.force(coefficient, self.limited)
 
 
-VISCOELASTIC = Model("viscoelastic", f"{HERTZ} {{}} damping viscoelastic", lambda eta: viscoelastic(eta, False))
-LIMITED = Model(
-    "viscoelastic limit_damping", f"{VISCOELASTIC.words} limit_damping", lambda eta: viscoelastic(eta, True)
+VISCOELASTIC = Model("viscoelastic", viscoelastic)
+RESTITUTION = Model("coeff_restitution", lambda e, limited: restoring(coeff_restitution(e), limited))
+TSUJI = Model("tsuji", lambda e, limited: restoring(tsuji(e), limited))
+LIMITED, LIMITED_RESTITUTION, LIMITED_TSUJI = (
+    replace(model, limited=True) for model in (VISCOELASTIC, RESTITUTION, TSUJI)
 )
-RESTITUTION = Model(
-    "coeff_restitution", f"{HERTZ} {{}} damping coeff_restitution", lambda e: restoring(coeff_restitution(e), False)
-)
-LIMITED_RESTITUTION = Model(
-    "coeff_restitution limit_damping", f"{RESTITUTION.words} limit_damping",
-    lambda e: restoring(coeff_restitution(e), True),
-)  # fmt: skip
-TSUJI = Model("tsuji", f"{HERTZ} {{}} damping tsuji", lambda e: restoring(tsuji(e), False))
-LIMITED_TSUJI = Model("tsuji limit_damping", f"{TSUJI.words} limit_damping", lambda e: restoring(tsuji(e), True))
 
 ELASTIC = {"hertz": f"{HERTZ} 0.0 damping velocity", "hertz/material": "hertz/material 1.82 0.0 0.3 damping velocity"}
 DAMPED = (VISCOELASTIC, LIMITED)

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from validation.grains import cases
 from validation.grains.cases import OURS, SPHERES, WORK_OF_ADHESION, at_number, row_name
 from validation.references.grains import kelvin_voigt
-from validation.row import Bound, Evidence, Reference, Row
-from validation.study import Bench, Findings, Refused, found, said
+from validation.row import Reference, Row, claim, solver
+from validation.study import NOTHING, Bench, Findings, Refused, found, said
 
 RADIUS, MASS = 1000.0, math.sqrt(1000.0)
 """[LU], [MU]: with E* = 1 and v = 1 the time T of a Kelvin-Voigt body is 1, and d about 1."""
@@ -32,38 +32,30 @@ STICKING = math.sqrt(
 
 def impacts(bench: Bench) -> Findings:
     """Kelvin-Voigt bodies, and adhesive ones."""
-    rows = []
+    rows: list[Row] = []
     for A in cases.NUMBERS:
         exact = kelvin_voigt(A)
         wanted = {"restitution": exact.restitution}
         if A in cases.TIMED:
             wanted |= {"contact_time": exact.contact_time, "peak_force": exact.peak_force}
-        source: tuple[str, Evidence] = "Kelvin-Voigt body, its motion integrated", "independent solver"
-        rows += _rows(
-            bench, at_number(A), 1.0, {"bodies": FINE, "viscoelasticity": {"retardation_time": A}}, wanted, *source
-        )
+        known = {name: solver(value, "Kelvin-Voigt body, its motion integrated") for name, value in wanted.items()}
+        body = {"bodies": FINE, "viscoelasticity": {"retardation_time": A}}
+        rows += _rows(bench, at_number(A), 1.0, body, known)
     for over in cases.OVER_STICKING:
-        wanted = {"restitution": math.sqrt(1.0 - over**-2) if over > 1.0 else 0.0}
+        known = {"restitution": Reference(math.sqrt(1.0 - over**-2) if over > 1.0 else 0.0, "e² = 1 − (v_s/v)²")}
         adheres = {"bodies": LONG, "adhesion": {"work_of_adhesion": WORK}}
-        at, velocity = f"v = {over:g} v_s", over * STICKING
-        rows += _rows(bench, at, velocity, adheres, wanted, "e² = 1 − (v_s/v)²", "closed form")
+        rows += _rows(bench, f"v = {over:g} v_s", over * STICKING, adheres, known)
     return Findings(rows)
 
 
 def _rows(
-    bench: Bench, at: str, velocity: float, tables: Mapping[str, Any], wanted: Mapping[str, float], source: str,
-    evidence: Evidence,
-) -> list[Row]:  # fmt: skip
-    scene: dict[str, Any] = {
-        "plate": {"mass": MASS}, "accuracy": TOLERANCE,
-        "experiment": {"kind": "impact", "velocity": velocity},
-    }  # fmt: skip
-    run = bench.run(at.replace(" ", ""), scene | dict(tables))
-    rows = []
-    for name, exact in wanted.items():
-        one = None if isinstance(run, Refused) else found(run, name)
+    bench: Bench, at: str, velocity: float, tables: Mapping[str, Any], known: Mapping[str, Reference]
+) -> Iterator[Row]:
+    experiment = {"kind": "impact", "velocity": velocity}
+    run = bench.run(at.replace(" ", ""), {**tables, "plate": {"mass": MASS}, "accuracy": TOLERANCE,
+                                          "experiment": experiment})  # fmt: skip
+    bound = claim(said("what the run states", run))
+    for name, exact in known.items():
+        one = NOTHING if isinstance(run, Refused) else found(run, name)
         unit = FORCE_UNIT if name == "peak_force" else 1.0
-        value, uncertainty = (one.value / unit, one.uncertainty / unit) if one else (math.nan, math.nan)
-        bound = Bound("claim", 0.0, said("what the run states", run))
-        rows.append(Row(row_name(OURS, at, name), value, Reference(exact, source, evidence), bound, uncertainty))
-    return rows
+        yield Row(row_name(OURS, at, name), one.value / unit, exact, bound, one.uncertainty / unit)

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from validation.figures import Drawing, Panel, Series
 from validation.grains import cases
@@ -23,7 +21,6 @@ DENSE = 25
 HEAD = ("model", "quantity", "LAMMPS", "exact", "deviation", "what to use")
 NOWHERE, STICK, EXACT = "–", "the spheres stick", "exact"
 JKR_IN_NAMES = {"jkr": "`jkr`", "dmt": "`dmt`", "nearest jkr": f"`jkr`, {cases.STRONGER:g} γ"}
-Array = NDArray[np.float64]
 
 
 class Rows(dict[str, Row]):
@@ -33,14 +30,10 @@ class Rows(dict[str, Row]):
         """Of all studies."""
         super().__init__({row.name: row for row in record.rows})
 
-    def ours(self, at: str, quantity: str) -> list[str]:
-        """A cell for the program's own result, or none where the record has none at all."""
-        if not any(name.startswith(OURS) for name in self):
-            return []
-        row = self.get(row_name(OURS, at, quantity))
-        if row is None:
-            return [NOWHERE]
-        return [measured(row.value, row.uncertainty, "1") if row.value else STICK]
+    def ours(self, at: str, quantity: str) -> str:
+        """A cell for the program's own result."""
+        row = self[row_name(OURS, at, quantity)]
+        return measured(row.value, row.uncertainty, "1") if row.value else STICK
 
     def of(self, models: Sequence[cases.Model], at: str, quantity: str = "restitution") -> list[Row]:
         """The rows of models at the same place."""
@@ -49,12 +42,7 @@ class Rows(dict[str, Row]):
     def beside(self, A: float, quantity: str = "restitution") -> list[str]:
         """Cells of a Kelvin-Voigt body: what is exact, the program's own, LAMMPS's without and with a limit."""
         found = self.of(cases.DAMPED, at_number(A), quantity)
-        return [value(found[0].reference.value), *self.ours(at_number(A), quantity), *map(both, found)]
-
-    @property
-    def our_head(self) -> list[str]:
-        """Its head."""
-        return [OURS] if any(name.startswith(OURS) for name in self) else []
+        return [value(found[0].reference.value), self.ours(at_number(A), quantity), *map(both, found)]
 
 
 def value(number: float) -> str:
@@ -144,13 +132,13 @@ def _quantity(name: str) -> str:
 
 def _viscoelastic(rows: Rows) -> str:
     lines = [[f"{A:g}", *rows.beside(A)] for A in cases.NUMBERS]
-    return table(["A", "exact restitution", *rows.our_head, *map(_words, cases.DAMPED)], lines)
+    return table(["A", "exact restitution", OURS, *map(_words, cases.DAMPED)], lines)
 
 
 def _times(rows: Rows) -> str:
     names = {"contact_time": "contact time [T]", "peak_force": "largest force [m v/T]"}
     lines = [[f"{A:g}", words, *rows.beside(A, name)] for A in cases.TIMED for name, words in names.items()]
-    return table(["A", "quantity", "exact", *rows.our_head, *map(_words, cases.DAMPED)], lines)
+    return table(["A", "quantity", "exact", OURS, *map(_words, cases.DAMPED)], lines)
 
 
 def _asked(rows: Rows) -> str:
@@ -169,13 +157,10 @@ def _nearest(rows: Rows) -> str:
             found = [rows[near_name(model, A, v)] for v in cases.DECADE]
             given = cases.NEAREST[model.name][place]
             words = f"e = {given:g}" if model is cases.RESTITUTION else f"η = {given:g} · 2 E* τ/m"
-            cells = [f"{value(row.value)} ({_signed(row.value - row.reference.value)})" for row in found]
+            errors = [f"{row.value - row.reference.value:+.4f}".replace("-", "−") for row in found]
+            cells = [f"{value(row.value)} ({error})" for row, error in zip(found, errors, strict=True)]
             lines.append([f"{A:g}", _words(model), words, *cells])
     return table(["A", "model", "nearest coefficient", "e at v/√10", "at v", "at √10 v"], lines)
-
-
-def _signed(error: float) -> str:
-    return f"{error:+.4f}".replace("-", "−")
 
 
 def _adhesive(rows: Rows) -> str:
@@ -186,8 +171,8 @@ def _adhesive(rows: Rows) -> str:
         assert found[0]
         exact = value(found[0].reference.value) if over > 1.0 else STICK
         cells = [both(row) if row and row.reference.value else value(row.value) if row else NOWHERE for row in found]
-        lines.append([f"{over:g}", exact, *rows.ours(at, "restitution"), *cells])
-    return table(["v/v_s", "exact restitution, JKR", *rows.our_head, *JKR_IN_NAMES.values()], lines)
+        lines.append([f"{over:g}", exact, rows.ours(at, "restitution"), *cells])
+    return table(["v/v_s", "exact restitution, JKR", OURS, *JKR_IN_NAMES.values()], lines)
 
 
 def _drawn(rows: Rows) -> str:
@@ -203,12 +188,9 @@ def _drawn(rows: Rows) -> str:
 
 
 def _wall(rows: Rows) -> str:
-    lines = []
-    for name, words in (
-        ("wall hertz/material", "`hertz/material E …`"), ("nearest wall hertz/material", "`hertz/material 2E …`"),
-    ):  # fmt: skip
-        row = rows[row_name(name, "", "E*")]
-        lines.append([words, value(row.value), value(row.reference.value), deviation(row)])
+    shown = {"`hertz/material E …`": "wall hertz/material", "`hertz/material 2E …`": "nearest wall hertz/material"}
+    found = {words: rows[row_name(name, "", "E*")] for words, name in shown.items()}
+    lines = [[words, value(row.value), value(row.reference.value), deviation(row)] for words, row in found.items()]
     return table(["`fix wall/gran granular`", "E*/E in LAMMPS", "E*/E of a rigid wall", "deviation"], lines)
 
 
@@ -218,33 +200,30 @@ def drawings(record: Record) -> Mapping[str, Drawing]:
     return {"grains_damped.png": _damped_drawing(rows), "grains_adhesive.png": _adhesive_drawing(rows)}
 
 
-def _points(rows: Rows, name: str, x: Sequence[float], names: Sequence[str]) -> Series:
-    found = [(at, rows[row].value) for at, row in zip(x, names, strict=True) if row in rows]
-    along, up = zip(*found, strict=True) if found else ((), ())
-    return Series(name, np.array(along), np.array(up))
+def _points(rows: Rows, label: str, x: Sequence[float], names: Sequence[str]) -> Series:
+    """What was found; nothing where there is no such row."""
+    return Series(label, x, [rows[name].value if name in rows else math.nan for name in names])
 
 
 def _damped_drawing(rows: Rows) -> Drawing:
-    at = np.geomspace(cases.NUMBERS[0], cases.NUMBERS[-1], DENSE)
-    exact = Series("exact, Kelvin-Voigt", at, np.array([kelvin_voigt(A).restitution for A in at]))
+    numbers = np.geomspace(cases.NUMBERS[0], cases.NUMBERS[-1], DENSE).tolist()
+    exact = Series("exact, Kelvin-Voigt", numbers, [kelvin_voigt(A).restitution for A in numbers])
     shown = {"viscoelastic": "viscoelastic", "viscoelastic limit_damping": "with limit_damping", OURS: OURS}
-    names = {name: [row_name(name, at_number(A), "restitution") for A in cases.NUMBERS] for name in shown}
-    points = [_points(rows, label, cases.NUMBERS, names[name]) for name, label in shown.items()]
-    of_decade = np.geomspace(cases.DECADE[0], cases.DECADE[-1], DENSE)
-    lines = [np.array([kelvin_voigt(A * v**0.2).restitution for v in of_decade]) for A in cases.TIMED]
-    curves = Series(
-        "exact, A = 0.1, 0.3, 1 at v = 1",
-        np.concatenate([part for _ in lines for part in (of_decade, [math.nan])]),
-        np.concatenate([part for line in lines for part in (line, [math.nan])]),
-    )
-    x = [v for _ in cases.TIMED for v in cases.DECADE]
+    at = [at_number(A) for A in cases.NUMBERS]
+    points = [
+        _points(rows, label, cases.NUMBERS, [row_name(name, one, "restitution") for one in at])
+        for name, label in shown.items()
+    ]
+    decade = np.geomspace(cases.DECADE[0], cases.DECADE[-1], DENSE).tolist()
+    lines = [(v, kelvin_voigt(A * v**0.2).restitution if v else math.nan) for A in cases.TIMED for v in [*decade, 0.0]]
+    curves = Series("exact, A = 0.1, 0.3, 1 at v = 1", *np.transpose(lines))
+    places = [(A, v) for A in cases.TIMED for v in cases.DECADE]
     near = [
-        _points(rows, model.name, x, [near_name(model, A, v) for A in cases.TIMED for v in cases.DECADE])
+        _points(rows, model.name, [v for _, v in places], [near_name(model, A, v) for A, v in places])
         for model in cases.FITTED
     ]
-    drawn = [one for one in points if one.x.size]
     panels = (
-        Panel("A = τ/T", "restitution", drawn, [exact], log="x", title="η = 2 E* τ/m"),
+        Panel("A = τ/T", "restitution", points, [exact], log="x", title="η = 2 E* τ/m"),
         Panel("velocity", "restitution", near, [curves], title="the nearest coefficients", view=(0.0, 1.0)),
     )
     return Drawing("Restitution of a Kelvin-Voigt body", panels)
@@ -252,22 +231,22 @@ def _damped_drawing(rows: Rows) -> Drawing:
 
 def _adhesive_drawing(rows: Rows) -> Drawing:
     beyond = np.linspace(0.0, math.sqrt(cases.DRAWN[0] - LATE[0]), 4 * DENSE) ** 2  # finer where the curve is steep
-    overlaps = np.concatenate([[LATE[0]], LATE[0] + 1e-9 + beyond])
-    forces = np.array([0.0] + [SPHERES.force_at(float(d) * LENGTH) / TENSION for d in overlaps[1:]])
+    overlaps = [LATE[0], *(LATE[0] + 1e-9 + beyond).tolist()]
+    forces = [0.0, *(SPHERES.force_at(overlap * LENGTH) / TENSION for overlap in overlaps[1:])]
     loop = Series("exact, JKR", overlaps, forces)
     pulled = _points(rows, "jkr", cases.DRAWN, [row_name("jkr", f"overlap {d:g}", "force") for d in cases.DRAWN])
-    at = np.concatenate([1.0 + np.geomspace(1e-5, 9.0, 3 * DENSE)])
-    exact = Series("exact, JKR", at, np.sqrt(1.0 - at**-2))
+    velocities = 1.0 + np.geomspace(1e-5, 9.0, 3 * DENSE)
+    exact = Series("exact, JKR", velocities, np.sqrt(1.0 - velocities**-2))
     labels = {"jkr": "jkr", "nearest jkr": f"jkr, {cases.STRONGER:g} γ", "dmt": "dmt", OURS: OURS}
-    bounce = partial(row_name, quantity="restitution")
+    at = [f"v = {over:g} v_s" for over in cases.OVER_STICKING]
     points = [
-        _points(rows, label, cases.OVER_STICKING, [bounce(name, f"v = {v:g} v_s") for v in cases.OVER_STICKING])
+        _points(rows, label, cases.OVER_STICKING, [row_name(name, one, "restitution") for one in at])
         for name, label in labels.items()
     ]
     return Drawing(
         "Adhesive spheres that are drawn apart, and that meet",
         (
             Panel("overlap / (π²W²R/E*²)^(1/3)", "force / pull-off force", [pulled], [loop], title="drawn apart"),
-            Panel("v / v_s", "restitution", [one for one in points if one.x.size], [exact], log="x", title="impact"),
+            Panel("v / v_s", "restitution", points, [exact], log="x", title="impact"),
         ),
     )

@@ -10,7 +10,7 @@ from validation.grains.cases import SPHERES, WORK_OF_ADHESION, Model, at_number,
 from validation.grains.granular import INCREMENT, SLOW_STEP, Found, force_at, impact, variables_of
 from validation.grains.ours import impacts
 from validation.references.grains import kelvin_voigt
-from validation.row import Bound, Evidence, Known, Reference, Row
+from validation.row import Evidence, Known, Reference, Row, absolute, relative
 from validation.study import Bench, Findings, Study
 
 AGREES = 1e-4
@@ -42,26 +42,25 @@ def compared(
     """A row of what LAMMPS gives, what is exact, and what the model states, which it gives where it differs."""
     known = Known(law, AGREES, states) if abs(law - exact) > AGREES * abs(exact) else None
     reference = Reference(exact, source, evidence)
-    return Row(name, found.value, reference, Bound("relative", AGREES, "timestep"), found.change, known=known)
+    return Row(name, found.value, reference, relative(AGREES, "timestep"), found.change, known=known)
 
 
 def pulled(name: str, found: Found, exact: float, law: float, states: str = EARLY) -> Row:
     """The same of what is drawn apart."""
     known = Known(law, ABOUT, states) if abs(law - exact) > ABOUT else None
-    bound = Bound("absolute", ABOUT, "increment of the overlap")
+    bound = absolute(ABOUT, "increment of the overlap")
     return Row(name, found.value, Reference(exact, JOHNSON), bound, found.change, known=known)
 
 
 def elastic(_: Bench) -> Findings:
     """No damping, no adhesion."""
     exact = kelvin_voigt(0.0)
-    return Findings(
-        [
-            compared(row_name(model, "", name), one, getattr(exact, name), "Hertz (1881)", getattr(exact, name))
-            for model, words in cases.ELASTIC.items()
-            for name, one in impact(words).items()
-        ]
-    )
+    rows = [
+        compared(row_name(model, "", name), one, getattr(exact, name), "Hertz (1881)", getattr(exact, name))
+        for model, words in cases.ELASTIC.items()
+        for name, one in impact(words).items()
+    ]
+    return Findings(rows)
 
 
 def damped(_: Bench) -> Findings:
@@ -107,24 +106,17 @@ def adhesive(_: Bench) -> Findings:
     later = math.sqrt(SOON[1] / LATE[1])
     rows = []
     for over in cases.OVER_STICKING:
-        found = {name: impact(words, over * sticking, SLOW_STEP)["restitution"] for name, words in _bouncing(over)}
+        models = cases.ADHESIVE | ({"nearest jkr": cases.NEAREST_JKR} if over > 1.0 else {})
+        found = {name: impact(words, over * sticking, SLOW_STEP)["restitution"] for name, words in models.items()}
         exact = math.sqrt(1.0 - over**-2) if over > 1.0 else 0.0
         laws = {"jkr": math.sqrt(1.0 - (later / over) ** 2), "dmt": 1.0, "nearest jkr": exact}
         for name, one in found.items():
-            row, true, source = row_name(name, f"v = {over:g} v_s", "restitution"), exact, "e² = 1 − (v_s/v)²"
-            if name == "dmt":
-                true, source = 1.0, "DMT has no hysteresis"
-            rows.append(compared(row, one, true, source, laws[name], EARLY))
+            true = (1.0, "DMT has no hysteresis") if name == "dmt" else (exact, "e² = 1 − (v_s/v)²")
+            rows.append(compared(row_name(name, f"v = {over:g} v_s", "restitution"), one, *true, laws[name], EARLY))
         if over == cases.MEASURED:
             speed = Found(over * math.sqrt(1.0 - found["jkr"].value ** 2), found["jkr"].change / over)
             rows.append(compared(row_name("jkr", "", "sticking velocity"), speed, 1.0, JOHNSON, later, EARLY))
     return Findings(rows)
-
-
-def _bouncing(over: float) -> Iterator[tuple[str, str]]:
-    yield from cases.ADHESIVE.items()
-    if over > 1.0:
-        yield "nearest jkr", cases.NEAREST_JKR
 
 
 def drawn(_: Bench) -> Findings:
@@ -155,23 +147,24 @@ def wall(_: Bench) -> Findings:
     """A sphere on `fix wall/gran`, and the deck with both deviations."""
     modulus = 1.0 / (1.0 - 0.3**2)
     length = (math.pi * WORK_OF_ADHESION / (0.5 * modulus)) ** (2 / 3)
-    found = {
-        "wall hertz/material": variables_of("wall", ("modulus",), increment=1e-5),
-        "nearest wall hertz/material": variables_of("wall", ("modulus",), model=cases.RIGID, increment=1e-5),
-        "deviations": variables_of("deviations", ("separation", "modulus")),
-        "wall jkr": variables_of("wall", ("separation",), model=cases.ON_WALL, increment=INCREMENT),
-    }
-    rows = []
-    for name, one in found.items():
-        if "modulus" in one:
-            law = modulus if name.startswith("nearest") else 0.5 * modulus
-            value = Found(one["modulus"], 0.0)
-            rows.append(
-                compared(row_name(name, "", "E*"), value, modulus, "E/(1 − ν²) of a rigid wall", law, AS_SPHERE)
-            )
-        if "separation" in one:
-            value = Found(one["separation"] / (LENGTH if name == "deviations" else length), 0.0)
-            rows.append(pulled(row_name(name, "", "separation"), value, LATE[0], SOON[0]))
+    deviations = variables_of("deviations", ("separation", "modulus"))
+    moduli = (
+        ("wall hertz/material", variables_of("wall", ("modulus",), increment=1e-5), 0.5 * modulus),
+        ("nearest wall hertz/material", variables_of("wall", ("modulus",), model=cases.RIGID, increment=1e-5), modulus),
+        ("deviations", deviations, 0.5 * modulus),
+    )
+    separations = (
+        ("deviations", deviations, LENGTH),
+        ("wall jkr", variables_of("wall", ("separation",), model=cases.ON_WALL, increment=INCREMENT), length),
+    )
+    rows = [
+        compared(row_name(name, "", "E*"), Found(one["modulus"], 0.0), modulus, "E/(1 − ν²) of a rigid wall", law,
+                 AS_SPHERE)
+        for name, one, law in moduli
+    ] + [
+        pulled(row_name(name, "", "separation"), Found(one["separation"] / unit, 0.0), LATE[0], SOON[0])
+        for name, one, unit in separations
+    ]  # fmt: skip
     return Findings(rows)
 
 

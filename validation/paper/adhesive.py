@@ -17,21 +17,19 @@ from functools import cache
 import numpy as np
 from scipy.integrate import quad
 
-from validation.doors import PullOff, Quantity, Run, Scene, estimated, jkr_target, law_of, material_scene
-from validation.figures import Panel, Series, figure
-from validation.page import number, share
+from validation.doors import Scene, estimated, jkr_target, law_of, material_scene
+from validation.page import number
+from validation.paper import fig4
 from validation.paper.fig4 import AGAINST, STENCIL
 from validation.paper.scenes import CONTACT_MODULUS, READ, SURFACE_ENERGY, TABLE_1, chain_model, changed, jkr_reduced
 from validation.paper.table1 import pull_off_run
 from validation.references.interaction import Floats
 from validation.references.maugis import tabor_of
-from validation.references.pull_off import pull_off
 from validation.references.solver import ChainSolver
 from validation.references.tension_radius import state_radius
-from validation.row import Known, Reference, Row, claim, judged, relative, verdicts
+from validation.row import Known, Reference, Row, claim, relative
 from validation.study import Bench, Findings, Rows, Runs, Scenes, Study, found
 
-NAME = "adhesive"
 RADIUS, PARTICLES = 6.1e-6, 180
 """R of the sphere of the second scene [m], that of Table 1's first row, and particles of its chain, as many as its
 contact needs and some more."""
@@ -101,9 +99,7 @@ def jkr_work() -> float:
 @cache
 def solved(scene: Scene) -> tuple[float, float, float, float]:
     """By the independent solver: a_cr/a₀, d at F = 0 and at F_A over a₀²/R, work of separation over F_A a₀²/R."""
-    assert isinstance(scene.experiment, PullOff)
-    model, (radius, reach) = chain_model(scene), _lengths(scene)
-    marks = pull_off(model, scene.experiment.preload, stencil=STENCIL)
+    model, (radius, reach), marks = chain_model(scene), _lengths(scene), fig4.solved(scene)
     a_0, a_cr = (state_radius(model, state, STENCIL) for state in (marks.zero_load, marks.critical))
     apart = ChainSolver(model).equilibrium(-BEYOND * reach, marks.critical)
     unit = a_0**2 / radius
@@ -114,86 +110,64 @@ def solved(scene: Scene) -> tuple[float, float, float, float]:
 def judge(bench: Bench) -> Findings:
     """Both scenes beside JKR, and their place on the map of Maugis."""
     runs = bench.runs
-    row = Rows(runs)
+    row = Rows(runs, READ)
     groups = {case: _checks(row, case) for case in (PAPER, SPHERE)}
-    series = [_series(case, runs) for case in groups]
-    unit = "$a_0^2/R$"
-    panel = Panel(f"displacement over {unit}", "force over $F_A$", series, [_jkr()], view=(-1.15, 1.6))
-    figures = figure("Force over displacement, in JKR's units", panel)
-    said = []
-    for case, (ratio, place, edge, work, tabor, load) in groups.items():
-        scene = runs[case.pull_off].scene
-        said.append(
-            f"For {case.words} a_cr/a_0 is {_short(ratio)} (JKR {number(ratio.reference.value, 3)}), d at F = 0 "
-            f"{_short(place)} a_0²/R ({number(place.reference.value, 3)}), d at F_A {_short(edge)} "
-            f"({number(edge.reference.value, 3)}) "
-            f"and the work of separation {_short(work)} F_A a_0²/R ({number(work.reference.value, 3)}). On the map of "
-            "Maugis its "
-            f"a_cr/a_0 belongs to Tabor's μ = {number(tabor.value, 2)}, the range of its attraction to "
-            f"{number(_by_range(case, runs, scene), 2)}; JKR is for μ above {JKR_TABOR:g}. At that μ the pull-off "
-            "force is "
-            f"{number(load.value, 3)} πWR: γ read with {JKR_PULL_OFF:g}, by Eq. (9), is "
-            f"{share(load.value / JKR_PULL_OFF - 1.0)} too large."
-        )
     rows = [check for checks in groups.values() for check in checks]
-    own = judged(rows)
-    head = (
-        "F_A and a_0 are JKR's because they are fitted, and F/F_A over a/a_0 is near it, as in Fig. 8b; of "
-        f"{len(own)} other numbers {len(verdicts(own, 'DIFFERS'))} differ from JKR's as the independent chain solver "
-        "has it, within the uncertainties of the runs. What a run says of displacements, of work, or of a_cr of an "
-        "adhesive body is the one-dimensional image's and not the body's."
+    ranges = [f"{number(_by_range(case, runs), 2)} for {case.words}" for case in groups]
+    finding = (
+        "F_A and a_0 are JKR's because they are fitted, and F/F_A over a/a_0 is near it, as in Fig. 8b; other numbers "
+        "differ from JKR's as the independent chain solver has it. What a run says of displacements, of work, or of "
+        "a_cr of an adhesive body is the one-dimensional image's and not the body's. By the range of the attraction "
+        f"Tabor's μ is {' and '.join(ranges)}; JKR is for μ above {JKR_TABOR:g}. Where F_A/πWR is not "
+        f"{JKR_PULL_OFF:g}, γ read by Eq. (9) is wrong by as much."
     )
-    return Findings(rows, figures, text="\n\n".join([head, *said]))
-
-
-def _short(check: Row) -> str:
-    return number(check.value, 3)
+    return Findings(rows, text=finding)
 
 
 def _checks(row: Rows, case: Case) -> list[Row]:
     """a_cr/a₀, d at F = 0 and at F_A, work, μ and F_A/πWR."""
-    run, curve = row.runs[case.pull_off], row.runs[case.parting]
+    run, curve = row.runs[case.pull_off], row.runs[case.parting].curve
     force, a_0, a_cr = (found(run, q) for q in ("adhesion_force", "zero_load_radius", "critical_radius"))
-    radius, _ = _lengths(run.scene)
-    unit = a_0.value**2 / radius
-    d, f = np.asarray(curve.curve.displacement), np.asarray(curve.curve.force)
-    apart = slice(int(np.argmax(d)), None)
-    d, f = d[apart], f[apart]
+    unit = a_0.value**2 / _lengths(run.scene)[0]
+    d, f = np.asarray([curve.displacement, curve.force])[:, int(np.argmax(curve.displacement)) :]
     ratio = a_cr.value / a_0.value
     spread = ratio * (a_cr.uncertainty / a_cr.value + a_0.uncertainty / a_0.value)
-    places = [(_zero(d[::n], f[::n]), _lowest(d[::n], f[::n]), _work(d[::n], f[::n])) for n in (1, 2)]
-    (zero, lowest, work), rough = places
-    tabor, load = tabor_of(ratio, LAMBDAS)
-    other = tabor_of(ratio - spread, LAMBDAS)
-    both, limit = [case.parting, case.pull_off], "model: one layer of springs, and a law whose range is not short"
-    work_unit = force.value * unit
-    lowest_jkr = CRITICAL_RADIUS_RATIO**2 - 2.0 / 3.0 * math.sqrt(CRITICAL_RADIUS_RATIO)
-    jkr, own = "JKR at prescribed displacement", [case.pull_off]
-    found_here = (
-        ("a_cr/a_0", ratio, spread, CRITICAL_RADIUS_RATIO, "JKR, 4^{-1/3}", own),
-        ("d at F = 0 over a_0²/R", zero / unit, abs(zero - rough[0]) / unit, 1.0 / 3.0, "JKR", both),
-        ("d at F_A over a_0²/R", lowest / unit, abs(lowest - rough[1]) / unit, lowest_jkr, "JKR", both),
-        ("work of separation from F = 0 over F_A a_0²/R", work / work_unit, abs(work - rough[2]) / work_unit,
-         jkr_work(), jkr, both),
-        ("Tabor's μ by a_cr/a_0 on the map of Maugis", tabor, abs(tabor - other[0]), JKR_TABOR,
-         "JKR's zone begins there", own),
-        ("F_A/πWR of Maugis and Dugdale at that μ", load, abs(load - other[1]), JKR_PULL_OFF, "JKR, and Eq. (9)", own),
-    )  # fmt: skip
-    known = solved(run.scene)
+    fine, rough = (
+        np.array([_zero(d[::n], f[::n]), _lowest(d[::n], f[::n]), _work(d[::n], f[::n]) / force.value]) / unit
+        for n in (1, 2)
+    )
+    on_map, beside = (np.array(tabor_of(of, LAMBDAS)) for of in (ratio, ratio - spread))
+    limit = "model: one layer of springs, and a law whose range is not short"
+    lowest = CRITICAL_RADIUS_RATIO**2 - 2.0 / 3.0 * math.sqrt(CRITICAL_RADIUS_RATIO)
+    both, own, known = [case.parting, case.pull_off], [case.pull_off], solved(run.scene)
+    theories = (
+        ("a_cr/a_0", CRITICAL_RADIUS_RATIO, "JKR, 4^{-1/3}", own),
+        ("d at F = 0 over a_0²/R", 1.0 / 3.0, "JKR", both),
+        ("d at F_A over a_0²/R", lowest, "JKR", both),
+        ("work of separation from F = 0 over F_A a_0²/R", jkr_work(), "JKR at prescribed displacement", both),
+        ("Tabor's μ by a_cr/a_0 on the map of Maugis", JKR_TABOR, "JKR's zone begins there", own),
+        ("F_A/πWR of Maugis and Dugdale at that μ", JKR_PULL_OFF, "JKR, and Eq. (9)", own),
+    )
+    numbers = zip(
+        [ratio, *fine.tolist(), *on_map.tolist()],
+        [spread, *abs(fine - rough).tolist(), *abs(on_map - beside).tolist()],
+        [*known, *tabor_of(known[0], LAMBDAS)],
+        strict=True,
+    )
     return [
         row(f"{name}, {case.words}", value, Reference(theory, source),
-            relative(ZONE, limit) if theory == JKR_TABOR else claim(limit), uncertainty=error, on=on, despite=READ,
+            relative(ZONE, limit) if theory == JKR_TABOR else claim(limit), uncertainty=error, on=on,
             known=Known(solver, error, f"{AGAINST}, within the uncertainty"),
-            standing="judged" if number < len(known) else "repeats")
-        for number, ((name, value, error, theory, source, on), solver) in enumerate(
-            zip(found_here, (*known, *tabor_of(known[0], LAMBDAS)), strict=True))
+            standing="repeats" if theory in (JKR_TABOR, JKR_PULL_OFF) else "judged")
+        for (name, theory, source, on), (value, error, solver) in zip(theories, numbers, strict=True)
     ]  # fmt: skip
 
 
-def _by_range(case: Case, runs: Runs, scene: Scene) -> float:
+def _by_range(case: Case, runs: Runs) -> float:
     """Tabor's μ with the range of the attraction for h₀ = γ/σ₀, γ and E* by Eq. (9)."""
-    force, a_0 = (found(runs[case.pull_off], q).value for q in ("adhesion_force", "zero_load_radius"))
-    radius, reach = _lengths(scene)
+    run = runs[case.pull_off]
+    force, a_0 = (found(run, q).value for q in ("adhesion_force", "zero_load_radius"))
+    radius, reach = _lengths(run.scene)
     work, modulus = force / (1.5 * math.pi * radius), 3.0 * force * radius / a_0**3
     return math.cbrt(radius * work**2 / (modulus**2 * reach**3))
 
@@ -218,24 +192,8 @@ def _work(d: Floats, force: Floats) -> float:
     return float(np.trapezoid(np.concatenate([[0.0], force[beyond]]), np.concatenate([[zero], d[beyond]])))
 
 
-def _units(run: Run) -> tuple[Quantity, float]:
-    a_0 = found(run, "zero_load_radius").value
-    return found(run, "adhesion_force"), a_0**2 / _lengths(run.scene)[0]
-
-
-def _series(case: Case, runs: Runs) -> Series:
-    force, unit = _units(runs[case.pull_off])
-    curve = runs[case.parting].curve
-    return Series(case.words, np.asarray(curve.displacement) / unit, np.asarray(curve.force) / force.value)
-
-
-def _jkr() -> Series:
-    a = np.linspace(FIXED_GRIPS_RADIUS_RATIO, 1.2, 200)
-    return Series("JKR", a**2 - 2.0 / 3.0 * np.sqrt(a), jkr_reduced(a))
-
-
 STUDY = Study(
-    NAME,
+    "adhesive",
     "Adhesion of two chains beside JKR",
     "The model may not be suited for the adhesive contact; further calculations will help to identify its limits. JKR "
     "holds for large, compliant spheres, that is for a large μ; its F̃-ã curve is met, and F_A and a_0 identify the "

@@ -12,15 +12,15 @@ from functools import cache
 import numpy as np
 
 from validation.doors import Scene, law_table, read_scene
-from validation.figures import Array, Panel, Series, figure
-from validation.page import agreement, number, share, worst_deviation
+from validation.figures import Array
+from validation.page import number
+from validation.paper.heat import BY_CHANCE, SIGMAS, together
 from validation.references.boltzmann_pairs import BoltzmannPairs
 from validation.references.detachment import detachment_in_time, drag_of_pairs, garg
 from validation.references.interaction import PairInteraction
-from validation.row import Reference, Row, absolute, relative, solver
-from validation.study import Bench, Findings, Rows, Runs, Scenes, Study, found
+from validation.row import Row, absolute, relative, solver
+from validation.study import Bench, Findings, Rows, Scenes, Study, found
 
-NAME = "detachment"
 PAIRS, APART, STIFFNESS, DRAG, TEMPERATURE = 9, 3.0, 2.0, 0.5, 5e-3
 """Pairs, their spacing [LU], springs [FU/LU], γ [FU·TU/LU] of a particle, kT [FU·LU]."""
 LAW = (0.18, 0.13, 0.09, 0.26)
@@ -35,12 +35,11 @@ COLD = 2e-5
 """kT [FU·LU] of the forces that say where the largest tension is."""
 LET_GO = 0.99
 """Share of the largest tension that has its place beyond the barrier, as the program has it."""
-SIGMAS, MOST_RMS = 4.0, 2.2
-"""Standard errors that a row allows; and of all means together, of four by chance once in a thousand times."""
+MOST_RMS = 2.2
+"""Standard errors of all means together, of four by chance once in a thousand times."""
 SPREAD_ERROR = 1.0 / math.sqrt(2.0 * (PULLS - 1))
 """Standard error of a spread over it."""
 STATISTICS = "statistics: four standard errors"
-BY_CHANCE = "four standard errors, and by chance it is near"
 LAGGING = {"lagging": "the reference has the same drag"}
 
 
@@ -80,9 +79,9 @@ def free_energy(temperature: float = TEMPERATURE) -> tuple[Array, Array]:
     return d, -temperature * PAIRS * pairs.log_partition(law.force_free_distance() - d)
 
 
-def largest(temperature: float = TEMPERATURE) -> tuple[float, float]:
+def largest() -> tuple[float, float]:
     """The largest tension F_A(T) [FU] and |F″| there [FU/LU²]."""
-    d, energy = free_energy(temperature)
+    d, energy = free_energy()
     tension = -np.gradient(energy, d)
     top = int(tension.argmax())
     return float(tension[top]), abs(float(np.gradient(np.gradient(tension, d), d)[top]))
@@ -113,40 +112,30 @@ def by_garg(rate: float) -> float:
 
 def judge(bench: Bench) -> Findings:
     """Means and spreads within their errors, and all means together."""
-    runs = bench.runs
-    row = Rows(runs)
+    row = Rows(bench.runs, LAGGING)
     means, spreads = [_mean(row, rate) for rate in RATES], [_spread(row, rate) for rate in RATES]
-    on = [run_name(rate) for rate in RATES]
-    off = [SIGMAS * (one.value - one.reference.value) / one.bound.size for one in means]
-    together = row.at_most("deviation over standard error, rms of the means at all rates",
-                   math.hypot(*off) / len(off) ** 0.5, Reference(MOST_RMS, "chance, 1 in 1000", "set bound"),
-                   "statistics", on=on, despite=LAGGING)  # fmt: skip
     ratio = float(np.mean([(one.value / one.reference.value) ** 2 for one in spreads])) ** 0.5
     width = row("spread of the detachment force over that of the equation, rms of all rates", ratio,
                 solver(1.0, "Smoluchowski's equation"),
                 absolute(SIGMAS * SPREAD_ERROR / math.sqrt(len(RATES)), STATISTICS),
-                on=on, despite=LAGGING)  # fmt: skip
-    figures = figure("Detachment force over the loading rate; bars: standard error", _panel(runs))
+                on=[run_name(rate) for rate in RATES])  # fmt: skip
     slow = [rate for rate in RATES if math.isfinite(by_garg(rate))]
     worst = max(abs(by_garg(rate) / expected(rate)[0] - 1.0) for rate in slow)
-    rows = [*means, *spreads, together, width]
+    rows = [*means, *spreads, together(row, "the means at all rates", means, MOST_RMS), width]
     finding = (
-        f"Over three decades of the loading rate, with {PULLS} pulls at each rate, mean and spread of the detachment "
-        f"force are those of Smoluchowski's equation: {agreement(rows)}, the means within "
-        f"{share(worst_deviation(means))}, the spreads within {share(worst_deviation(spreads))} at one rate and "
-        f"{share(abs(ratio - 1.0))} at all. A slow pull lets go at {number(expected(min(RATES))[0], 3)} FU, where "
-        f"{number(largest()[0], 3)} FU are the most that the pairs hold at this temperature; a fast one drags on. "
-        f"Garg's closed form, for slow pulls and high barriers, is off by {number(100.0 * worst, 2)} % up to "
-        f"{number(max(slow))} FU/TU and has no value beyond."
+        "Over three decades of the loading rate mean and spread of the detachment force are those of Smoluchowski's "
+        f"equation. A slow pull lets go below the {number(largest()[0], 3)} FU that are the most that the pairs hold "
+        f"at this temperature; a fast one drags on. Garg's closed form, for slow pulls and high barriers, is off by "
+        f"{number(100.0 * worst, 2)} % up to {number(max(slow))} FU/TU and has no value beyond."
     )
-    return Findings(rows, figures, text=finding)
+    return Findings(rows, text=finding)
 
 
 def _mean(row: Rows, rate: float) -> Row:
     ours, (mean, spread) = found(row.runs[run_name(rate)], "detachment_force"), expected(rate)
     return row(f"mean detachment force, Ḟ = {rate:g} FU/TU, {PULLS} pulls", ours,
                solver(mean, "Smoluchowski's equation"),
-               absolute(SIGMAS * spread / math.sqrt(PULLS), STATISTICS), on=[run_name(rate)], despite=LAGGING,
+               absolute(SIGMAS * spread / math.sqrt(PULLS), STATISTICS), on=[run_name(rate)],
                wide=BY_CHANCE)  # fmt: skip
 
 
@@ -154,27 +143,11 @@ def _spread(row: Rows, rate: float) -> Row:
     ours = found(row.runs[run_name(rate)], "detachment_force_spread")
     return row(f"spread of the detachment force, Ḟ = {rate:g} FU/TU", ours,
                solver(expected(rate)[1], "Smoluchowski's equation"),
-               relative(SIGMAS * SPREAD_ERROR, STATISTICS), on=[run_name(rate)],
-               despite=LAGGING, wide=BY_CHANCE)  # fmt: skip
-
-
-def _panel(runs: Runs) -> Panel:
-    rates = np.asarray(RATES)
-    line = np.geomspace(rates.min(), rates.max(), 10)
-    ours = [found(runs[run_name(rate)], "detachment_force") for rate in RATES]
-    theory = np.asarray([expected(float(rate)) for rate in line])
-    mean, spread = theory.T
-    return Panel(
-        "loading rate (FU/TU)", "detachment force (FU)",
-        [Series("runs", rates, np.asarray([q.value for q in ours]), np.asarray([q.uncertainty for q in ours]))],
-        [Series("Smoluchowski", line, mean), Series("Garg", line, np.asarray([by_garg(float(v)) for v in line])),
-         Series("Smoluchowski ± its spread", line, mean + spread), Series("", line, mean - spread)],
-        log="x", bound=largest()[0], title="dashed: $F_A(T)$",
-    )  # fmt: skip
+               relative(SIGMAS * SPREAD_ERROR, STATISTICS), on=[run_name(rate)], wide=BY_CHANCE)  # fmt: skip
 
 
 STUDY = Study(
-    NAME,
+    "detachment",
     "Detachment force under thermal fluctuations over the loading rate",
     "The paper's model has stochastic forces on the particles (Section 3); its adhesion force is found without them. "
     "Under heat a contact lets go at a force that scatters, and that is the larger the faster it is pulled.",

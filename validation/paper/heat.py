@@ -7,6 +7,7 @@ and the reference is an ensemble of the equations of motion. ⟨F⟩(T, v) spans
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
@@ -14,14 +15,13 @@ import numpy as np
 
 from validation.doors import Scene, law_table, read_scene
 from validation.figures import Panel, Series, figure
-from validation.page import agreement, number
+from validation.page import number
 from validation.references.langevin_ensemble import PulledParticle, ensemble_friction
 from validation.references.prandtl_tomlinson import corrugation, slow_friction
 from validation.references.thermal_friction import free_corrugation, textbook_friction, thermal_friction
 from validation.row import Reference, Row, absolute, solver
-from validation.study import Bench, Findings, Rows, Runs, Scenes, Study, found
+from validation.study import Bench, Findings, Rows, Scenes, Study, found
 
-NAME = "heat"
 LAW, LOAD, SPACING = (2.0, 0.5, 1.0, 1.0), 0.5, 1.0
 """A [FU·LU], a [LU], B [FU·LU], b [LU] of the row; F_N [FU]; s [LU]."""
 OWN, MASS, DRAG = 1.0, 0.1, 0.8
@@ -45,6 +45,7 @@ SIGMAS, MOST_RMS = 4.0, 1.8
 """Standard errors that a row allows; and of all rows together, of eight by chance once in a thousand times."""
 INTERVAL = 1.96
 """Half-width of the intervals of 95 % that a run states, over its standard error."""
+BY_CHANCE = "four standard errors, and by chance it is near"
 TEMPERATURE, RATIO = 2e-3, 3.0
 """Of the flat pair at rest [FU·LU], and the standard errors that its ratio is allowed."""
 FLAT_PAIR: dict[str, Any] = {
@@ -61,7 +62,7 @@ FLAT_PAIR: dict[str, Any] = {
     "accuracy": {"tolerance": 1e-2},
 }  # fmt: skip
 """Eight particles on a rigid row, under heat; the plate's own drag is ten times that of one of them."""
-STATISTICS = "statistics: four standard errors of the run and of the reference"
+STATISTICS = "statistics: four standard errors of the run"
 AT_REST = {
     "energy": "the plate's temperature is asked for, not the balance of energies",
     "unsteady": "it does not slide",
@@ -146,15 +147,10 @@ def expected(share: float, velocity: float) -> tuple[float, float]:
 def judge(bench: Bench) -> Findings:
     """Every mean within its errors, all of them together, and the temperature of a plate that drag of its own cools."""
     runs = bench.runs
-    row = Rows(runs)
-    rows = [_friction(row, share, velocity) for share in SHARES for velocity in DRIVES]
-    names = [run_name(share, velocity) for share in SHARES for velocity in DRIVES]
-    off = [SIGMAS * (one.value - one.reference.value) / one.bound.size for one in rows]
-    rows.append(
-        row.at_most("deviation over standard error, rms of all velocities and temperatures",
-            math.hypot(*off) / len(off) ** 0.5, Reference(MOST_RMS, "chance, 1 in 1000", "set bound"), "statistics",
-            on=names, despite=DRAGGED)
-    )  # fmt: skip
+    row = Rows(runs, DRAGGED)
+    means = {share: [_friction(row, share, velocity) for velocity in DRIVES] for share in SHARES}
+    rows = [mean for share in SHARES for mean in means[share]]
+    rows.append(together(row, "all velocities and temperatures", rows, MOST_RMS))
     plate = found(runs["heat_plate"], "plate_temperature")
     sigma = plate.uncertainty / INTERVAL / TEMPERATURE
     rows.append(
@@ -164,67 +160,75 @@ def judge(bench: Bench) -> Findings:
             uncertainty=sigma, on=["heat_plate"], despite=AT_REST)
     )  # fmt: skip
     figures = figure(
-        "Mean friction with thermal noise over velocity: runs, references, and the (ln v)^(2/3) law", *_panels(runs)
+        "Mean friction with thermal noise over velocity: runs, references, and the (ln v)^(2/3) law",
+        *(_panel(share, means[share]) for share in SHARES),
     )
     slowest = min(DRIVES)
     top = WELLS.largest_force
     laws = [number(_textbook(share, slowest) / top, 2) for share in SHARES]
-    means = [number(smoluchowski(share, slowest) / top, 2) for share in SHARES]
     finding = (
-        f"Over three decades of velocity the mean thermal friction of one particle is that of the references, "
-        f"{agreement(rows[:-2])}: Smoluchowski's equation up to {SLOW:g} LU/TU, an ensemble of the equations of motion "
-        "beyond. Without heat it would go to one value for slow drives; with it a slow drive waits for fluctuations. "
-        f"The textbook's (ln v)^(2/3) is an expansion about a vanishing barrier: at {number(slowest)} LU/TU it "
-        f"gives {laws[0]} of F_max at kT = {SHARES[0]:g} of the barrier, and {laws[1]} at {SHARES[1]:g}, where the "
-        f"reference has {means[0]} and {means[1]}."
+        "Over three decades of velocity the mean thermal friction of one particle is that of the references: "
+        f"Smoluchowski's equation up to {SLOW:g} LU/TU, an ensemble of the equations of motion beyond. Without heat it "
+        "would go to one value for slow drives; with it a slow drive waits for fluctuations. The textbook's "
+        f"(ln v)^(2/3) is an expansion about a vanishing barrier: at {number(slowest)} LU/TU it gives {laws[0]} of "
+        f"F_max at kT = {SHARES[0]:g} of the barrier, and {laws[1]} at {SHARES[1]:g}."
     )
     return Findings(rows, figures, text=finding)
 
 
 def _friction(row: Rows, share: float, velocity: float) -> Row:
-    name, (mean, error) = run_name(share, velocity), expected(share, velocity)
-    ours = found(row.runs[name], "mean_friction")
-    top = WELLS.largest_force
-    sigma = math.hypot(ours.uncertainty / INTERVAL, error) / top
-    return row(
+    mean, error = expected(share, velocity)
+    source = "Smoluchowski's equation" if velocity < SLOW else f"ensemble of {COPIES} equations of motion"
+    return friction_row(
+        row,
         f"⟨F⟩/F_max, kT = {share:g} of the barrier, v = {velocity:g} LU/TU",
-        ours.value / top,
-        solver(
-            mean / top, "Smoluchowski's equation" if velocity < SLOW else f"ensemble of {COPIES} equations of motion"
-        ),
-        absolute(SIGMAS * sigma if math.isfinite(sigma) else 0.0, STATISTICS),
-        uncertainty=ours.uncertainty / top,
-        on=[name],
-        despite=DRAGGED,
-        wide="four standard errors, and by chance it is near",
+        run_name(share, velocity),
+        WELLS.largest_force,
+        solver(mean / WELLS.largest_force, source),
+        error,
     )
+
+
+def friction_row(row: Rows, words: str, name: str, top: float, known: Reference, error: float = 0.0) -> Row:
+    """⟨F⟩ over `top` [FU] beside the same of a reference, whose ⟨F⟩ has a standard error [FU]."""
+    ours = found(row.runs[name], "mean_friction")
+    sigma = math.hypot(ours.uncertainty / INTERVAL, error) / top
+    limit = STATISTICS + " and of the reference" * (error > 0.0)
+    return row(words, ours.value / top, known, absolute(SIGMAS * sigma if math.isfinite(sigma) else 0.0, limit),
+               uncertainty=ours.uncertainty / top, on=[name], wide=BY_CHANCE)  # fmt: skip
+
+
+def together(row: Rows, words: str, rows: Sequence[Row], most: float) -> Row:
+    """The rms of the deviations of rows that allow SIGMAS standard errors each."""
+    off = [SIGMAS * (one.value - one.reference.value) / one.bound.size for one in rows]
+    return row.at_most(f"deviation over standard error, rms of {words}", math.hypot(*off) / len(off) ** 0.5,
+                       Reference(most, "chance, 1 in 1000", "set bound"), "statistics",
+                       on=[name for one in rows for name in one.runs])  # fmt: skip
+
+
+def values_and_errors(rows: Sequence[Row]) -> tuple[list[float], list[float]]:
+    """For a series of rows."""
+    return [one.value for one in rows], [one.uncertainty for one in rows]
 
 
 def _textbook(share: float, velocity: float) -> float:
     return textbook_friction(WELLS, SPRING, DRAG, share * BARRIER, velocity)
 
 
-def _panels(runs: Runs) -> list[Panel]:
-    """⟨F⟩/F_max over v, a panel for each temperature: runs, references, the textbook's law."""
-    top, drives = WELLS.largest_force, np.asarray(list(DRIVES))
+def _panel(share: float, means: Sequence[Row]) -> Panel:
+    """⟨F⟩/F_max over v at a temperature: runs, references, the textbook's law."""
+    top, drives = WELLS.largest_force, list(DRIVES)
     fine = np.geomspace(drives[0], SLOW, 60)
-    panels = []
-    for share in SHARES:
-        means = [found(runs[run_name(share, velocity)], "mean_friction") for velocity in DRIVES]
-        values, spreads = (np.asarray([getattr(one, key) for one in means]) / top for key in ("value", "uncertainty"))
-        known = np.asarray([expected(share, float(v))[0] for v in drives]) / top
-        law = np.asarray([_textbook(share, float(v)) for v in fine]) / top
-        points = [Series("runs", drives, values, spreads), Series("Smoluchowski, then an ensemble", drives, known)]
-        panels.append(
-            Panel("velocity (LU/TU)", r"mean friction over $F_{max}$", points, [Series("$(\\ln v)^{2/3}$", fine, law)],
-                  log="x", bound=slow_friction(WELLS, SPRING) / top, title=f"kT = {share:g} of the barrier",
-                  view=(0.0, None))
-        )  # fmt: skip
-    return panels
+    law = [_textbook(share, v) / top for v in fine.tolist()]
+    points = [Series("runs", drives, *values_and_errors(means)),
+              Series("Smoluchowski, then an ensemble", drives, [one.reference.value for one in means])]  # fmt: skip
+    return Panel("velocity (LU/TU)", r"mean friction over $F_{max}$", points,
+                 [Series("$(\\ln v)^{2/3}$", fine, law)], log="x", bound=slow_friction(WELLS, SPRING) / top,
+                 title=f"kT = {share:g} of the barrier", view=(0.0, None))  # fmt: skip
 
 
 STUDY = Study(
-    NAME,
+    "heat",
     "Thermal friction of one particle",
     "The paper's model has stochastic forces on the particles and a cantilever that pulls the plate (Section 3), and "
     "gives no result with either. What a single particle does under both is known.",

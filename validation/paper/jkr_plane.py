@@ -11,12 +11,11 @@ import numpy as np
 
 from validation.doors import Run, Scene, read_scene
 from validation.figures import Panel, Series, figure
-from validation.page import agreement, number
+from validation.paper.section2 import fitted_order
 from validation.references.indenters import jkr
 from validation.row import Reference, Row, claim
 from validation.study import Bench, Findings, Rows, Scenes, Study
 
-NAME = "jkr_plane"
 RADIUS, MODULUS, WORK, SPACING = 100.0, 1.0, 0.005, 0.2
 """R [LU], E* [FU/LU²], W [FU/LU], h [LU]."""
 THEORY = jkr(RADIUS, MODULUS, WORK)
@@ -53,20 +52,16 @@ def _name(particles: float) -> str:
 def _scene(experiment: dict[str, Any], spacing: float) -> Scene:
     profile = {"kind": "parabola", "radius": RADIUS}
     plane = {"particles": "auto", "spacing": spacing, "profile": profile, "reduction": "mdr", "lower": "rigid_plane"}
-    return read_scene(
-        {
-            "title": "JKR on the plane",
-            "bodies": plane | {"bulk_stiffness": MODULUS * spacing},
-            "adhesion": {"work_of_adhesion": WORK},
-            "experiment": experiment,
-        }
-    )
+    return read_scene({
+        "title": "JKR on the plane", "bodies": plane | {"bulk_stiffness": MODULUS * spacing},
+        "adhesion": {"work_of_adhesion": WORK}, "experiment": experiment,
+    })  # fmt: skip
 
 
 def judge(bench: Bench) -> Findings:
     """The pull-off's quantities within what it claims, the curve by its rms, the order in the spacing."""
     runs = bench.runs
-    row = Rows(runs)
+    row = Rows(runs, SPACING_NAMED)
     rows = [*_pull_off_checks(row), *_curve_checks(row)]
     a = np.linspace(THEORY.fixed_grips_radius(), FARTHEST * THEORY.zero_load_radius(), 400)
     unit, depth = THEORY.pull_off_force(), THEORY.zero_load_radius() ** 2 / RADIUS
@@ -78,9 +73,8 @@ def judge(bench: Bench) -> Findings:
     panel = Panel("displacement over $a_0^2/R$", "force over $F_A$", curves, [law], view=(-1.15, 1.6))
     figures = figure("Force over displacement on a rigid plane, beside JKR", panel)
     finding = (
-        f"On a rigid plane a spring that lets go at √(2π|x|W/E*) makes the chain JKR's contact, with nothing fitted: "
-        f"{agreement(rows[:3])}. With 10 particles in a_0 the curve is {number(100.0 * rows[3].value, 2)} % of F_A "
-        f"from JKR's (rms), and it comes nearer with the square of the spacing."
+        "On a rigid plane a spring that lets go at √(2π|x|W/E*) makes the chain JKR's contact, with nothing fitted, "
+        "and the curve comes nearer with the square of the spacing."
     )
     return Findings(rows, figures, text=finding)
 
@@ -88,33 +82,32 @@ def judge(bench: Bench) -> Findings:
 def _pull_off_checks(row: Rows) -> list[Row]:
     name = "jkr_plane_pull_off"
     found = row.runs[name].results
-    wanted = {
-        "F_A": ("adhesion_force", THEORY.pull_off_force()),
-        "a_0": ("zero_load_radius", THEORY.zero_load_radius()),
-        "a_cr": ("critical_radius", THEORY.critical_radius()),
-    }
+    wanted = (
+        ("F_A", "adhesion_force", THEORY.pull_off_force()),
+        ("a_0", "zero_load_radius", THEORY.zero_load_radius()),
+        ("a_cr", "critical_radius", THEORY.critical_radius()),
+    )
     return [
         row(f"{symbol}, {THEORY.zero_load_radius() / SPACING:.0f} particles in a_0", found[key],
-            Reference(value, BOOK), claim(LATTICE), on=[name], despite=SPACING_NAMED,
+            Reference(value, BOOK), claim(LATTICE), on=[name],
             wide="the claim is for the worst place of the edge between two particles")
-        for symbol, (key, value) in wanted.items()
+        for symbol, key, value in wanted
     ]  # fmt: skip
 
 
 def _curve_checks(row: Rows) -> list[Row]:
     """rms of F over JKR's states, the edge everywhere between two particles; and how it falls with the spacing."""
     off = [_off(row.runs[_name(n)]) for n in FINENESS]
-    fitted, covariance = np.polyfit(-np.log(FINENESS), np.log(off), 1, cov=True)
-    names = [_name(n) for n in FINENESS]
+    order, spread = fitted_order([1.0 / n for n in FINENESS], off)
     checks = [
         row.at_most(f"rms of F − JKR over F_A, {n:g} particles in a_0", error,
-            Reference(RMS, "bound that was asked for", "set bound"), LATTICE, on=[_name(n)], despite=SPACING_NAMED)
+            Reference(RMS, "bound that was asked for", "set bound"), LATTICE, on=[_name(n)])
         for n, error in zip(FINENESS[:2], off[:2], strict=True)
     ]  # fmt: skip
     short = row.at_most("what the order of convergence of F(d) in the spacing lacks of 2",
-                max(0.0, 2.0 - float(fitted[0])), Reference(ORDER_SHORT, "bound that was asked for", "set bound"),
+                max(0.0, 2.0 - order), Reference(ORDER_SHORT, "bound that was asked for", "set bound"),
                 "the share of the edge's cell is known by a straight line",
-                uncertainty=float(np.sqrt(covariance[0, 0])), on=names, despite=SPACING_NAMED)  # fmt: skip
+                uncertainty=spread, on=[_name(n) for n in FINENESS])  # fmt: skip
     return [*checks, short]
 
 
@@ -127,7 +120,7 @@ def _off(run: Run) -> float:
 
 
 STUDY = Study(
-    NAME,
+    "jkr_plane",
     "Adhesion on a rigid plane beside JKR itself",
     "Adhesive contacts map onto one dimension, too (Section 4). The paper's chains attract each other by a law with a "
     "range, and two of JKR's numbers are fitted; a local rule of separation needs none.",

@@ -15,16 +15,14 @@ from typing import Any
 
 import numpy as np
 
-from validation.doors import Reduction, Run, Scene, read_scene
-from validation.figures import Array, Panel, Series, figure
-from validation.page import agreement, number, share
-from validation.paper.section2 import FORCE_UNIT, LENGTH_UNIT, MODULUS
+from validation.doors import Reduction, Scene, read_scene
+from validation.figures import Array
+from validation.paper.section2 import FACTORS, FORCE_UNIT, LENGTH_UNIT, MODULUS, fitted_order
 from validation.references.hertz import hertz_force
 from validation.references.mindlin import mindlin_force, mindlin_loop_area, raised_load_force
 from validation.row import Reference, Row, absolute, relative
-from validation.study import Bench, Findings, Rows, Runs, Scenes, Study
+from validation.study import Bench, Findings, Rows, Scenes, Study
 
-NAME = "tangential"
 RADIUS, DEPTH, SPACING, FRICTION = 1000.0, 1.0, 0.5, 0.3
 """R, d and h in LU, μ."""
 TURN = 0.8
@@ -66,13 +64,13 @@ class Case:
     def load(self, depth: float = DEPTH) -> float:
         """N of Hertz [FU]: two spheres R for the reduction of the paper, one and a flat for the MDR."""
         compliance = sum((1.0 - nu**2) / E for E, nu in zip(self.moduli, self.poisson_ratios, strict=True))
-        radius = RADIUS * LENGTH_UNIT * (0.5 if self.reduction == "geike_popov" else 1.0)
+        radius = RADIUS * LENGTH_UNIT / FACTORS[self.reduction]
         return float(hertz_force(depth * LENGTH_UNIT, radius, 1.0 / compliance)) / FORCE_UNIT
 
     @property
     def half_width(self) -> float:
         """a of the springs [LU]."""
-        return math.sqrt((2.0 if self.reduction == "geike_popov" else 1.0) * RADIUS * DEPTH)
+        return math.sqrt(FACTORS[self.reduction] * RADIUS * DEPTH)
 
     def scene(self, places: Array, depths: float | list[float] = DEPTH, **bodies: Any) -> Scene:
         """The body at the depths [LU], drawn along places [LU]."""
@@ -151,23 +149,13 @@ def scenes(_: Scene) -> Scenes:
 
 def judge(bench: Bench) -> Findings:
     """Every quantity by its worst pair of bodies, then the raised load and the order."""
-    runs = bench.runs
-    row = Rows(runs)
-    rows = [*_loop_checks(row), *_raised_checks(row), _order_check(row)]
-    figures = figure("F_x and stick radius over the way, beside Cattaneo and Mindlin", *_panels(runs))
-    worst = max(abs(check.value - check.reference.value) for check in rows[:4])
+    row = Rows(bench.runs)
     finding = (
-        f"For {len(CASES)} pairs of bodies, equal and unequal, in both reductions, F_x forward and back, the "
-        f"stick radius and the dissipated energy are those of Cattaneo and Mindlin within {share(worst)}: "
-        f"{agreement(rows[:4])}. The error of F_x is of the order {number(rows[-1].value, 3)} in the spacing. A load "
-        f"that is raised while some particles slip has Mindlin's and Deresiewicz's force: {agreement(rows[4:-1])}."
+        "For pairs of bodies, equal and unequal, in both reductions, F_x forward and back, the stick radius and the "
+        "dissipated energy are those of Cattaneo and Mindlin. A load that is raised while some particles slip has "
+        "Mindlin's and Deresiewicz's force."
     )
-    return Findings(rows, figures, text=finding)
-
-
-def _worst(found: list[tuple[float, float, float]]) -> tuple[float, float, float]:
-    """(value, reference, bound) of the case that is farthest off for its bound."""
-    return max(found, key=lambda one: abs(one[0] - one[1]) / one[2])
+    return Findings([*_loop_checks(row), *_raised_checks(row), _order_check(row)], text=finding)
 
 
 def _fineness(case: Case) -> float:
@@ -176,36 +164,33 @@ def _fineness(case: Case) -> float:
 
 def _loop_checks(row: Rows) -> list[Row]:
     half, back = OUT[HALF], len(OUT) + 15
-    names = [case.name for case in CASES]
-    out, returned, stuck, area = [], [], [], []
+    each = []
     for case in CASES:
         run, unit = row.runs[case.name], FRICTION * case.load()
-        force, sliding = run.friction["tangential_force"], case.sliding()
-        lattice = _fineness(case)
-        out.append((float(force[HALF]) / unit, way_out(half), 0.5 * lattice))
-        returned.append((float(force[back]) / unit, loop_force(0.0), 1.5 * lattice))
-        radius = run.friction["stick_radius"][HALF] / run.curve.contact_radius[HALF]
-        stuck.append((float(radius), math.sqrt(1.0 - half), ROUND_OFF))
-        energy = run.friction["dissipated_energy"]
-        loop = mindlin_loop_area(TURN, 1.0, 1.0, 1.0) * sliding * unit
-        way = 4.0 * TURN * sliding * unit
-        area.append((float(energy[-1] - energy[len(OUT) - 1]) / loop, 1.0, 1.5 * lattice * way / loop))
-    (a, ref_a, tol_a), (b, ref_b, tol_b), (c, ref_c, tol_c), (d, ref_d, tol_d) = map(
-        _worst, (out, returned, stuck, area)
-    )
-    of = f"worst of {len(CASES)} pairs of bodies for its lattice"
-    both: dict[str, Any] = {"on": names, "despite": OTHER}
-    more, exact = both | {"wide": BY_CHANCE}, both | {"wide": "a parabola is met to round-off"}
-    book = "Cattaneo and Mindlin, N of Hertz in SI"
+        force, energy = run.friction["tangential_force"], run.friction["dissipated_energy"]
+        lattice, radius = _fineness(case), run.friction["stick_radius"][HALF] / run.curve.contact_radius[HALF]
+        loop = mindlin_loop_area(TURN, 1.0, 1.0, 1.0) * case.sliding() * unit
+        way = 4.0 * TURN * case.sliding() * unit
+        each.append((
+            (float(force[HALF]) / unit, way_out(half), 0.5 * lattice),
+            (float(force[back]) / unit, loop_force(0.0), 1.5 * lattice),
+            (float(radius), math.sqrt(1.0 - half), ROUND_OFF),
+            (float(energy[-1] - energy[len(OUT) - 1]) / loop, 1.0, 1.5 * lattice * way / loop),
+        ))  # fmt: skip
+    pairs = f"worst of {len(CASES)} pairs of bodies"
+    of = f"{pairs} for its lattice"
+    names = (
+        (f"F_x over μN at u*/2, {of}", "Cattaneo and Mindlin, N of Hertz in SI", LATTICE, BY_CHANCE),
+        (f"F_x over μN on the way back from {TURN:g} u*, at u = 0, {of}",
+         "Mindlin and Deresiewicz: the way back is the way out at twice its size", LATTICE, BY_CHANCE),
+        (f"c/a at u*/2, {pairs}", "Cattaneo and Mindlin", "round-off", "a parabola is met to round-off"),
+        (f"energy of a loop between ±{TURN:g} u* over its area, {of}", "Mindlin and Deresiewicz", LATTICE, BY_CHANCE),
+    )  # fmt: skip
     return [
-        row(f"F_x over μN at u*/2, {of}", a, Reference(ref_a, book), absolute(tol_a, LATTICE), **more),
-        row(f"F_x over μN on the way back from {TURN:g} u*, at u = 0, {of}", b,
-            Reference(ref_b, "Mindlin and Deresiewicz: the way back is the way out at twice its size"),
-            absolute(tol_b, LATTICE), **more),
-        row(f"c/a at u*/2, worst of {len(CASES)} pairs of bodies", c, Reference(ref_c, "Cattaneo and Mindlin"),
-            absolute(tol_c, "round-off"), **exact),
-        row(f"energy of a loop between ±{TURN:g} u* over its area, {of}", d,
-            Reference(ref_d, "Mindlin and Deresiewicz"), absolute(tol_d, LATTICE), **more),
+        row(name, value, Reference(exact, source), absolute(bound, limit), on=[case.name for case in CASES],
+            despite=OTHER, wide=wide)
+        for (name, source, limit, wide), found in zip(names, zip(*each, strict=True), strict=True)
+        for value, exact, bound in [max(found, key=lambda one: abs(one[0] - one[1]) / one[2])]
     ]  # fmt: skip
 
 
@@ -214,87 +199,30 @@ def _raised_checks(row: Rows) -> list[Row]:
     places, _ = _raised()
     loads, slidings = (FIRST**1.5, 1.0), (BASE.sliding(FIRST * DEPTH), BASE.sliding())
     force = run.friction["tangential_force"]
-    checks = []
-    for i, words in ((2, "half of the way"), (4, "one and a half times the way")):
-        expected = raised_load_force(float(places[i]), float(places[0]), loads, slidings, 1.0)
-        checks.append(
-            row(
-                f"F_x over μN, load raised by {1.0 / FIRST**1.5 - 1.0:.0%} at {RAISED:g} u*, {words} to the old edge "
-                "on",
-                float(force[i]) / unit,
-                Reference(expected, "Mindlin and Deresiewicz: what slipped sticks anew"),
-                absolute(1.5 * _fineness(BASE) / FIRST, LATTICE),
-                on=["tangential_raised"],
-                wide=BY_CHANCE,
-            )
-        )
-    return checks
+    raised = f"load raised by {1.0 / FIRST**1.5 - 1.0:.0%} at {RAISED:g} u*"
+    return [
+        row(f"F_x over μN, {raised}, {words} to the old edge on", float(force[i]) / unit,
+            Reference(raised_load_force(float(places[i]), float(places[0]), loads, slidings, 1.0),
+                      "Mindlin and Deresiewicz: what slipped sticks anew"),
+            absolute(1.5 * _fineness(BASE) / FIRST, LATTICE), on=["tangential_raised"], wide=BY_CHANCE)
+        for i, words in ((2, "half of the way"), (4, "one and a half times the way"))
+    ]  # fmt: skip
 
 
 def _order_check(row: Rows) -> Row:
     """The fitted order, uncertain by the fit."""
     names = list(_order_runs())
-    depth = EDGE**2 / RADIUS
-    exact = FRICTION * BASE.load(depth) * (1.0 - STUCK**3)
-    errors = [abs(_last(row.runs[name]) / exact - 1.0) for name in names]
-    fitted, covariance = np.polyfit(np.log(ORDER_SPACINGS), np.log(errors), 1, cov=True)
-    return row("order of convergence of F_x in the spacing", float(fitted[0]),
+    exact = FRICTION * BASE.load(EDGE**2 / RADIUS) * (1.0 - STUCK**3)
+    errors = [abs(row.runs[name].friction["tangential_force"][-1] / exact - 1.0) for name in names]
+    order, error = fitted_order(ORDER_SPACINGS, errors)
+    return row("order of convergence of F_x in the spacing", order,
                Reference(2.0, "Euler and Maclaurin: both edges are kinks of a sum"), relative(ROUND_OFF, "round-off"),
-               uncertainty=float(np.sqrt(covariance[0, 0])), on=names,
+               uncertainty=error, on=names,
                wide="edges midway between particles: the series of a parabola ends after its first term")  # fmt: skip
 
 
-def _last(run: Run) -> float:
-    return float(run.friction["tangential_force"][-1])
-
-
-def _series(runs: Runs) -> list[Series]:
-    """F_x over μN of each pair, over u/u*."""
-    return [
-        Series(
-            _words(case),
-            runs[case.name].friction["tangential_displacement"] / case.sliding(),
-            runs[case.name].friction["tangential_force"] / (FRICTION * case.load()),
-        )
-        for case in CASES
-    ]
-
-
-def _sticking(runs: Runs) -> list[Series]:
-    """c/a on the way out."""
-    out = slice(0, len(OUT))
-    return [
-        Series(
-            _words(case),
-            runs[case.name].friction["tangential_displacement"][out] / case.sliding(),
-            runs[case.name].friction["stick_radius"][out] / runs[case.name].curve.contact_radius[out],
-        )
-        for case in CASES
-    ]
-
-
-def _words(case: Case) -> str:
-    first, second = case.poisson_ratios
-    materials = f"ν = {first:g}" if first == second else f"ν = {first:g} on {second:g}, E 10 : 1"
-    return f"{case.reduction}, {materials}"
-
-
-def _panels(runs: Runs) -> tuple[Panel, Panel]:
-    """F_x/μN around the loop and c/a on the way out, over u/u*."""
-    way = np.linspace(-TURN, TURN, 200)
-    back = [loop_force(u) for u in way.tolist()]
-    out = np.linspace(0.0, TURN, 100)
-    return (
-        Panel("displacement over $u^*$", r"$F_x/\mu N$", _series(runs),
-              [Series("way out", out, 1.0 - (1.0 - out) ** 1.5), Series("loop", way, np.asarray(back)),
-               Series("", -way, -np.asarray(back))]),
-        Panel("displacement over $u^*$", "stick radius over contact radius", _sticking(runs),
-              [Series("Mindlin", out, np.sqrt(1.0 - out))]),
-    )  # fmt: skip
-
-
 STUDY = Study(
-    NAME,
+    "tangential",
     "The tangential contact beside Cattaneo and Mindlin",
     "The reduction is valid for the tangential contact, too, with the tangential stiffness in place of the normal one.",
     judge,

@@ -71,19 +71,18 @@ def ratio(name: str, folder: Path) -> float:
     points = settings.forces.table.points if settings.forces.table is not None else 0
     variables = f"variable points index {points}\nvariable dt index {settings.motion.time_step!r}\n"
     load = "fix plate_load plate addforce 0.0 0.0 -0.005\n"
-    steps = steps_of(deck)
     head = deck.head + (deck.begin("loading") if deck.stepped else load)
     texts = (head, ("" if deck.stepped else variables) + (HAND / f"{name}.lmp").read_text())
-    times: tuple[list[float], list[float]] = ([], [])
     with Engine.session(folder) as first, Engine.session(folder) as second:
-        sessions = (first, second)
-        for index, session in enumerate(sessions):
-            session.execute(texts[index])
-            loop_time(session, folder, steps[index])  # settles into the contact; not counted
+        decks = dict(zip((first, second), steps_of(deck), strict=True))
+        times: dict[Session, list[float]] = {first: [], second: []}
+        for (session, steps), text in zip(decks.items(), texts, strict=True):
+            session.execute(text)
+            loop_time(session, folder, steps)  # settles into the contact; not counted
         for turn in range(ROUNDS):
-            for index in (0, 1) if turn % 2 == 0 else (1, 0):
-                times[index].append(loop_time(sessions[index], folder, steps[index]))
-    return over(*times)
+            for session in (first, second) if turn % 2 == 0 else (second, first):
+                times[session].append(loop_time(session, folder, decks[session]))
+    return over(*times.values())
 
 
 def over(times: Sequence[float], by_hand: Sequence[float]) -> float:

@@ -13,6 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 from statistics import median
 from time import process_time
+from typing import Any
 
 from contact1d import run
 from validation import doors
@@ -45,13 +46,13 @@ def timed(scene: Scene, method: str, tolerance: float) -> Scene:
     tables = {"damping": {"coefficient": "auto"}, "plate": {"mass": "auto"}} if method == "dynamic" else {}
     data = scene.model_dump(by_alias=True, exclude_none=True) | tables
     data["experiment"]["method"] = method
-    return doors.read_scene(data | {"accuracy": {"tolerance": tolerance}})
+    return read_scene(data | {"accuracy": {"tolerance": tolerance}})
 
 
 def held(contact: Contact, load: float, scale: float) -> bool:
     """Whether the contact comes to rest under a load [FU], or is lost."""
     settings, largest = contact.settings, 0.0
-    near = REST * contact.settings.tolerance * scale
+    near = REST * settings.tolerance * scale
     stiffness = scale / settings.largest_displacement
     while True:
         state = contact.row(UnderLoad(load, doors.chunk_steps(settings)))
@@ -69,24 +70,22 @@ def plain(scene: Scene, tolerance: float, folder: Path, tuned: bool) -> tuple[fl
     assert isinstance(own.experiment, PullOff)
     preload = own.experiment.preload
     settings = settings_for(own)
-    if tuned:
-        settings = replace(settings, motion=replace(settings.motion, damping=TUNED_DAMPING))
-    else:
-        step = settings.motion.time_step * STEP / doors.still_step()
-        settings = replace(settings, motion=replace(settings.motion, time_step=step))
-    deck = doors.Deck(own, settings)
+    step = settings.motion.time_step * STEP / doors.still_step()
+    chosen: dict[str, Any] = {"damping": TUNED_DAMPING} if tuned else {"time_step": step}
+    motion = replace(settings.motion, **chosen)
+    deck = doors.Deck(own, replace(settings, motion=motion))
     folder.mkdir(parents=True, exist_ok=True)
     doors.write_system(deck, folder)
     context = doors.RunContext(deck, folder, doors.Silent(), TIME_LIMIT)
     guess = deck.settings.law.pull_off_force()
-    low, high = 0.0, 2.0 * guess
+    low, high, scale = 0.0, 2.0 * guess, max(preload, guess)
     while high - low > tolerance * high:
         tension = 0.5 * (low + high)
         with context.contact() as contact:
             contact.begin("loading")
-            held(contact, preload, max(preload, guess))
+            held(contact, preload, scale)
             contact.begin("pulling")
-            holds = held(contact, -tension, max(preload, guess))
+            holds = held(contact, -tension, scale)
             contact.finish()
         low, high = (tension, high) if holds else (low, tension)
     return 0.5 * (low + high), context.clock.lammps_cpu_seconds

@@ -15,7 +15,8 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +24,6 @@ import numpy as np
 
 from contact1d import read_scene, run
 from validation.doors import Scene, shipped
-from validation.figures import Panel, Series, figure
 from validation.hard.cases import PAPER_LAW
 from validation.row import Row, at_most
 from validation.speed.clock import peak_memory, spent
@@ -35,8 +35,8 @@ COMMAND = {"figures": 1.5, "no-figures": 0.6}
 LATER = 0.05
 """Asked of a later run in Python, without figures, outside LAMMPS [s]."""
 IN_PYTHON = ("load", "pull_off", "hertz_plane")
-SPREAD, MEMORY = 2.0, 8e9
-"""Asked of the largest cost per particle and step over the smallest, and of the memory at the largest size [bytes]."""
+SPREAD, MEMORY = 2.0, 8.0
+"""Asked of the largest cost per particle and step over the smallest, and of the memory at the largest size [GB]."""
 STEPS = {200: 40, 2_000: 20, 20_000: 8, 200_000: 2, 1_000_000: 1}
 """Displacements there, and as many back, by particles per body."""
 QUICK = 20_000
@@ -85,30 +85,21 @@ def one(particles: int, method: str) -> dict[str, float]:
     return {"cost": cost, "memory": peak_memory()}
 
 
-def spread(costs: Mapping[int, float]) -> float:
+def spread(costs: Collection[float]) -> float:
     """Largest cost over the smallest."""
-    return max(costs.values()) / min(costs.values())
+    return max(costs) / min(costs)
 
 
 def size_rows(found: Mapping[str, Mapping[int, Mapping[str, float]]]) -> list[Row]:
     """By method and size: how much the cost varies, and the most memory."""
     rows = []
     for method, sizes in found.items():
-        costs = {size: each["cost"] for size, each in sizes.items()}
-        sizes_in_words = f"N = {min(sizes)} to {max(sizes)} particles per body"
+        costs, size = [each["cost"] for each in sizes.values()], max(sizes)
+        sizes_in_words = f"N = {min(sizes)} to {size} particles per body"
         words = f"CPU time per particle and step, {method}, largest over smallest for {sizes_in_words}"
         rows.append(at_most(words, spread(costs), SPREAD, ASKED, "processor caches", "set bound"))
-        size, memory = max(sizes), sizes[max(sizes)]["memory"]
-        rows.append(
-            at_most(
-                f"memory of program and LAMMPS [GB], {method}, N = {size}",
-                memory / 1e9,
-                MEMORY / 1e9,
-                ASKED,
-                "–",
-                "set bound",
-            )
-        )
+        words, memory = f"memory of program and LAMMPS [GB], {method}, N = {size}", sizes[size]["memory"] / 1e9
+        rows.append(at_most(words, memory, MEMORY, ASKED, "–", "set bound"))
     return rows
 
 
@@ -120,18 +111,13 @@ def measure_scaling(bench: Bench) -> Findings:
             code = f"import json; from validation.speed.scaling import one; print(json.dumps(one({size}, {method!r})))"
             done = subprocess.run([sys.executable, "-c", code], check=True, stdout=subprocess.PIPE, text=True)
             sizes[size] = json.loads(done.stdout)
-    shown = [
-        Series(method, np.array(list(sizes), dtype=float), np.array([each["cost"] for each in sizes.values()]))
-        for method, sizes in found.items()
-    ]
-    panel = Panel("particles per body", "ns per particle and step", shown, log="x")
-    return Findings(size_rows(found), figure("Cost per particle and step over the size", panel))
+    return Findings(size_rows(found))
 
 
 def measure_outside(bench: Bench) -> Findings:
     """Medians of the wall time outside LAMMPS, of the command and of later runs in Python."""
 
-    def outside(words: str, limit: float, timed: Any) -> Row:
+    def outside(words: str, limit: float, timed: Callable[[], float]) -> Row:
         value = statistics.median(timed() for _ in range(REPEATS))
         return at_most(
             f"wall time outside LAMMPS [s]: {words}", value, limit, ASKED, "imports; files and figures", "set bound"
@@ -139,7 +125,7 @@ def measure_outside(bench: Bench) -> Findings:
 
     def command(figures: str) -> float:
         program, folder = Path(sys.executable).with_name("contact1d"), bench.folder / "run"
-        words = [str(program), "run", str(shipped("scenes/pull_off.toml")), f"--{figures}", "--out", str(folder)]
+        words: list[str | Path] = [program, "run", shipped("scenes/pull_off.toml"), f"--{figures}", "--out", folder]
         started = time.perf_counter()
         subprocess.run(words, check=True, capture_output=True)
         inside = json.loads((folder / "results.json").read_text())["timing"]["lammps_s"]
@@ -150,11 +136,11 @@ def measure_outside(bench: Bench) -> Findings:
         timing = run(read_scene(shipped(f"scenes/{name}.toml")), bench.folder / "run", figures=False).timing
         return time.perf_counter() - started - float(timing["lammps_s"])
 
-    rows = [outside(f"contact1d run pull_off.toml --{words}", limit, lambda words=words: command(words))
+    rows = [outside(f"contact1d run pull_off.toml --{words}", limit, partial(command, words))
             for words, limit in COMMAND.items()]  # fmt: skip
     for name in IN_PYTHON:
         later(name)
-        rows.append(outside(f"a later run of {name}.toml in Python, no figures", LATER, lambda name=name: later(name)))
+        rows.append(outside(f"a later run of {name}.toml in Python, no figures", LATER, partial(later, name)))
     return Findings(rows)
 
 
@@ -163,8 +149,8 @@ def measure_ranks(bench: Bench) -> Findings:
     rows = []
     for method in METHODS:
         for size in (10_000, 100_000, 1_000_000) if bench.full else (10_000,):
-            scene, times = scaled_scene(size, method, 1), {1: [], 2: []}  # type: tuple[Scene, dict[int, list[float]]]
-            forces = {}
+            scene, forces = scaled_scene(size, method, 1), {}
+            times: dict[int, list[float]] = {1: [], 2: []}
             for count in times:
                 run(scaled_scene(1000, method), bench.folder / "first", figures=False, ranks=count)
             for _ in range(3):
@@ -174,19 +160,15 @@ def measure_ranks(bench: Bench) -> Findings:
                     forces[count] = np.asarray(done.curve.force)
             alone, shared = (statistics.median(each) for each in times.values())
             off = float(np.abs(forces[1] - forces[2]).max() / np.abs(forces[1]).max())
-            rows += rank_rows(method, size, alone, shared, off)
+            words = f"{method}, {size} particles per body"
+            rows += [
+                at_most(f"difference of the forces on two MPI ranks and on one, over the largest force: {words}", off,
+                        SAME, "the same contact", "order of the sums"),
+                at_most("wall time of the load steps on two MPI ranks over that on one: "
+                        f"{words} ({alone:.3g} s on one)",
+                        shared / alone, 1.0, "no more time", "what two processors share", "set bound"),
+            ]  # fmt: skip
     return Findings(rows)
-
-
-def rank_rows(method: str, size: int, alone: float, shared: float, off: float) -> list[Row]:
-    """Forces and times of one size."""
-    words = f"{method}, {size} particles per body"
-    return [
-        at_most(f"difference of the forces on two MPI ranks and on one, over the largest force: {words}", off, SAME,
-                "the same contact", "order of the sums"),
-        at_most(f"wall time of the load steps on two MPI ranks over that on one: {words} ({alone:.3g} s on one)",
-                shared / alone, 1.0, "no more time", "what two processors share", "set bound"),
-    ]  # fmt: skip
 
 
 OUTSIDE = Study("outside", "Wall time outside LAMMPS", "What does the program cost beside the solver?", measure_outside)

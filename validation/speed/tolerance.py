@@ -15,10 +15,10 @@ import numpy as np
 
 import contact1d
 from validation.figures import Panel, Series, figure
-from validation.hard.cases import PAPER_LAW
+from validation.hard.cases import PAPER_LAW, PAPER_NUMBERS
 from validation.references.hertz import hertz_contact_radius, hertz_force
 from validation.references.indenters import Indenter, jkr
-from validation.references.interaction import Exponential, PairInteraction
+from validation.references.interaction import PairInteraction
 from validation.references.mindlin import mindlin_loop_area
 from validation.references.model import ChainModel
 from validation.references.pull_off import pull_off
@@ -47,7 +47,7 @@ class Contact:
     def run(self, bench: Bench, name: str, tolerance: float) -> tuple[float, float]:
         """The largest relative error, and the time [s]."""
         scene = contact1d.read_scene({"title": name, **self.tables, "accuracy": {"tolerance": tolerance}})
-        folder, times = bench.folder / name.replace(" ", "_"), list[float]()
+        folder, times = bench.folder / name.replace(" ", "_"), []
         for _ in range(ROUNDS + 1):
             began = time.perf_counter()
             done = contact1d.run(scene, folder, figures=False)
@@ -58,14 +58,13 @@ class Contact:
 
 def ball(profile: Mapping[str, Any], experiment: Mapping[str, Any], **effects: Any) -> dict[str, Any]:
     """A body on a plane in SI, its spacing chosen by the program."""
-    body = {
-        "particles": "auto",
-        "spacing": "auto",
-        "profile": profile,
-        "bulk_stiffness": "auto",
-        "lower": "rigid_plane",
+    body = dict.fromkeys(("particles", "spacing", "bulk_stiffness"), "auto") | {"lower": "rigid_plane"}
+    return {
+        "bodies": body | {"profile": profile},
+        "material": {"contact_modulus": MODULUS},
+        "experiment": experiment,
+        **effects,
     }
-    return {"bodies": body, "material": {"contact_modulus": MODULUS}, "experiment": experiment, **effects}
 
 
 def contacts() -> dict[str, Contact]:
@@ -76,14 +75,11 @@ def contacts() -> dict[str, Contact]:
     blunt = Indenter(HEIGHT / WIDTH**4, 4.0, MODULUS)
     amplitude = SLIDING * FRICTION * DEPTH
     cycles = {"amplitude": f"{amplitude!r} m", "number": 1, "points": 40}
-    law = PairInteraction(Exponential(0.18, 0.13), Exponential(0.09, 0.26))
+    law = PairInteraction.of(*PAPER_NUMBERS)
     chains = {
-        "particles": 200,
-        "spacing": 1.0,
-        "profile": {"kind": "parabola", "radius": 1000.0},
-        "bulk_stiffness": 0.83,
-    }
-    chains["reduction"] = "geike_popov"
+        "particles": 200, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 1000.0}, "bulk_stiffness": 0.83,
+        "reduction": "geike_popov",
+    }  # fmt: skip
     marks = pull_off(ChainModel(200, 0.83, law, radius=1000.0, neighbour_stiffness=0.3), 1.0)
     preload = f"{adhesive.pull_off_force()!r} N"
     sticky = {"work_of_adhesion": f"{WORK!r} J/m²"}

@@ -15,18 +15,19 @@ is the schedule that decides how well the critical radius is known, now more and
 
 from __future__ import annotations
 
-import csv
 import json
 import math
 import os
 import sys
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from itertools import repeat
 from pathlib import Path
 from statistics import geometric_mean
 from typing import Any
+
+import pandas as pd
 
 from contact1d.workflow.continuation.outcome import LATTICE, MODEL, Result, unmet
 from contact1d.workflow.engine.progress import choose_progress
@@ -286,20 +287,18 @@ def _cost(cases: Sequence[Row], finest: Sequence[Row]) -> float:
     return geometric_mean(row.cpu_s / base[row.scene, row.tolerance] for row in cases)
 
 
-def read_rows(path: Path = RECORD) -> list[Row]:
+def read_rows() -> list[Row]:
     """The rows of results/calibration.csv."""
-    kinds: dict[str, Any] = {"scene": str, "share": str, "trouble": str, "steps": int}
-    with path.open(encoding="utf-8", newline="") as file:
-        return [Row(**{k: kinds.get(k, float)(v) for k, v in line.items()}) for line in csv.DictReader(file)]
+    table = pd.read_csv(RECORD, float_precision="round_trip").fillna({"trouble": ""})
+    return [Row(**line) for line in table.to_dict("records")]
 
 
-def write_rows(rows: Sequence[Row], path: Path = RECORD) -> None:
+def write_rows(rows: Sequence[Row]) -> None:
     """Write them, with three digits of what was measured."""
-    with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow([one.name for one in fields(Row)])
-        for row in rows:
-            writer.writerow([f"{v:.3g}" if k in ("added", "error", "cpu_s") else v for k, v in asdict(row).items()])
+    table = pd.DataFrame(rows)
+    measured = ["added", "error", "cpu_s"]
+    table[measured] = table[measured].map("{:.3g}".format)
+    table.to_csv(RECORD, index=False, na_rep="nan", lineterminator="\n")
 
 
 def main(arguments: Sequence[str]) -> None:

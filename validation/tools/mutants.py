@@ -1,7 +1,6 @@
 """Random faults: a share of all small ones is put into the code, one at a time, and the tests that reach it must fail.
 
-    python -m validation.tools.mutants [FOLDER ...] [--number 100] [--fragments 50] [--seed 1] [--tests tests/unit ...]
-                                       [--out FILE]
+    python -m validation.tools.mutants [--number 100] [--fragments 50] [--seed 1] [--out FILE]
 
 A fault changes one operator, comparison or number in a copy of this checkout, in Python or in a fragment of a deck. A
 trace says which tests call its function, or open its fragment; these run there, quick ones first, up to the first that
@@ -15,7 +14,6 @@ are noticed. Every processor has a share of the trace, and a fault at a time.
 
 from __future__ import annotations
 
-import argparse
 import ast
 import json
 import math
@@ -36,6 +34,7 @@ from types import CodeType, FrameType
 from typing import Any
 
 import pytest
+import typer
 
 from validation.age import today
 from validation.tools.copies import BROKEN, HANGS, ROOT, copy_of_this, first_failure, load, run_tests
@@ -185,13 +184,9 @@ def traced(tests: Sequence[str]) -> Called:
         return Called(json.loads(calls.read_text(encoding="utf-8")) if calls.exists() else {})
 
 
-def shares(tests: Sequence[str]) -> list[list[str]]:
-    """The files of tests, the rooms mixed: each share takes about as long."""
-    files = [
-        str(path.relative_to(ROOT))
-        for name in tests
-        for path in (sorted((ROOT / name).rglob("test_*.py")) if (ROOT / name).is_dir() else [ROOT / name])
-    ]
+def shares() -> list[list[str]]:
+    """The files of TESTS, the rooms mixed: each share takes about as long."""
+    files = [str(path.relative_to(ROOT)) for name in TESTS for path in sorted((ROOT / name).rglob("test_*.py"))]
     count = math.ceil(len(files) / SHARE)
     return [files[first::count] for first in range(count)]
 
@@ -206,15 +201,11 @@ def changes(node: ast.AST) -> Iterator[Change]:
         case ast.BinOp(op=op) | ast.AugAssign(op=op) | ast.BoolOp(op=op) if type(op) in OPERATORS:
             new = OPERATORS[type(op)]
             yield swap(node, "op", new(), f"{type(op).__name__} → {new.__name__}")
-        case ast.Compare(ops=[op]) if type(op) in OPERATORS:
-            new = OPERATORS[type(op)]
-            yield swap(node, "ops", [new()], f"{type(op).__name__} → {new.__name__}")
-        case ast.Compare(ops=ops) if len(ops) > 1:
-            for i, op in enumerate(ops):
-                if type(op) in OPERATORS:
-                    new = OPERATORS[type(op)]
-                    words = f"{type(op).__name__} → {new.__name__}, {i + 1} of a chain"
-                    yield swap(node, "ops", [*ops[:i], new(), *ops[i + 1 :]], words)
+        case ast.Compare(ops=ops):
+            for i, old in enumerate(ops):
+                if after := OPERATORS.get(type(old)):
+                    words = f"{type(old).__name__} → {after.__name__}" + f", {i + 1} of a chain" * (len(ops) > 1)
+                    yield swap(node, "ops", [*ops[:i], after(), *ops[i + 1 :]], words)
         case ast.UnaryOp(op=ast.USub()):
             yield swap(node, "op", ast.UAdd(), "−x → x")
         case ast.UnaryOp(op=ast.Not(), operand=operand):
@@ -331,10 +322,10 @@ def killed_by(mutant: Mutant, tests: dict[str, float]) -> str:
         return "" if by in ("", HANGS) or first_failure(folder, again, whole, longest) else by
 
 
-def drawn(folders: Sequence[str], number: int, fragments: int, seed: int) -> list[Mutant]:
-    """So many mutants of Python files in the folders, and of fragments; links are not followed."""
+def drawn(number: int, fragments: int, seed: int) -> list[Mutant]:
+    """So many mutants of Python files in FOLDERS, and of fragments; links are not followed."""
     draw = random.Random(seed)
-    files = [path.relative_to(ROOT) for name in folders for path in sorted((ROOT / name).rglob("*.py"))]
+    files = [path.relative_to(ROOT) for name in FOLDERS for path in sorted((ROOT / name).rglob("*.py"))]
     own = [str(file) for file in files if (ROOT / file).resolve() == ROOT.resolve() / file]
     decks = [str(path.relative_to(ROOT)) for path in sorted((ROOT / FRAGMENTS).rglob("*.lmp"))]
     every = [[mutant for file in chosen for mutant in mutants(file)] for chosen in (own, decks)]
@@ -345,54 +336,38 @@ def drawn(folders: Sequence[str], number: int, fragments: int, seed: int) -> lis
     ]
 
 
-def main() -> int:
+def main(number: int = 100, fragments: int = 50, seed: int = 1, out: Path = RESULTS) -> None:
     """Draw faults, look for them, and write down those that no test notices."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folders", nargs="*", default=FOLDERS)
-    parser.add_argument("--number", type=int, default=100)
-    parser.add_argument("--fragments", type=int, default=50)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--tests", nargs="+", default=TESTS, help="folders or files")
-    parser.add_argument("--out", type=Path, default=RESULTS)
-    options = parser.parse_args()
-    if missing := [name for name in (*options.folders, *options.tests) if not (ROOT / name).exists()]:
-        parser.error(f"there is no {', '.join(missing)}")
-    chosen = drawn(options.folders, options.number, options.fragments, options.seed)
+    chosen = drawn(number, fragments, seed)
     old = json.loads(RESULTS.read_text(encoding="utf-8")).get("survivors", []) if RESULTS.exists() else []
     reasons = {(row["file"], row["text"], row["change"]): row["reason"] for row in old}
     load()
-    began, found = time.monotonic(), Counter[tuple[str, bool]]()
-    alive = list[Mutant]()
+    began, alive = time.monotonic(), list[Mutant]()
     with ProcessPoolExecutor(mp_context=get_context("fork")) as pool:
         called = Called()
-        for one in pool.map(traced, shares(options.tests)):
+        for one in pool.map(traced, shares()):
             called |= one
         print(f"{len(called)} tests are traced: {time.monotonic() - began:.0f} s", flush=True)
         tests = [{name: called[name][0] for name in tests_of(mutant, called)} for mutant in chosen]
         for mutant, those, by in zip(chosen, tests, pool.map(killed_by, chosen, tests), strict=True):
-            found[mutant.place, bool(by)] += 1
             if not by:
                 alive.append(mutant)
             word = "killed  " if by else "SURVIVES" if those else "NO TEST "
             print(f"{word} {mutant.file}:{mutant.line}: {mutant.change}   {by or mutant.text}", flush=True)
-    places = {
-        place: {"faults": count, "noticed": found[place, True] / count}
-        for place in (PYTHON, NEW, DECKS)
-        if (count := found[place, True] + found[place, False])
-    }
+    count, lost = (Counter(mutant.place for mutant in which) for which in (chosen, alive))
+    places = {place: {"faults": n, "noticed": (n - lost[place]) / n} for place, n in count.items()}
     rows = [
         {"file": m.file, "line": m.line, "text": m.text, "change": m.change,
          "reason": reasons.get((m.file, m.text, m.change), "")}
         for m in alive
     ]  # fmt: skip
-    record = {"asked": ASKED, "seed": options.seed, **vars(today()), "places": places, "survivors": rows}
-    options.out.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    record = {"asked": ASKED, "seed": seed, **vars(today()), "places": places, "survivors": rows}
+    out.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     for place, row in places.items():
         print(f"{place}: {row['faults']} faults, {100.0 * row['noticed']:.1f} % noticed")
-    decks = [mutant.place == DECKS for mutant in chosen]
-    lost = [sum(mutant.place == DECKS for mutant in alive), sum(mutant.place != DECKS for mutant in alive)]
-    return int(any(n > (1.0 - ASKED) * of for n, of in zip(lost, (sum(decks), len(decks) - sum(decks)), strict=True)))
+    missed, put = ((n[DECKS], n.total() - n[DECKS]) for n in (lost, count))
+    raise typer.Exit(int(any(n > (1.0 - ASKED) * of for n, of in zip(missed, put, strict=True))))
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    typer.run(main)

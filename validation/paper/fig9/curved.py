@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,7 +10,7 @@ from validation.doors import Scene, settings_for
 from validation.figures import Panel, Series
 from validation.paper.fig9.reading import LOAD, RADIUS, mean, slides, static
 from validation.references.slide import Integrator, Trace
-from validation.row import Evidence, Reference, Row, relative, solver
+from validation.row import Reference, Row, relative, solver
 from validation.slides import slide_model
 from validation.study import Rows, found
 
@@ -24,7 +23,6 @@ RESIDUAL = 1e-6
 TRACE, MEAN, LARGEST = 3e-4, 2e-3, 5e-3
 """Bounds: of the peak of the trace; of ⟨F⟩, over other periods; of the largest friction, between two rows."""
 SOURCE = "independent integrator of the whole model, step by step"
-SOLVER: Evidence = "independent solver"
 RUN_IN = "the run-in: the means are over other periods"
 SAME_ROWS = "both take it at the same rows"
 BETWEEN = "the largest friction lies between two rows of the trace, of which a spacing has 50"
@@ -68,74 +66,39 @@ def curved_checks(row: Rows) -> tuple[list[Row], Panel, Panel]:
         sweep: {value: integrated(slides(sweep).scenes[value,]) for value in values}
         for sweep, values in INTEGRATED.items()
     }
+    by_run = {slides(sweep).names[value,]: one for sweep, values in known.items() for value, one in values.items()}
+    words = [f"load of {value:g} FU" for value in known[LOAD]] + [f"radius of {value:g} LU" for value in known[RADIUS]]
     load, names = known[LOAD], slides(LOAD).names
-    low, high = 0.0, max(load)
-    rise = [
-        (of[high] - of[low]) / (high - low)
-        for of in (
-            {value: static(row.runs[names[value,]]) for value in (low, high)},
-            {value: load[value].static for value in (low, high)},
-        )
-    ]
+    high = max(load)
+    unloaded, loaded = names[0.0,], names[high,]
+    ours, theirs = (static(row.runs[loaded]) - static(row.runs[unloaded])), load[high].static - load[0.0].static
     checks = [
-        _mean_row(row, names[value,], f"load of {value:g} FU", one) for value, one in load.items()
+        row(f"⟨F⟩ of a curved body, {where}", found(row.runs[name], "mean_friction"), solver(one.mean, SOURCE),
+            relative(MEAN, RUN_IN), on=[name], wide="the run-in is over sooner than the bound allows for")
+        for where, (name, one) in zip(words, by_run.items(), strict=True)
     ] + [
-        _mean_row(row, slides(RADIUS).names[value,], f"radius of {value:g} LU", one)
-        for value, one in known[RADIUS].items()
-    ]  # fmt: skip
-    checks += [
-        row("largest friction of a curved body without a load", static(row.runs[names[0.0,]]),
-            solver(load[0.0].static, SOURCE), relative(LARGEST, BETWEEN),
-            uncertainty=found(row.runs[names[0.0,]], "static_friction").uncertainty, unit="FU", on=[names[0.0,]],
-            wide=SAME_ROWS),
-        row(f"what it rises by with the load, from 0 to {high:g} FU", rise[0], solver(rise[1], SOURCE),
-            relative(LARGEST, BETWEEN), on=[names[0.0,], names[high,]], wide=SAME_ROWS),
-    ]  # fmt: skip
-    worst = {
-        names_of: off_trace(row, names_of, one)
-        for sweep, values in known.items()
-        for names_of, one in ((slides(sweep).names[value,], one) for value, one in values.items())
-    }
-    checks.append(
+        row("largest friction of a curved body without a load", found(row.runs[unloaded], "static_friction"),
+            solver(load[0.0].static, SOURCE), relative(LARGEST, BETWEEN), on=[unloaded], wide=SAME_ROWS),
+        row(f"what it rises by with the load, from 0 to {high:g} FU", ours / high, solver(theirs / high, SOURCE),
+            relative(LARGEST, BETWEEN), on=[unloaded, loaded], wide=SAME_ROWS),
         row.at_most(
-            f"friction at every row of the trace off that of the integrator, over its peak, worst of {len(worst)} "
+            f"friction at every row of the trace off that of the integrator, over its peak, worst of {len(by_run)} "
             "slides",
-            max(worst.values()),
+            max(off_trace(row, name, one) for name, one in by_run.items()),
             Reference(TRACE, "bound that was asked for", "set bound"),
             "table of the law, order of the sums, the rest from which it starts",
-            on=list(worst),
+            on=list(by_run),
             wide="what was asked for leaves room for heat and neighbours",
-        )
-    )
-    return checks, _panel(row, LOAD, known, "normal force (FU)"), _panel(row, RADIUS, known, "radius (LU)")
+        ),
+    ]  # fmt: skip
+    return checks, _panel(row, LOAD, load, "normal force (FU)"), _panel(row, RADIUS, known[RADIUS], "radius (LU)")
 
 
-def _mean_row(row: Rows, name: str, words: str, known: Integrated) -> Row:
-    result = found(row.runs[name], "mean_friction")
-    return row(f"⟨F⟩ of a curved body, {words}", result, solver(known.mean, SOURCE), relative(MEAN, RUN_IN),
-               on=[name], wide="the run-in is over sooner than the bound allows for")  # fmt: skip
-
-
-def _panel(row: Rows, sweep: str, known: dict[str, dict[float, Integrated]], along: str) -> Panel:
+def _panel(row: Rows, sweep: str, known: dict[float, Integrated], along: str) -> Panel:
+    """Each value of the integrator is a point of its own."""
     points = slides(sweep)
-    places = np.asarray([value for (value,) in points.names])
-
-    def series(words: str, values: Sequence[float]) -> Series:
-        return Series(words, places, np.asarray(values))
-
-    runs = [row.runs[name] for name in points.every]
-    shown = [series("largest", [static(run) for run in runs]), series("mean", [mean(run) for run in runs])]
-    for value, one in known[sweep].items():
-        label = "" if value != min(known[sweep]) else "integrator"
-        shown.append(Series(label, np.full(2, value), np.asarray([one.static, one.mean])))
-    return Panel(along, "friction (FU)", shown[:2], _stars(shown[2:]), title="curved on flat",
-                 log="x" * (sweep == RADIUS))  # fmt: skip
-
-
-def _stars(shown: Sequence[Series]) -> list[Series]:
-    """Each value of the integrator as a point of its own."""
-    return [
-        Series(one.name if i == 0 else "", one.x[i : i + 1], one.y[i : i + 1])
-        for one in shown
-        for i in range(len(one.x))
-    ]
+    places, runs = [value for (value,) in points.names], [row.runs[name] for name in points.every]
+    shown = [Series("largest", places, [*map(static, runs)]), Series("mean", places, [*map(mean, runs)])]
+    stars = [Series("", [value], [force]) for value, one in known.items() for force in (one.static, one.mean)]
+    stars[0] = replace(stars[0], name="integrator")
+    return Panel(along, "friction (FU)", shown, stars, title="curved on flat", log="x" * (sweep == RADIUS))

@@ -8,8 +8,6 @@ That height is constant without end; a plate of N particles gives way to each sl
 
 from __future__ import annotations
 
-import numpy as np
-
 from validation.doors import Scene, Slide, law_of
 from validation.figures import Panel, Series
 from validation.paper.fig9.asperity import BETWEEN, MIDDLE, OF_LARGEST, wells_of
@@ -43,16 +41,16 @@ def load_of(scene: Scene) -> float:
 def lattice_checks(row: Rows) -> tuple[list[Row], Panel]:
     """The largest friction of a commensurate pair, and both traces."""
     points = slides(LATTICES)
-    (alike, same), (other, _) = points.scenes.items()
+    same, alike = next(iter(points.scenes.values())), points.every[0]
     count, wells = same.bodies.upper_particles or 0, wells_of(same)
     check = row(f"largest friction of a commensurate pair over that of its {count} particles",
-                static(row.runs[points.names[alike]]) / count / wells.largest_force,
+                static(row.runs[alike]) / count / wells.largest_force,
                 Reference(1.0, "a commensurate chain is so many particles"), relative(OF_LARGEST, BETWEEN),
-                on=[points.names[alike]])  # fmt: skip
-    traces = []
-    for place, words in ((alike, "spacings 1 : 1"), (other, "spacings 21 : 13")):
-        trace = row.runs[points.names[place]].friction
-        traces.append(Series(words, trace["drive"], trace["friction"] / count))
+                on=[alike])  # fmt: skip
+    traces = [
+        Series(words, row.runs[name].friction["drive"], row.runs[name].friction["friction"] / count)
+        for name, words in zip(points.every, ("spacings 1 : 1", "spacings 21 : 13"), strict=True)
+    ]
     return [check], Panel(
         "way of the drive (LU)", "friction of a particle (FU)", traces, [], lines=True, title="$k_t$ = 0.06 FU/LU"
     )
@@ -61,37 +59,35 @@ def lattice_checks(row: Rows) -> tuple[list[Row], Panel]:
 def flat_checks(row: Rows) -> tuple[list[Row], Panel]:
     """The incommensurate pair over the stiffness of its springs along x."""
     points = slides(FLATS)
-    springs = sorted({stiffness for stiffness, _ in points.names})
+    names = points.by(0)
+    springs = list(names)
     scene = next(iter(points.scenes.values()))
     count, law, load, normal = scene.bodies.upper_particles or 0, law_of(scene), load_of(scene), scene.bulk_stiffness
-    names = {k: [name for (stiffness, _), name in points.names.items() if stiffness == k] for k in springs}
-    over = {
-        k: {v: mean(row.runs[name]) / count for (stiffness, v), name in points.names.items() if stiffness == k}
-        for k in springs
-    }
-    limits = [slow_limit(over[k]) for k in springs]
+    over = {k: {v: mean(row.runs[name]) / count for v, name in of.items()} for k, of in names.items()}
+    limits = [slow_limit(each) for each in over.values()]
     theory = [slow_friction(shared_corrugation(law, 1.0, load, normal, k), k) for k in springs]
     below = scene.bodies.particles
     assert isinstance(below, int)
-    pinned = [FlatChain(law, 1.0, count, below, load, normal, k).friction() for k in springs[:PINNED]]
     checks = [
         row(f"⟨F⟩ of a particle of an incommensurate pair, k_t = {k:g} FU/LU, slow limit", limit,
-            solver(expected, CHAIN), claim("the power of v that follows v^{2/3}", SLOW), on=names[k], despite=EDGE)
-        for k, limit, expected in zip(springs[:PINNED], limits[:PINNED], pinned, strict=True)
+            solver(FlatChain(law, 1.0, count, below, load, normal, k).friction(), CHAIN),
+            claim("the power of v that follows v^{2/3}", SLOW), on=list(names[k].values()), despite=EDGE)
+        for k, limit in zip(springs[:PINNED], limits, strict=False)
     ]  # fmt: skip
-    where = threshold(springs, [exponent(over[k]) for k in springs], "FU/LU")
+    where = threshold(springs, [exponent(each) for each in over.values()], "FU/LU")
     kappa = law_threshold(law, 1.0, load, normal)
     checks.append(
         row("k_t at which an incommensurate pair is no longer pinned: ⟨F⟩ falls as v^{4/5} there", where,
             Reference(kappa, "max(−U″) of a particle, all at one height"), claim("steps of the stiffness", 0.1),
             on=points.every, despite=EDGE, wide=MIDDLE)
     )  # fmt: skip
-    stiffness, spread = np.asarray(springs), np.asarray([limit.uncertainty for limit in limits])
-    shown = [Series("v → 0", stiffness, np.asarray([limit.value for limit in limits]), spread)]
     slowest = min(over[springs[0]])
-    shown.append(Series(f"v = {slowest:g} LU/TU", stiffness, np.asarray([over[k][slowest] for k in springs])))
+    shown = [
+        Series("v → 0", springs, [limit.value for limit in limits], [limit.uncertainty for limit in limits]),
+        Series(f"v = {slowest:g} LU/TU", springs, [each[slowest] for each in over.values()]),
+    ]
     panel = Panel(
         "stiffness $k_t$ of a particle's spring (FU/LU)", r"$\langle F\rangle$ of a particle (FU)", shown,
-        [Series("theory for v → 0", stiffness, np.asarray(theory))], mark=kappa, title="spacings 21 : 13",
+        [Series("theory for v → 0", springs, theory)], mark=kappa, title="spacings 21 : 13",
     )  # fmt: skip
     return checks, panel

@@ -31,6 +31,14 @@ class Slides:
         """The names of all runs."""
         return list(self.names.values())
 
+    def by(self, axis: int) -> dict[float, dict[float, str]]:
+        """Names of the runs over two axes, by the values of one of them, rising, then by those of the other."""
+        values = sorted({place[axis] for place in self.names})
+        return {
+            value: {place[1 - axis]: name for place, name in sorted(self.names.items()) if place[axis] == value}
+            for value in values
+        }
+
 
 @cache
 def slides(sweep: str) -> Slides:

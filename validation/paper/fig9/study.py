@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from validation.doors import Run, Scene, read_scene, shipped
 from validation.figures import Drawing
-from validation.page import agreement, number, share
 from validation.paper.fig9.asperity import load_checks, stiffness_checks, temperature_checks, velocity_checks
 from validation.paper.fig9.curved import curved_checks
 from validation.paper.fig9.flats import flat_checks, lattice_checks
@@ -12,7 +11,6 @@ from validation.paper.fig9.reading import SWEEPS, slides
 from validation.row import Reference, Row
 from validation.study import Bench, Findings, Rows, Scenes, Study, found
 
-NAME = "fig9"
 SHIPPED = ("slide", "prandtl_tomlinson")
 """The slides that ship as scenes."""
 CLOSED = 5e-3
@@ -29,17 +27,14 @@ CAPTIONS = {
 
 def scenes(_: Scene) -> Scenes:
     """The points of all sweeps, and the shipped slides."""
-    needed = {name: read_scene(shipped(f"scenes/{name}.toml")) for name in SHIPPED}
-    for sweep in SWEEPS:
-        points = slides(sweep)
-        needed |= {points.names[place]: scene for place, scene in points.scenes.items()}
-    return needed
+    return {name: read_scene(shipped(f"scenes/{name}.toml")) for name in SHIPPED} | {
+        slides(sweep).names[place]: scene for sweep in SWEEPS for place, scene in slides(sweep).scenes.items()
+    }
 
 
 def judge(bench: Bench) -> Findings:
     """One law after the other."""
-    runs = bench.runs
-    row = Rows(runs)
+    row = Rows(bench.runs)
     particle, of_particle = load_checks(row)
     velocity, over_velocity = velocity_checks(row)
     warmth, over_temperature = temperature_checks(row)
@@ -56,39 +51,29 @@ def judge(bench: Bench) -> Findings:
         (traces, over_springs),
     )
     figures = {name: Drawing(caption, shown) for (name, caption), shown in zip(CAPTIONS.items(), panels, strict=True)}
-    energy = energy_checks(row)
-    checks = [*curved, *particle, *velocity, *warmth, *stiffness, *lattices, *flats, *energy]
-    offset, rise = (next(check for check in curved if check.name.startswith(words)) for words in ("largest", "what it"))
-    threshold = next(check for check in flats if check.name.startswith("k_t at"))
     finding = (
-        f"A curved body needs {number(offset.value, 3)} FU to slide without a load, and "
-        f"{number(rise.value, 3)} FU more for each FU of it; mean friction and trace are the integrator's: "
-        f"{agreement(curved)}. One particle is Prandtl's and Tomlinson's over load, velocity and the cantilever's "
-        f"stiffness: {agreement([*particle, *velocity, *stiffness])}; heat lowers its friction by as much as "
-        f"Smoluchowski's equation says: {agreement(warmth)}. A commensurate flat is so many particles, and an "
-        f"incommensurate one is free above {number(threshold.value, 3)} FU/LU, where particles that share one height "
-        f"should be from {number(threshold.reference.value, 4)} on: {agreement([*lattices, *flats])}. Of the "
-        "cantilever's "
-        f"work {share(energy[-1].value)} at most are neither dissipated nor stored: {agreement(energy)}."
+        "A curved body slides, with adhesion and without a load, as the independent integrator has it. One particle is "
+        "Prandtl's and Tomlinson's over load, velocity and the cantilever's stiffness; heat lowers its friction by as "
+        "much as Smoluchowski's equation says. A commensurate flat is so many particles, and an incommensurate one is "
+        "free above a stiffness that is that of particles that share one height. The cantilever's work is dissipated "
+        "or stored."
     )
-    return Findings(checks, figures, text=finding)
+    rows = [*curved, *particle, *velocity, *warmth, *stiffness, *lattices, *flats, *energy_checks(row)]
+    return Findings(rows, figures, text=finding)
 
 
 def energy_checks(row: Rows) -> list[Row]:
     """Work of the cantilever beside what is dissipated and stored: both shipped slides, and the worst of all others."""
     names = [name for sweep in SWEEPS for name in slides(sweep).every]
-    source, limit = "bound that was asked for", "the drag is sampled at every fifth step"
-
-    def closed(words: str, value: float, on: list[str]) -> Row:
-        others = ("tolerance", "unknown", "drag", "fast", "energy")
-        answers = dict.fromkeys(others, "the energies are asked for, and no mean")
-        return row.at_most(words, value, Reference(CLOSED, source, "set bound"), limit, on=on, despite=answers,
-                   wide="timesteps are chosen for the means, and the energy follows")  # fmt: skip
-
-    checks = [closed(f"work that is neither dissipated nor stored, {name}.toml", open_energy(row.runs[name]), [name])
-              for name in SHIPPED]  # fmt: skip
-    worst = max(open_energy(row.runs[name]) for name in names)
-    return [*checks, closed(f"the same, worst of {len(names)} slides of the sweeps", worst, names)]
+    others = ("tolerance", "unknown", "drag", "fast", "energy")
+    answers = dict.fromkeys(others, "the energies are asked for, and no mean")
+    compared = {f"work that is neither dissipated nor stored, {name}.toml": [name] for name in SHIPPED}
+    return [
+        row.at_most(words, max(open_energy(row.runs[name]) for name in on),
+            Reference(CLOSED, "bound that was asked for", "set bound"), "the drag is sampled at every fifth step",
+            on=on, despite=answers, wide="timesteps are chosen for the means, and the energy follows")
+        for words, on in (compared | {f"the same, worst of {len(names)} slides of the sweeps": names}).items()
+    ]  # fmt: skip
 
 
 def open_energy(run: Run) -> float:
@@ -98,7 +83,7 @@ def open_energy(run: Run) -> float:
 
 
 STUDY = Study(
-    NAME,
+    "fig9",
     "Outlook, Fig. 9: friction of bodies of particles",
     "Fig. 9 shows the set-up of a friction experiment, a normal force and a cantilever that pulls, and no result. "
     "So this is an outlook: its rows hold what the program makes of the set-up against theory and an independent "

@@ -12,9 +12,6 @@ import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-import numpy as np
-
-from validation.figures import Drawing, Panel, Series
 from validation.row import Row, at_most
 from validation.speed.peers.contacts import errors
 from validation.study import Bench, Findings, Study
@@ -55,14 +52,13 @@ def measure(bench: Bench) -> Findings:
                 continue
             began = time.perf_counter()
             curve = module.curve(result["contact"], setting)
-            result["clock"].append(curve.wall or time.perf_counter() - began)
+            result["clock"].append(time.perf_counter() - began)
             result["times"].append(curve.seconds)
             if turn == 0:
                 result["errors"] = errors(result["contact"], curve)
     results = [result | {key: statistics.median(result[of]) for key, of in (("seconds", "times"), ("wall", "clock"))}
                for _, _, result in jobs]  # fmt: skip
-    panels = [_panel(results, contact) for contact in ("hertz", "jkr")]
-    return Findings(rows_of(results), {"": Drawing("Error of F over the time of a curve of 50 points", panels)})
+    return Findings(rows_of(results))
 
 
 def error_of(result: Result) -> float:
@@ -79,6 +75,11 @@ def quickest(results: Iterable[Result], key: str | None = None, most: float = EN
     return min(good, key=lambda one: float(one["seconds"])) if good else None
 
 
+def by_solver(results: Sequence[Result], solver: str, contact: str) -> list[Result]:
+    """The settings of a solver."""
+    return [one for one in results if (one["solver"], one["contact"]) == (solver, contact)]
+
+
 def rows_of(results: Sequence[Result]) -> list[Row]:
     """Our time over that of each boundary-element code at equal error, and the whole run by the clock."""
     rows = []
@@ -88,14 +89,11 @@ def rows_of(results: Sequence[Result]) -> list[Row]:
         ("jkr", None, "adhesive, error of 1 % of the solver's own continuum limit"),
         ("jkr", "theory_force", "JKR, the same error with respect to the closed form"),
     ):
-        mine, others = ([one for one in results if one["contact"] == contact and (one["solver"] == OURS) is own]
-                        for own in (True, False))  # fmt: skip
         for name in ELEMENTS:
-            peers = [one for one in others if one["solver"] == name]
-            if peers:
+            if peers := by_solver(results, name, contact):
                 words, asked = f"CPU time of {OURS} over that of {name}: {what}", ASKED[what.split()[0].strip(",")]
-                rows.append(_compared(words, mine, peers, key, asked))
-    hertz = quickest((one for one in results if one["contact"] == "hertz" and one["solver"] == OURS), "limit_force")
+                rows.append(_compared(words, by_solver(results, OURS, contact), peers, key, asked))
+    hertz = quickest(by_solver(results, OURS, "hertz"), "limit_force")
     wall = math.nan if hertz is None else float(hertz["wall"])
     words = f"wall time of {OURS} [s]: Hertz's curve of 50 states, the whole run through Python"
     return [*rows, at_most(words, wall, WHOLE, "asked for", "–", "set bound")]
@@ -112,16 +110,6 @@ def _compared(words: str, mine: Sequence[Result], peers: Sequence[Result], key: 
     share = math.nan if own is None or theirs is None else own["seconds"] / theirs["seconds"]
     settings = "; ".join(f"{one['solver']} {one['setting']}, {one['seconds']:.3g} s" for one in (own, theirs) if one)
     return at_most(words, share, 1.0 / asked, "asked for", settings, "set bound")
-
-
-def _panel(results: Sequence[Result], contact: str) -> Panel:
-    shown = []
-    for solver in dict.fromkeys(one["solver"] for one in results):
-        mine = [one for one in results if (one["solver"], one["contact"]) == (solver, contact)]
-        if mine:
-            x, y = np.array([(one["seconds"], max(error_of(one), 1e-6)) for one in mine]).T
-            shown.append(Series(solver, x, y))
-    return Panel("time of a curve (s)", "error of F", shown, log="xy", bound=ENOUGH, title=contact)
 
 
 PEERS = Study("peers", "Other people's solvers", "Who is quicker at equal error?", measure)

@@ -42,15 +42,15 @@ LONGEST_STEP = 0.5
 
 
 @lru_cache(maxsize=8)
-def curve(tabor: float, rings: int = RINGS) -> tuple[Array, Array]:
+def curve(tabor: float) -> tuple[Array, Array]:
     """Return d [nm] and F [µN] of one Tabor number, the contact radius falling."""
     z, stress = law_range(tabor), WORK_OF_ADHESION / law_range(tabor)
-    edges = np.linspace(0.0, REACH * A_0, rings + 1)
+    edges = np.linspace(0.0, REACH * A_0, RINGS + 1)
     places, area = 0.5 * (edges[1:] + edges[:-1]), np.pi * np.diff(edges**2)
     stiffness = np.linalg.inv(np.diff(pressed_down(places, edges), axis=1) / CONTACT_MODULUS)
     height = places**2 / (2.0 * RADIUS)
     columns = stiffness.sum(axis=1)
-    touching = np.unique(np.linspace(DEEPEST, LEAST, STEPS) * rings / REACH).astype(int)[::-1]
+    touching = np.unique(np.linspace(DEEPEST, LEAST, STEPS) * RINGS / REACH).astype(int)[::-1]
     found = []
     start = places[touching[0]]
     gap = np.maximum(height - start**2 / (2.0 * RADIUS), 0.0)
@@ -71,7 +71,7 @@ def curve(tabor: float, rings: int = RINGS) -> tuple[Array, Array]:
             if np.abs(step).max() < CONVERGED * z:
                 break
         else:
-            raise RuntimeError(f"no equilibrium with {count} of {rings} rings in contact, Tabor {tabor}")
+            raise RuntimeError(f"no equilibrium with {count} of {RINGS} rings in contact, Tabor {tabor}")
         found.append((d, float(force @ area)))
     places, forces = np.asarray(found).T
     return places, forces

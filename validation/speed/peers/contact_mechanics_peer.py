@@ -23,17 +23,14 @@ from validation.speed.peers.contacts import (
     Setting,
     closed_form,
     displacements,
+    elements,
     law_range,
 )  # fmt: skip
 
 NAME = "ContactMechanics"
-SETTINGS = {
-    "hertz": tuple(Setting(f"{n}²", n, 1e-3) for n in (16, 24, 32, 48, 64)),
-    "jkr": tuple(
-        Setting(f"{n}², µ = {tabor:g}", n, 1e-3, tabor)
-        for n, tabor in ((24, 1.0), (32, 1.0), (32, 2.0), (48, 2.0), (56, 2.0), (96, 3.0), (128, 5.0), (192, 5.0))
-    ),
-}  # fmt: skip
+SETTINGS = elements(
+    1e-3, (24, 1.0), (32, 1.0), (32, 2.0), (48, 2.0), (56, 2.0), (96, 3.0), (128, 5.0), (192, 5.0)
+)  # fmt: skip
 SIDE = {"hertz": 2.3, "jkr": 3.2}
 """Side of the square over a_0: the largest contact is 2 a_0 wide (Hertz), 2.66 a_0 and what the law reaches (JKR)."""
 
@@ -55,10 +52,10 @@ def curve(contact: str, setting: Setting) -> Curve:
     surface = Topography(heights(side, n), physical_sizes=(side, side))
     solve = _hertz if contact == "hertz" else _jkr
     d = displacements(contact)
-    return timed(contact, setting, lambda: (d, np.array(solve(space, surface, setting, d, (side / n) ** 2))))
+    return timed(contact, setting, lambda: (d, np.array(solve(space, surface, setting, d))))
 
 
-def _hertz(space: Any, surface: Any, setting: Setting, places: Array, pixel: float) -> list[float]:
+def _hertz(space: Any, surface: Any, setting: Setting, places: Array) -> list[float]:
     """Return F [µN]; the tolerance is of the gap in contact, over d_max."""
     from ContactMechanics.Systems import NonSmoothContactSystem
 
@@ -78,12 +75,12 @@ def _hertz(space: Any, surface: Any, setting: Setting, places: Array, pixel: flo
     return force
 
 
-def _jkr(space: Any, surface: Any, setting: Setting, places: Array, pixel: float) -> list[float]:
+def _jkr(space: Any, surface: Any, setting: Setting, places: Array) -> list[float]:
     """Return F [µN]; the tolerance is of the pressure, over W/z_0."""
     from Adhesion.Interactions import Exponential
     from Adhesion.System import BoundedSmoothContactSystem
 
-    z = law_range(setting.tabor)
+    z, pixel = law_range(setting.tabor), (SIDE["jkr"] * A_0 / setting.grid) ** 2
     system = BoundedSmoothContactSystem(space, Exponential(WORK_OF_ADHESION, z), surface)
     moved = np.zeros(space.nb_subdomain_grid_pts)
     options = {"gtol": setting.tolerance * WORK_OF_ADHESION / z * pixel, "ftol": 0.0, "maxiter": 5000, "maxfun": 10**6}

@@ -46,9 +46,17 @@ class Setting:
     """
 
     name: str
-    grid: int = 0
-    tolerance: float = 0.0
+    grid: int
+    tolerance: float
     tabor: float = math.inf
+
+
+def elements(tolerance: float, *grids: tuple[int, float]) -> dict[str, tuple[Setting, ...]]:
+    """Settings of boundary elements: five grids for Hertz; for JKR points along a side and Tabor's µ of each."""
+    return {
+        "hertz": tuple(Setting(f"{n}²", n, 1e-3) for n in (16, 24, 32, 48, 64)),
+        "jkr": tuple(Setting(f"{n}², µ = {tabor:g}", n, tolerance, tabor) for n, tabor in grids),
+    }
 
 
 @dataclass(frozen=True)
@@ -60,14 +68,12 @@ class Curve:
         force: F [µN].
         seconds: processor time of the whole curve, one thread, without imports and what is done once for all [s].
         limit: F of the same curve in the solver's own continuum limit [µN].
-        wall: time by the clock, where it is not that of the call [s].
     """
 
     displacement: Array
     force: Array
     seconds: float
     limit: Array
-    wall: float | None = None
 
 
 def displacements(contact: str) -> Array:

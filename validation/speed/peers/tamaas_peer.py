@@ -23,17 +23,14 @@ from validation.speed.peers.contacts import (
     Setting,
     closed_form,
     displacements,
+    elements,
     law_range,
 )  # fmt: skip
 
 NAME = "tamaas"
-SETTINGS = {
-    "hertz": tuple(Setting(f"{n}²", n, 1e-3) for n in (16, 24, 32, 48, 64)),
-    "jkr": tuple(
-        Setting(f"{n}², µ = {tabor:g}", n, 1e-4, tabor)
-        for n, tabor in ((48, 1.0), (72, 2.0), (96, 2.0), (128, 2.0), (192, 3.0), (256, 4.0), (320, 5.0), (384, 5.0))
-    ),
-}  # fmt: skip
+SETTINGS = elements(
+    1e-4, (48, 1.0), (72, 2.0), (96, 2.0), (128, 2.0), (192, 3.0), (256, 4.0), (320, 5.0), (384, 5.0)
+)  # fmt: skip
 SIDE = {"hertz": 2.3, "jkr": 5.0}
 """Side of the square over a_0."""
 MADELUNG = 3.900265
