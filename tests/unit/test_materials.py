@@ -25,8 +25,8 @@ MATERIALS = tomllib.loads((ROOT / "workflow" / "scene" / "materials.toml").read_
 HEAD = """# Named materials
 
 `upper = "steel"` in `[material]` of a scene, or in a file of `contact1d identify`, stands for Young's modulus and
-Poisson's ratio of this table; `contact1d materials` prints both and their source. `scene.toml` in the run folder has the numbers in place
-of the name. Capital letters make no difference, and `_` and `-` count as spaces.
+Poisson's ratio of this table; `contact1d materials` prints both and their source. `scene.toml` in the run folder has
+the numbers in place of the name. Capital letters make no difference, and `_` and `-` count as spaces.
 
 The values are typical ones at room temperature, of isotropic bodies. Metals and glasses differ from them by some
 percent, plastics by up to a third, rubbers by a factor of several: measure the modulus of your material, and write
