@@ -335,18 +335,19 @@ def said(limited_by: str, run: Run | Refused) -> str:
     return f"refused {'before anything ran' if run.before else 'in the run'}: {run.words[:LONGEST]}"
 
 
-def over_claim(run: Run | Refused, name: str, exact: float, slack: float = 0.0) -> float:
-    """|value − exact| over the claimed uncertainty; NaN where there is no such quantity.
+def over_uncertainty(error: float, uncertainty: float) -> float:
+    """Their ratio; 0 where there is no error, inf where there is one and no uncertainty, NaN where one is NaN."""
+    if math.isnan(error + uncertainty):
+        return math.nan
+    return error / uncertainty if uncertainty > 0.0 else math.inf if error else 0.0
 
-    `slack`: relative error of the reference, which is taken off.
-    """
+
+def over_claim(run: Run | Refused, name: str, exact: float) -> float:
+    """|value − exact| over the claimed uncertainty; NaN where there is no such quantity."""
     if isinstance(run, Refused):
         return math.nan
     quantity = found(run, name)
-    error = max(0.0, abs(quantity.value - exact) - slack * abs(exact))
-    if math.isnan(error) or math.isnan(quantity.uncertainty):
-        return math.nan
-    return error / quantity.uncertainty if quantity.uncertainty > 0.0 else (0.0 if error == 0.0 else math.inf)
+    return over_uncertainty(abs(quantity.value - exact), quantity.uncertainty)
 
 
 def claim_row(words: str, run: Run | Refused, name: str, exact: float, source: str) -> Row:

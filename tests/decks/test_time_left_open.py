@@ -72,6 +72,7 @@ PULL = {"kind": "pull_off", "method": "dynamic", "preload": FORCE, "velocity": 0
     [
         ({"damping": {"coefficient": 0.3}}, lambda n: STILL / FASTEST),
         (AUTO, lambda n: STILL / FASTEST),
+        ({"neighbours": {"stiffness": 83.0}}, lambda n: STILL * math.sqrt(MASS / stiffest(SPRING + 332.0, SPACING))),
         (ALONG, lambda n: STILL * math.sqrt(MASS / stiffest(2.0, SPACING))),
         (HEAT | {"accuracy": {"tolerance": 1e-2}}, lambda n: min(STILL, math.sqrt(1e-2 / 0.4)) / FASTEST),
         (HEAT | {"accuracy": {"tolerance": 1e-5}}, lambda n: math.sqrt(1e-5 / 0.4) / FASTEST),

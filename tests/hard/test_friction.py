@@ -69,6 +69,34 @@ def test_a_contact_that_grows_while_it_is_drawn_sticks_within_the_cone_of_fricti
     assert value(beyond, "stick_radius") == 0.0
 
 
+WAYS = {
+    "no way at all": [(0.9, 0.0), (0.9, 0.0)],
+    "lifted off and put down again": [(0.9, 0.2), (-0.5, 0.2), (-0.5, 0.5), (0.9, 0.5), (0.9, 0.6)],
+    "grows under a tangential load": [(0.3, 0.05), (0.6, 0.1), (0.9, 0.15), (0.9, 0.3)],
+    "shrinks while it slips": [(0.9, 0.2), (0.5, 0.35), (0.2, 0.1)],
+    "fifty cycles": [(0.9, place) for place in (0.15, -0.15) * 50],
+    "one particle": [(6e-5, 7e-6), (6e-5, 2e-5), (6e-5, -3e-5)],
+    "two or three particles": [(1.6e-3, 2e-4), (1.6e-3, 5e-4), (1.6e-3, -9e-4)],
+}  # fmt: skip
+"""Displacement and place at each load step [LU]."""
+
+
+@pytest.mark.parametrize("name", WAYS)
+def test_on_a_hard_way_every_row_is_the_sum_over_springs_with_sliders(name: str) -> None:
+    depths, places = map(list, zip(*WAYS[name], strict=True))
+    done = finished(scene(places, normal_displacement=depths))
+    chain = SpringSliders((done.profiles["final"].x ** 2 / RADIUS).tolist(), 1.0, 0.8, MU)
+    chain.move(depths[0], 0.0)
+    expected = []
+    for stop in WAYS[name]:
+        chain.move(*stop)
+        expected.append((chain.tangential_force, chain.dissipated))
+    unit = EXACT * max(MU * max(done.friction["normal_force"]), 1e-9)
+    forces, lost = np.transpose(expected)
+    assert done.friction["tangential_force"] == pytest.approx(forces, abs=unit)
+    assert done.friction["dissipated_energy"] == pytest.approx(lost, abs=unit)
+
+
 @pytest.mark.parametrize("nudge", [-1e-12, 1e-12])
 def test_a_particle_on_the_edge_of_the_contact_or_of_its_stick_zone(nudge: float) -> None:
     """d = h(10.5), where a particle just touches, and then k_t u = μ k_n (d − h(5.5)), where one just slips."""

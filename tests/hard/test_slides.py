@@ -47,6 +47,18 @@ def test_a_chain_too_short_for_the_way_is_refused_with_a_number_that_is_enough(t
     write_deck(scene_of({"bodies.particles": enough, "bodies.upper_particles": 36}), tmp_path / "run")
 
 
+def test_a_plate_thrown_off_the_end_is_told_and_its_trace_is_left(tmp_path: Path) -> None:
+    """Of a chain that is long enough for the way."""
+    thrown = {
+        "bodies.particles": 68, "bodies.upper_particles": 36, "bodies.upper_offset": 0.5, "damping.coefficient": 0.01,
+        "plate.damping": 0.0, "plate.mass": 36.0, "cantilever": {"stiffness": 0.05, "velocity": 0.05},
+    }  # fmt: skip
+    with pytest.raises(RunError, match="slid off the lower body"):
+        run(scene_of(thrown | {"experiment.distance": 14.0}), tmp_path / "run", figures=False)
+    left = {path.name for path in (tmp_path / "run").iterdir()}
+    assert {"friction.csv", "curve.csv", "results.json"} <= left
+
+
 def test_a_drive_beyond_what_particles_follow_is_warned() -> None:
     fast = scene_of({"cantilever.velocity": 0.3, "experiment.distance": 6.0})
     warnings = run(fast).warnings

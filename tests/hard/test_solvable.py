@@ -10,9 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import RunError, read_scene, run
+from contact1d import Run, RunError, read_scene, run
+from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.model.settings import settings_for
 from tests.scenes import chains
+from validation.hard.cases import CORE, PairCase, shaped
 from validation.references.interaction import Exponential, PairInteraction
 from validation.references.model import ChainModel
 from validation.references.solver import ChainSolver
@@ -96,6 +98,23 @@ def test_pairs_that_snap_together_in_time_stay_in_front_of_each_other(tmp_path: 
     """A load that comes at once drives a plate past its place, and a snap a particle through its opposite."""
     assert run(random_load(8) | IN_TIME, tmp_path, figures=False).status == "done"
     assert "hold" in (tmp_path / "in.lammps").read_text()
+
+
+@pytest.mark.parametrize("dynamic", [False, True])
+def test_pairs_stand_near_their_core_where_the_closed_form_says_and_no_load_pushes_them_through(dynamic: bool) -> None:
+    case = PairCase("core", 0.5, shaped("flat_punch", 10, 0.0), 10, dynamic=dynamic)
+
+    def pressed(load: float) -> Run:
+        experiment = {"kind": "load", "method": case.method, "force": load}
+        return run({"title": "core"} | case.scene() | {"experiment": experiment})
+
+    for share in (0.5, 0.85):
+        load = share * 10 * CORE
+        found = pressed(load).results.displacement
+        assert abs(found.value - case.pairs.deepest(load)) <= found.uncertainty
+    for share in (1.02, 10.0):
+        with pytest.raises(SettingsError, match="exceeds what"):
+            pressed(share * 10 * CORE)
 
 
 @pytest.mark.slow

@@ -77,7 +77,7 @@ def test_adhesion_force_is_that_of_the_highest_maximum(profile: str, ratio: floa
 def test_a_tension_in_time_is_carried_by_the_next_maximum_where_pairs_nearly_snap() -> None:
     """With the drag of a smooth contact the plate swung past it: 1.5 % too small, 270 times the claim."""
     case = PairCase("maximum", 0.99, shaped("parabola", 21, reach(0.99)), 21, 1.5 * TENSION, 1e-4, dynamic=True)
-    exact, _ = case.exact().adhesion(case.preload)
+    exact, _ = case.pairs.adhesion(case.preload)
     found = run({"title": "maximum"} | case.scene()).results.adhesion_force
     assert abs(found.value - exact) <= min(found.uncertainty, CARRIED * exact)
 

@@ -57,10 +57,14 @@ SETTLED = 21
 
 @dataclass(frozen=True)
 class Sample:
-    """Displacements from the places in the bulk and velocities; shape (samples, 2 bodies × N, 3) [LU], [LU/TU]."""
+    """Displacements from the places in the bulk and velocities; shape (samples, 2 bodies × N, 3) [LU], [LU/TU].
+
+    `plate`: its velocity along z, shape (samples,).
+    """
 
     displacement: Array
     velocity: Array
+    plate: Array
 
 
 def sample(folder: Path, neighbours: float = 0.0, **tables: Any) -> Sample:
@@ -88,7 +92,7 @@ def sample(folder: Path, neighbours: float = 0.0, **tables: Any) -> Sample:
     states = np.loadtxt(rows).reshape(-1, atoms, 6)
     moved = states[SETTLED:, :, :3] - states[0, :, :3]
     moved[:, PARTICLES:count, 2] -= moved[:, count, None, 2]  # with the plate, which is free
-    return Sample(moved[:, :count], states[SETTLED:, :count, 3:])
+    return Sample(moved[:, :count], states[SETTLED:, :count, 3:], states[SETTLED:, count, 5])
 
 
 def check(products: Array, expected: float, largest_error: float = LARGEST_ERROR) -> None:
@@ -123,7 +127,10 @@ def test_chains_with_neighbour_springs_have_the_variances_of_their_modes_and_sta
     bodies = z.reshape(-1, 2, PARTICLES)
     check(bodies[..., :-1] * bodies[..., 1:], float(beside.mean()))
     check(bodies[..., [0, -1]] ** 2, float(exact[0]), largest_error=0.1)  # of four particles
+    for energy, mode in zip(stiffness, shape.T, strict=True):
+        check((bodies @ mode) ** 2 * energy, TEMPERATURE, largest_error=0.2)  # of one number a body
     check(taken.velocity[:, :, 2] ** 2, TEMPERATURE / MASS)
+    check(taken.plate**2, TEMPERATURE / (PARTICLES * MASS), largest_error=0.2)
     assert not taken.displacement[..., :2].any()
     assert not taken.velocity[..., :2].any()
 

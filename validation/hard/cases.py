@@ -13,11 +13,10 @@ from functools import cached_property
 
 import numpy as np
 from scipy.optimize import brentq
-from scipy.stats import chi2
 
 from validation.doors import IN_TIME, law_table
 from validation.hard.judge import Case, Expected
-from validation.hard.units import MODEL, Scene, Units
+from validation.hard.units import Scene
 from validation.references.folded_pairs import FoldedPairs
 from validation.references.interaction import Floats, PairInteraction
 
@@ -33,8 +32,6 @@ CORE = float(LAW.force(np.array(0.0)))
 PAPER_NUMBERS = (0.18, 0.13, 0.09, 0.26)
 PAPER_LAW = law_table(*PAPER_NUMBERS)
 """The paper's kind of contact: ranges near the spacing, so that particles feel several opposite ones."""
-BODIES = {"particles": 12, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 40.0}, "bulk_stiffness": 0.83}
-"""A few particles, for decks under the hand."""
 CAPACITY = 0.9
 """Share of the core's force up to which a case counts as solvable."""
 LOOKS = 4000
@@ -86,16 +83,12 @@ class PairCase:
                "accuracy": {"tolerance": self.tolerance}}  # fmt: skip
         return own | (IN_TIME if self.dynamic else {}) | self.more
 
-    def judged(self, group: str, words: str, numbers: Numbers, units: Units = MODEL) -> Case:
+    def judged(self, group: str, words: str, numbers: Numbers) -> Case:
         """The scene with what it has."""
-        return Case(self.name, group, words, self.scene(), Expected(numbers), units)
+        return Case(self.name, group, words, self.scene(), Expected(numbers))
 
     @cached_property
     def pairs(self) -> FoldedPairs:
-        """The same pairs in closed form."""
-        return self.exact()
-
-    def exact(self) -> FoldedPairs:
         """The same pairs in closed form."""
         return FoldedPairs(LAW, self.stiffness, heights(self.profile, self.particles))
 
@@ -194,21 +187,3 @@ def _place(profile: Scene, height: float) -> float:
     """The place [LU] at which a profile is `height` [LU] above its apex."""
     c, n = _powers(profile)
     return math.pow(max(height, 0.0) / c, 1.0 / n)
-
-
-SIGMAS = 4.0
-"""Standard errors of the sample: one row in 16 000 fails by chance, and the seeds are fixed."""
-CHANCE = 1e-4
-"""Of a row that judges a chi-square."""
-BLOCKS = 20
-
-
-def chi_square_bound(count: int) -> float:
-    """χ² of `count` block means, whose own errors are known from BLOCKS blocks only: each is an F-variable."""
-    return float(chi2.ppf(1.0 - CHANCE, count)) * (BLOCKS - 1) / (BLOCKS - 3)
-
-
-def block_mean(samples: Floats) -> tuple[Floats, Floats]:
-    """Mean and standard error of each column, from blocks."""
-    blocks = np.array([block.mean(axis=0) for block in np.array_split(samples, BLOCKS)])
-    return samples.mean(axis=0), blocks.std(axis=0, ddof=1) / math.sqrt(BLOCKS)

@@ -53,7 +53,8 @@ MAUGIS, THREE_D, QUADRATURE = "Maugis's equations", "boundary elements", "Dugdal
 def measure(bench: Bench) -> Findings:
     """The paraboloid, the shapes, random scenes."""
     rows = [row for mu in TABOR for row in _paraboloid(bench, mu)]
-    rows += [row for name, solid in shapes().items() for row in _shape(bench, name, *solid)]
+    sharpness = FULL_SHARPNESS if bench.full else SHARPNESS
+    rows += [row for name, solid in shapes().items() for mu in sharpness for row in _shape(bench, name, mu, *solid)]
     return Findings([*rows, *random_rows(bench, RANDOM, QUADRATURE)])
 
 
@@ -95,11 +96,9 @@ def _paraboloid(bench: Bench, mu: float) -> list[Row]:
     if reduced.parameter >= SOFT:
         run = bench.run(f"fine_{mu:g}", scene(solid, one, spacing, FINE, pull))
         excess = (_value(run, "adhesion_force") / (1.5 * one.unit_force) - 1.0) * reduced.parameter**2
-        name, limited = (
-            f"{words}: (F_A/F_JKR − 1) λ² over {EXCESS:g}, less 1",
-            said(f"the next order; F_A to {FINE:g}", run),
-        )
-        rows.append(at_most(name, abs(excess / EXCESS - 1.0), reduced.parameter**-NEXT, MAUGIS, limited))
+        name, limited = f"{words}: (F_A/F_JKR − 1) λ² over {EXCESS:g}, less 1", f"the next order; F_A to {FINE:g}"
+        bound = reduced.parameter**-NEXT
+        rows.append(at_most(name, abs(excess / EXCESS - 1.0), bound, MAUGIS, said(limited, run)))
     return rows
 
 
@@ -116,27 +115,24 @@ def shapes() -> dict[str, tuple[Surface, Callable[[Floats], Floats]]]:
     }
 
 
-def _shape(bench: Bench, name: str, solid: Surface, height: Callable[[Floats], Floats]) -> list[Row]:
+def _shape(bench: Bench, name: str, mu: float, solid: Surface, height: Callable[[Floats], Floats]) -> list[Row]:
     """The unloading of a shape beside boundary elements."""
-    rows: list[Row] = []
-    for mu in FULL_SHARPNESS if bench.full else SHARPNESS:
-        contact = cohesive(solid, mu)
-        elements = Elements(height, 1.0, contact.stress, contact.reach, solid.body.kinks, ELEMENTS)
-        start, last = contact.state(1.5 * contact.free.a).displacement, contact.snap_out.displacement
-        way = {"from": start, "to": min(last, -contact.reach) * 1.1, "steps": STEPS, "return": False}
-        experiment = {"kind": "path", "displacements": way}
-        run = bench.run(f"{name}_{mu:g}", scene(solid, contact, contact.free.a / PARTICLES, ASKED, experiment))
+    contact = cohesive(solid, mu)
+    elements = Elements(height, 1.0, contact.stress, contact.reach, solid.body.kinks, ELEMENTS)
+    start, last = contact.state(1.5 * contact.free.a).displacement, contact.snap_out.displacement
+    way = {"from": start, "to": min(last, -contact.reach) * 1.1, "steps": STEPS, "return": False}
+    experiment = {"kind": "path", "displacements": way}
+    run = bench.run(f"{name}_{mu:g}", scene(solid, contact, contact.free.a / PARTICLES, ASKED, experiment))
 
-        def of(a: float, c: float, elements: Elements = elements, contact: Cohesive = contact) -> State:
-            if a == 0.0:
-                zone = contact.alone(c)
-                return State(0.0, c, zone.force, zone.displacement)
-            half, whole = (replace(elements, count=count).solved(a) for count in (ELEMENTS // 2, ELEMENTS))
-            pairs = ((half.c, whole.c), (half.force, whole.force), (half.displacement, whole.displacement))
-            return State(a, *(y + (y - x) / 7.0 for x, y in pairs))
+    def of(a: float, c: float) -> State:
+        if a == 0.0:
+            zone = contact.alone(c)
+            return State(0.0, c, zone.force, zone.displacement)
+        half, whole = (replace(elements, count=count).solved(a) for count in (ELEMENTS // 2, ELEMENTS))
+        pairs = ((half.c, whole.c), (half.force, whole.force), (half.displacement, whole.displacement))
+        return State(a, *(y + (y - x) / 7.0 for x, y in pairs))
 
-        rows += _compared(f"{name}, µ = {mu:g}", run, of, -contact.critical.force, THREE_D)
-    return rows
+    return _compared(f"{name}, µ = {mu:g}", run, of, -contact.critical.force, THREE_D)
 
 
 def _compared(words: str, run: Run | Refused, of: Callable[[float, float], State], unit: float, by: str) -> list[Row]:
@@ -150,8 +146,7 @@ def _compared(words: str, run: Run | Refused, of: Callable[[float, float], State
         deepest = float(np.abs(held[:, 3]).max())
         for a, c, force, d in held.tolist():
             exact = of(a, c)
-            errors = abs(force - exact.load) / unit, abs(c / exact.c - 1.0), abs(d - exact.displacement) / deepest
-            off.append(errors)
+            off.append((abs(force - exact.load) / unit, abs(c / exact.c - 1.0), abs(d - exact.displacement) / deepest))
         limited = f"{len(off)} points"
     values = map(worst, zip(*off, strict=True)) if off else [math.nan] * 3
     return [at_most(f"{words}: {name} along the curve", value, ASKED, by, limited)

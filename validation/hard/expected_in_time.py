@@ -59,25 +59,24 @@ Pressures = Mapping[str, Function]
 def expected(surface: Surface, scene: Scene) -> Expected:
     """The numbers of a history, an impact, a pull-off at a velocity."""
     body, experiment, adhesion = surface.power, scene["experiment"], scene.get("adhesion", {})
-    table = scene.get("viscoelasticity", {})
+    table, kind, by_force = scene.get("viscoelasticity", {}), experiment["kind"], "force" in experiment
+    given = Legs(tuple(map(tuple, experiment["force" if by_force else "displacement"] if kind == "history" else ())))
     if adhesion:
         assert isinstance(body, Power)
         contact = impact.Adhesive(body, adhesion["work_of_adhesion"])
         rate = adhesion.get("rate", {"velocity": math.inf, "exponent": 1.0})
         edge = Receding(contact, rate["velocity"], rate["exponent"])
-        if experiment["kind"] == "pull_off":
+        if kind == "pull_off":
             return _pulled(edge, experiment["preload"], experiment["velocity"])
-        if experiment["kind"] == "history":
-            return _receded(edge, Legs(tuple(map(tuple, experiment["displacement"]))))
+        if kind == "history":
+            return _receded(edge, given)
         return _stuck_or_bounced(contact, scene["plate"]["mass"], experiment["velocity"])
     law: Law = Material(tuple((one["share"], one["time"]) for one in table.get("terms", [])))
     if "retardation_time" in table:
         assert isinstance(body, Power)
         law = KelvinVoigt(body, table["retardation_time"])
-    if experiment["kind"] == "impact":
+    if kind == "impact":
         return _bounced(body, law, scene["plate"]["mass"], experiment["velocity"])
-    by_force = "force" in experiment
-    given = Legs(tuple(map(tuple, experiment["force" if by_force else "displacement"])))
     if not by_force:
         return _pressed_in(body, law, given, scene["bodies"]["spacing"])
     if isinstance(body, Flat):
@@ -95,10 +94,10 @@ def _bounce(found: impact.Bounce, mass: float, velocity: float) -> Expected:
 def _bounced(body: Power | Flat, law: Law, mass: float, velocity: float) -> Expected:
     assert isinstance(body, Power)
     if isinstance(law, KelvinVoigt):
-        return _bounce(impact.kelvin_voigt(law, mass, velocity), mass, velocity)
-    if law.terms:
-        return _bounce(impact.relaxing(body, law, mass, velocity), mass, velocity)
-    return _bounce(impact.elastic(body, 1.0, mass, velocity), mass, velocity)
+        found = impact.kelvin_voigt(law, mass, velocity)
+    else:
+        found = impact.relaxing(body, law, mass, velocity) if law.terms else impact.elastic(body, 1.0, mass, velocity)
+    return _bounce(found, mass, velocity)
 
 
 def _stuck_or_bounced(contact: impact.Adhesive, mass: float, velocity: float) -> Expected:
@@ -174,8 +173,7 @@ def _largest(path: Followed, d: Legs) -> float:
 
 def _pressed_in(body: Power | Flat, law: Law, d: Legs, spacing: float) -> Expected:
     """A displacement over time; where a pressure jumps at the edge, a particle more or less is 2 E* T d′ s."""
-    rule = Prony(law) if isinstance(law, Material) else Retarded(law.time, law.modulus)
-    jumps, width = isinstance(law, KelvinVoigt), _width(body, max(d.values), 1.0001)
+    rule, jumps, width = _springs(law), isinstance(law, KelvinVoigt), _width(body, max(d.values), 1.0001)
     found = {"peak_displacement": max(d.values), "displacement": d.values[-1]}
     error, scale = EXACT, 0.0
 
@@ -207,6 +205,10 @@ def _pressed_in(body: Power | Flat, law: Law, d: Legs, spacing: float) -> Expect
     more, pressures = of_lines(body, law, d, d)
     curve = Curve("time", values, scale + found["peak_force"])
     return Expected(more | found, error, pressures, LINES, curves={"force": curve})
+
+
+def _springs(law: Law) -> Prony | Retarded:
+    return Prony(law) if isinstance(law, Material) else Retarded(law.time, law.modulus)
 
 
 def _width(body: Power | Flat, d: float, more: float) -> float:
@@ -291,9 +293,8 @@ def of_lines(body: Power | Flat, law: Law, d: Legs, given: Legs) -> tuple[Number
     Where a displacement first begins to fall dF/dd is (2 E* a d' - flow)/d' of the leg after, and 2 E* a without the
     creep of the moment before; dashpots have a jump of F there, and no slope.
     """
-    rule = Prony(law) if isinstance(law, Material) else Retarded(law.time, law.modulus)
     names, width = marked(given), _width(body, max(d.values), 1.02)
-    at = lines(rule, body.depth, width, d, sorted(names.values()), body.exponent)
+    at = lines(_springs(law), body.depth, width, d, sorted(names.values()), body.exponent)
     states = dict(zip(names, at, strict=True))
     last = states["final"]
     found: Numbers = {}

@@ -19,7 +19,7 @@ from validation.study import Bench, Findings, Study
 COMMAND = (sys.executable, "-m", "contact1d", "run")
 MOST = 1800.0
 """Wall time of one command [s]."""
-CODES, RESULTS, TORN = (0, 2, 3), "results.json", "torn"
+RESULTS, TORN = "results.json", "torn"
 SCENE = {
     "title": "pull-off that is disturbed",
     "bodies": {
@@ -40,7 +40,7 @@ def measure(bench: Bench) -> Findings:
     scene = bench.folder / "scene.toml"
     scene.write_text(str(read_scene(SCENE)), encoding="utf-8")
     whole = bench.folder / "undisturbed"
-    phases = _lines(_start(scene, whole))
+    phases = _start(scene, whole).communicate(timeout=MOST)[1].splitlines()
     undisturbed = _force(whole)
     sizes = {path.name: path.stat().st_size for path in sorted(whole.iterdir()) if path.is_file()}
     moments = [(phases.index(line) + 1, "", f'at "{line.split(":")[0]}"') for line in dict.fromkeys(phases)]
@@ -52,33 +52,32 @@ def measure(bench: Bench) -> Findings:
     for name, size in sizes.items():
         run = bench.folder / f"full_{max(0, size - 1)}"
         code, words = _end(_start(scene, run, max(0, size - 1)))
-        bad = code not in CODES or "Traceback" in words or (code == 0 and _force(run) != undisturbed)
+        bad = code not in (0, 2, 3) or "Traceback" in words or (code == 0 and _force(run) != undisturbed)
         what = f"disk full at the last byte of {name}: a traceback, another exit code than 0, 2, 3, another F_A"
         rows.append(so(what, bad, f"exit 0, 2 or 3 and no traceback; it is {code}"))
     refused = "second run in a folder at work that is not refused with exit 2"
     return Findings([*rows, so(refused, _second(scene, bench), "one run for each folder")])
 
 
-def _killed(scene: Path, run: Path, lines: int, file: str, undisturbed: float | None) -> bool:
+def _killed(scene: Path, run: Path, lines: int, file: str, undisturbed: Any) -> bool:
     """Whether a run that is killed at a line of its progress, or when a file appears, leaves what spoils the next."""
     process = _start(scene, run)
     assert process.stderr is not None
     for _ in range(lines):
         process.stderr.readline()
-    end = time.monotonic() + MOST
-    while file and not any(run.glob(f"{file}*")) and process.poll() is None and time.monotonic() < end:
-        time.sleep(0.001)
+    if file:
+        _wait_for(f"{file}*", run, process)
     process.kill()
     process.communicate()
-    torn = _document(run) == TORN
+    torn = _force(run) == TORN
     code, _ = _end(_start(scene, run))
     return torn or code != 0 or _force(run) != undisturbed
 
 
-def _lines(process: subprocess.Popen[str]) -> list[str]:
-    """What a run tells of its progress."""
-    _, told = process.communicate(timeout=MOST)
-    return told.splitlines()
+def _wait_for(file: str, run: Path, process: subprocess.Popen[str]) -> None:
+    end = time.monotonic() + MOST
+    while not any(run.glob(file)) and process.poll() is None and time.monotonic() < end:
+        time.sleep(0.001)
 
 
 def _start(scene: Path, run: Path, size: int | None = None) -> subprocess.Popen[str]:
@@ -106,28 +105,21 @@ def _end(process: subprocess.Popen[str]) -> tuple[int, str]:
     return process.returncode, said + complained
 
 
-def _document(run: Path) -> Any:
-    """What results.json holds: none where there is no such file, "torn" where it is no JSON."""
+def _force(run: Path) -> Any:
+    """F_A in results.json: None where there is none, "torn" where the file is no JSON."""
     try:
-        return json.loads((run / RESULTS).read_text(encoding="utf-8"))
+        document = json.loads((run / RESULTS).read_text(encoding="utf-8"))
     except FileNotFoundError:
         return None
     except ValueError:
         return TORN
-
-
-def _force(run: Path) -> float | None:
-    document = _document(run)
-    number = document.get("adhesion_force") if isinstance(document, dict) else None
-    return float(number["value"]) if number else None
+    return document.get("adhesion_force", {}).get("value")
 
 
 def _second(scene: Path, bench: Bench) -> bool:
     run = bench.folder / "two"
     first = _start(scene, run)
-    end = time.monotonic() + MOST
-    while not (run / "in.lammps").exists() and first.poll() is None and time.monotonic() < end:
-        time.sleep(0.01)
+    _wait_for("in.lammps", run, first)
     first.send_signal(signal.SIGSTOP)  # at work for as long as it takes
     code, words = _end(_start(scene, run))
     first.send_signal(signal.SIGCONT)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import csv
 import math
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -81,11 +81,7 @@ class Group:
         if self.kind != "Hertz" or reach:
             base["adhesion"] = {"work_of_adhesion": "20 mJ/m²"} | ({"range": f"{reach} m"} if reach else {})
         stiffness = f"{self.stiffness} N/m ± {100 * STIFFNESS_SPREAD} %"
-        names = (
-            [*self.parameters]
-            if not (reach and self.kind == "Hertz")
-            else [*self.parameters, "adhesion.work_of_adhesion"]
-        )
+        names = ["material.contact_modulus", *["adhesion.work_of_adhesion"] * ("adhesion" in base)]
         return {"data": str(data), "parameters": names, "instrument": {"stiffness": stiffness}, "base": base}
 
     def curve(self, seed: int) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
@@ -108,14 +104,20 @@ GROUPS = (
 )  # fmt: skip
 
 
-def write_map(group: Group, seeds: range, path: Path) -> None:
-    """Curves as one map."""
+def write(group: Group, places: Mapping[int, str], head: str, path: Path) -> Path:
+    """The curves of some seeds, each line behind a place."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("w", encoding="utf-8") as file:
-        file.write("curve,x [µm],y [µm],z [nm],F [nN]\n")
-        for seed in seeds:
-            place = f"{seed},{seed % 32},{seed // 32}"
-            file.writelines(f"{place},{1e9 * z:.4f},{1e9 * F:.5f}\n" for z, F in zip(*group.curve(seed), strict=True))
+    lines = [f"{head}z [nm],F [nN]"]
+    for seed, place in places.items():
+        lines += [f"{place}{1e9 * z:.4f},{1e9 * F:.5f}" for z, F in zip(*group.curve(seed), strict=True)]
+    path.write_text("\n".join([*lines, ""]), encoding="utf-8")
+    return path
+
+
+def write_map(group: Group, seeds: range, folder: Path) -> Path:
+    """Curves as one map."""
+    places = {seed: f"{seed},{seed % 32},{seed // 32}," for seed in seeds}
+    return write(group, places, "curve,x [µm],y [µm],", folder / "map.csv")
 
 
 def covered(table: Path, group: Group) -> Iterator[tuple[str, bool]]:
@@ -131,11 +133,7 @@ def covered(table: Path, group: Group) -> Iterator[tuple[str, bool]]:
 
 def chosen(group: Group, seed: int, folder: Path) -> bool:
     """Whether the most likely contact model is the one that the curve was made with."""
-    data = folder / "curve.csv"
-    folder.mkdir(parents=True, exist_ok=True)
-    with data.open("w", encoding="utf-8") as file:
-        file.write("z [nm],F [nN]\n")
-        file.writelines(f"{1e9 * z:.4f},{1e9 * F:.5f}\n" for z, F in zip(*group.curve(seed), strict=True))
+    data = write(group, {seed: ""}, "", folder / "curve.csv")
     found = fit(group.plan(data, group.sphere.range or 1e-9))
     return bool(next(iter(found.models)) == group.kind)
 
@@ -146,8 +144,8 @@ def measure(bench: Bench) -> Findings:
     for i, group in enumerate(GROUPS):
         folder = bench.folder / f"group_{i}"
         count = FULL_CURVES if bench.full else CURVES
-        write_map(group, range(1000 * i, 1000 * i + count), folder / "map.csv")
-        done = fit_many(group.plan(folder / "map.csv"), folder / "fits", workers=cores())
+        curves = write_map(group, range(1000 * i, 1000 * i + count), folder)
+        done = fit_many(group.plan(curves), folder / "fits", workers=cores())
         for name, inside in covered(done.folder / "fits.csv", group):
             all_of.setdefault(name, []).append(inside)
     for name, found in all_of.items():
@@ -158,9 +156,9 @@ def measure(bench: Bench) -> Findings:
     rows += _choices(bench)
     count = FULL_MAP if bench.full else MAP
     folder = bench.folder / "map"
-    write_map(GROUPS[1], range(count), folder / "map.csv")
+    curves = write_map(GROUPS[1], range(count), folder)
     begin = time.perf_counter()
-    fit_many(GROUPS[1].plan(folder / "map.csv"), folder / "fits", workers=cores())
+    fit_many(GROUPS[1].plan(curves), folder / "fits", workers=cores())
     minutes = (time.perf_counter() - begin) / 60.0
     rows.append(at_most(f"minutes for a map of 1000 curves, from {count}", minutes * 1000 / count, 10.0, "set bound"))
     return Findings(rows)

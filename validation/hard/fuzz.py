@@ -7,16 +7,15 @@ of those are run.
 
 from __future__ import annotations
 
-import json
 import random
 import re
 import warnings
 from collections import Counter
-from dataclasses import dataclass, field
+from collections.abc import Iterator
 from pathlib import Path
 
 from validation import doors
-from validation.doors import RunError, SceneError, SettingsError, read_scene, write_whole
+from validation.doors import RunError, SceneError, SettingsError, read_scene
 from validation.row import at_most
 from validation.study import Bench, Findings, LateError, Study, at_most_seconds
 
@@ -28,97 +27,39 @@ PIECE = 1000
 SLOW, RUN, HANGS = 10, 60, 600
 """Seconds of work for a scene to become a deck or a sentence, of LAMMPS in a run, and of the clock for what hangs."""
 NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
-VALUES = (
-    "0",
-    "-1",
-    "1e-300",
-    "1e300",
-    "1e20",
-    "1e-6",
-    "1e6",
-    "nan",
-    "inf",
-    "-inf",
-    "true",
-    '"auto"',
-    '"x"',
-    "[]",
-    "{}",
-    "3",
-    "1e-3",
-    "0.5",
-    "2.0",
-    "1000000",
-    "10.0",
-    "7",
-)
+VALUES = '0 -1 1e-300 1e300 1e20 1e-6 1e6 nan inf -inf true "auto" "x" [] {} 3 1e-3 0.5 2.0 1000000 10.0 7'
 SPOILT = "\"'[]{}=#.,\\\0é\n -"
-
-
-@dataclass
-class Ends:
-    """How many scenes end how, and what the first of each kind said."""
-
-    counts: Counter[str] = field(default_factory=Counter)
-    said: dict[str, str] = field(default_factory=dict)
-
-    def add(self, other: Ends) -> None:
-        """Take in those of another piece."""
-        self.counts += other.counts
-        self.said = other.said | self.said
+TRACEBACK = "a traceback"
 
 
 def measure(bench: Bench) -> Findings:
-    """How many scenes end how; one row for each way that must not be. A piece that is there is not made again."""
+    """How many scenes end how; one row for each way that must not be."""
     count = FULL if bench.full else QUICK
-    ends = Ends()
+    ends, worst = Counter[str](), dict[str, str]()
     for seed in range(count // PIECE):
-        path = bench.folder / f"piece_{seed}.json"
-        if not path.exists():
-            write_whole(path, json.dumps(vars(_piece(bench.folder, seed))))
-        kept = json.loads(path.read_text(encoding="utf-8"))
-        ends.add(Ends(Counter(kept["counts"]), kept["said"]))
-    return _findings(ends, count)
+        for end, words in _piece(bench.folder, seed):
+            ends[end] += 1
+            worst.setdefault(end, words)
+    bad = {end: number for end, number in ends.items() if end.startswith(TRACEBACK)}
+    said = "; ".join(f"{number} × {worst[end]}" for end, number in bad.items()) or "–"
+    source, late = "a deck, a result or a sentence", f"neither deck nor sentence after {SLOW} s"
+    return Findings([
+        at_most(f"tracebacks of {count} random scenes", sum(bad.values()), 0.0, source, said, "set bound"),
+        at_most(f"of {count} random scenes, those that are {late}", ends["late"], 0.0, source, evidence="set bound"),
+    ])  # fmt: skip
 
 
-def _piece(folder: Path, seed: int) -> Ends:
-    """PIECE scenes of one seed; the first that ends in each way is kept as a file."""
+def _piece(folder: Path, seed: int) -> Iterator[tuple[str, str]]:
+    """How each of PIECE scenes of one seed ends; those that end in a traceback are kept as files."""
     sources = [path.read_text(encoding="utf-8") for path in sorted(doors.shipped("scenes").glob("*.toml"))]
-    draw, found, decks = random.Random(seed), Ends(), 0
-    path = folder / "scene.toml"
-    for _ in range(PIECE):
+    draw, decks, path = random.Random(seed), 0, folder / "scene.toml"
+    for number in range(PIECE):
         path.write_text(edited(draw.choice(sources), draw), encoding="utf-8")
         end, words = _become(path, folder / "run", decks % EVERY == EVERY - 1)
         decks += end in ("a deck", "ran")
-        found.counts[end] += 1
-        if end not in found.said:
-            found.said[end] = words
-            (folder / f"{end.split(':')[0].replace(' ', '_')}_{seed}.toml").write_bytes(path.read_bytes())
-    return found
-
-
-def _findings(found: Ends, count: int) -> Findings:
-    ends, said = found.counts, found.said
-    bad = {end: found for end, found in ends.items() if end.startswith("a traceback")}
-    worst = "; ".join(f"{found} × {said[end]}" for end, found in bad.items())
-    checks = [
-        at_most(
-            f"tracebacks of {count} random scenes",
-            sum(bad.values()),
-            0.0,
-            "a deck, a result or a sentence",
-            worst or "–",
-            "set bound",
-        ),
-        at_most(
-            f"of {count} random scenes, those that are neither deck nor sentence after {SLOW} s",
-            ends["late"],
-            0.0,
-            "a deck, a result or a sentence",
-            evidence="set bound",
-        ),
-    ]
-    return Findings(checks)
+        if end.startswith(TRACEBACK):
+            path.rename(folder / f"traceback_{seed}_{number}.toml")
+        yield end, words
 
 
 def edited(text: str, draw: random.Random) -> str:
@@ -130,7 +71,7 @@ def edited(text: str, draw: random.Random) -> str:
                 places = list(NUMBER.finditer(text))
                 if places:
                     first, last = draw.choice(places).span()
-                    text = text[:first] + draw.choice(VALUES) + text[last:]
+                    text = text[:first] + draw.choice(VALUES.split()) + text[last:]
             case 3:
                 del lines[draw.randrange(len(lines))]
                 text = "\n".join(lines)
@@ -162,7 +103,7 @@ def _become(path: Path, folder: Path, go_on: bool) -> tuple[str, str]:
     except LateError:
         return "late", ""
     except Exception as error:  # every other one would reach a person as a traceback
-        return f"a traceback: {type(error).__name__}", f"{type(error).__name__}: {str(error)[:80]}"
+        return f"{TRACEBACK}: {type(error).__name__}", f"{type(error).__name__}: {str(error)[:80]}"
     return "a deck", ""
 
 

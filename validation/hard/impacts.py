@@ -7,14 +7,13 @@ against motions of few variables that no chain takes part in; a pull-off at a ve
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from validation.hard.draws import history, terms_of
 from validation.hard.expected import looked_up
 from validation.hard.judge import Case, Number, absolute, judged
 from validation.hard.random_plane import IMPACTS as RANDOM
 from validation.hard.random_plane import random_rows
-from validation.hard.relaxing import MATERIALS
+from validation.hard.relaxing import MATERIALS, bodies
 from validation.hard.surfaces import Surface, power
 from validation.hard.units import Scene
 from validation.references.impact import Adhesive, elastic
@@ -42,15 +41,9 @@ VELOCITIES = (1e-4, 1e-2, 1.0)
 MOTION, ENERGY, EDGE = "the motion, by scipy", "Johnson and Pollock's balance of energy", "Maugis and Barquins's edge"
 
 
-def bodies() -> dict[str, Power]:
-    """Of one radius at one depth."""
-    others = {"cone": Power(1.0, 1.0), "power 3": Power(3.0, 1.0)}
-    return {"sphere": sphere(1.0)} | {name: replace(one, factor=1.0 / one.depth(1.0)) for name, one in others.items()}
-
-
 def cases() -> Iterator[Case]:
     """Of each body."""
-    for name, body in bodies().items():
+    for name, body in (bodies(1.0, 1.0) | {"sphere": sphere(1.0)}).items():
         solid = power(body, 1.0)
         laws: dict[str, dict[str, Scene]] = {
             "elastic impact": {name: {}},

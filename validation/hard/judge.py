@@ -11,7 +11,6 @@ import re
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
@@ -19,7 +18,7 @@ from validation.doors import Run, read_run
 from validation.hard.units import MODEL, Scene, Units
 from validation.references.interaction import Floats
 from validation.row import Row, at_most, worst
-from validation.study import LONGEST, Bench, Refused
+from validation.study import LONGEST, Bench, Refused, over_uncertainty
 
 QUADRATURE = 1e-8
 """Relative error of a quadrature."""
@@ -71,7 +70,6 @@ class Expected:
         error: relative error of the references.
         pressures: p(r) by the name of the state.
         pressure_error: of these and of the numbers that are pressures.
-        force: F by the displacement of a load step, whose error is compared with its uncertainty.
         curves: by the name of the column.
         needed: numbers that must be there or be missing with a word; without, all.
         largest: what a number was at most on the way, which its tolerance is a share of; of a last force or
@@ -82,7 +80,6 @@ class Expected:
     error: float = QUADRATURE
     pressures: Mapping[str, Function] = field(default_factory=dict)
     pressure_error: float = QUADRATURE
-    force: Function | None = None
     curves: Mapping[str, Curve] = field(default_factory=dict)
     needed: tuple[str, ...] | None = None
     largest: Mapping[str, float] = field(default_factory=dict)
@@ -136,9 +133,6 @@ class Number:
         return f"{self.name} of {self.scene}"
 
 
-Error = Callable[[Number], float]
-
-
 def relative(n: Number) -> float:
     """The relative error."""
     return abs(n.value / n.reference - 1.0)
@@ -168,12 +162,12 @@ class Judge:
         self.scenes[case.group] += 1
         if isinstance(run, Refused):
             self.refused[case.name] = f"{case.words}: {run.words}"
-            self.along |= {column: self.along[column] | {scene: math.nan} for column in exact.curves}
+            for column in exact.curves:
+                self.along[column][scene] = math.nan
             return
         said = read_run(run.folder) if case.units.texts else run
         self.unjudged.update(set(run.results) - set(exact.numbers))
         self._pressures(case, said)
-        self._forces(case, said)
         for name, reference in exact.numbers.items():
             quantity = said.results.get(IMAGE + name, said.results.get(name))
             if quantity is None or math.isnan(quantity.value):
@@ -205,23 +199,12 @@ class Judge:
             if name == "dissipated_energy":  # the difference of two works
                 whole = max(whole, exact.numbers.get("peak_force", 0.0) * exact.numbers.get("peak_displacement", 0.0))
             error = max(0.0, abs(value - reference) - slack * whole)
-            over = error / uncertainty if uncertainty > 0.0 else (0.0 if error == 0.0 else math.inf)
+            over = over_uncertainty(error, uncertainty)
             far = error / max(abs(reference), most) / tolerance if reference else 0.0
         wide = uncertainty / (max(abs(value), most) * tolerance) if value and reference else 0.0
         self.numbers.append(
             Number(case.name, case.group, case.words, name, value, uncertainty, reference, over, far, wide, named)
         )
-
-    def _forces(self, case: Case, said: Run) -> None:
-        """F of every load step; without a column of its ± that is 0."""
-        if case.expected.force is None:
-            return
-        length, force = map(case.units.size, ("m", "N"))
-        columns = said.curve
-        errors = columns["force_uncertainty"] if "force_uncertainty" in columns else 0.0 * columns["force"]
-        for d, value, error in zip(columns["displacement"], columns["force"], errors, strict=True):
-            reference = case.expected.force(float(d) / length)
-            self._number(case, "F of a load step", float(value) / force, float(error) / force, reference)
 
     def _pressures(self, case: Case, said: Run) -> None:
         """Some points of p(r) of each state that has one; it must have a ± of its own."""
@@ -258,45 +241,44 @@ class Judge:
         stand for what is infinite; refusals.
         """
         real = [n for n in self.numbers if math.isfinite(n.reference)]
+        unnamed = [n.label for n in self.unnamed if math.isfinite(n.reference)]
         wrong = [n.label for n in self.numbers if math.isinf(n.reference)]
         wrong += [f"{name}: {scene}" for name, scenes in self.silent.items() for scene in scenes]
-        counted = {
-            "numbers beyond the tolerance that no warning names": [
-                n.label for n in self.unnamed if math.isfinite(n.reference)
-            ],
-            "numbers without a bound that are reported, or missing without a word": wrong,
-        }
         first = max(real, key=lambda n: n.over, default=None)
-        label = f"{first.label}, {first.words}" if first else "–"
-        found = [at_most(f"{words}: worst of {len(real)} errors over the uncertainty", worst([n.over for n in real]),
-                         FARTHEST if outside else 1.0, source, label)]  # fmt: skip
-        found += [at_most(f"{words}: {what}", len(some), 0.0, source, ", ".join(some)[:LONGEST] or "–")
-                  for what, some in counted.items()]  # fmt: skip
-        share = len(self.refused) / sum(self.scenes.values())
-        refused = at_most(f"{words}: share of scenes refused", share, outside, source, self._refusal())
+        label = f"{first.label}, {first.words}" if first else ""
+
+        def row(what: str, value: float, most: float, said: str) -> Row:
+            return at_most(f"{words}: {what}", value, most, source, said[:LONGEST] or "–")
+
+        found = [
+            row(f"worst of {len(real)} errors over the uncertainty", worst([n.over for n in real]),
+                FARTHEST if outside else 1.0, label),
+            row("numbers beyond the tolerance that no warning names", len(unnamed), 0.0, ", ".join(unnamed)),
+            row("numbers without a bound that are reported, or missing without a word", len(wrong), 0.0,
+                ", ".join(wrong)),
+        ]  # fmt: skip
         if outside:
             groups = ", ".join(f"{n} {group}" for group, n in sorted(self.scenes.items()))
-            name = f"{words}: share of the numbers of {groups} outside of their uncertainty"
-            found.append(at_most(name, len(self.outside) / max(1, len(self.numbers)), outside, source, label))
-        return [*found[not real :], refused]
-
-    def _refusal(self) -> str:
-        return next(iter(self.refused.values()), "–")[:LONGEST]
+            name = f"share of the numbers of {groups} outside of their uncertainty"
+            found.append(row(name, len(self.outside) / max(1, len(self.numbers)), outside, label))
+        share = len(self.refused) / sum(self.scenes.values())
+        return [
+            *found[not real :],
+            row("share of scenes refused", share, outside, next(iter(self.refused.values()), "")),
+        ]
 
     def near(
         self, words: str, name: str, bound: float, source: str, error: Callable[[Number], float] = relative
     ) -> Row:
         """A row of the largest error of a number, relative if not otherwise; one that is missing fails."""
         off = {n.words: error(n) for n in self.numbers if n.name == name}
-        missing = [*self.silent.get(name, []), *self.refused.values()]
-        value = math.nan if missing else worst([*off.values()])
-        return at_most(f"{words}: {name}", value, bound, source, _farthest(off, missing))
+        off |= dict.fromkeys([*self.silent.get(name, []), *self.refused.values()], math.nan)
+        return _farthest(f"{words}: {name}", off, bound, source)
 
     def curve(self, words: str, column: str, bound: float, source: str, over: str = "its largest") -> Row:
         """A row of the largest error of a column."""
         off = self.along[column]
-        name = f"{words}: {column} along {len(off)} curves over {over}"
-        return at_most(name, worst([*off.values()]), bound, source, _farthest(off))
+        return _farthest(f"{words}: {column} along {len(off)} curves over {over}", off, bound, source)
 
 
 def unsaid(run: Run, name: str) -> bool:
@@ -307,9 +289,10 @@ def unsaid(run: Run, name: str) -> bool:
     return name not in run.results and name not in OPTIONAL and not told
 
 
-def _farthest(off: Mapping[str, float], missing: Iterable[str] = ()) -> str:
-    return next(iter(missing), max(off, key=lambda one: off[one] if math.isfinite(off[one]) else math.inf,
-                                   default="–"))[:LONGEST]  # fmt: skip
+def _farthest(name: str, off: Mapping[str, float], bound: float, source: str) -> Row:
+    """A row of the largest of some errors, one of which is NaN where there is no number."""
+    largest = max(off, key=lambda one: off[one] if math.isfinite(off[one]) else math.inf, default="–")
+    return at_most(name, worst([*off.values()]), bound, source, largest[:LONGEST])
 
 
 def judged(bench: Bench, cases: Iterable[Case]) -> dict[str, Judge]:
@@ -320,7 +303,6 @@ def judged(bench: Bench, cases: Iterable[Case]) -> dict[str, Judge]:
     return found
 
 
-def rows_of(judges: Mapping[str, Judge], source: str | Callable[[str], str]) -> list[Row]:
+def rows_of(judges: Mapping[str, Judge], source: str) -> list[Row]:
     """Rows of each group."""
-    sources: Any = source if callable(source) else lambda _: source
-    return [row for words, judge in judges.items() for row in judge.rows(words, sources(words))]
+    return [row for words, judge in judges.items() for row in judge.rows(words, source)]

@@ -1,4 +1,4 @@
-"""Independent pairs beside their closed form: stiffness ratios, random sharp scenes, other units, loads near the core.
+"""Independent pairs beside their closed form: stiffness ratios, random sharp scenes.
 
 Pairs that feel their opposite only have every number exactly (`cases`), smooth, about to snap, or with snaps.
 """
@@ -11,12 +11,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from validation.doors import Run
-from validation.hard.cases import CAPACITY, CORE, PAIRS, TENSION, PairCase, reach, shaped
+from validation.hard.cases import CAPACITY, PAIRS, TENSION, PairCase, reach, shaped
 from validation.hard.judge import OF_ALL, REFUSED, Case, Judge, judged
-from validation.hard.units import Scene, Units
-from validation.row import Row, at_most
-from validation.study import Bench, Findings, Refused, Study, claim_row
+from validation.hard.units import Scene
+from validation.row import at_most
+from validation.study import Bench, Findings, Study
 
 RATIOS = (0.3, 0.7, 0.9, 0.99, 1.01, 1.5, 3.0, 10.0, 100.0)
 FULL_RATIOS = (0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.99, 0.999, 1.001, 1.01, 1.1, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 30.0, 50.0,
@@ -31,14 +30,6 @@ KINDS = ("flat_punch", "parabola", "cone", "power")
 TIMED, CALM = 0.3, 0.97
 """Share of the sharp scenes that are run in time, and the largest ratio there but for a path: behind a snap a plate
 under a load lands where its momentum takes it."""
-LENGTHS, ENERGIES = (1e-9, 1e-6, 1e-3, 1e3, 1e6), (1e-9, 1e-6, 1e-3, 1e3, 1e6, 1e9)
-EQUAL = {False: 1e-5, True: 1e-2}
-"""Relative: a hundredth of the tolerance of 1e-3, since the numbers of a scaled scene are rounded anew, and the
-minimiser stops elsewhere within its own share of the tolerance; in time the tolerance of the bracket."""
-PUNCH, SHARES, PAST = 10, (0.1, 0.5, 0.85), (1.02, 10.0)
-"""Particles of the punch that is pressed, and loads over what its cores carry."""
-PATIENCE, HANGING = 20, ("LAMMPS", "time limit", "nothing was said")
-"""For a refusal [s], and words of one that came too late."""
 
 
 def stiffnesses(full: bool) -> Iterator[Case]:
@@ -108,19 +99,6 @@ def _sharp(rng: np.random.Generator, case: PairCase, kind: str, timed: bool) -> 
     return replace(case, more=tables).judged(group, words, exact)
 
 
-def similar(full: bool) -> Iterator[Case]:
-    """Lengths × s and energies × e are the same physics; masses are as they are."""
-    for dynamic in EQUAL:
-        base = PairCase("base", 0.5, shaped("parabola", 21, reach(0.5)), 21, TENSION, 1e-3, dynamic)
-        exact = {"adhesion_force": base.pairs.adhesion(base.preload)[0]}
-        for what, factors in (("lengths", LENGTHS), ("energies", ENERGIES)):
-            for factor in factors if full or not dynamic else factors[::2]:
-                s, e = (factor, 1.0) if what == "lengths" else (1.0, factor)
-                words = f"{what} × {factor:g}, {base.method}"
-                case = replace(base, name=f"{base.method}_{what}_{factor:g}")
-                yield case.judged(words, words, exact, Units(s, e / s**3, scaled=True))
-
-
 def measure_stiffness(bench: Bench) -> Findings:
     """Rows of F_A, ratio by ratio; of the refusals of all."""
     source, every = f"{PAIRS}, by bisection and Newton's method", judged(bench, stiffnesses(bench.full))
@@ -139,35 +117,6 @@ def measure_sharp(bench: Bench) -> Findings:
     return Findings(judge.rows("random sharp scenes", PAIRS, REFUSED))
 
 
-def measure_similarity(bench: Bench) -> Findings:
-    """F_A·s/e of each scaled scene."""
-    rows = []
-    for words, judge in judged(bench, similar(bench.full)).items():
-        rows.append(judge.near(words, "adhesion_force", EQUAL["dynamic" in words], f"{PAIRS}, not scaled"))
-    return Findings(rows)
-
-
-def measure_core(bench: Bench) -> Findings:
-    """d under shares of what N cores carry over its claim; loads past that are refused in words of this program."""
-    rows: list[Row] = []
-    for dynamic in (False, True):
-        case = PairCase("core", 0.5, shaped("flat_punch", PUNCH, 0.0), PUNCH, dynamic=dynamic)
-
-        def pressed(share: float, bench: Bench, case: PairCase = case) -> Run | Refused:
-            experiment = {"kind": "load", "force": share * PUNCH * CORE, "method": case.method}
-            return bench.run(f"{case.method}_{share:g}", case.scene() | {"experiment": experiment})
-
-        for share in SHARES:
-            words = f"d off over its claim at {share:g} of the core's force, {case.method}"
-            exact = case.pairs.deepest(share * PUNCH * CORE)
-            rows.append(claim_row(words, pressed(share, bench), "displacement", exact, PAIRS))
-        ends = [pressed(share, replace(bench, patience=PATIENCE)) for share in PAST]
-        bad = sum(not isinstance(end, Refused) or any(word in end.words for word in HANGING) for end in ends)
-        words = f"loads of {PAST} core forces that are held, hang, or end in words of LAMMPS, {case.method}"
-        rows.append(at_most(words, bad, 0.0, "the core carries no more"))
-    return Findings(rows)
-
-
 CLASSES = (
     Study(
         "stiffness",
@@ -184,19 +133,5 @@ CLASSES = (
         "With few particles and pairs about to snap a search may find a force maximum that is not the highest. Is "
         "every result of a hundred random scenes within its uncertainty?",
         measure_sharp,
-    ),
-    Study(
-        "similarity",
-        "Similarity: lengths × 1e-9 … 1e6, energies × 1e-9 … 1e9",
-        "An absolute threshold in a program gives different reduced results for metres and nanometres. Are the "
-        "reduced results of scaled scenes the same?",
-        measure_similarity,
-    ),
-    Study(
-        "core",
-        "Compression up to the largest repulsion of the pairs and beyond",
-        "The repulsion of a pair is finite at distance 0: under a larger load one body passes through the other. Are "
-        "displacements below it within their uncertainties, and larger loads refused?",
-        measure_core,
     ),
 )

@@ -13,15 +13,6 @@ PLANE = RandomClass(
     {"JKR, path": 0.33, "friction, tangential": 0.12, "JKR, load": 0.08, "JKR, tension": 0.08, "JKR, pull_off": 0.17,
      "elastic, load": 0.11, "elastic, path": 0.11}, ANY, kinked=0.3,
 )  # fmt: skip
-ADHESIVE = RandomClass(
-    "plane_adhesive", 31, 80, 400,
-    {"JKR, load": 0.25, "JKR, tension": 0.25, "JKR, pull_off": 0.25, "JKR, path": 0.25},
-    ("parabola", "circle", "cone", "power", "ellipsoid"),
-)  # fmt: skip
-FRICTION = RandomClass(
-    "friction", 14, 20, 200, {"elastic, load": 1.0, "JKR, pull_off": 1.0, "friction, tangential": 1.0},
-    ("cone", "parabola", "power"),
-)  # fmt: skip
 COHESIVE = RandomClass(
     "cohesive", 20261125, 20, 200,
     {"Maugis, load": 1.0, "Maugis, tension": 1.0, "Maugis, pull_off": 2.0, "Maugis, path": 2.0},
@@ -46,17 +37,12 @@ PUNCHES = RandomClass("punches", 20261127, 0, 0, {"Prony, one maximum": 1.0, "Pr
 CLASSES = (PLANE, COHESIVE, RELAXING, IMPACTS, IN_TIME, PUNCHES)
 
 
-def conducted(bench: Bench, of: RandomClass) -> Judge:
-    """The scenes of a class in the form that is asked for."""
+def random_rows(bench: Bench, of: RandomClass, source: str) -> list[Row]:
+    """Rows of a class in the form that is asked for."""
     judge = Judge()
     for case in of.cases(of.full if bench.full else of.quick):
         judge.add(case, case.run(bench))
-    return judge
-
-
-def random_rows(bench: Bench, of: RandomClass, source: str) -> list[Row]:
-    """Rows of a class."""
-    return conducted(bench, of).rows(f"random scenes of seed {of.seed}", source, OUTSIDE)
+    return judge.rows(f"random scenes of seed {of.seed}", source, OUTSIDE)
 
 
 def measure(bench: Bench) -> Findings:

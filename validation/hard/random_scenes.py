@@ -50,10 +50,7 @@ def varied(scene: dict[str, Any], random: Random) -> dict[str, Any]:
     experiment = scene["experiment"]
     path, timed = random.random() < PATHS, random.random() < TIMED
     if experiment["kind"] == "pull_off" and "horizontal" not in scene and "plate" not in scene and path:
-        far, deepest = (
-            scene["interaction"]["attraction"]["range"],
-            settings_for(read_scene(scene)).largest_displacement,
-        )
+        far, deepest = scene["interaction"]["attraction"]["range"], settings_for(read_scene(scene)).largest_displacement
         way = {"from": -APART * far, "to": deepest, "steps": random.randrange(40, 200)}
         return scene | {"experiment": {"kind": "path", "displacements": way}}
     if timed and "interaction" in scene and "plate" not in scene:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 
@@ -64,10 +65,10 @@ SOURCES = {"sawtooth": EVENTS, "touched": EVENTS, "force": "the creep compliance
            "punch": "E(t) and C(t)", "Kelvin": "the closed form"}  # fmt: skip
 
 
-def bodies() -> dict[str, Power]:
+def bodies(radius: float, depth: float) -> dict[str, Power]:
     """Of one contact radius at one depth."""
     made = {"sphere": Power(2.0, 1.0), "cone": Power(1.0, 1.0), "power 3": Power(3.0, 1.0)}
-    return {name: replace(one, factor=DEPTH / one.depth(RADIUS)) for name, one in made.items()}
+    return {name: replace(one, factor=depth / one.depth(radius)) for name, one in made.items()}
 
 
 def case(name: str, group: str, words: str, body: Power | Flat, law: Law, experiment: Scene) -> Case:
@@ -80,12 +81,8 @@ def case(name: str, group: str, words: str, body: Power | Flat, law: Law, experi
 
 def cases(full: bool) -> Iterator[Case]:
     """Every body on every material, or each once; with the spacing given and with the program's own, in SI."""
-    named = [*bodies().items()]
-    pairs = (
-        [(body, law) for body in named for law in MATERIALS.items()]
-        if full
-        else [*zip(named, MATERIALS.items(), strict=True)]
-    )
+    named = [*bodies(RADIUS, DEPTH).items()]
+    pairs = [*(product if full else zip)(named, MATERIALS.items())]
     for name, d in WAYS.items():
         for (b, body), (m, law) in pairs:
             one = case(name, f"{name}, spacing given", f"{b}, {m}", body, law, history(d))
@@ -123,7 +120,7 @@ def measure(bench: Bench) -> Findings:
 
 def _order(bench: Bench, name: str, law: Material) -> Row:
     """In the spacing, of a sphere."""
-    body, off = bodies()["sphere"], []
+    body, off = bodies(RADIUS, DEPTH)["sphere"], []
     exact, solid = Indentation(body, law, TRIANGLE), power(body, RADIUS)
     for finer in (1.0, FINE):
         scene = solid.tables(RADIUS / (PARTICLES * finer)) | {"viscoelasticity": terms_of(law)}

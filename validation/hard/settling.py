@@ -48,14 +48,14 @@ def measure(bench: Bench) -> Findings:
     case = PairCase("settling", RATIO, shaped("parabola", PARTICLES, reach(RATIO)), PARTICLES, 0.0, TOLERANCE, True)
     each = math.sqrt(case.stiffness)
     scene = case.scene() | {"damping": {"coefficient": DRAG * each}, "plate": {"damping": PARTICLES * each}}
-    pairs = case.exact()
+    pairs, shares = case.pairs, np.array(FULL_SHARES if bench.full else SHARES)
     largest, fold = pairs.adhesion(0.0)
+    near, begin = shares <= NEAR, _place(pairs, -START * largest, fold)
     checks: list[Row] = []
     for words, sign in (("settle", -1.0), ("part", 1.0)):
         found = []
-        for share in FULL_SHARES if bench.full else SHARES:
+        for share in shares.tolist():
             load = -largest * (1.0 + sign * share)
-            begin = _place(pairs, -START * largest, fold)
             end = fold - PARTED * ATTRACTION[1]
             if sign < 0.0:
                 rest = _place(pairs, load, fold)
@@ -82,18 +82,10 @@ def measure(bench: Bench) -> Findings:
                 Row(f"time to {words} under (1 {'+−'[sign < 0]} {share:g}) F_A", taken, Reference(expected, SOURCE),
                     relative(TIMES, "particles that lag behind; the table's share of F_A"), unit="TU")
             )  # fmt: skip
-        shares = np.array(FULL_SHARES if bench.full else SHARES)
-        near = shares <= NEAR
-        slope = float(np.polyfit(np.log(shares[near]), np.log(np.maximum(np.array(found)[near], 1e-300)), 1)[0])
-        checks.append(
-            at_most(
-                f"exponent of the time to {words} over |1 − W/F_A|, from −1/2",
-                abs(slope + 0.5),
-                EXPONENT,
-                "the fold: inverse square root",
-                "next term of the fold",
-            )
-        )
+        slope = float(np.polyfit(np.log(shares[near]), np.log(np.maximum(found, 1e-300)[near]), 1)[0])
+        name = f"exponent of the time to {words} over |1 − W/F_A|, from −1/2"
+        source, limit = "the fold: inverse square root", "next term of the fold"
+        checks.append(at_most(name, abs(slope + 0.5), EXPONENT, source, limit))
     return Findings(checks)
 
 

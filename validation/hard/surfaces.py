@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 import numpy as np
 
@@ -54,7 +54,12 @@ class Surface:
 
     def sampled(self, pitch: float, reach: float, digits: int | None = None) -> Surface:
         """The table of its heights at every `pitch` up to `reach` [LU], with so many digits of the largest height."""
-        return replace(self, profile=sampled(self.body, pitch, reach, digits))
+        radii = [pitch * i for i in range(math.ceil(reach / pitch) + 1)]
+        heights = [0.0, *accumulate(_rise(self.body, low, high) for low, high in pairwise(radii))]
+        if digits is not None:
+            places = digits - 1 - math.floor(math.log10(heights[-1]))
+            heights = [round(z, places) for z in heights]
+        return replace(self, profile={"kind": "table", "r": radii, "z": heights})
 
     def tables(self, spacing: float, tolerance: float = 1e-3) -> Scene:
         """[bodies] and [accuracy] of a scene of model units, E* = 1 FU/LU²."""
@@ -153,23 +158,15 @@ def kinked_body(kind: str, b: float, slope: float, rng: np.random.Generator) -> 
     return pieces(flat, (b, low, 0.0), (further, slope, 0.0))
 
 
-def sampled(body: Body, pitch: float, reach: float, digits: int | None = None) -> Scene:
-    """The table of a body's heights, as of `Surface.sampled`."""
-    radii = [pitch * i for i in range(math.ceil(reach / pitch) + 1)]
-    heights = [0.0]
-    for low, high in pairwise(radii):
-        heights.append(heights[-1] + float(_rise(body, low, high)))
-    if digits is not None:
-        places = digits - 1 - math.floor(math.log10(heights[-1]))
-        heights = [round(z, places) for z in heights]
-    return {"kind": "table", "r": radii, "z": heights}
-
-
 def _rise(body: Body, low: float, high: float) -> float:
     """∫ f′ dr by Gauss between kinks: exact for the slopes up to cubic, and to round-off for these pitches."""
     ends = [low, *(b for b in body.kinks if low < b < high), high]
     u, w = np.polynomial.legendre.leggauss(8)
-    return sum(
-        0.5 * (q - p) * sum(wi * body.slope(0.5 * (p + q) + 0.5 * (q - p) * ui) for ui, wi in zip(u, w, strict=True))
-        for p, q in pairwise(ends)
+    return float(
+        sum(
+            0.5
+            * (q - p)
+            * sum(wi * body.slope(0.5 * (p + q) + 0.5 * (q - p) * ui) for ui, wi in zip(u, w, strict=True))
+            for p, q in pairwise(ends)
+        )
     )

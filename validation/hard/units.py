@@ -11,14 +11,11 @@ import numpy as np
 
 Scene = dict[str, Any]
 KEYS = {
-    "m": ("radius", "height", "spacing", "from", "to", "amplitude", "r", "z", "range", "displacement", "displacements",
-          "normal_displacement"),
+    "m": ("radius", "height", "spacing", "from", "to", "amplitude", "r", "z", "range", "displacement", "displacements"),
     "N": ("force", "preload", "normal_force"), "s": ("time", "retardation_time"), "m/s": ("velocity",),
-    "kg": ("mass",), "J/m²": ("work_of_adhesion",), "N/m": ("bulk_stiffness", "bulk_stiffness_tangential"),
-    "J": ("energy",),
+    "kg": ("mass",), "J/m²": ("work_of_adhesion",),
 }  # fmt: skip
-"""Keys of the numbers that have a unit; the amplitude of an interaction is an energy."""
-INTERACTION = ("repulsion", "attraction")
+"""Keys of the numbers that have a unit."""
 UNIT_OF = {key: unit for unit, keys in KEYS.items() for key in keys}
 DECADES = ((-9.0, -3.0), (3.0, 12.0), (-9.0, 7.0))
 """Of random units of length [m], stress [Pa] and time [s]."""
@@ -32,7 +29,6 @@ class Units:
         length, stress, time: [m], [Pa], [s].
         texts: whether numbers are written with units, and results are in SI.
         automatic: whether the spacing is the program's own.
-        scaled: whether numbers are written for other units of the model, which are these.
     """
 
     length: float = 1e-6
@@ -40,24 +36,20 @@ class Units:
     time: float = 1e-3
     texts: bool = False
     automatic: bool = False
-    scaled: bool = False
 
     @cached_property
     def sizes(self) -> dict[str, float]:
-        """A unit of the model in each SI unit, and in those of a scaled model."""
+        """A unit of the model in each SI unit."""
         L, P, T = self.length, self.stress, self.time
-        found = {"1": 1.0, "m": L, "s": T, "m/s": L / T, "Pa": P, "N": P * L * L, "N/m": P * L, "J/m²": P * L,
-                 "J": P * L**3, "kg": P * L * T * T}  # fmt: skip
-        return found | {"LU": found["m"], "FU": found["N"], "FU·LU": found["J"]}
+        return {"1": 1.0, "m": L, "s": T, "m/s": L / T, "Pa": P, "N": P * L * L, "N/m": P * L, "J/m²": P * L,
+                "J": P * L**3, "kg": P * L * T * T}  # fmt: skip
 
     def size(self, unit: str) -> float:
         """What a number of a run in that unit is to be divided by."""
-        return self.sizes[unit] if self.texts or self.scaled else 1.0
+        return self.sizes[unit] if self.texts else 1.0
 
     def written(self, scene: Scene) -> Scene:
         """The scene that is run."""
-        if self.scaled:
-            return self._written(scene)
         if not (self.texts or self.automatic):
             return scene
         bodies = dict(scene["bodies"])
@@ -71,21 +63,20 @@ class Units:
         material = {"contact_modulus": f"{self.stress!r} Pa"} if along is None else self._elastic(along / stiffness)
         return self._written(scene | {"material": material})
 
-    def _written(self, scene: Scene) -> Scene:
-        return {name: self._number(table, name) for name, table in scene.items()}
+    def _written(self, tables: Mapping[str, Any]) -> Scene:
+        return {name: self._number(table, name) for name, table in tables.items()}
 
     def _number(self, node: Any, key: str) -> Any:
         if isinstance(node, Mapping):
-            names = {name: "energy" if key in INTERACTION and name == "amplitude" else name for name in node}
-            return {name: self._number(value, names[name]) for name, value in node.items()}
+            return self._written(node)
         if isinstance(node, list):
             timed = node and isinstance(node[0], list)
             return [[self._number(one[0], "time"), self._number(one[1], key)] if timed else self._number(one, key)
                     for one in node]  # fmt: skip
         if not (isinstance(node, float) and key in UNIT_OF):
             return node
-        number = node * self.sizes[UNIT_OF[key]]
-        return f"{number!r} {UNIT_OF[key]}" if self.texts else number
+        unit = UNIT_OF[key]
+        return f"{node * self.sizes[unit]!r} {unit}"
 
     def _elastic(self, ratio: float) -> Scene:
         """Two equal bodies of that E* and G*/E* = 2 (1 − ν)/(2 − ν)."""
@@ -98,8 +89,8 @@ class Units:
 MODEL = Units()
 
 
-def random_units(rng: np.random.Generator, automatic: float = 0.25, texts: float = 0.4) -> Units:
-    """Units of a scene, a share of which leaves the spacing to the program, and of which is written in SI."""
+def random_units(rng: np.random.Generator) -> Units:
+    """Units of a scene: one in four leaves the spacing to the program, and two in five are written in SI."""
     length, stress, time = (float(10.0 ** rng.uniform(*decades)) for decades in DECADES)
-    free = bool(rng.random() < automatic)
-    return Units(length, stress, time, True, free) if rng.random() < texts else Units(automatic=free)
+    free = bool(rng.random() < 0.25)
+    return Units(length, stress, time, True, free) if rng.random() < 0.4 else Units(automatic=free)
