@@ -3,8 +3,6 @@
 `conftest.py` puts it in the place of pytest's own: without `abs` a comparison is relative, and with 0 exact.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

@@ -1,7 +1,5 @@
 """Fixtures that several test files share: small scenes, and a limit of time for every test."""
 
-from __future__ import annotations
-
 import signal
 from collections.abc import Callable, Iterator
 from typing import Any

@@ -1,7 +1,5 @@
 """A time limit for what may hang. It is no measure of speed: far above what anything takes on a slow machine."""
 
-from __future__ import annotations
-
 import os
 import signal
 import threading

@@ -1,7 +1,5 @@
 """Scenes with a [material], and the materials."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from tests.scenes import chains

@@ -3,8 +3,6 @@
 Also the data of the figures on a page of `contact1d report`.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re

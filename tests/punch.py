@@ -1,7 +1,5 @@
 """A study of one run and of one that is refused, in a module that a process of its own imports quickly."""
 
-from __future__ import annotations
-
 from validation.figures import Panel, Series, figure
 from validation.study import Bench, Findings, Refused, Study, claim_row
 

@@ -1,7 +1,5 @@
 """The last result of each long test: `WRITE_DOCS=1 pytest -m slow` writes docs/slow.json."""
 
-from __future__ import annotations
-
 import json
 import os
 from pathlib import Path
@@ -13,8 +11,6 @@ from validation.age import today
 from validation.doors import machine
 
 SLOW = Path(__file__).parents[1] / "docs" / "slow.json"
-COMMAND = "make test ARGS='-m slow'"
-VERDICTS = {"passed": "PASS", "failed": "**FAIL**"}
 
 
 def slow_results() -> dict[str, Any]:

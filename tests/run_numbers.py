@@ -10,8 +10,6 @@ has otherwise; another one's arithmetic is had by GLIBC_TUNABLES=glibc.cpu.hwcap
 OPENBLAS_CORETYPE=Nehalem NPY_DISABLE_CPU_FEATURES="X86_V3 X86_V4".
 """
 
-from __future__ import annotations
-
 import csv
 import gzip
 import hashlib

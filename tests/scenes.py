@@ -1,7 +1,5 @@
 """The tables of small scenes, for tests that say only what is their own."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -3,8 +3,6 @@
 Its nodes, one or more, are names: each has a daemon of its own, and all are this machine.
 """
 
-from __future__ import annotations
-
 import getpass
 import os
 import signal

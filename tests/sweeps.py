@@ -1,7 +1,5 @@
 """A sweep of a quick scene, executors that keep what they are given, and what is no results.json of a run."""
 
-from __future__ import annotations
-
 import csv
 import json
 from collections.abc import Callable, Iterable, Mapping

@@ -3,8 +3,6 @@
 Pressures are those of the reported state: deepest of a path, without a load of a pull-off, the last of others.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import cache

@@ -1,7 +1,5 @@
 """A combination's run in any units: its numbers in units of its own, and what it says about itself."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass, field
 from pathlib import Path

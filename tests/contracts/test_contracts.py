@@ -8,8 +8,6 @@ A member of a registry enters by being there; `members` says what it lacks. A fe
 every member at least twice; the whole product is slow.
 """
 
-from __future__ import annotations
-
 import math
 import re
 import shutil

@@ -3,8 +3,6 @@
 `changes.toml` has them, each as changes of a copy of this checkout in which the contracts of some scenes are tried.
 """
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -3,8 +3,6 @@
 What a fragment adds is in `lammps_inputs/fragments`; its header names what it needs and what it defines.
 """
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Iterable

@@ -5,8 +5,6 @@ After a wanted change write them anew and read the difference before you commit 
     WRITE_GOLDENS=1 pytest tests/decks/test_goldens.py && git diff tests/decks/golden
 """
 
-from __future__ import annotations
-
 import os
 import re
 from pathlib import Path

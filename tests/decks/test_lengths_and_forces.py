@@ -3,8 +3,6 @@
 The law of a pair and its sum over a straight row are written out; their minima, roots and ranges are scipy's.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import re

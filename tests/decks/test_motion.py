@@ -5,8 +5,6 @@ with the velocity v₀ has u(t) = (v₀/ω) exp(−γt/2m) sin ωt, ω² = k/m �
 forces of mean 0.
 """
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

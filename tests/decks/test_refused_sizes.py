@@ -1,7 +1,5 @@
 """Claim: what a refusal says is possible is, and a little more is refused: of chains, profiles, ways and sizes."""
 
-from __future__ import annotations
-
 import math
 import os
 import re

@@ -3,8 +3,6 @@
 With `[output] states` it has a frame for each row of the curve, or some of them, by the deck's own dump.
 """
 
-from __future__ import annotations
-
 import json
 import pickle
 import re

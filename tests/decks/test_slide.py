@@ -8,8 +8,6 @@ with c, v and every drag as the scene says them, and X the place of the plate. T
 it is the sum of the lower body's forces on the upper particles.
 """
 
-from __future__ import annotations
-
 import re
 from tempfile import TemporaryDirectory
 from typing import Any

@@ -4,8 +4,6 @@ References: stiffnesses of the written-out law, eigenvalues of straight chains, 
 load needs of a displacement, and the stiffness under it, is that of the planned schedule of the same bodies at rest.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any

@@ -1,7 +1,5 @@
 """What a written deck says: variables of in.lammps, atoms and masses of system.data, the claims of the table."""
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

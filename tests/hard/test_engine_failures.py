@@ -1,7 +1,5 @@
 """Every way in which LAMMPS can fail, made to happen: one clear error, files kept, the next session as good as new."""
 
-from __future__ import annotations
-
 import os
 import pickle
 import re

@@ -2,8 +2,6 @@
 refused in words before anything runs.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Hard profiles: contacts wider than the body, flat punches that adhere, needles, nearly flat cones, long tables."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable

@@ -3,8 +3,6 @@
 A user gets the cause in words and a folder without numbers; nothing that was started stays behind.
 """
 
-from __future__ import annotations
-
 import json
 import multiprocessing
 import os

@@ -4,8 +4,6 @@ Reference: the independent solver. The chains jump where the largest move of a p
 shrink with the step. Springs that hold them along x leave one answer at each displacement, which the run has.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from numpy.typing import NDArray

@@ -4,8 +4,6 @@ The other chain has one particle more, so that a particle stands at the contact'
 the scene gives the number of particles, these are what was asked for and nothing is added.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

@@ -4,8 +4,6 @@ pair, gives a result, or a message; a remedy that it says was tried gives one.
 The reference is the claim itself: what a message says to type is typed, and the run must end with a pull-off force.
 """
 
-from __future__ import annotations
-
 import itertools
 import re
 import shlex

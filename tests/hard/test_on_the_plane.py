@@ -1,7 +1,5 @@
 """Claim: odd scenes on the rigid plane end in a right number or in words whose remedy works, not in a wrong remedy."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Numbers out of all proportion: a sentence before anything runs, or the right answer; never LAMMPS's own words."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

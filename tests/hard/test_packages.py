@@ -3,8 +3,6 @@
 Run with `make test ARGS='-m package'`.
 """
 
-from __future__ import annotations
-
 import json
 import shutil
 import subprocess

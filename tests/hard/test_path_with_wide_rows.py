@@ -4,8 +4,6 @@ Reference: `folded_pairs` of validation, each pair with its folds, at the same d
 in a round, one loop for each pair that snaps.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

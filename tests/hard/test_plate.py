@@ -1,7 +1,5 @@
 """Plates that are hard for `fix rigid` and for the search: of three particles, nearly a line, with momentum."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The page of runs in a real browser: figures are whole, the slider moves profile, force and bodies together."""
 
-from __future__ import annotations
-
 import itertools
 import re
 import shutil

@@ -1,8 +1,6 @@
 """Claim: hard slides are the motion of `validation.references.slide`: there and back with a rest, too fast, on a stiff
 cantilever, with particles that slip one by one."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

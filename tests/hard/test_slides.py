@@ -1,7 +1,5 @@
 """Hard slides: back and at rest, too fast, off the end, torn off, held by adhesion, chains that do not close."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

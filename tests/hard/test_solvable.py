@@ -1,7 +1,5 @@
 """What the independent solver carries, the program carries: pairs that snap together, particles near their core."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path

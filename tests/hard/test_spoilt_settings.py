@@ -1,7 +1,5 @@
 """Claim: settings that no scene can ask for, as a fault of the program would choose them, give no number unnoticed."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from dataclasses import replace

@@ -3,8 +3,6 @@
 Reference: `validation.references.solver`, Newton's method for a chain of twice the length.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The same sweep by processes here and by jobs of a real Slurm: one table."""
 
-from __future__ import annotations
-
 import csv
 import getpass
 import subprocess

@@ -8,8 +8,6 @@ force of a sharp body passes 0, and soft springs follow the attraction far out.
 A dynamic tension within the tolerance of F_A is held with a warning, and one beyond it is not held at all.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

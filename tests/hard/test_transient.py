@@ -6,8 +6,6 @@ that touch stand still. With n(d) = (L − 2a)/s free particles of the mass m an
     (M + n m) d″ + (c + n γ) d′ = P − (4/3) E* √R d^(3/2),    a = √(R d).
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

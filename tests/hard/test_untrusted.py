@@ -1,7 +1,5 @@
 """Hard cases: what can't be trusted is not reported. Each run ends in words, with status "failed" and no number."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

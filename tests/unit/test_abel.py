@@ -3,8 +3,6 @@
 References: Sneddon's and Mindlin's closed forms, and quadrature of the line load's slope (`validation.references.mdr`).
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A run that fails says what helps: the first change that its error carries was tried, once, and can be typed."""
 
-from __future__ import annotations
-
 import pickle
 import re
 import shlex

@@ -1,7 +1,5 @@
 """What settings use up of a tolerance is what the kept study says, and nothing else."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

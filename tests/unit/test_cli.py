@@ -1,7 +1,5 @@
 """The command line as a person uses it: what it prints, completes and leaves, and how it ends, whatever goes wrong."""
 
-from __future__ import annotations
-
 import errno
 import json
 import os

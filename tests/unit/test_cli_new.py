@@ -1,7 +1,5 @@
 """`contact1d new` and `schema`: a scene file that runs as it stands and names every key, and what an editor needs."""
 
-from __future__ import annotations
-
 import json
 import re
 import tomllib

@@ -3,8 +3,6 @@
 References: written down here, K. L. Johnson's and Sneddon's, in the variable that the scene gives.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

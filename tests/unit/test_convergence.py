@@ -1,7 +1,5 @@
 """The error of a lattice from three spacings, against sequences whose limit is known."""
 
-from __future__ import annotations
-
 import pytest
 
 from contact1d.analysis.convergence import SLOWEST, extrapolated

@@ -1,7 +1,5 @@
 """`contact1d cost`: what it varies in a scene, when an error is a number, what it recommends, and its record."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path

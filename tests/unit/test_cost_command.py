@@ -1,7 +1,5 @@
 """Claim: the errors that `contact1d cost` states are the true ones, and its command leaves a table and two files."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

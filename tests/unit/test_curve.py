@@ -1,7 +1,5 @@
 """Tables of a run: what is written comes back to the last bit, and nothing half-written stays."""
 
-from __future__ import annotations
-
 import csv
 import math
 from dataclasses import fields

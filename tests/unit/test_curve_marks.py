@@ -1,7 +1,5 @@
 """Marks on a sampled curve and the area of a loop, against functions whose maxima, zeros and areas are known."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from numpy.typing import ArrayLike, NDArray
@@ -25,8 +23,6 @@ PLACE_FACTOR = 2.0
 """Of what two rows more change: a claim for a place."""
 SIXTH = FOURTH = 0.5
 """Constants of the interpolation errors of this maximum and of its place, generously."""
-FAR, ORIGIN = 512.0, 1e-6
-"""An origin [LU]; absolute: a place that far away has lost nine digits of a small difference of heights."""
 TOP = 0.05
 """Where `rounded` is largest."""
 
@@ -152,20 +148,6 @@ def test_a_smooth_crossing_of_places_that_all_but_coincide_is_the_straight_lines
     assert crossing([2.0, 1.0, 0.0], [3.0, 2.0, 1.0], 1.0) == (1, 0.0)  # met by the last row
     with pytest.raises(ValueError, match="never passes 7 FU"):
         crossing([2.0, 1.0], [3.0, 1.0], 7.0)
-
-
-@pytest.mark.parametrize("jumps", [False, True])
-def test_marks_do_not_depend_on_the_origin(jumps: bool) -> None:
-    random = np.random.default_rng(8)
-    d = np.cumsum(random.integers(1, 9, size=40))[::-1] / 8.0
-    force = (random.uniform(size=40) - 0.5 if jumps else 0.3 - np.exp(-(((d - d[20] - 0.1) / 5.0) ** 2))).tolist()
-    found = []
-    for origin in (0.0, FAR):
-        peak = largest_tension(d + origin, force)
-        near = promised(d + origin, force, [peak.position + 0.25])[0]
-        places = peak.position - origin, smooth_crossing(d + origin, force, 0.0) - origin
-        found.append([*places, peak.misplaced, peak.smooth, peak.uncertainty, near, *rivals(d, force, peak).values()])
-    assert found[1] == pytest.approx(found[0], abs=ORIGIN, nan_ok=True)
 
 
 def there_and_back(rows: int) -> Array:

@@ -1,7 +1,5 @@
 """Numbers beside a limit show on which side of it they are, and computed ones have no round-off error in their text."""
 
-from __future__ import annotations
-
 import math
 import re
 

@@ -1,7 +1,5 @@
 """`import contact1d` as people use it: what it offers, what it costs, scenes from anything, scenes that are changed."""
 
-from __future__ import annotations
-
 import gc
 import inspect
 import pydoc

@@ -1,7 +1,5 @@
 """A session of the engine: commands in, numbers and arrays out, counted, timed and heard of, in the right folder."""
 
-from __future__ import annotations
-
 import io
 import math
 import os

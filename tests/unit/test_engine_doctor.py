@@ -1,7 +1,5 @@
 """`contact1d doctor`: a whole installation passes, and each defect is found by its own check."""
 
-from __future__ import annotations
-
 import importlib.metadata
 from pathlib import Path
 

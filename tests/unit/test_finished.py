@@ -1,7 +1,5 @@
 """A run and its folder: what is written, replaced and refused; a finished run from memory and from its folder."""
 
-from __future__ import annotations
-
 import csv
 import json
 import sys

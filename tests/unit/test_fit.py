@@ -1,7 +1,5 @@
 """A fit finds the parameters that a force curve was made with; data that tell nothing are refused, with the remedy."""
 
-from __future__ import annotations
-
 import csv
 import json
 import math

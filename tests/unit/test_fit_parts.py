@@ -1,7 +1,5 @@
 """What a fit is made of: files of curves to their bounds, contact models beside closed forms, noise and covariance."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Claim: a deck whose fragments do not fit together, or whose headers do not agree with their texts, is refused."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Means over whole periods, their errors, slips: on series whose answers are known."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

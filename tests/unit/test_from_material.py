@@ -3,8 +3,6 @@
 References: Hertz, Sneddon, JKR, DMT; Maugis and Dugdale by another solver; quadrature of the law between particles.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from pathlib import Path

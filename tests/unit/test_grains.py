@@ -1,7 +1,5 @@
 """Claim: docs/grains.md is what its record says, a LAMMPS run gives the record again, and its references are right."""
 
-from __future__ import annotations
-
 import math
 import os
 import re

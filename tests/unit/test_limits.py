@@ -1,7 +1,5 @@
 """Claim: a test that hangs fails, wherever it waits."""
 
-from __future__ import annotations
-
 import signal
 import time
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Many runs through any executor: an entry for each, in order; and processes that never outlive their parent."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

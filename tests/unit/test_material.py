@@ -1,7 +1,5 @@
 """[material]: elasticity by textbook formulae, the springs and units that follow, and results in SI."""
 
-from __future__ import annotations
-
 import json
 import math
 from typing import Any

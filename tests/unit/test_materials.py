@@ -3,8 +3,6 @@
 docs/materials.md is made from the table. Renew it with WRITE_DOCS=1 pytest tests/unit/test_materials.py.
 """
 
-from __future__ import annotations
-
 import math
 import os
 import tomllib

@@ -1,7 +1,5 @@
 """Cattaneo and Mindlin's closed forms along any way, and against springs with sliders."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

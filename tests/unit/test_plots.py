@@ -1,7 +1,5 @@
 """Figures: what is drawn is what was measured, beside theories written out here, in the units that its axes say."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

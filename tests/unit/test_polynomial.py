@@ -1,7 +1,5 @@
 """Roots and minima of polynomials against those that they were made of."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

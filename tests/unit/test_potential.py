@@ -1,7 +1,5 @@
 """The two-exponential law: force and stiffness as its derivatives, its force-free distance and its cutoff."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Pressure and what is read off it, against sums, the paper's own number, and brute force over all pairs."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -3,8 +3,6 @@
 The message about a wrong file has a suggested fix, which is tried and makes a scene.
 """
 
-from __future__ import annotations
-
 import tomllib
 from pathlib import Path
 from typing import Any

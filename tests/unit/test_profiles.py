@@ -4,8 +4,6 @@ References: g(x) = |x| ∫₀^|x| f′(r)/√(x² − r²) dr by adaptive quadra
 points are those of a formula, with the rates at which cubics through them converge.
 """
 
-from __future__ import annotations
-
 import math
 import pickle
 import tomllib

@@ -1,7 +1,5 @@
 """Quantities calculate, are written with prefixes, and texts with units of the model become SI."""
 
-from __future__ import annotations
-
 import math
 
 import pint

@@ -3,8 +3,6 @@
 The first two commands, `make run` and `make test`, are what `.ci/run` does.
 """
 
-from __future__ import annotations
-
 import json
 import re
 import shlex

@@ -3,8 +3,6 @@
 References: Galin and Sneddon (`analysis.theory.indenters`) for the body, the integral over springs for the image.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from typing import Any

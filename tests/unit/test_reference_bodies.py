@@ -1,8 +1,6 @@
 """Claim: the references of rigid bodies on an elastic half-space, by quadrature and by boundary elements, agree with
 each other and with closed forms (Hertz, JKR, Ejike, Mindlin, DMT, Maugis); energies are the work of forces."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

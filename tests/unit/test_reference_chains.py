@@ -1,8 +1,6 @@
 """Claim: the references of particles under a normal load (energies, minimiser, pull-off, pairs that snap, pairs in the
 limit of many, pairs under heat) are derivatives of one another, and agree with closed forms and with each other."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.optimize import brentq

@@ -3,8 +3,6 @@
 One particle of a flat chain is Prandtl's and Tomlinson's; of many, each slides over wells at a common height.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

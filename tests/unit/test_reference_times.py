@@ -1,8 +1,6 @@
 """Claim: the references of half-spaces that take time (quadrature, springs with events, rings in three dimensions)
 agree with each other; those of impacts and of a receding edge have closed forms and published numbers."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """The page of runs and their animation: what stands on them, and that they need nothing beside them."""
 
-from __future__ import annotations
-
 from html import unescape
 from html.parser import HTMLParser
 from pathlib import Path

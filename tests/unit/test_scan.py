@@ -3,8 +3,6 @@
 Statistics are those of the generator: a share of seeds has the binomial bounds that its test names.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

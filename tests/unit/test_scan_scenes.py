@@ -1,7 +1,5 @@
 """Scans in scenes: the keys, what is kept, said and drawn, and the uncertainty that the noise gives to results."""
 
-from __future__ import annotations
-
 import importlib.util
 import tomllib
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Scene files: what is read, what follows from it, changes from outside, and files that are none, as one sentence."""
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Rules across tables: what is changed in a scene, and the keys of all that is then refused; nothing means accepted."""
 
-from __future__ import annotations
-
 import math
 import tomllib
 from typing import Any

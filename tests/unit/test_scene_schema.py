@@ -3,8 +3,6 @@
 Renew both with WRITE_DOCS=1 pytest tests/unit/test_scene_schema.py.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re

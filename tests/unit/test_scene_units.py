@@ -1,7 +1,5 @@
 """Numbers with units in scenes: what each text means, whose units the scene then has, and that it is kept exactly."""
 
-from __future__ import annotations
-
 import tomllib
 from fractions import Fraction
 from typing import Any

@@ -1,7 +1,5 @@
 """Claims of results that are means over time: their errors follow from the blocks, whatever is made of the means."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace

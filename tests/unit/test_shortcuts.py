@@ -1,7 +1,5 @@
 """A contact in a line of Python, beside closed forms written out here; sizes that no laboratory has are named."""
 
-from __future__ import annotations
-
 import math
 import re
 import subprocess

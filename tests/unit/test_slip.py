@@ -1,7 +1,5 @@
 """Stick, slip and their work: closed forms of a parabola, small steps, and the balance of energy."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

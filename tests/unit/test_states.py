@@ -1,7 +1,5 @@
 """Profiles that are kept for the eye: how many, which, and what of a file of them is refused."""
 
-from __future__ import annotations
-
 from dataclasses import fields, replace
 from pathlib import Path
 

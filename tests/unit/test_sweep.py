@@ -1,7 +1,5 @@
 """A sweep: its points, what is run, kept and run again, one table of all, and figures with the closed forms."""
 
-from __future__ import annotations
-
 import json
 import os
 import resource

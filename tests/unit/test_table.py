@@ -1,7 +1,5 @@
 """The table: what LAMMPS makes of the written file, at thousands of distances at once, against the law itself."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

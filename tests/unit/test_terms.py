@@ -1,7 +1,5 @@
 """The words of messages, docstrings and pages: standard terms, and none of the paraphrases that they replace."""
 
-from __future__ import annotations
-
 import ast
 import re
 from collections.abc import Iterator

@@ -4,8 +4,6 @@ References: Hertz's p₀ = 3F/2πa²; a rim, where the slope jumps, has a pressu
 bodies that points were taken from, by quadrature of the MDR (`validation.references.axisymmetric`).
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -4,8 +4,6 @@ References, written down here: Sneddon's cone F = (2/π) E* d² tan α, with α 
 F = (4/3) E* √R d^(3/2) and JKR's F_A = 1.5 π W R with 1/R = 1/R₁ + 1/R₂.
 """
 
-from __future__ import annotations
-
 import math
 import tomllib
 from typing import Any

@@ -1,7 +1,5 @@
 """Claim: no row of the paper passes where every run is wrong."""
 
-from __future__ import annotations
-
 import math
 import zlib
 from dataclasses import dataclass, field, replace

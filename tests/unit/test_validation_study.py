@@ -1,8 +1,6 @@
 """Claim: a row's verdict follows from its rule; one runner does studies, reuses what is there, and keeps what fails;
 pages are made from its records; every listed fault can still be put back."""
 
-from __future__ import annotations
-
 import math
 import pickle
 from dataclasses import replace

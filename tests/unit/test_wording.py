@@ -4,8 +4,6 @@ A pronoun names nothing, a number at the head of a module is far from its use, a
 that points elsewhere leaves a reader alone. Tests go through public doors, so that rooms can be rebuilt behind them.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 from collections import Counter

@@ -3,8 +3,6 @@
 In a scene in SI and in one in units of the model.
 """
 
-from __future__ import annotations
-
 import pickle
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +15,7 @@ from tests.scenes import STEEL_ON_GLASS, chains
 
 SHIPPED = (Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "pull_off.toml").read_text(encoding="utf-8")
 R, F, H = "bodies.profile.radius", "experiment.force", "bodies.spacing"
-E, NU = "material.upper.youngs_modulus", "material.upper.poisson_ratio"
+E = "material.upper.youngs_modulus"
 SLIDE = 'experiment={ kind = "slide", normal_force = "1 N", distance = "1 µm" }'
 TIMED = (SLIDE, "horizontal={}", "damping.coefficient=auto", 'plate.free=["x", "z"]', "cantilever.stiffness=1 N/m")
 PARTICLES = ("bodies.lower=particles", "interaction.repulsion={ amplitude = '1 aJ', range = '1 µm' }")

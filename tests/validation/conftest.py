@@ -1,7 +1,5 @@
 """What the validation tests share: a scene from its tables, run to the end in a folder of its own."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from itertools import count
 from typing import Any

@@ -3,8 +3,6 @@
 References: JKR, F_A = 1.5πWR; a dashpot body that stops where its springs carry M v/T.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

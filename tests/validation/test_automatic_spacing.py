@@ -4,8 +4,6 @@ References: Galin's z = c rⁿ, with adhesion Maugis and Barquins', with frictio
 (Ciavarella, Jaeger), F_x = μ (F_N − F(c)), u = μ (E*/G*) (d − d(c)); E* and G* of two bodies with E and ν.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -9,8 +9,6 @@ radius goes with √(F_A − F), so a bracket of 1e-3 leaves 3 % of the way from
 what is left of the motion when it counts as rest, a tenth of the tolerance.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -5,8 +5,6 @@ Reference: quadrature of Cattaneo and Mindlin's T(u) along the branches of Masin
 What limits the tolerances: a load step is exact, so that only the lattice is left, and the run states how much it is.
 """
 
-from __future__ import annotations
-
 import os
 import tomllib
 from pathlib import Path

@@ -18,8 +18,6 @@ With neighbour springs the plane is a penalty, 1/tolerance stiffer than the chai
 solution of `validation.references.rigid_plane`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -8,8 +8,6 @@ What limits the tolerance: for stiff springs the residual force at which a minim
 a sum of trapezia over rows between which particles jump; a jump is missed by half an increment on average.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -6,8 +6,6 @@ lattice. The particles' sum takes the force at the middle of each cell, which mi
 within a cell by a parabola. With a range the equations are solved, and no lattice errs.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any

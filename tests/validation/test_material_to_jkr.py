@@ -7,8 +7,6 @@ What limits the tolerance: 30 particles in a₀. The pressure is that of a line 
 bound at the edge.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import dataclass

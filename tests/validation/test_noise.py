@@ -15,8 +15,6 @@ blocks long against the relaxation. The integrator's bias, 0.4 (ωΔt)² = the s
 standard error. Seeds are fixed: a failure is no bad luck.
 """
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -13,8 +13,6 @@ force, at its maximum, does not. The minimiser is exact to 1e-9 in the force and
 particles for a radius, good to some 1e-6 where a dip is many spacings wide.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any

@@ -5,8 +5,6 @@ measured profile is a sphere's, read from a file in µm, without noise. The same
 refused, or carry the factor.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Claim: a run in finer settings that contradicts the first is as uncertain as that; no scene can be made to do so."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -3,8 +3,6 @@
 References: Maugis and Barquins's and JKR's F(d), Ting's convolution of a ramp, the creep of a standard solid.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any

@@ -4,8 +4,6 @@ Each number was measured once with this program and is held against something in
 integrator, an exact sum or a law.
 """
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

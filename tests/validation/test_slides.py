@@ -1,7 +1,4 @@
-"""Claim: a slide is the motion of the model: its trace is that of an integrator written independently, in numpy.
-
-Particles, plate, cantilever and drag as the scene says; only the numbers that the program chose (timestep, cutoff,
-automatic drag and mass) are taken over. `validation hard` has many more.
+"""Claim: flat chains slide as Prandtl and Tomlinson say, also under heat; traces of curved ones: `test_slide_legs`.
 
 Flat chains slide as Prandtl and Tomlinson's particle does. Below the threshold of its springs, max(−U″) of the
 corrugation U(x) = min_z Σ V + F_N z that the row has, a particle slides without slips. Commensurate chains are so many
@@ -16,8 +13,6 @@ equation, and of an ensemble for fast drives: a free energy by quadrature and a 
 vectorised integrator of other form (BAOAB) than LAMMPS's.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
@@ -26,18 +21,9 @@ import pytest
 
 from contact1d import Run, Scene, read_scene, run
 from validation.paper import heat
-from validation.paper.fig9.curved import integrated
 from validation.references.incommensurate import threshold
 from validation.references.prandtl_tomlinson import corrugation
 
-TRACE = 1e-4
-"""Of the peak: the table of the law, the rest from which the slide starts, and the order of the sums."""
-MEAN = 3e-4
-"""Of the peak: the samples of the cantilever's force, every fifth step, against every step of the integrator."""
-CLOSED = 5e-4
-"""Work that is neither dissipated nor stored: the drag is sampled at every fifth step."""
-WAY = 3.0
-"""[LU]: as much as a mean needs, and as the integrator does."""
 LAW = (1.0, 0.5, 0.5, 1.0)
 LOAD = 0.2
 MOTION = 2e-3
@@ -51,46 +37,6 @@ SIGMAS = 4.0
 """Standard errors of run and reference: one test in 16 000 would fail by chance, and the seeds are fixed."""
 EXCHANGED = 5e-3
 """Work that is neither given to the baths nor stored, over the energy that the drive and the baths exchange."""
-
-
-def test_a_curved_slide_is_that_of_the_integrator(tmp_path: Path) -> None:
-    """Trace, means over whole periods, the largest friction before the plate slides; work is dissipated or stored.
-
-    The friction is had by the balance of the momentum, and of the integrator as the sum of the lower body's forces.
-    """
-    scene = read_scene({
-        "title": "slide",
-        "bodies": {
-            "particles": 40, "upper_particles": 24, "upper_offset": 0.5, "spacing": 1.0, "mass": 1.0,
-            "bulk_stiffness": 2.0, "bulk_stiffness_tangential": 1.2, "profile": {"kind": "parabola", "radius": 30.0},
-        },
-        "interaction": {"repulsion": {"amplitude": 1.0, "range": 0.5}, "attraction": {"amplitude": 0.5, "range": 1.0}},
-        "neighbours": {"stiffness": 0.3},
-        "horizontal": {},
-        "damping": {"coefficient": 0.4},
-        "plate": {"free": ["x", "z"], "mass": 24.0, "damping": 4.0},
-        "cantilever": {"stiffness": 0.4, "velocity": 0.02},
-        "accuracy": {"tolerance": 1e-3},
-        "experiment": {"kind": "slide", "normal_force": 1.0, "distance": WAY},
-    })  # fmt: skip
-    slid, expected = run(scene, tmp_path / "run", figures=False), integrated(scene).trace
-    found, results = slid.friction, slid.results
-    peak = float(np.abs(expected.friction).max())
-    assert found["time"] == pytest.approx(expected.time, rel=1e-12)
-    assert found["friction"] == pytest.approx(expected.friction, abs=TRACE * peak)
-    assert found["cantilever_force"] == pytest.approx(expected.cantilever_force, abs=TRACE * peak)
-    assert found["plate_x"] == pytest.approx(expected.place, abs=TRACE)
-    assert found["drive"][-1] == pytest.approx(WAY, abs=1e-12)
-    end, period = expected.time[-1], 1.0 / 0.02
-    starts = [first * period for first in (1, 2)]  # where the run-in ends is the program's choice
-    means = [(expected.impulse[-1] - np.interp(t, expected.time, expected.impulse)) / (end - t) for t in starts]
-    assert min(abs(results.mean_friction.value - mean) for mean in means) <= MEAN * peak
-    largest, before = results.static_friction, expected.friction[expected.place < 1.0].max()
-    assert largest.value == pytest.approx(before, abs=largest.uncertainty + TRACE)
-    work, lost = results.cantilever_work.value, results.dissipated_energy.value
-    assert work == pytest.approx(lost + results.stored_energy.value, abs=CLOSED * work)
-    assert found["cantilever_work"][-1] == work > 0.0
-    assert lost > 0.0
 
 
 def slid(folder: Path, velocity: float, stiffness: float, cantilever: float, distance: float, **tables: Any) -> Run:

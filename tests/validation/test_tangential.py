@@ -10,8 +10,6 @@ as nearly as the particles fill the contact: the sum's kinks at ±c and ±a leav
 rate is 2.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from typing import Any

@@ -5,8 +5,6 @@ Limits with their rates; the reference's own solution of the same contact. The m
 Dugdale at the same Tabor number, and Hertz.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

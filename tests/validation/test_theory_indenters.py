@@ -4,8 +4,6 @@ Second source: `validation.references.mdr`, quadratures of the profile's slope w
 Limits: n = 2 and a << R are Hertz.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -10,8 +10,6 @@ Of a path and a pull-off nine pairs too far apart to feel each other: the free e
 of a pair, by quadrature, ⟨F⟩(d) = A′(d), and its density is followed in time as the load grows.
 """
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

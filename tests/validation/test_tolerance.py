@@ -5,8 +5,6 @@ asked, of all main results and whatever the run itself says about them: errors w
 within the stated uncertainty in at least 95 %.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from random import Random

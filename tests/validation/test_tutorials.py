@@ -3,8 +3,6 @@
 What limits the tolerances: the uncertainty that each run states; exponents also by the rounding of the page.
 """
 
-from __future__ import annotations
-
 import math
 import os
 import re

@@ -1,7 +1,5 @@
 """Numbers with ±: what they change of each result is that of the closed forms."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from pathlib import Path

@@ -5,8 +5,6 @@ sphere by quadrature of its slope, Maugis and Dugdale's equations, Hertz, p(0) =
 R (15 M v²/(16 E* √R))^{2/5}.
 """
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Callable, Mapping

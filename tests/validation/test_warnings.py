@@ -1,7 +1,5 @@
 """A warning comes where its own limit is passed, and what it advises is enough and no more than that."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from typing import Any
