@@ -104,8 +104,8 @@ def drawn(rng: Random, of: RandomClass, name: str) -> Case:
     if experiment == "tangential":
         scene["bodies"]["bulk_stiffness_tangential"] = spacing * float(rng.uniform(0.67, 1.0))
     units = random_units(rng)
-    if digits:  # in units that are no power of ten the table would have all digits, and no run could know of the rounding
-        units = replace(units, texts=False)
+    if digits:  # in other units a table would have all digits, and no run could know of the rounding
+        units = replace(units, texts=False, automatic=False)
     if units.automatic and (in_time or experiment == "tangential"):
         units = replace(units, texts=True)
     return Case(name, kind, f"{shape}, {kind}", scene, expected(solid, scene), units)
