@@ -194,7 +194,7 @@ class ModelBranch:
         about = np.clip(peak + step * np.arange(-3.0, 4.0), end, zero)
         positions = np.unique(np.append(positions, about))[::-1]
         positions = positions[positions < zero]
-        last = int(np.count_nonzero(positions > peak - 0.5 * step)) if peak < zero else 0
+        last = int(np.count_nonzero(positions >= peak - 0.5 * step)) if peak < zero else 0
         if (near := positions[max(last - nearest, 0) : last]).size:
             tensions = -self.model.held(near)  # a chain may lose a part at the limit point, the maximum of its law
             loses = tensions[-1] < (1.0 - self.settings.tolerance) * tensions.max()
@@ -208,15 +208,18 @@ class ModelBranch:
 
         Where the law knows the former, it is that, within `end` [LU] and the first of the falling `positions` [LU].
         Else it is the position of the largest tension, and where the curve is not smooth the best of `fine` ones
-        between its neighbours, `zooms` times. A smooth curve is not refined, since forces of the model are linear
-        between the points of a grid, whose corners would move the maximum.
+        between its neighbours, `zooms` times. A smooth curve is not refined and the distance is 0, since forces of the
+        model are linear between the points of a grid, whose corners would move the maximum.
         """
         zero, top = float(positions[0]), int(np.argmin(self.model.held(positions)))
         low, high = float(positions[min(top + 1, positions.size - 1)]), float(positions[max(top - 1, 0)])
-        peak, step, known = float(positions[top]), (high - low) / 64.0, self.model.critical_displacement
+        peak, known = float(positions[top]), self.model.critical_displacement
         if known is not None:
-            return min(max(known, end), zero), step
-        for _ in range(0 if self.settings.is_smooth else zooms):
+            return min(max(known, end), zero), (high - low) / 64.0
+        if self.settings.is_smooth:
+            return peak, 0.0
+        step = (high - low) / 16.0
+        for _ in range(zooms):
             closer, width = np.linspace(high, low, fine, retstep=True)
             peak = float(closer[int(np.argmin(self.model.held(closer)))])
             low, high = max(peak - abs(width), end), min(peak + abs(width), zero)
