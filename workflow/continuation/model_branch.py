@@ -208,17 +208,16 @@ class ModelBranch:
 
         Where the law knows the former, it is that, within `end` [LU] and the first of the falling `positions` [LU].
         Else it is the position of the largest tension, and where the curve is not smooth the best of `fine` ones
-        between its neighbours, `zooms` times. A smooth curve is not refined and the distance is 0, since forces of the
-        model are linear between the points of a grid, whose corners would move the maximum.
+        between its neighbours, `zooms` times. A smooth curve is not refined. That of an interaction has the distance 0:
+        forces of the model are linear between the points of a grid, whose corners would move the maximum.
         """
         zero, top = float(positions[0]), int(np.argmin(self.model.held(positions)))
         low, high = float(positions[min(top + 1, positions.size - 1)]), float(positions[max(top - 1, 0)])
-        peak, known = float(positions[top]), self.model.critical_displacement
+        peak, step, known = float(positions[top]), (high - low) / 64.0, self.model.critical_displacement
         if known is not None:
-            return min(max(known, end), zero), (high - low) / 64.0
+            return min(max(known, end), zero), step
         if self.settings.is_smooth:
-            return peak, 0.0
-        step = (high - low) / 16.0
+            return peak, 0.0 if self.settings.forces.range else step
         for _ in range(zooms):
             closer, width = np.linspace(high, low, fine, retstep=True)
             peak = float(closer[int(np.argmin(self.model.held(closer)))])
