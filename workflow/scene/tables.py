@@ -205,7 +205,7 @@ class Bodies(Table):
     """shape of the upper body"""
     reduction: Reduction = cast("Reduction", None)
     """reduction of the contact to one dimension: "geike_popov" (profile as given) or "mdr" (transformed profile);
-    absent: "mdr" with a material, on a rigid plane and for every profile but a parabola, else "geike_popov"
+    absent: "mdr" with a material, or a rigid plane, or a profile other than a parabola, else "geike_popov"
     """
     bulk_stiffness: Auto[Stiffness] = "auto"
     """normal stiffness of each particle to its bulk, or "auto": from the material"""
