@@ -66,7 +66,7 @@ class Slip:
 def block_means(time: Array, integral: Array, period: float, rate: Array | None = None) -> Array:
     """Return the means over whole periods, the last of which ends with the series; shape (periods,), in order.
 
-    It is empty for a series shorter than a period; what is left before the first whole period is not used. The integral
+    It is empty for a series shorter than a period; the part before the first whole period is not used. The integral
     at the end of a period, between two times, is that of Hermite's cubic where the `rate` is known: along a straight
     line the mean of a periodic friction would change from period to period, as they end elsewhere.
 

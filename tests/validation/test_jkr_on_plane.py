@@ -59,7 +59,7 @@ def jkr_force(a: Array) -> Array:
 
 
 def jkr_at(displacements: Array) -> tuple[Array, Array]:
-    """F and a of JKR's stable branch; 0 where fixed grips have let go."""
+    """F and a of JKR's stable branch; 0 where fixed grips have lost the contact."""
     a = np.linspace(JKR.fixed_grips_radius(), 2.0 * A_0, 400_000)
     d = jkr_displacement(a)
     held = displacements > d[0]
@@ -96,7 +96,7 @@ def test_curve_is_jkrs_from_three_times_the_pull_off_force_to_fixed_grips(run_ta
 
 
 def test_a_contact_that_is_not_let_go_of_comes_back_the_same_way(run_tables: RunTables) -> None:
-    """Before fixed grips let go, down again is the way up; after, not before the next touch."""
+    """Before fixed grips lose the contact, loading again is the unloading path; after, not before the next touch."""
     places = [0.2, -0.1, -0.2, -0.1, 0.2, -0.25, -0.1, 0.0, 0.2]
     force = run_tables(tables({"kind": "path", "displacements": places})).curve.force
     assert force[3] == force[1]

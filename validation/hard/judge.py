@@ -282,7 +282,7 @@ class Judge:
 
 
 def unsaid(run: Run, name: str) -> bool:
-    """Whether a number is missing that neither the documentation nor a warning lets go."""
+    """Whether a number is missing whose absence neither the documentation nor a warning states."""
     names = name, *FOLLOWS.get(name, ())
     words = [one.replace("_", "[_ ]") for one in names]
     told = any(re.search(rf"\b{one}\b", run.warnings.get(gone, "")) for gone in GONE for one in words)

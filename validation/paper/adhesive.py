@@ -173,7 +173,7 @@ def _by_range(case: Case, runs: Runs) -> float:
 
 
 def _zero(d: Floats, force: Floats) -> float:
-    """d of the first F = 0 on the way apart."""
+    """d of the first F = 0 in unloading."""
     after = int(np.argmax(force < 0.0))
     return float(np.interp(0.0, force[[after, after - 1]], d[[after, after - 1]]))
 

@@ -89,7 +89,7 @@ def largest() -> tuple[float, float]:
 
 @cache
 def barrier() -> float:
-    """d [LU] at which the pairs have let go."""
+    """d [LU] at which the pairs have detached."""
     d, energy = free_energy(COLD)
     tension = -np.gradient(energy, d)
     top = int(tension.argmax())
@@ -124,9 +124,9 @@ def judge(bench: Bench) -> Findings:
     rows = [*means, *spreads, together(row, "the means at all rates", means, MOST_RMS), width]
     finding = (
         "Over three decades of the loading rate mean and spread of the detachment force are those of Smoluchowski's "
-        f"equation. A slow pull lets go below the {number(largest()[0], 3)} FU that are the most that the pairs hold "
-        f"at this temperature; a fast one drags on. Garg's closed form, for slow pulls and high barriers, is off by "
-        f"{number(100.0 * worst, 2)} % up to {number(max(slow))} FU/TU and has no value beyond."
+        f"equation. A slow pull-off detaches below the {number(largest()[0], 3)} FU that are the most that the pairs "
+        f"hold at this temperature; a fast one drags on. Garg's closed form, for slow pulls and high barriers, is off "
+        f"by {number(100.0 * worst, 2)} % up to {number(max(slow))} FU/TU and has no value beyond."
     )
     return Findings(rows, text=finding)
 
@@ -150,7 +150,7 @@ STUDY = Study(
     "detachment",
     "Detachment force under thermal fluctuations over the loading rate",
     "The paper's model has stochastic forces on the particles (Section 3); its adhesion force is found without them. "
-    "Under heat a contact lets go at a force that scatters, and that is the larger the faster it is pulled.",
+    "Under heat a contact detaches at a force that scatters, and that is the larger the faster it is pulled.",
     judge,
     scenes,
 )

@@ -45,7 +45,7 @@ NARROW = "the claim also covers F_A, read between rows"
 # N has two meanings: a longer chain of the same spacing, and a finer spacing of the same length. "The same physics" of
 # the latter is the same stiffness and line tension per length, and a law with the same F_A and a₀ (`estimated`).
 DEEPEST, STEPS = 0.46, 56
-"""Largest displacement [LU] of a curve, F/F_A some 2 in every scene, and its rows on the way back."""
+"""Largest displacement [LU] of a curve, F/F_A some 2 in every scene, and its rows in unloading."""
 SAME = 200
 """N of the paper's chain; its curve is also that of R = 1000."""
 LENGTHENED = {n: f"curve_lengthened_N{n}" for n in (SAME, 400, 800, 1600)}
@@ -127,7 +127,7 @@ def local_counted(paper: Scene, count: int) -> Scene:
 
 
 def branch(run: Run) -> tuple[Array, Array, Array, Array]:
-    """Displacement, force, contact radius and its uncertainty on the way back, where the bodies touch."""
+    """Displacement, force, contact radius and its uncertainty in unloading, where the bodies touch."""
     curve = run.curve
     chosen = (curve.branch == "unloading") & np.isfinite(curve.contact_radius) & (curve.contact_radius > 0.0)
     columns = (curve.displacement, curve.force, curve.contact_radius, curve.contact_radius_uncertainty)

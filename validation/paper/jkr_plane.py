@@ -73,7 +73,7 @@ def judge(bench: Bench) -> Findings:
     panel = Panel("displacement over $a_0^2/R$", "force over $F_A$", curves, [law], view=(-1.15, 1.6))
     figures = figure("Force over displacement on a rigid plane, beside JKR", panel)
     finding = (
-        "On a rigid plane a spring that lets go at √(2π|x|W/E*) makes the chain JKR's contact, with nothing fitted, "
+        "On a rigid plane a spring that detaches at √(2π|x|W/E*) makes the chain JKR's contact, with nothing fitted, "
         "and the curve comes nearer with the square of the spacing."
     )
     return Findings(rows, figures, text=finding)
@@ -112,7 +112,7 @@ def _curve_checks(row: Rows) -> list[Row]:
 
 
 def _off(run: Run) -> float:
-    """rms of F [F_A] over the way back, beside JKR's stable branch under fixed grips at the same displacements."""
+    """rms of F [F_A] over unloading, beside JKR's stable branch under fixed grips at the same displacements."""
     a = np.linspace(THEORY.fixed_grips_radius(), 2.0 * THEORY.zero_load_radius(), FINE)
     back = run.curve.branch == "unloading"
     wanted = np.interp(run.curve.displacement[back], THEORY.displacement(a), THEORY.force(a))

@@ -114,7 +114,7 @@ def curve_scene(scene: Scene, deepest: float, steps: int) -> Scene:
 
 
 def separation(scene: Scene) -> float:
-    """Displacement [LU] of some two ranges, at which the contact has let go."""
+    """Displacement [LU] of some two ranges, at which the contact has detached."""
     return law_of(scene)[3]
 
 

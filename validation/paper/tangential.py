@@ -26,11 +26,11 @@ from validation.study import Bench, Findings, Rows, Scenes, Study
 RADIUS, DEPTH, SPACING, FRICTION = 1000.0, 1.0, 0.5, 0.3
 """R, d and h in LU, μ."""
 TURN = 0.8
-"""Where the way turns, over u*."""
+"""Where the path turns, over u*."""
 OUT, LOOP = np.linspace(0.0, TURN, 17), np.concatenate([np.linspace(TURN, -TURN, 33), np.linspace(-TURN, TURN, 33)[1:]])
-"""The way over u*: out, and once around."""
+"""The path over u*: initial loading, and one cycle."""
 HALF = 10
-"""Row of the way out at u = u*/2."""
+"""Row of the initial path at u = u*/2."""
 EDGE, STUCK, ORDER_SPACINGS, SPARE = 32.0, 0.5, (8.0, 4.0, 2.0, 1.0), 4
 """Of the runs that measure the order: a [LU] and c/a, both whole numbers of each spacing [LU]; particles beyond."""
 FIRST, RAISED = 0.6, 0.6
@@ -99,14 +99,14 @@ def stiffness_ratio(moduli: tuple[float, float], poisson_ratios: tuple[float, fl
     return sum((1.0 - nu**2) / E for E, nu in pairs) / sum((2.0 - nu) * (1.0 + nu) / (2.0 * E) for E, nu in pairs)
 
 
-def way_out(u: float) -> float:
+def initial_path(u: float) -> float:
     """F_x/μN at u/u* ≤ 1."""
     return float(mindlin_force(u, 1.0, 1.0, 1.0))
 
 
 def loop_force(u: float) -> float:
-    """F_x/μN on the way back from TURN, at u/u*: the way out at twice its size (Masing)."""
-    return way_out(TURN) - 2.0 * way_out(0.5 * (TURN - u))
+    """F_x/μN on the reverse path from TURN, at u/u*: the initial path at twice its size (Masing)."""
+    return initial_path(TURN) - 2.0 * initial_path(0.5 * (TURN - u))
 
 
 def _equal(reduction: Reduction, nu: float) -> Case:
@@ -170,19 +170,19 @@ def _loop_checks(row: Rows) -> list[Row]:
         force, energy = run.friction["tangential_force"], run.friction["dissipated_energy"]
         lattice, radius = _fineness(case), run.friction["stick_radius"][HALF] / run.curve.contact_radius[HALF]
         loop = mindlin_loop_area(TURN, 1.0, 1.0, 1.0) * case.sliding() * unit
-        way = 4.0 * TURN * case.sliding() * unit
+        distance = 4.0 * TURN * case.sliding() * unit
         each.append((
-            (float(force[HALF]) / unit, way_out(half), 0.5 * lattice),
+            (float(force[HALF]) / unit, initial_path(half), 0.5 * lattice),
             (float(force[back]) / unit, loop_force(0.0), 1.5 * lattice),
             (float(radius), math.sqrt(1.0 - half), ROUND_OFF),
-            (float(energy[-1] - energy[len(OUT) - 1]) / loop, 1.0, 1.5 * lattice * way / loop),
+            (float(energy[-1] - energy[len(OUT) - 1]) / loop, 1.0, 1.5 * lattice * distance / loop),
         ))  # fmt: skip
     pairs = f"worst of {len(CASES)} pairs of bodies"
     of = f"{pairs} for its lattice"
     names = (
         (f"F_x over μN at u*/2, {of}", "Cattaneo and Mindlin, N of Hertz in SI", LATTICE, BY_CHANCE),
-        (f"F_x over μN on the way back from {TURN:g} u*, at u = 0, {of}",
-         "Mindlin and Deresiewicz: the way back is the way out at twice its size", LATTICE, BY_CHANCE),
+        (f"F_x over μN on the reverse path from {TURN:g} u*, at u = 0, {of}",
+         "Mindlin and Deresiewicz: the reverse path is the initial path at twice its size", LATTICE, BY_CHANCE),
         (f"c/a at u*/2, {pairs}", "Cattaneo and Mindlin", "round-off", "a parabola is met to round-off"),
         (f"energy of a loop between ±{TURN:g} u* over its area, {of}", "Mindlin and Deresiewicz", LATTICE, BY_CHANCE),
     )  # fmt: skip
@@ -205,7 +205,7 @@ def _raised_checks(row: Rows) -> list[Row]:
             Reference(raised_load_force(float(places[i]), float(places[0]), loads, slidings, 1.0),
                       "Mindlin and Deresiewicz: what slipped sticks anew"),
             absolute(1.5 * _fineness(BASE) / FIRST, LATTICE), on=["tangential_raised"], wide=BY_CHANCE)
-        for i, words in ((2, "half of the way"), (4, "one and a half times the way"))
+        for i, words in ((2, "half of the distance"), (4, "one and a half times the distance"))
     ]  # fmt: skip
 
 

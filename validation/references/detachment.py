@@ -96,7 +96,7 @@ def detachment_in_time(
         drag: Γ [FU·TU/LU]; one, or one for each place.
         temperature: kT [FU·LU].
         rate: Ḟ [FU/TU]; of a spring k v.
-        barrier: d [LU] beyond which the plate has let go.
+        barrier: d [LU] beyond which the plate has detached.
         spring: k [FU/LU]; 0: a load.
         end: d [LU] at which the spring's far end begins.
 
@@ -167,7 +167,7 @@ def garg(strongest: float, bend: float, drag: float, temperature: float, rate: f
 
         ΔE₀ = (4√2/3) F_A^{3/2}/√|F″|,    X = √(2 |F″| F_A)/(2πΓ) · (2/3) F_A (kT/ΔE₀)/Ḟ
 
-    It holds for 1 ≪ ln X ≪ ΔE₀/kT: slow pulls, so that it is heat that lets go, and near the fold. NaN for X < 1.
+    It holds for 1 ≪ ln X ≪ ΔE₀/kT: slow pulls, so that heat causes the detachment, and near the fold. NaN for X < 1.
 
     Args:
         strongest: F_A [FU], the largest force that holds.

@@ -423,7 +423,7 @@ class Branch(ContactBranch):
         self.searches[self._number] = Search({"sampling": error})
 
     def _revisit(self, displacement: float) -> None:
-        """Go to a displacement [LU] and keep the states on the way, the last of them at it.
+        """Go to a displacement [LU] and keep the states on the path, the last of them at it.
 
         Bodies approach in moves of half the smallest distance of their particles, or of the longest move of the
         settings where that is larger; they separate in one.

@@ -187,8 +187,8 @@ def hold(
 def press(contact: Contact, load: float, scale: float) -> Held:
     """Hold a load ≥ 0 [FU], compression positive, at once or in the equal parts of a search in smaller steps.
 
-    Return the outcome of the last part, with the states of all. Where the contact is lost on the way, it is the outcome
-    of the part under which it was, with `held` False.
+    Return the outcome of the last part, with the states of all. Where the contact is lost before, it is the outcome of
+    the part under which it was, with `held` False.
 
     Raises:
         UntrustedError: the contact neither comes to rest nor is lost, or bodies went through each other.

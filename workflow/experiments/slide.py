@@ -110,7 +110,7 @@ class SlideExperiment(Experiment[Slide]):
 
         Raises:
             PartedError: the bodies separate under it.
-            UntrustedError: the plate does not come to rest along z or along x; on the way bodies pass through each
+            UntrustedError: the plate does not come to rest along z or along x; on the path bodies pass through each
                 other, or the contact reaches the end of a chain.
             EngineError: LAMMPS failed.
         """

@@ -171,7 +171,7 @@ def _failed(context: RunContext, error: EngineError | UntrustedError, started: f
     results.json is written.
 
     Args:
-        context: with deck and folder, and what is left of the run.
+        context: with deck and folder, and the part of the run that was done.
         error: the cause.
         started: reading of time.perf_counter at the beginning [s].
         figures: whether figures of these states are drawn, or their format.

@@ -129,7 +129,7 @@ def failure(
         scene: that ran.
         error: message, phase and step.
         timing: wall and processor times [s] and the number of steps, by name.
-        outcome: what is left of the run; None: nothing.
+        outcome: the part of the run that was done; None: nothing.
     """
     scales = scales_of(scene, {})
     frame = _frame(scene, "failed", outcome, implausible(scene, scales, {}), scales, timing)

@@ -37,7 +37,7 @@ NONE = 5e-3
 """⟨F⟩/F_max that is none."""
 VISCOUS = 0.02
 """Of an exponent, from two velocities."""
-LIMIT = "what is left of the velocity after v^{2/3} and v"
+LIMIT = "terms of the velocity beyond v^{2/3} and v"
 BETWEEN = "the largest friction lies between two rows of the trace, of which a spacing has 50"
 EDGE = {
     "tolerance": "the largest friction between two rows: only the mean is asked for",
@@ -48,7 +48,7 @@ EITHER = {
     "drag": "the plate may be held to the drive's pace: it passes every place, and the largest friction is the row's",
 }
 MIDDLE = "the sweep was laid about the law: it is the middle of the step in which it lies"
-BY_CHANCE = "what is left of the velocity cancels by chance"
+BY_CHANCE = "terms of the velocity beyond these cancel by chance"
 PRANDTL = "Prandtl and Tomlinson with the corrugation there is: the energy that a slip loses"
 
 

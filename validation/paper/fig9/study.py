@@ -19,7 +19,7 @@ CAPTIONS = {
     "load": "Friction over the normal load: adhesion leaves some at no load, and some under a pull",
     "radius": "Friction over the radius under one load: the flatter the body, the more particles take part",
     "velocity": "Friction over v^{2/3}, the power of theory for v → 0 where the particle sticks and slips",
-    "temperature": "Friction over the temperature: heat carries the particle over what is left of a barrier",
+    "temperature": "Friction over the temperature: heat carries the particle over the remaining barrier",
     "stiffness": "From stick-slip to smooth sliding: a stiffer cantilever ends the slips, and slow friction",
     "flats": "Flat on flat: of one spacing it sticks; of others its friction is steady, and ends with stiff springs",
 }

@@ -28,7 +28,7 @@ POINTS = 50
 JKR = jkr(RADIUS, CONTACT_MODULUS, WORK_OF_ADHESION)
 F_A, A_0 = JKR.pull_off_force(), JKR.zero_load_radius()
 DEPTH = A_0**2 / RADIUS
-"""Unit of displacement a_0²/R [nm]: 4.96. JKR has F = 0 at 1/3 of it, F_A at -0.132; fixed grips let go at -0.276."""
+"""Unit of displacement a_0²/R [nm]: 4.96. JKR has F = 0 at 1/3 of it, F_A at -0.132; fixed grips end at -0.276."""
 ADHESIVE_WAY = (DEPTH, -0.25 * DEPTH)
 """First and last displacement of the adhesive curve, an unloading [nm]: from F = 3.3 F_A, past F_A, until just before
 the bodies part under fixed grips, where dF/dd has no bound and an error in F would mean nothing."""
