@@ -102,8 +102,9 @@ def product(factor: float, unit: str, *powers: tuple[Quantity, float]) -> Quanti
     value, spread = factor, 0.0
     for quantity, power in powers:
         part, size = quantity.value**power, abs(quantity.value)
-        change = (size + quantity.uncertainty) ** power - size**power
         if power < 1.0:
             change = abs(power * part / quantity.value) * quantity.uncertainty
+        else:
+            change = (size + quantity.uncertainty) ** power - size**power
         value, spread = value * part, spread * abs(part) + (abs(value) + spread) * change
     return Quantity(value, spread, unit)
