@@ -72,7 +72,7 @@ def test_any_form_of_a_file_has_its_numbers_in_si_with_their_lines(
     assert curve.positions == pytest.approx(size * 1e-9 * rows()[:, 0], rel=1e-12, abs=1e-20)
     assert curve.forces == pytest.approx(size * 1e-9 * rows()[:, 1], rel=1e-12, abs=1e-20)
     assert curve.lines.tolist() == list(range(first, first + 60))
-    assert curve.turn == 30
+    assert curve.of("approach").size == 30
 
 
 def test_signs_segments_and_indentations_are_as_they_are_said_to_be(tmp_path: Path) -> None:
@@ -83,8 +83,8 @@ def test_signs_segments_and_indentations_are_as_they_are_said_to_be(tmp_path: Pa
     assert given.positions == pytest.approx(1e-9 * (rows()[:, 0] + rows()[:, 1] / 0.5), rel=1e-12, abs=1e-20)
     lines = text(rows()).splitlines()
     words = ["segment", *["Approach"] * 27, *["retract"] * 33]
-    assert curve_in(file, "\n".join(map(",".join, zip(lines, words, strict=True)))).turn == 27
-    for word, said in (("pause", "words other than approach"), ("retract", "the approach must come before")):
+    assert curve_in(file, "\n".join(map(",".join, zip(lines, words, strict=True)))).of("approach").size == 27
+    for word, said in (("up", "the word 'up'"), ("retract", "the approach must come before")):
         words[3] = word
         with pytest.raises(DataError, match=said):
             curve_in(file, "\n".join(map(",".join, zip(lines, words, strict=True))))
@@ -105,13 +105,13 @@ def cut(rank: int) -> Array:
         (np.delete(rows(), slice(8, 14), axis=0), ""),
         (np.delete(rows(), slice(8, 16), axis=0), "gap in z after line 9"),
         (rows(70)[:45], ""),
-        (rows(70)[:44], r"one segment only \(35 points approach, 9 retract\)"),
+        (rows(70)[:44], "segment retract has 9 points"),
         (rows() * [-1.0, 1.0], r'reverse = \["z"\]'),
     ],
 )
 def test_what_is_just_a_curve_and_what_is_none(data: Array, words: str, tmp_path: Path) -> None:
     if not words:
-        assert curve_in(tmp_path / "curve.csv", text(data)).turn >= 20
+        assert curve_in(tmp_path / "curve.csv", text(data)).of("approach").size >= 20
         return
     with pytest.raises(DataError, match=words):
         curve_in(tmp_path / "curve.csv", text(data))
@@ -123,7 +123,7 @@ def forces(*jump: float) -> ForceCurve:
     fall = np.concatenate([np.zeros(30), -np.cumsum(jump), np.full(30 - len(jump), -sum(jump))])
     z = np.concatenate([np.arange(60.0), 59.0 - np.arange(60.0)])
     F = 5.0 + np.concatenate([fall, fall[::-1]]) + 0.1 * draw.uniform(-1.0, 1.0, 120)
-    return ForceCurve(z, F, 60, np.arange(120) + 2)
+    return ForceCurve(z, F, np.repeat([0, 2], 60), np.arange(120) + 2)
 
 
 @pytest.mark.parametrize("jump", [(4.0,), (1.0, 2.5, 0.9)])
@@ -138,7 +138,7 @@ def test_a_jump_has_its_steps_and_three_points_beside_it_are_left_out(jump: tupl
     assert retraction.apart.tolist() == list(range(90, 120))
     assert set(range(60)) - set(approach.compared.tolist()) == set(range(27, 32 + many))
     assert curve.baseline == pytest.approx(5.0, abs=0.05)
-    rising = ForceCurve(curve.positions, np.linspace(0.0, 119.0, 120), 60, curve.lines)
+    rising = ForceCurve(curve.positions, np.linspace(0.0, 119.0, 120), curve.kinds, curve.lines)
     assert rising.baseline == pytest.approx(5.5)  # without a jump the first fifth of the approach
 
 

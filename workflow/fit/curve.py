@@ -1,4 +1,4 @@
-"""A measured force curve: positions and forces of an approach and a retraction, and where it jumps."""
+"""A measured force curve: positions and forces of its segments, and where the force jumps."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ JUMP = 6.0
 """Change of the force between neighbouring points over its usual spread that counts as a jump."""
 BESIDE_JUMP = 3
 """Points to each side of a jump that are not compared: there the force is no smooth function of the parameters."""
+APPROACH, HOLD, RETRACT = SEGMENTS = ("approach", "hold", "retract")
+"""The names of segments, in the order of time. A hold is at the largest force or displacement."""
 
 
 @dataclass(frozen=True)
@@ -22,14 +24,14 @@ class Segment:
     """The approach or the retraction of a curve, in the order of time.
 
     Attributes:
+        name: "approach" or "retract".
         points: indices of its points in the curve, (n,).
         jump: positions in `points` of the last point before and the first one after a jump of the force; None: no jump.
-        approaches: whether the bodies approach.
     """
 
+    name: str
     points: Indices
     jump: tuple[int, int] | None
-    approaches: bool
 
     def _sides(self, margin: int = 0) -> tuple[Indices, Indices]:
         """Return the rising indices in the curve of the points (before, after) the jump of the force.
@@ -46,7 +48,7 @@ class Segment:
 
         Points within the jump of the force are left out. Empty without a jump.
         """
-        return self._sides()[self.approaches]
+        return self._sides()[self.name == APPROACH]
 
     @property
     def apart(self) -> Indices:
@@ -54,7 +56,7 @@ class Segment:
 
         Points within the jump of the force are left out. Empty without a jump.
         """
-        return self._sides()[not self.approaches]
+        return self._sides()[self.name == RETRACT]
 
     @property
     def compared(self) -> Indices:
@@ -70,31 +72,41 @@ class Segment:
 class ForceCurve:
     """Positions z [LU], rising towards the sample, and forces F [FU], compression positive, (n,), in the order of time.
 
-    In a fit LU and FU are m and N.
+    In a fit LU and FU are m and N. The points are those of an approach, a hold and a retraction, in this order; each of
+    them may be missing, but not both approach and retraction.
 
     Attributes:
         positions, forces: z and F.
-        turn: number of points of the approach, which come first.
+        kinds: index in `SEGMENTS` of the segment of each point, (n,), not falling.
         lines: line of each point in its file, (n,).
+        times: of each point [s], (n,), rising; None where they are not known.
     """
 
     positions: Array
     forces: Array
-    turn: int
+    kinds: NDArray[np.int_]
     lines: NDArray[np.int_]
+    times: Array | None = None
+
+    def of(self, name: str) -> Indices:
+        """Return the indices of the points of a segment, (m,): of "approach", "hold" or "retract"; maybe empty."""
+        return np.flatnonzero(self.kinds == SEGMENTS.index(name))
+
+    def only(self, name: str) -> ForceCurve:
+        """Return the curve of one segment alone: of "approach" or "retract"."""
+        points = self.of(name)
+        times = None if self.times is None else self.times[points]
+        return ForceCurve(self.positions[points], self.forces[points], self.kinds[points], self.lines[points], times)
 
     @cached_property
-    def segments(self) -> tuple[Segment, Segment]:
-        """The (approach, retraction) of the curve, each with its jump, if it has one; cached.
+    def segments(self) -> tuple[Segment, ...]:
+        """The approach and the retraction of the curve, as far as it has them, each with its jump, if any; cached.
 
         The jump of the approach is a snap-in, at which the force falls; that of the retraction is a snap-out, at which
         it rises.
         """
-        approach, retraction = np.split(np.arange(self.positions.size), [self.turn])
-        return (
-            Segment(approach, self._jump(approach, -1.0), True),
-            Segment(retraction, self._jump(retraction, 1.0), False),
-        )
+        parts = [(name, self.of(name), sign) for name, sign in ((APPROACH, -1.0), (RETRACT, 1.0))]
+        return tuple(Segment(name, points, self._jump(points, sign)) for name, points, sign in parts if points.size)
 
     def _jump(self, points: Indices, sign: float) -> tuple[int, int] | None:
         """Return positions in `points` of the largest jump of the force: (last point before it, first point after it).
@@ -132,9 +144,11 @@ class ForceCurve:
     def baseline(self) -> float:
         """The median force [FU] of the points certainly apart, those before a snap-in or after a snap-out; cached.
 
-        With fewer than ten of these, it is that of the first fifth of the approach, three points at least.
+        With fewer than ten of these, it is that of the first fifth of the approach, or of the last fifth of the
+        retraction where there is no approach; three points at least.
         """
         apart = np.concatenate([segment.apart for segment in self.segments])
         if apart.size < 10:
-            apart = np.arange(max(3, self.turn // 5))
+            points, fifth = self.segments[0].points, max(3, self.segments[0].points.size // 5)
+            apart = points[:fifth] if self.segments[0].name == APPROACH else points[-fifth:]
         return float(np.median(self.forces[apart]))

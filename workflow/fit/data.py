@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.workflow.errors import Contact1dError
-from contact1d.workflow.fit.curve import ForceCurve
+from contact1d.workflow.fit.curve import APPROACH, HOLD, RETRACT, SEGMENTS, ForceCurve
 from contact1d.workflow.fit.plan import FitPlan
 from contact1d.workflow.scene.profile_file import NAME, require_names, rows_in, units_of
 from contact1d.workflow.scene.si_text import UnitTextError, si_value
@@ -27,6 +27,7 @@ COLUMNS = {
     "d": ("d", "indentation", "displacement", "depth", "eindringtiefe", "weg", "déplacement"),
     "F": ("f", "force", "load", "kraft", "last", "deflection_force"),
     "segment": ("segment", "richtung", "direction"),
+    "t": ("t", "time", "zeit", "temps"),
     "curve": ("curve", "index", "kurve", "courbe"),
     "x": ("x",),
     "y": ("y",),
@@ -35,12 +36,16 @@ COLUMNS = {
 COLUMN_OF = {heading: name for name, headings in COLUMNS.items() for heading in headings}
 TEXT_COLUMNS, MAP_COLUMNS = ("segment", "curve"), ("x", "y")
 """Columns of text, and those of the position of a curve in a map."""
-UNITS = {"z": "m", "d": "m", "F": "N"}
+UNITS = {"z": "m", "d": "m", "F": "N", "t": "s"}
 PATTERN = "*.csv"
 """Names of the files of curves in a folder."""
 FORM = "name the columns with their units, z [nm] (or d [nm]) and F [nN]"
-APPROACH = ("approach", "trace", "extend", "loading", "annähern", "anfahren", "0")
-RETRACT = ("retract", "retrace", "withdraw", "unloading", "rückzug", "1")
+WORDS = {
+    APPROACH: ("approach", "trace", "extend", "loading", "annähern", "anfahren", "0"),
+    HOLD: ("hold", "pause", "dwell"),
+    RETRACT: ("retract", "retrace", "withdraw", "unloading", "rückzug", "1"),
+}
+"""Words in the column `segment` for each segment of a curve, in lower case."""
 LARGEST = 400_000_000
 """Largest size of a file [bytes]: a map of 1000 curves has a tenth of it."""
 FEWEST_POINTS, MOST_POINTS = 40, 20_000
@@ -252,7 +257,7 @@ def _curve(table: DataFrame, along: str, units: dict[str, str], plan: FitPlan) -
     """Return the curve in a table of columns, in SI: positions z of the piezo [m] and forces [N], compression positive.
 
     Columns named by `reverse` in the plan change their sign. An indentation d becomes z = d + F/k_c, or z = d for a
-    rigid instrument.
+    rigid instrument. Of a curve of which the plan fits one segment, that segment alone.
 
     Args:
         table: the columns of one curve, in `units`, indexed by the line in the file.
@@ -265,8 +270,8 @@ def _curve(table: DataFrame, along: str, units: dict[str, str], plan: FitPlan) -
             sign, no contact, a saturated force, or a gap in the positions.
     """
     reverse = plan.fit.reverse or ()
-    columns = []
-    for name in (along, "F"):
+    columns = {}
+    for name in (along, "F", *(["t"] if units.get("t") else [])):
         try:
             factor = float(si_value(f"1 {units[name]}", UNITS[name])[0])
         except UnitTextError as error:
@@ -274,54 +279,70 @@ def _curve(table: DataFrame, along: str, units: dict[str, str], plan: FitPlan) -
             fault = "is in volts: multiply it by sensitivity and stiffness of the cantilever" if volts else f"{error}"
             raise DataError(f"column {name} {fault}") from None
         sign = -1.0 if name in reverse else 1.0
-        columns.append(sign * factor * np.asarray(table[name], dtype=float))
-    z, F = columns
+        columns[name] = sign * factor * np.asarray(table[name], dtype=float)
+    z, F = columns[along], columns["F"]
     if z.size < FEWEST_POINTS:
         raise DataError(
             f"has {z.size} points, and at least {FEWEST_POINTS} are needed: approach and retraction at full rate"
         )
     if z.size > MOST_POINTS:
         raise DataError(f"has {z.size} points, and at most {MOST_POINTS} are compared: average neighbouring points")
-    turn = _turn(z, table.get("segment"))
+    kinds = _kinds(z, F, table.get("segment"))
     if math.isfinite(plan.stiffness) and along == "d":
         z = z + F / plan.stiffness
-    curve = ForceCurve(z, F, turn, np.asarray(table.index, dtype=int))
+    curve = ForceCurve(z, F, kinds, np.asarray(table.index, dtype=int), columns.get("t"))
+    if plan.fit.segment in (APPROACH, RETRACT):
+        curve = curve.only(plan.fit.segment)
+    _require_segments(curve, plan)
     _require_signs(curve)
     _require_whole(curve, along)
     return curve
 
 
-def _turn(z: Array, segment: Series | None) -> int:
-    """Return the number of points of the approach, which come first: by the column `segment`, else up to the largest z.
+def _kinds(z: Array, F: Array, segment: Series | None) -> NDArray[np.int_]:
+    """Return the index in `SEGMENTS` of each point of a curve, (n,): by the column `segment`, else by its largest z.
 
-    The point of the largest z counts as approach.
+    Without that column the points up to the largest z are the approach, the others the retraction. A curve whose
+    largest z is within five points of its first or last one has one segment alone.
 
     Args:
-        z: positions, rising towards the sample, (n,).
-        segment: words of the points in lower case, such as "approach" or "0" and "retract" or "1"; None: no such
-            column.
+        z, F: positions, rising towards the sample, and forces, (n,).
+        segment: words of the points in lower case, such as "approach", "hold" and "retract"; None: no such column.
 
     Raises:
-        DataError: a segment has fewer than ten points, the words are unknown, the retraction comes first, or z is
-            reversed.
+        DataError: the words are unknown, segments are in another order, or z is reversed.
     """
-    least, most = FEWEST_POINTS // 4, z.size - FEWEST_POINTS // 4
     if segment is not None:
-        approaches = np.isin(segment, APPROACH)
-        if not (approaches | np.isin(segment, RETRACT)).all():
-            raise DataError("column segment has words other than approach and retract")
-        turn = int(approaches.sum())
-        if not approaches[:turn].all():
+        index = {word: SEGMENTS.index(name) for name, words in WORDS.items() for word in words}
+        kinds = segment.map(index)
+        if kinds.isna().any():
+            raise DataError(f"column segment has the word {segment[kinds.isna()].iloc[0]!r}; allowed are {[*index]}")
+        found = np.asarray(kinds, dtype=int)
+        if (np.diff(found) < 0).any():
             raise DataError("column segment: the approach must come before the retraction")
-    else:
-        turn, low = (int(extreme(z)) + 1 for extreme in (np.argmax, np.argmin))
-        if not least <= turn <= most and least <= low <= most:
-            raise DataError('z is reversed, since the approach lowers it: write reverse = ["z"]')
-    if not least <= turn <= most:
-        raise DataError(
-            f"has one segment only ({turn} points approach, {z.size - turn} retract): give both, the approach first"
-        )
-    return turn
+        return found
+    turn, low = (int(extreme(z)) + 1 for extreme in (np.argmax, np.argmin))
+    if FEWEST_POINTS // 4 <= low <= z.size - FEWEST_POINTS // 4:
+        raise DataError('z is reversed, since the approach lowers it: write reverse = ["z"]')
+    least = 5
+    turn = z.size if turn > z.size - least else 0 if turn <= least else turn
+    return np.where(np.arange(z.size) < turn, 0, 2)
+
+
+def _require_segments(curve: ForceCurve, plan: FitPlan) -> None:
+    """Check that a curve has the segments that a plan fits, with ten points each; nothing is returned.
+
+    Raises:
+        DataError: a segment is missing, or shorter.
+    """
+    counts = {name: curve.of(name).size for name in (APPROACH, RETRACT)}
+    wanted = [*counts] if plan.fit.segment == "both" else [plan.fit.segment]
+    for name, count in counts.items():
+        if count < FEWEST_POINTS // 4 and (count or name in wanted):
+            raise DataError(
+                f"segment {name} has {count} points, and at least {FEWEST_POINTS // 4} are needed; of a curve of one "
+                'segment write segment = "approach" or "retract"'
+            )
 
 
 def _require_signs(curve: ForceCurve) -> None:
@@ -332,11 +353,12 @@ def _require_signs(curve: ForceCurve) -> None:
             noise.
     """
     z, F = curve.positions, curve.forces
-    tenth = curve.turn // 10 + 1
-    approach = F[np.argsort(z[: curve.turn])]
-    if approach[-tenth:].mean() - approach[:tenth].mean() < -0.2 * float(np.ptp(F)):
+    first = curve.segments[0].points
+    tenth = first.size // 10 + 1
+    inwards = F[first][np.argsort(z[first])]
+    if inwards[-tenth:].mean() - inwards[:tenth].mean() < -0.2 * float(np.ptp(F)):
         raise DataError('the force falls towards the sample: tension is positive here; write reverse = ["F"]')
-    if z[curve.turn - 1] < z[0]:
+    if (z[first[-1]] > z[first[0]]) != (curve.segments[0].name == APPROACH):
         raise DataError('z falls on the approach: it must grow towards the sample; write reverse = ["z"]')
     means = [float(block.mean()) for block in np.array_split(F, 20)]
     if np.ptp(means) < 2.0 * float(np.std(np.diff(F))):  # a contact changes the mean by more than the noise
@@ -365,7 +387,7 @@ def _require_whole(curve: ForceCurve, along: str, saturated: int = 6, gap: float
                 f"the force is saturated: {flat} points have its {name} value; lower the trigger force or the gain, or "
                 "leave these lines out"
             )
-    for points in (slice(0, curve.turn), slice(curve.turn, None)):
+    for points in (segment.points for segment in curve.segments):
         steps = np.abs(np.diff(curve.positions[points]))
         widest = int(np.argmax(steps))
         if steps[widest] > max(gap * float(np.median(steps)), 0.1 * curve.depth):

@@ -17,7 +17,7 @@ import numpy as np
 from contact1d.files import AnyPath
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import Contact1dError, FolderError
-from contact1d.workflow.fit.curve import ForceCurve
+from contact1d.workflow.fit.curve import RETRACT, ForceCurve
 from contact1d.workflow.fit.data import DataError, curves_of, files_of
 from contact1d.workflow.fit.forward import LAWS
 from contact1d.workflow.fit.plan import STIFFNESS, AnyFit, FitPlan, read_fit
@@ -68,11 +68,11 @@ class FitResult:
 
         (NaN, NaN) where the force of the retraction has no jump.
         """
-        segment = self.fit.curve.segments[1]
-        if segment.jump is None:
-            return math.nan, math.nan
-        low, high = sorted(float(self.fit.curve.positions[segment.points[i]]) for i in segment.jump)
-        return low, high
+        for segment in self.fit.curve.segments:
+            if segment.name == RETRACT and segment.jump is not None:
+                low, high = sorted(float(self.fit.curve.positions[segment.points[i]]) for i in segment.jump)
+                return low, high
+        return math.nan, math.nan
 
     @property
     def scene(self) -> Scene:
@@ -175,9 +175,8 @@ def _warn_of_fit(result: FitResult, largest_misfit: float = 3.0) -> None:
     of the right model is below 2 where the noise has a memory of 20 in 1000 points.
     """
     base_fit = result.fit
-    segment, snap = base_fit.curve.segments[1], float(base_fit.jumps_at(base_fit.solution.values)[1])
-    if segment.jump is not None:
-        low, high = result.bracket
+    snap, (low, high) = float(base_fit.jumps_at(base_fit.solution.values)[1]), result.bracket
+    if math.isfinite(low):
         if not 2.0 * low - high <= snap <= 2.0 * high - low:
             result.warnings["snap_out"] = (
                 f"the contact is lost between z = {low:.4g} and {high:.4g} m, and {base_fit.model} loses it at "

@@ -34,8 +34,10 @@ LOAD = {"kind": "load", "force": "1 nN"}
 class Instrument(Table):
     """The instrument that presses the bodies together."""
 
-    stiffness: Annotated[float, POSITIVE, Unit("N/m")]
-    """stiffness k_c of the cantilever, with its ± where that is known"""
+    stiffness: Annotated[float, POSITIVE, Unit("N/m")] | None = None
+    """stiffness k_c of the cantilever, with its ± where that is known; absent: rigid, and the data have d"""
+    baseline: Literal["auto", "flat", "sloped"] = "auto"
+    """whether the force of bodies apart depends on the position; "auto": where the data show it"""
 
 
 class Fit(Table):
@@ -47,6 +49,8 @@ class Fit(Table):
     """a CSV file with columns z or d, and F; several by a folder or a pattern, or a column `curve`: a map"""
     parameters: Listed[str]
     """dotted keys of the base scene's numbers that are to be found; their values there are first guesses"""
+    segment: Literal["approach", "retract", "both", "auto"] = "auto"
+    """the segment that is fitted; "both": the data must have both; "auto": what they have"""
     contact_point: Annotated[float, Unit("m")] | Literal["free"] = "free"
     """position z of the contact point, or "free\""""
     reverse: Listed[Literal["z", "d", "F"]] | None = None
@@ -94,7 +98,13 @@ class FitPlan:
     @property
     def stiffness(self) -> float:
         """The stiffness k_c [N/m] of the instrument; infinite without an instrument, which is then rigid."""
-        return self.fit.instrument.stiffness if self.fit.instrument else float("inf")
+        given = self.fit.instrument.stiffness if self.fit.instrument else None
+        return float("inf") if given is None else given
+
+    @property
+    def baseline(self) -> Literal["auto", "flat", "sloped"]:
+        """Whether the baseline has a slope: "flat", "sloped", or "auto", also without an instrument."""
+        return self.fit.instrument.baseline if self.fit.instrument else "auto"
 
 
 def read_fit(source: AnyFit, **changes: Any) -> FitPlan:

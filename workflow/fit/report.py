@@ -45,7 +45,7 @@ def write(result: FitResult, folder: Path) -> None:
     table = DataFrame(
         {
             "line": fit.curve.lines,
-            "segment": np.where(points < fit.curve.turn, "approach", "retract"),
+            "segment": [curves.SEGMENTS[kind] for kind in fit.curve.kinds],
             "position [m]": fit.curve.positions,
             "force [N]": fit.curve.forces,
             "predicted force [N]": fit.forces,
@@ -188,7 +188,7 @@ def chart(result: FitResult) -> Chart:
     kept = fit.solution.problem.kept
     residual[kept] = (measured - predicted)[kept]
     above, below = list[Series](), [Series(z, 0.0 * z, "", THEORY, "--")]
-    approach, retraction = slice(0, fit.curve.turn), slice(fit.curve.turn, None)
+    approach, retraction = fit.curve.of(curves.APPROACH), fit.curve.of(curves.RETRACT)
     for segment, name, colour in ((approach, "approach", COMPRESSION), (retraction, "retraction", TENSION)):
         above.append(Series(z[segment], measured[segment], name, colour, "."))
         below.append(Series(z[segment], residual[segment], "", colour, "."))

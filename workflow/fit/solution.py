@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.workflow.errors import Contact1dError
-from contact1d.workflow.fit.curve import ForceCurve, Indices
+from contact1d.workflow.fit.curve import APPROACH, ForceCurve, Indices
 from contact1d.workflow.fit.forward import LAWS, RANGE, Branch, ContactModel
 from contact1d.workflow.fit.plan import STIFFNESS, FitPlan
 from contact1d.workflow.fit.search import TWO_SIDED, Solution, Unknown, global_search, interval, solved
@@ -131,8 +131,10 @@ class Fitted:
         slopes = self.solution.problem.derivative(self.jumps_at, self.solution.u)
         variances = np.einsum("ki,ij,kj->k", slopes, self.solution.best.covariance, slopes)
         predicted, total = self.jumps_at(self.solution.values), 0.0
-        for segment, position, variance in zip(self.curve.segments, predicted, variances, strict=True):
+        for segment in self.curve.segments:
             if segment.jump is not None:
+                i = 0 if segment.name == APPROACH else 1
+                position, variance = predicted[i], variances[i]
                 low, high = self.curve.positions[segment.points[list(segment.jump)]]
                 spread = math.sqrt(variance + (high - low) ** 2 / 12.0)
                 off = (0.5 * (low + high) - position) / spread

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.workflow.fit.curve import ForceCurve
+from contact1d.workflow.fit.curve import APPROACH, ForceCurve
 from contact1d.workflow.fit.forward import Body, Branch, ContactModel, cached
 from contact1d.workflow.fit.plan import STIFFNESS
 from contact1d.workflow.fit.search import Problem, Unknown
@@ -60,7 +60,7 @@ class Subject:
             self.held[segment.held] = self.apart[segment.apart] = True
             if segment.jump is None:
                 self.undecided[segment.points] = True
-                self.approaching[segment.points] = segment.approaches
+                self.approaching[segment.points] = segment.name == APPROACH
         self.pitch = float(np.median(np.abs(np.diff(self.curve.positions)))) or 1e-300
         self._branches = cached(self._branch)
 
