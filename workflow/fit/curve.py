@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -27,11 +28,13 @@ class Segment:
         name: "approach" or "retract".
         points: indices of its points in the curve, (n,).
         jump: positions in `points` of the last point before and the first one after a jump of the force; None: no jump.
+        ends_held: whether it is a retraction without a jump whose last point is certainly in contact.
     """
 
     name: str
     points: Indices
     jump: tuple[int, int] | None
+    ends_held: bool = False
 
     def _sides(self, margin: int = 0) -> tuple[Indices, Indices]:
         """Return the rising indices in the curve of the points (before, after) the jump of the force.
@@ -39,7 +42,8 @@ class Segment:
         Points within the jump are in neither; `margin` further points at the jump are left out on each side. Both are
         empty without a jump.
         """
-        before, after = self.jump or (-1, self.points.size)
+        last = self.points.size
+        before, after = self.jump or ((last - 1, last) if self.ends_held else (-1, last))
         return self.points[: max(0, before + 1 - margin)], self.points[after + margin :]
 
     @property
@@ -63,9 +67,10 @@ class Segment:
         """Indices in the curve, rising, of the points that a model is compared with.
 
         All points without a jump of the force; else without those within the jump and the three next to it on each
-        side.
+        side. A retraction that ends in contact lacks its last three.
         """
-        return self.points if self.jump is None else np.concatenate(self._sides(BESIDE_JUMP))
+        decided = self.jump is not None or self.ends_held
+        return np.concatenate(self._sides(BESIDE_JUMP)) if decided else self.points
 
 
 @dataclass(frozen=True)
@@ -80,6 +85,7 @@ class ForceCurve:
         kinds: index in `SEGMENTS` of the segment of each point, (n,), not falling.
         lines: line of each point in its file, (n,).
         times: of each point [s], (n,), rising; None where they are not known.
+        level: force [FU] of bodies apart, known from another segment; None: by this curve.
     """
 
     positions: Array
@@ -87,6 +93,7 @@ class ForceCurve:
     kinds: NDArray[np.int_]
     lines: NDArray[np.int_]
     times: Array | None = None
+    level: float | None = None
 
     def of(self, name: str) -> Indices:
         """Return the indices of the points of a segment, (m,): of "approach", "hold" or "retract"; maybe empty."""
@@ -96,7 +103,8 @@ class ForceCurve:
         """Return the curve of one segment alone: of "approach" or "retract"."""
         points = self.of(name)
         times = None if self.times is None else self.times[points]
-        return ForceCurve(self.positions[points], self.forces[points], self.kinds[points], self.lines[points], times)
+        columns = (self.positions[points], self.forces[points], self.kinds[points], self.lines[points])
+        return ForceCurve(*columns, times, self.baseline)
 
     @cached_property
     def segments(self) -> tuple[Segment, ...]:
@@ -105,14 +113,36 @@ class ForceCurve:
         The jump of the approach is a snap-in, at which the force falls; that of the retraction is a snap-out, at which
         it rises.
         """
-        parts = [(name, self.of(name), sign) for name, sign in ((APPROACH, -1.0), (RETRACT, 1.0))]
-        return tuple(Segment(name, points, self._jump(points, sign)) for name, points, sign in parts if points.size)
+        found = []
+        for name, sign in ((APPROACH, -1.0), (RETRACT, 1.0)):
+            if (points := self.of(name)).size:
+                jump = self._jump(points, sign)
+                found.append(Segment(name, points, jump, jump is None and name == RETRACT and self._is_held(points)))
+        return tuple(found)
+
+    def _is_held(self, points: Indices) -> bool:
+        """Return whether the last point of a retraction is certainly in contact; `points`: its indices in the curve.
+
+        The mean of its last three forces is then farther from the level of bodies apart than ten standard deviations of
+        the noise, and than a third of the largest tension. Without a known level, and without an approach, they change
+        by as much within the last tenth.
+        """
+        forces = self.forces[points]
+        noise = 1.4826 * float(np.median(np.abs(np.diff(forces)))) / math.sqrt(2.0)
+        end = float(forces[-3:].mean())
+        approach = self.of(APPROACH)
+        level = self.level
+        if level is None:
+            apart = approach[: max(3, approach.size // 5)]
+            level = float(np.median(self.forces[apart] if apart.size else forces[-max(6, points.size // 10) : -3]))
+        return abs(end - level) > max(10.0 * noise, (level - float(forces.min())) / 3.0)
 
     def _jump(self, points: Indices, sign: float) -> tuple[int, int] | None:
         """Return positions in `points` of the largest jump of the force: (last point before it, first point after it).
 
-        None without a jump. A jump is a change between neighbouring points that, less the running median of 15 changes,
-        is more than six times the usual one, 1.4826 times the median magnitude of all such differences. Changes next to
+        None without a jump. A jump is a change between neighbouring points that, with and without the running median of
+        15 changes, is more than six times the usual one, 1.4826 times the median magnitude of all such differences.
+        Changes next to
         it belong to it that are three times the usual one and a fifth of the largest, so that it may take several
         points.
 
@@ -120,11 +150,11 @@ class ForceCurve:
             points: indices in the curve, at least two.
             sign: sign of the change of the force: −1 for a snap-in, 1 for a snap-out.
         """
-        change = sign * np.diff(self.forces[points])
-        change -= median_filter(change, 15, mode="nearest")  # less the usual change, due to the contact stiffness
+        whole = sign * np.diff(self.forces[points])
+        change = whole - median_filter(whole, 15, mode="nearest")  # less the usual change, due to the contact stiffness
         spread = 1.4826 * float(np.median(np.abs(change)))
         peak = int(np.argmax(change))
-        if not change[peak] > JUMP * max(spread, 1e-12 * float(np.ptp(self.forces))):
+        if not min(change[peak], whole[peak]) > JUMP * max(spread, 1e-12 * float(np.ptp(self.forces))):
             return None
         # A jump may take several points: a neighbour belongs to it whose change is half of JUMP and a fifth of the
         # largest one, since close to the fold a contact softens, which is no jump.
@@ -144,10 +174,12 @@ class ForceCurve:
     def baseline(self) -> float:
         """The median force [FU] of the points certainly apart, those before a snap-in or after a snap-out; cached.
 
-        With fewer than ten of these, it is that of the first fifth of the approach, or of the last fifth of the
+        With fewer than ten of these, it is a known level, else that of the first fifth of the approach, or of the last fifth of the
         retraction where there is no approach; three points at least.
         """
         apart = np.concatenate([segment.apart for segment in self.segments])
+        if apart.size < 10 and self.level is not None:
+            return self.level
         if apart.size < 10:
             points, fifth = self.segments[0].points, max(3, self.segments[0].points.size // 5)
             apart = points[:fifth] if self.segments[0].name == APPROACH else points[-fifth:]

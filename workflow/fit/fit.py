@@ -21,11 +21,13 @@ from contact1d.workflow.fit.curve import RETRACT, ForceCurve
 from contact1d.workflow.fit.data import DataError, curves_of, files_of
 from contact1d.workflow.fit.forward import LAWS
 from contact1d.workflow.fit.plan import STIFFNESS, AnyFit, FitPlan, read_fit
-from contact1d.workflow.fit.solution import Fitted, compared, fitted, model_of
-from contact1d.workflow.fit.subject import OFFSET, POINT
+from contact1d.workflow.fit.segments import BAD, CurveFit, fit_curve
+from contact1d.workflow.fit.solution import Fitted, compared, model_of
+from contact1d.workflow.fit.subject import POINT
 from contact1d.workflow.runs.advised import run
 from contact1d.workflow.scene import AnyScene, Scene
 from contact1d.workflow.scene.read import plain_data
+from contact1d.workflow.units import Quantity
 
 
 @dataclass
@@ -34,7 +36,7 @@ class FitResult:
 
     Attributes:
         file: the data.
-        fit: the fit of the contact model of the base scene.
+        segments: the fits of the contact model of the base scene, to both segments together and to each alone.
         alternatives: the fits of other contact models to the same points, by the name of the model.
         difference: largest difference [N] between the forces on LAMMPS and those of the contact model; NaN without the
             run.
@@ -45,13 +47,18 @@ class FitResult:
     """
 
     file: Path
-    fit: Fitted
+    segments: CurveFit
     alternatives: dict[str, Fitted] = field(default_factory=dict)
     difference: float = math.nan
     allowed: float = math.nan
     warnings: dict[str, str] = field(default_factory=dict)
     seconds: float = 0.0
     finished: bool = False
+
+    @property
+    def fit(self) -> Fitted:
+        """The fit of both segments together; where they differ, of the retraction, or without adhesion the approach."""
+        return self.segments.main
 
     @property
     def models(self) -> dict[str, Fitted]:
@@ -68,9 +75,10 @@ class FitResult:
 
         (NaN, NaN) where the force of the retraction has no jump.
         """
-        for segment in self.fit.curve.segments:
+        curve = self.segments.curve
+        for segment in curve.segments:
             if segment.name == RETRACT and segment.jump is not None:
-                low, high = sorted(float(self.fit.curve.positions[segment.points[i]]) for i in segment.jump)
+                low, high = sorted(float(curve.positions[segment.points[i]]) for i in segment.jump)
                 return low, high
         return math.nan, math.nan
 
@@ -147,7 +155,7 @@ def _steps(plan: FitPlan, file: Path, curve: ForceCurve, progress: Progress) -> 
     """
     base_model = model_of(plan)
     progress.phase("fit", 1 + len(LAWS), "model")
-    result = FitResult(file, fitted(plan, curve, base_model))
+    result = FitResult(file, fit_curve(plan, curve, base_model))
     _warn_of_fit(result)
     progress.advance(1)
     yield result
@@ -167,33 +175,58 @@ def _steps(plan: FitPlan, file: Path, curve: ForceCurve, progress: Progress) -> 
     yield result
 
 
-def _warn_of_fit(result: FitResult, largest_misfit: float = 3.0) -> None:
-    """Add warnings to the result, by name: "snap_out", "misfit", "contact_point" and "prior", as far as they apply.
+def _warn_of_fit(result: FitResult) -> None:
+    """Add warnings to the result, by name, as far as they apply.
 
-    These are a predicted snap-out farther outside the two points of the measured one than their distance, a reduced χ²
-    above `largest_misfit`, a contact point outside the curve, and parameters with a ± in the base scene. The reduced χ²
-    of the right model is below 2 where the noise has a memory of 20 in 1000 points.
+    "hysteresis": the segments differ. "snap_out": a predicted snap-out farther outside the two points of the measured
+    one than their distance. "misfit": a reduced χ² above 3. "baseline": no points of bodies apart. "contact_point": one
+    outside the curve. "prior": parameters with a ± in the base scene.
     """
-    base_fit = result.fit
+    base_fit, fits, curve = result.fit, result.segments, result.segments.curve
+    if fits.differing:
+        result.warnings["hysteresis"] = differences(fits)
     snap, (low, high) = float(base_fit.jumps_at(base_fit.solution.values)[1]), result.bracket
-    if math.isfinite(low):
-        if not 2.0 * low - high <= snap <= 2.0 * high - low:
-            result.warnings["snap_out"] = (
-                f"the contact is lost between z = {low:.4g} and {high:.4g} m, and {base_fit.model} loses it at "
-                f"{snap:.4g} m: compare the contact models"
-            )
-    if base_fit.misfit > largest_misfit:
+    if math.isfinite(low) and not 2.0 * low - high <= snap <= 2.0 * high - low:
+        result.warnings["snap_out"] = (
+            f"the contact is lost between z = {low:.4g} and {high:.4g} m, and {base_fit.model} loses it at "
+            f"{snap:.4g} m: compare the contact models"
+        )
+    misfit = max(fit.misfit for fit in fits.shown)
+    if misfit > BAD:
         result.warnings["misfit"] = (
-            f"residuals in contact have {base_fit.misfit:.2g} times the mean square of those apart: {base_fit.model} "
+            f"residuals in contact have {misfit:.2g} times the mean square of those apart: {base_fit.model} "
             "or the profile does not describe the contact; compare the contact models and look at the residuals"
         )
-    if not base_fit.curve.positions.min() < base_fit.values[POINT] < base_fit.curve.positions.max():
+    if not curve.positions.min() < base_fit.values[POINT] < curve.positions.max():
         result.warnings[POINT] = "the contact point is outside the curve: the baseline is not in it"
+    elif (cost := base_fit.cost_of_baseline) > 1.0:
+        result.warnings["baseline"] = (
+            f"the curve has no baseline: an unknown level of the force makes the widest interval {cost:.2g} times as "
+            "wide; record more of the approach before the bodies touch"
+        )
     uncertain = [key for key in base_fit.plan.fit.parameters if key in base_fit.plan.known]
     if uncertain:
         result.warnings["prior"] = (
             f"{', '.join(uncertain)}: the ± in the base scene counts as a measurement in addition to the curve"
         )
+
+
+def differences(fits: CurveFit) -> str:
+    """Return a sentence with the parameters in which the segments of a curve differ, and what that means."""
+    fit, parts = fits.main, []
+    for name in fits.differing:
+        texts = []
+        for segment, part in fits.fits.items():
+            low, high = part.intervals[name]
+            texts.append(f"{Quantity(part.values[name], 0.5 * (high - low), fit.unit(name))} on {segment}")
+        parts.append(f"{name} is {', '.join(texts)}")
+    cause = (
+        "bodies that adhere more while they separate, or relax, do so"
+        if fit.subject.model.needs
+        else "bodies that relax or yield do so, and E of the approach is an apparent modulus; with a column t the terms "
+        'of [viscoelasticity] can be fitted, such as parameters = ["viscoelasticity.terms[0].share"]'
+    )
+    return f"approach and retraction differ by more than their intervals: {'; '.join(parts)}: {cause}"
 
 
 def _warn_of_models(result: FitResult, decisive: float = 10.0) -> None:
@@ -219,30 +252,33 @@ def _warn_of_models(result: FitResult, decisive: float = 10.0) -> None:
 
 
 def _run(result: FitResult, load_steps: int = 15) -> None:
-    """Run the fitted scene on LAMMPS along the displacements of the fit, and compare its forces with the model's.
+    """Run the fitted scenes on LAMMPS along the displacements of the fit, and compare its forces with the model's.
 
-    The `load_steps` go down from the largest fitted force to just before the instability. Sets `difference` and
-    `allowed` [N] of the result, and adds the warning "run" where the former is larger.
+    There is one scene for each fit that describes points of the curve. The `load_steps` go down from the largest fitted
+    force to just before the instability. Sets `difference` and `allowed` [N] of the result to the largest ones, and
+    adds the warning "run" where a difference is larger than allowed.
 
     Raises:
-        Contact1dError: the scene does not run; both stay as they are.
+        Contact1dError: a scene does not run; both stay as they are.
     """
-    base_fit, branch = result.fit, result.fit.branch
-    F, d = branch.forces, branch.displacements
-    least = max(int(np.argmin(branch.positions(base_fit.values.get(STIFFNESS, math.inf)))), int(np.argmin(d)))
-    top = float(np.interp(base_fit.forces.max() - base_fit.values[OFFSET], F[least:], d[least:]))
-    displacements = np.linspace(top, d[least] + (top - d[least]) / load_steps, load_steps)
-    scene = result.scene.with_({"experiment": {"kind": "path", "displacements": displacements.tolist()}})
-    with TemporaryDirectory(prefix="contact1d-fit-") as folder:
-        curve = run(scene, Path(folder) / "run", figures=False).curve
-        predicted = branch.forces_at(np.asarray(curve["displacement"]), math.inf, held=True)
-        result.difference = float(np.abs(np.asarray(curve["force"]) - predicted).max())
-    result.allowed = float(base_fit.spread().max())
-    if result.difference > result.allowed:
-        result.warnings["run"] = (
-            f"LAMMPS differs from the fit's model by up to {result.difference:.3g} N, more than the fit's own "
-            f"uncertainty, {result.allowed:.3g} N: lower accuracy.tolerance in [base]"
-        )
+    rows = []
+    for fit in result.segments.shown:
+        F, d = fit.branch.forces, fit.branch.displacements
+        least = max(int(np.argmin(fit.branch.positions(fit.values.get(STIFFNESS, math.inf)))), int(np.argmin(d)))
+        top = float(np.interp((fit.forces - fit.baseline).max(), F[least:], d[least:]))
+        displacements = np.linspace(top, d[least] + (top - d[least]) / load_steps, load_steps)
+        scene = fit.scene.with_({"experiment": {"kind": "path", "displacements": displacements.tolist()}})
+        with TemporaryDirectory(prefix="contact1d-fit-") as folder:
+            curve = run(scene, Path(folder) / "run", figures=False).curve
+            predicted = fit.branch.forces_at(np.asarray(curve["displacement"]), math.inf, held=True)
+            rows.append((float(np.abs(np.asarray(curve["force"]) - predicted).max()), float(fit.spread().max())))
+    result.difference, result.allowed = (max(column) for column in zip(*rows, strict=True))
+    for difference, allowed in rows:
+        if difference > allowed:
+            result.warnings["run"] = (
+                f"LAMMPS differs from the fit's model by up to {difference:.3g} N, more than the fit's own "
+                f"uncertainty, {allowed:.3g} N: lower accuracy.tolerance in [base]"
+            )
 
 
 def fit_folder(folder: Path) -> Path:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,8 +19,8 @@ from contact1d.workflow.errors import Contact1dError
 from contact1d.workflow.fit.data import DataError, NamedCurve, curves_of
 from contact1d.workflow.fit.fit import fit_folder
 from contact1d.workflow.fit.plan import AnyFit, FitPlan, read_fit
-from contact1d.workflow.fit.report import entry
-from contact1d.workflow.fit.solution import fitted, model_of
+from contact1d.workflow.fit.segments import fit_curve
+from contact1d.workflow.fit.solution import model_of
 from contact1d.workflow.runs.processors import cores, pool
 from contact1d.workflow.units import scale_of
 
@@ -90,12 +91,16 @@ def attempt(plan: FitPlan, job: NamedCurve) -> dict[str, Any]:
     try:
         if isinstance(curve, DataError):
             raise curve
-        fit = fitted(plan, curve, model_of(plan))
-        for key, ends in fit.intervals.items():
-            unit = entry(fit, key)["unit"]
-            for suffix, value in zip(("", "_low", "_high"), (fit.values[key], *ends), strict=True):
-                row[f"{key}{suffix} [{unit}]"] = value
-        row["outliers"], row["reduced_chi_squared"] = fit.solution.outliers.size, fit.misfit
+        fits = fit_curve(plan, curve, model_of(plan))
+        estimates = {(key, ""): estimate for key, estimate in fits.estimates.items()}
+        for key in fits.differing:
+            estimates |= {(key, f"_{name}"): (fit.values[key], fit.intervals[key]) for name, fit in fits.fits.items()}
+        for (key, segment), estimate in estimates.items():
+            value, ends = estimate or (math.nan, (math.nan, math.nan))
+            for suffix, number in zip(("", "_low", "_high"), (value, *ends), strict=True):
+                row[f"{key}{segment}{suffix} [{fits.main.unit(key)}]"] = number
+        row["hysteresis"] = " ".join(fits.differing)
+        row["outliers"], row["reduced_chi_squared"] = fits.main.solution.outliers.size, fits.main.misfit
     except (Contact1dError, ArithmeticError, np.linalg.LinAlgError) as error:
         row |= {"status": "refused", "reason": str(error)}
     return row

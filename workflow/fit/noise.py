@@ -26,6 +26,9 @@ from scipy.special import softmax, stdtr
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
+EXCLUDED = 6.9
+"""Natural logarithm of the likelihood below the largest one from which on a noise is excluded: 99.9 % of the χ²
+distribution with two degrees of freedom, those of s and τ."""
 
 
 @dataclass(frozen=True)
@@ -167,11 +170,41 @@ class AveragedEstimate:
         return float(brentq(excess, -reach, reach, rtol=1e-6, xtol=1e-9 * reach))
 
 
-def averaged(runs: Sequence[Indices], residuals: Array, slopes: Array, prior: Array, looks: int) -> AveragedEstimate:
+@dataclass(frozen=True)
+class Resting:
+    """The measured forces of bodies apart, which show the noise without any contact model.
+
+    Attributes:
+        runs: indices of the points of each run.
+        forces: at these points, (n,).
+        columns: of the line through them, (n, q): a level for each run, and perhaps a slope.
+    """
+
+    runs: tuple[Indices, ...]
+    forces: Array
+    columns: Array
+
+    def line(self, looks: int = 2) -> AveragedEstimate:
+        """Return the estimates of the line's levels and slope, (q,), under all noises, from a line of 0 on.
+
+        `looks`: number of grids, as in `averaged`.
+        """
+        return averaged(self.runs, self.forces, self.columns, np.zeros((0, self.columns.shape[1] + 1)), looks)
+
+    def likelihoods(self, pairs: Sequence[tuple[float, float]]) -> Array:
+        """Return the natural logarithms of the restricted likelihoods of noises (s, τ), (m,), but for a constant."""
+        prior = np.zeros((0, self.columns.shape[1] + 1))
+        return _estimates(noises(pairs, self.runs), self.forces, self.columns, prior)[1]
+
+
+def averaged(
+    runs: Sequence[Indices], residuals: Array, slopes: Array, prior: Array, looks: int, resting: Resting | None = None
+) -> AveragedEstimate:
     """Return the estimates under all noises of a grid over s and τ, with weights by likelihood whose sum is 1.
 
     s is the share of the variance with a memory, τ the memory [points]. Each further grid is finer around the likely
-    pairs; the estimates are those of the last one.
+    pairs; the estimates are those of the last one. Noises that the resting forces exclude have the weight 0: what a
+    contact model misses in contact must not pass for a memory of the noise.
 
     Args:
         runs: indices of the compared points of each run; whitening begins anew with each.
@@ -180,13 +213,19 @@ def averaged(runs: Sequence[Indices], residuals: Array, slopes: Array, prior: Ar
         prior: (q, p + 1), a row for each calibration of a parameter; the last column is its misfit in standard
             deviations.
         looks: number of grids, at least 1, which is enough for the most likely noise.
+        resting: forces of bodies apart; None: there are too few.
     """
     shares: Array = np.array([0.0, 0.05, 0.15, 0.35, 0.6, 0.8, 0.93, 1.0])
     # A memory shorter than 0.7 points is white noise; the variance of one longer than a quarter of a run is unknown.
     memories: Array = np.geomspace(0.7, max(4.0, 0.25 * max(run.size for run in runs)), 12)
+    highest = -math.inf
     for _ in range(looks):
         pairs = [(float(s), float(m)) for s in shares for m in (memories if s > 0.0 else memories[:1])]
         estimates, logs = _estimates(noises(pairs, runs), residuals, slopes, prior)
+        if resting is not None:
+            shown = resting.likelihoods(pairs)
+            highest = max(highest, float(shown.max()))
+            logs = np.where(shown >= min(highest - EXCLUDED, shown.max()), logs, -math.inf)
         # White noise stands once for all memories.
         weights = softmax(logs + np.log([1.0 if s > 0.0 else memories.size for s, _ in pairs]))
         likely = [pair for pair, weight in zip(pairs, weights, strict=True) if weight > 1e-5 * weights.max()]

@@ -19,15 +19,16 @@ from contact1d.workflow.body.cases import ASSUMED_RANGE
 from contact1d.workflow.fit import curve as curves
 from contact1d.workflow.fit import search
 from contact1d.workflow.fit.fit import FitResult
-from contact1d.workflow.fit.plan import STIFFNESS
-from contact1d.workflow.fit.solution import SOFTEST, Fitted
-from contact1d.workflow.fit.subject import OFFSET, POINT, modulus_of
+from contact1d.workflow.fit.segments import BOTH, CurveFit
+from contact1d.workflow.fit.solution import SOFTEST, UNITS, Fitted
+from contact1d.workflow.fit.subject import POINT, modulus_of
 from contact1d.workflow.laws import law_of
 from contact1d.workflow.scene.problems import tables_as_toml
 from contact1d.workflow.units import Quantity, scale_of
 
 RECORD, TABLE, FIGURE = "fit.json", "curve.csv", "fit.png"
-UNITS = {POINT: "m", OFFSET: "N", STIFFNESS: "N/m"}
+NAMES = {curves.APPROACH: ("approach", COMPRESSION), curves.RETRACT: ("retraction", TENSION)}
+"""Name and colour of each segment in figures."""
 
 
 def write(result: FitResult, folder: Path) -> None:
@@ -35,22 +36,24 @@ def write(result: FitResult, folder: Path) -> None:
 
     Each file is written whole or not at all; all are in SI. A number that is not finite is null in fit.json.
     """
-    from pandas import DataFrame
+    from pandas import DataFrame, concat
 
     fit = result.fit
     finite = json.loads(json.dumps(document(result)), parse_constant=lambda constant: None)
     write_whole(folder / RECORD, json.dumps(finite, indent=2, ensure_ascii=False, allow_nan=False) + "\n")
     write_whole(folder / "scene.toml", tables_as_toml(fit.scene.tables))
-    points = np.arange(fit.forces.size)
-    table = DataFrame(
-        {
-            "line": fit.curve.lines,
-            "segment": [curves.SEGMENTS[kind] for kind in fit.curve.kinds],
-            "position [m]": fit.curve.positions,
-            "force [N]": fit.curve.forces,
-            "predicted force [N]": fit.forces,
-            "compared": np.where(np.isin(points, fit.solution.problem.kept), "yes", "no"),
-        }
+    table = concat(
+        DataFrame(
+            {
+                "line": part.curve.lines,
+                "segment": [curves.SEGMENTS[kind] for kind in part.curve.kinds],
+                "position [m]": part.curve.positions,
+                "force [N]": part.curve.forces,
+                "predicted force [N]": part.forces,
+                "compared": np.where(np.isin(np.arange(part.forces.size), part.solution.problem.kept), "yes", "no"),
+            }
+        )
+        for part in result.segments.shown
     )
     write_whole(folder / TABLE, table.to_csv(index=False, float_format="%.9g", lineterminator="\n"))
     plots.save_figure(plots.draw(chart(result).written(scale_of)), folder / FIGURE)
@@ -71,11 +74,17 @@ def document(result: FitResult) -> dict[str, Any]:
         "status": "done" if result.finished else "interrupted",
         "data": str(result.file),
         "model": fit.model,
-        "parameters": entries(fit, plan.fit.parameters),
+        "parameters": agreed(result.segments, plan.fit.parameters),
+        "segments": {
+            name: {"parameters": entries(part, plan.fit.parameters), **entries(part, UNITS), "reduced_chi_squared": part.misfit}
+            for name, part in result.segments.fits.items() if name != BOTH
+        } | {name: {"refused": reason} for name, reason in result.segments.refused.items()},
+        "pull_off_force": pull_off(result),
         "fitted": modulus_words(fit),
         "contact_modulus": _modulus(fit),
         "calibrations": entries(fit, [key for key in fit.values if key not in (*plan.fit.parameters, *UNITS)]),
         **entries(fit, UNITS),
+        **agreed(result.segments, [POINT]),
         "noise": {
             "value": best.deviation, "unit": "N", "share_with_memory": best.noise.share, "memory": best.noise.memory,
         },
@@ -114,6 +123,18 @@ def document(result: FitResult) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def agreed(fits: CurveFit, keys: Iterable[str]) -> dict[str, Any]:
+    """Return {"value", "unit", "interval"} in SI by key, of the parameters of a curve; None where its segments differ.
+
+    `keys`: names of parameters, or of the contact point; others are left out.
+    """
+    found = {key: fits.estimates[key] for key in keys if key in fits.estimates}
+    return {
+        key: estimate and {"value": estimate[0], "unit": fits.main.unit(key), "interval": list(estimate[1])}
+        for key, estimate in found.items()
+    }
+
+
 def entry(fit: Fitted, key: str) -> dict[str, Any]:
     """Return {"value", "unit", "interval"} of an unknown of a fit, in SI: the interval [lower, upper] is that of 95 %.
 
@@ -123,7 +144,7 @@ def entry(fit: Fitted, key: str) -> dict[str, Any]:
     Raises:
         KeyError: the fit has no such unknown.
     """
-    table: dict[str, Any] = {"value": fit.values[key], "unit": UNITS.get(key) or fit.plan.unit(key)}
+    table: dict[str, Any] = {"value": fit.values[key], "unit": fit.unit(key)}
     return table | ({"interval": list(fit.intervals[key])} if key in fit.intervals else {})
 
 
@@ -133,6 +154,15 @@ def entries(fit: Fitted, keys: Iterable[str]) -> dict[str, Any]:
     Other keys are left out, and "interval" where an unknown has none.
     """
     return {key: entry(fit, key) for key in keys if key in fit.values}
+
+
+def pull_off(result: FitResult) -> dict[str, Any] | None:
+    """Return {"value", "uncertainty", "unit"} of the measured pull-off force [N], without any contact model.
+
+    None without a retraction, or where the force is not below that of bodies apart by more than its ± of 95 %.
+    """
+    value, uncertainty = result.segments.shown[-1].pull_off
+    return {"value": value, "uncertainty": uncertainty, "unit": "N"} if value > uncertainty else None
 
 
 def modulus_words(fit: Fitted) -> str:
@@ -181,29 +211,32 @@ def chart(result: FitResult) -> Chart:
     A second panel has the residuals, measured less predicted [N], of compared points. Outliers are marked; a note has
     the fitted parameters with half their intervals.
     """
-    fit, far = result.fit, result.fit.solution.outliers
-    z = fit.curve.positions - fit.values[POINT]
-    measured, predicted = fit.curve.forces - fit.values[OFFSET], fit.forces - fit.values[OFFSET]
-    residual = np.full_like(z, math.nan)
-    kept = fit.solution.problem.kept
-    residual[kept] = (measured - predicted)[kept]
-    above, below = list[Series](), [Series(z, 0.0 * z, "", THEORY, "--")]
-    approach, retraction = fit.curve.of(curves.APPROACH), fit.curve.of(curves.RETRACT)
-    for segment, name, colour in ((approach, "approach", COMPRESSION), (retraction, "retraction", TENSION)):
-        above.append(Series(z[segment], measured[segment], name, colour, "."))
-        below.append(Series(z[segment], residual[segment], "", colour, "."))
-    for segment in (approach, retraction):
-        above.append(Series(z[segment], predicted[segment], fit.model, BLACK, width=1.2))
-    above += [Series(z[far], measured[far], "outlier", "#CC79A7", "x")] if far.size else []
+    above, below, models = list[Series](), list[Series](), list[Series]()
+    for fit in result.segments.shown:
+        z, level, far = fit.curve.positions - fit.values[POINT], fit.baseline, fit.solution.outliers
+        measured, predicted = fit.curve.forces - level, fit.forces - level
+        residual = np.full_like(z, math.nan)
+        kept = fit.solution.problem.kept
+        residual[kept] = (measured - predicted)[kept]
+        for segment in fit.curve.segments:
+            points, (name, colour) = segment.points, NAMES[segment.name]
+            above.append(Series(z[points], measured[points], name, colour, "."))
+            below.append(Series(z[points], residual[points], "", colour, "."))
+            models.append(Series(z[points], predicted[points], fit.model, BLACK, width=1.2))
+        models += [Series(z[far], measured[far], "outlier", "#CC79A7", "x")] if far.size else []
+        below.append(Series(z, 0.0 * z, "", THEORY, "--"))
     notes = []
-    for key, (low, high) in fit.intervals.items():
-        quantity = Quantity(fit.values[key], 0.5 * (high - low), entry(fit, key)["unit"])
-        notes += [f"{key.rpartition('.')[2].replace('_', ' ')} = {quantity}"] if key != POINT else []
+    for key, estimate in result.segments.estimates.items():
+        values = [estimate] if estimate else [(fit.values[key], fit.intervals[key]) for fit in result.segments.shown]
+        if key != POINT:
+            unit = result.fit.unit(key)
+            words = " and ".join(str(Quantity(value, 0.5 * (high - low), unit)) for value, (low, high) in values)
+            notes.append(f"{key.rpartition('.')[2].replace('_', ' ')} = {words}")
     panels = [
-        Panel(Axis("force", "N", zero=True), above, note=", ".join(notes), height=2.7),
+        Panel(Axis("force", "N", zero=True), above + models, note=", ".join(notes), height=2.7),
         Panel(Axis("residual", "N", zero=True), below, height=1.2),
     ]
-    return Chart(Axis("position of the piezo from the contact point", "m"), panels, fit.plan.fit.title)
+    return Chart(Axis("position of the piezo from the contact point", "m"), panels, result.fit.plan.fit.title)
 
 
 def lines(result: FitResult) -> list[str]:
@@ -215,10 +248,18 @@ def lines(result: FitResult) -> list[str]:
     """
     fit, best = result.fit, result.fit.solution.best
     shown = [fit.plan.fit.title]
-    for key, ends in fit.intervals.items():
-        factor, unit = scale_of(fit.values[key], entry(fit, key)["unit"])
-        low, high = (end * factor for end in ends)
-        shown.append(f"  {key:<34}{fit.values[key] * factor:.4g} {unit}, 95 %: {low:.4g} to {high:.4g} {unit}")
+    for key, estimate in result.segments.estimates.items():
+        parts = {"": estimate} if estimate else {
+            f" of {name}": (part.values[key], part.intervals[key]) for name, part in result.segments.fits.items()
+        }  # fmt: skip
+        for words, (value, ends) in parts.items():
+            factor, unit = scale_of(value, fit.unit(key))
+            low, high = (end * factor for end in ends)
+            name = f"{key}{words}"
+            shown.append(f"  {name:<44}{value * factor:.4g} {unit}, 95 %: {low:.4g} to {high:.4g} {unit}")
+    measured = pull_off(result)
+    if measured:
+        shown.append(f"  {'measured pull-off force':<44}{Quantity(measured['value'], measured['uncertainty'], 'N')}")
     factor, unit = scale_of(best.deviation, "N")
     memory = f"memory {best.noise.memory:.0f} points" if best.noise.share else "white"
     noise = f"{best.deviation * factor:.3g} {unit}, {memory}"

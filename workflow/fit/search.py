@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import differential_evolution, least_squares
 
-from contact1d.workflow.fit.noise import AveragedEstimate, Estimate, Indices, Noise, averaged, noises
+from contact1d.workflow.fit.noise import AveragedEstimate, Estimate, Indices, Noise, Resting, averaged, noises
 
 Array = NDArray[np.float64]
 LIMIT = 3.0 * math.log(10.0)
@@ -50,6 +50,12 @@ class Unknown:
         """Return the parameter p in its unit: scale·exp(u) of a positive one, with u limited to ±50, else scale·u."""
         return self.scale * (math.exp(min(max(u, -50.0), 50.0)) if self.positive else u)
 
+    def inverse(self, value: float) -> float:
+        """Return u of a value of the parameter in its unit; −∞ of a positive parameter's 0 or less."""
+        if self.positive:
+            return math.log(value / self.scale) if value > 0.0 else -math.inf
+        return value / self.scale
+
     def slope(self, u: float) -> float:
         """Return the derivative ∂p/∂u of the parameter, in its unit: p itself of a positive one, else its scale."""
         return self.value(u) if self.positive else self.scale
@@ -68,12 +74,14 @@ class Problem:
         model: function of their values that returns the forces at all points.
         forces: measured forces at all points, (n,).
         runs: indices of the points that are compared, one array for each run.
+        resting: function of the values of all unknowns and of runs that returns the forces of bodies apart in these.
     """
 
     unknowns: tuple[Unknown, ...]
     model: Model
     forces: Array
     runs: tuple[Indices, ...]
+    resting: Callable[[Sequence[float], Sequence[Indices]], Resting | None]
 
     @property
     def kept(self) -> Indices:
@@ -292,7 +300,8 @@ def _estimate(problem: Problem, u: Array, looks: int = 2) -> AveragedEstimate:
     `u`: logarithm of the ratio of each positive unknown to its scale, the ratio of any other, (p,). `looks`: number of
     grids, each finer around the likely noises; those of the last one are returned.
     """
-    return averaged(problem.runs, problem.residuals(u), problem.slopes(u), problem.prior(u), looks)
+    resting = problem.resting(problem.values(u), problem.runs)
+    return averaged(problem.runs, problem.residuals(u), problem.slopes(u), problem.prior(u), looks, resting)
 
 
 def _outliers(problem: Problem, u: Array, estimate: Estimate) -> Indices:

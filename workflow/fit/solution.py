@@ -15,14 +15,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.workflow.errors import Contact1dError
-from contact1d.workflow.fit.curve import APPROACH, ForceCurve, Indices
+from contact1d.workflow.fit.curve import APPROACH, RETRACT, ForceCurve, Indices
 from contact1d.workflow.fit.forward import LAWS, RANGE, Branch, ContactModel
+from contact1d.workflow.fit.noise import noises
 from contact1d.workflow.fit.plan import STIFFNESS, FitPlan
 from contact1d.workflow.fit.search import TWO_SIDED, Solution, Unknown, global_search, interval, solved
-from contact1d.workflow.fit.subject import OFFSET, POINT, Subject, modulus_of
+from contact1d.workflow.fit.subject import OFFSETS, POINT, SLOPE, Subject, modulus_of
 from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
+UNITS = {POINT: "m", SLOPE: "N/m", STIFFNESS: "N/m", **dict.fromkeys(OFFSETS.values(), "N")}
+"""SI units of the unknowns of the measurement, by name."""
+SURE = 0.999
+"""Probability from which on a difference or a slope of the baseline is no chance."""
 SOFTEST = 0.4
 """Least stiffness of a cantilever over that of the contact, 2E*a. The curve of a softer one shows its own bending: at a
 fifth an interval of 95 % covers a third of the true moduli; at half of it the intervals hold."""
@@ -92,6 +97,34 @@ class Fitted:
         return self.subject.forces(self.solution.values)
 
     @property
+    def baseline(self) -> Array:
+        """The force [N] of bodies apart at all points of the curve, (n,): offset and slope."""
+        return self.subject.baseline(self.solution.values)
+
+    def unit(self, name: str) -> str:
+        """Return the SI unit of an unknown as text: of a dotted key of the scene, or of the measurement.
+
+        Raises:
+            KeyError: there is no such unknown.
+        """
+        return UNITS.get(name) or self.plan.unit(name)
+
+    @property
+    def cost_of_baseline(self) -> float:
+        """How many times as wide the unknown offset makes the widest interval of a parameter; 1 with a baseline.
+
+        The intervals are those of the covariance, with and without the offset of the segments as an unknown.
+        """
+        if self.subject.resting(self.solution.values, self.solution.problem.runs) is not None:
+            return 1.0
+        names, C = self.subject.names, self.solution.best.covariance
+        apart = [names.index(name) for name in OFFSETS.values() if name in names]
+        sought = self.subject.sought
+        gained = C[np.ix_(sought, apart)] @ np.linalg.solve(C[np.ix_(apart, apart)], C[np.ix_(apart, sought)])
+        full = np.diag(C)[sought]
+        return float(np.sqrt(full / (full - np.diag(gained))).max(initial=1.0))
+
+    @property
     def correlation(self) -> Array:
         """The correlation matrix of all unknowns in their order, (p, p), −1 … 1, with a diagonal of 1."""
         covariance = self.solution.best.covariance
@@ -120,7 +153,7 @@ class Fitted:
 
         `values`: of all unknowns, in their order and units.
         """
-        branch, stiffness, point, _ = self.subject.parts(values)
+        branch, stiffness, point = self.subject.parts(values)
         return np.asarray(point + np.array([branch.displacements[0], branch.snap_out(stiffness)[0]]))
 
     def _jumps(self) -> float:
@@ -145,14 +178,43 @@ class Fitted:
     def misfit(self) -> float:
         """The reduced χ² (dimensionless): mean square of the residuals in contact over that of bodies apart; cached.
 
-        Of compared points only. Those of a segment without a jump count as apart below the contact point, else as in
-        contact. 1 where there are no points of one kind.
+        Of compared points only; bodies apart have residuals from a line of their own, of which the fit can spoil
+        nothing. 1 where there are too few points of one kind.
         """
-        problem = self.solution.problem
-        r = problem.residuals(self.solution.u)
-        before = self.subject.undecided & (self.curve.positions < self.values[POINT])
-        apart = (self.subject.apart | before)[problem.kept]
-        return 1.0 if apart.all() or not apart.any() else float(np.mean(r[~apart] ** 2) / np.mean(r[apart] ** 2))
+        problem, values = self.solution.problem, self.solution.values
+        resting = self.subject.resting(values, problem.runs)
+        r = problem.residuals(self.solution.u)[~self.subject.apart_at(values)[problem.kept]]
+        if resting is None or not r.size:
+            return 1.0
+        _, squares, *_ = np.linalg.lstsq(resting.columns, resting.forces)
+        return float(np.mean(r**2) / (squares[0] / (resting.forces.size - resting.columns.shape[1])))
+
+    @property
+    def pull_off(self) -> tuple[float, float]:
+        """The measured pull-off force, positive in tension, and its ± of 95 % [N], by no contact model.
+
+        It is the offset less the least value of a parabola through 15 points of the retraction around that of the least
+        force, none of them beyond the jump; the ± is that of the parabola and of the offset under the fit's noise. NaN
+        without a retraction.
+        """
+        last = self.curve.segments[-1]
+        if last.name != RETRACT:
+            return math.nan, math.nan
+        points = last.held if last.held.size else last.points
+        points = points[np.isin(points, self.solution.problem.kept)]
+        forces = (self.curve.forces - self.baseline)[points]
+        first = min(max(0, int(np.argmin(forces)) - 7), max(0, points.size - 15))
+        points, forces = points[first : first + 15], forces[first : first + 15]
+        x = np.linspace(-1.0, 1.0, points.size)
+        best, index = self.solution.best, self.subject.names.index(OFFSETS[RETRACT])
+        (noise,) = noises([(best.noise.share, best.noise.memory)], [points])
+        rows = noise.whitened(np.column_stack([np.ones_like(x), x, x**2, forces]))
+        powers, *_ = np.linalg.lstsq(rows[:, :3], rows[:, 3])
+        parabola = np.vander(x, 3, increasing=True)
+        lowest = parabola[int(np.argmin(parabola @ powers))]
+        variance = best.deviation**2 * float(lowest @ np.linalg.solve(rows[:, :3].T @ rows[:, :3], lowest))
+        variance += best.covariance[index, index] * self.subject.unknowns[index].scale ** 2
+        return -float(lowest @ powers), TWO_SIDED * math.sqrt(variance)
 
     def spread(self) -> Array:
         """Return the 95 % half-width [N], ≥ 0, of the predicted force at the compared points, (n,).
@@ -187,7 +249,7 @@ def compared(fit: Fitted, model: ContactModel) -> Fitted:
 
     `intervals` is empty, and nothing is checked: the parameters may be undetermined.
     """
-    subject = _subject(fit.plan, fit.curve, model)
+    subject = _subject(fit.plan, fit.curve, model, SLOPE in fit.subject.names)
     problem = subject.problem.without(fit.solution.outliers)
     solution = solved(problem, _starts(subject, fit.solution.outliers), rejects=False)
     return Fitted(fit.plan, fit.curve, subject, solution, {})
@@ -217,13 +279,16 @@ def _starts(subject: Subject, outliers: Indices) -> list[Array]:
     return starts[:3]
 
 
-def fitted(plan: FitPlan, curve: ForceCurve, model: ContactModel, widest: float = 1.0) -> Fitted:
+def fitted(
+    plan: FitPlan, curve: ForceCurve, model: ContactModel, near: Fitted | None = None, widest: float = 1.0
+) -> Fitted:
     """Fit a contact model to a curve, and return the fit with the 95 % intervals of parameters and contact point.
 
     Args:
         plan: with the parameters.
         curve: the measured curve.
         model: the contact model.
+        near: a fit of the same model to a similar curve, from which the search begins; None: it is global.
         widest: distance of an end of an interval from the estimate, in log p, beyond which a parameter p is
             undetermined; the contact point may be.
 
@@ -231,17 +296,24 @@ def fitted(plan: FitPlan, curve: ForceCurve, model: ContactModel, widest: float 
         UndeterminedError: the curve does not determine the parameters, has too many outliers or too few points in
             contact, or the cantilever is too soft.
     """
-    subject = _subject(plan, curve, model)
-    starts = _starts(subject, np.zeros(0, dtype=np.intp))
-    require_distinct(subject, starts[0])
-    solution = solved(subject.problem, starts)
-    if solution.outliers.size > plan.fit.outliers:
+    return checked(solution_of(plan, curve, model, near), widest)
+
+
+def checked(fit: Fitted, widest: float = 1.0) -> Fitted:
+    """Return a fit with the 95 % intervals of parameters and contact point, after checks of the result.
+
+    `widest`: as in `fitted`.
+
+    Raises:
+        UndeterminedError: as in `fitted`.
+    """
+    solution, subject = fit.solution, fit.subject
+    if solution.outliers.size > fit.plan.fit.outliers:
         raise UndeterminedError(
-            f"{solution.outliers.size} points are outliers, more than outliers = {plan.fit.outliers}: either "
-            f"{model.name} does not describe the curve, or a unit or the stiffness is wrong, or the noise is not one "
+            f"{solution.outliers.size} points are outliers, more than outliers = {fit.plan.fit.outliers}: either "
+            f"{fit.model} does not describe the curve, or a unit or the stiffness is wrong, or the noise is not one "
             "of the instrument; look at the residuals"
         )
-    fit = Fitted(plan, curve, subject, solution, {})
     _require_stiff(fit)
     _require_points(fit)
     intervals = {}
@@ -254,12 +326,50 @@ def fitted(plan: FitPlan, curve: ForceCurve, model: ContactModel, widest: float 
     return replace(fit, intervals=intervals)
 
 
-def _subject(plan: FitPlan, curve: ForceCurve, model: ContactModel) -> Subject:
+def solution_of(plan: FitPlan, curve: ForceCurve, model: ContactModel, near: Fitted | None = None) -> Fitted:
+    """Fit a contact model to a curve, and return the fit without intervals and without checks of the result.
+
+    The baseline has a slope if the plan says so, or by "auto" if the forces of bodies apart show one at 99.9 %.
+
+    Args:
+        plan: with the parameters.
+        curve: the measured curve.
+        model: the contact model.
+        near: a fit of the same model to a similar curve, from which the search begins; None: it is global.
+
+    Raises:
+        UndeterminedError: the curve does not depend on a parameter, or parameters trade off.
+    """
+    none = np.zeros(0, dtype=np.intp)
+    subject = _subject(plan, curve, model, plan.baseline == "sloped")
+    starts = _starts(subject, none) if near is None else [subject.embedded(near.values)]
+    require_distinct(subject, starts[0])
+    solution = solved(subject.problem, starts)
+    if plan.baseline == "auto" and _is_sloped(subject, solution):
+        sloped = _subject(plan, curve, model, True)
+        values = dict(zip(subject.names, solution.values, strict=True))
+        subject, solution = sloped, solved(sloped.problem, [sloped.embedded(values)])
+    return Fitted(plan, curve, subject, solution, {})
+
+
+def _is_sloped(subject: Subject, solution: Solution) -> bool:
+    """Return whether the forces of bodies apart exclude a baseline without slope at 99.9 %, over all noises."""
+    resting = subject.resting(solution.values, solution.problem.runs)
+    if resting is None:
+        return False
+    line = resting.line()
+    best = line.best.step[-1]
+    low, high = (best + line.quantile(-1, 0.5 * (1.0 + side * SURE)) for side in (-1.0, 1.0))
+    return not low < 0.0 < high
+
+
+def _subject(plan: FitPlan, curve: ForceCurve, model: ContactModel, sloped: bool) -> Subject:
     """Return the scene, instrument and unknowns of a contact model for a curve; the scene lacks [adhesion] for Hertz.
 
     The unknowns are, in this order, the parameters and then numbers with ± on which the forces depend, the instrument's
-    stiffness where it is finite, the contact point and the offset of the force. A number with ± has a calibration, as
-    has a contact point that is given; a stiffness without ± one of 1e-6.
+    stiffness where it is finite, the contact point, the offset of the force of each segment and, if `sloped`, the slope
+    of the baseline. A number with ± has a calibration, as has a contact point that is given; a stiffness without ± one
+    of 1e-6.
     """
     scene = plan.base if model.needs else plan.base.model_copy(update={"adhesion": None})
     exact = 1e-6  # ± over the value of a number that is given without one
@@ -277,7 +387,11 @@ def _subject(plan: FitPlan, curve: ForceCurve, model: ContactModel) -> Subject:
     if point != "free":
         known = point, plan.known.get(POINT, 0.0) * abs(point) / TWO_SIDED + exact * depth
     unknowns.append(Unknown(POINT, depth, positive=False, known=known))
-    unknowns.append(Unknown(OFFSET, float(np.ptp(curve.forces)), positive=False))
+    range_of_forces = float(np.ptp(curve.forces))
+    for segment in curve.segments:
+        unknowns.append(Unknown(OFFSETS[segment.name], range_of_forces, positive=False))
+    if sloped:
+        unknowns.append(Unknown(SLOPE, range_of_forces / depth, positive=False))
     return Subject(scene, model, curve, tuple(unknowns))
 
 
@@ -302,7 +416,7 @@ def require_distinct(subject: Subject, u: Array) -> None:
     values, vectors = np.linalg.eigh(information + P.T @ P)
     if values[0] < 1e-6:
         heavy = [names[i] for i in np.argsort(-np.abs(vectors[:, 0])) if abs(vectors[i, 0]) > 0.2]
-        shown = [name for name in heavy if name not in (POINT, OFFSET)]
+        shown = [name for name in heavy if name not in (POINT, SLOPE, *OFFSETS.values())]
         if len(shown) < 2:
             raise UndeterminedError(
                 f"the curve shows {' and '.join(shown or heavy)} no better than contact point and offset of the force: "

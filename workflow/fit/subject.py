@@ -1,29 +1,35 @@
 """What is fitted: a scene whose numbers change, under a contact model and an instrument.
 
-Unknowns are u = log(p/p₀) of a positive parameter p, and lengths or forces over that of the data for the contact point
-and the offset of the force. Units are those of the scene, SI.
+Unknowns are u = log(p/p₀) of a positive parameter p, and a ratio to the ranges of the data for the contact point and
+the baseline. Bodies apart have the force F₀ + s (z − z₀): F₀ is the offset at the contact point z₀, of each segment its
+own, since a drag changes its sign with the velocity; the slope s is common. Units are those of the scene, SI.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.workflow.fit.curve import APPROACH, ForceCurve
+from contact1d.workflow.fit.curve import APPROACH, RETRACT, ForceCurve
 from contact1d.workflow.fit.forward import Body, Branch, ContactModel, cached
+from contact1d.workflow.fit.noise import Indices, Resting
 from contact1d.workflow.fit.plan import STIFFNESS
 from contact1d.workflow.fit.search import Problem, Unknown
 from contact1d.workflow.laws import law_of
 from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
-POINT, OFFSET = "contact_point", "force_offset"
-MEASURED = (POINT, OFFSET, STIFFNESS)
+POINT, SLOPE = "contact_point", "force_slope"
+OFFSETS = {APPROACH: "force_offset", RETRACT: "force_offset_of_retraction"}
+"""Names of the offset of the force by segment."""
+MEASURED = (POINT, SLOPE, STIFFNESS, *OFFSETS.values())
 """Names of the unknowns of the measurement, which no scene has."""
+FEWEST_RESTING = 30
+"""Least number of points of bodies apart that show a noise."""
 Factors = tuple[tuple[str, float], ...]
 """Keys of a scene, and the factors of their numbers."""
 
@@ -58,7 +64,7 @@ class Subject:
         self.held, self.apart, self.undecided, self.approaching = (np.zeros(n, dtype=bool) for _ in range(4))
         for segment in self.curve.segments:
             self.held[segment.held] = self.apart[segment.apart] = True
-            if segment.jump is None:
+            if segment.jump is None and not segment.ends_held:
                 self.undecided[segment.points] = True
                 self.approaching[segment.points] = segment.name == APPROACH
         self.pitch = float(np.median(np.abs(np.diff(self.curve.positions)))) or 1e-300
@@ -73,7 +79,19 @@ class Subject:
     def problem(self) -> Problem:
         """The least-squares problem of the compared points, those of the approach before those of the retraction."""
         runs = tuple(segment.compared for segment in self.curve.segments)
-        return Problem(self.unknowns, self.forces, self.curve.forces, runs)
+        return Problem(self.unknowns, self.forces, self.curve.forces, runs, self.resting)
+
+    def embedded(self, values: Mapping[str, float]) -> Array:
+        """Return u of all unknowns, (p,), from values by name, such as those of another fit.
+
+        Unknowns without a value are 0, but the offset of a segment, which is that of the other one.
+        """
+        offset = next((values[name] for name in OFFSETS.values() if name in values), 0.0)
+        u = np.zeros(len(self.unknowns))
+        for i, unknown in enumerate(self.unknowns):
+            value = values.get(unknown.name, offset if unknown.name in OFFSETS.values() else 0.0)
+            u[i] = unknown.inverse(value or unknown.scale * unknown.positive)
+        return u
 
     def scene_with(self, values: Sequence[float]) -> Scene:
         """Return the scene with values of its unknowns, (p,) in their units and order, without checking it.
@@ -108,47 +126,88 @@ class Subject:
         body = Body.of(scene.bodies.profile, self.curve.depth)
         return self.model.branch(body, modulus_of(scene), scene.work_of_adhesion, reach)
 
-    def parts(self, values: Sequence[float]) -> tuple[Branch, float, float, float]:
-        """Return (states of the contact, k_c [FU/LU], contact point [LU], offset of the force [FU]).
+    def parts(self, values: Sequence[float]) -> tuple[Branch, float, float]:
+        """Return (states of the contact, k_c [FU/LU], contact point [LU]).
 
         `values`: of all unknowns, in their order and units. k_c is infinite where the instrument is no unknown, as a
         rigid one. The states are cached.
         """
         named = dict(zip(self.names, values, strict=True))
-        return self._branches(self._factors(values)), named.get(STIFFNESS, math.inf), named[POINT], named[OFFSET]
+        return self._branches(self._factors(values)), named.get(STIFFNESS, math.inf), named[POINT]
+
+    def baseline(self, values: Sequence[float]) -> Array:
+        """Return the force [FU] of bodies apart at every measured position, (n,); `values`: of all unknowns."""
+        named = dict(zip(self.names, values, strict=True))
+        forces = named.get(SLOPE, 0.0) * (self.curve.positions - named[POINT])
+        for segment in self.curve.segments:
+            forces[segment.points] += named[OFFSETS[segment.name]]
+        return np.asarray(forces)
+
+    def apart_at(self, values: Sequence[float]) -> NDArray[np.bool_]:
+        """Return the mask of the points at which bodies are apart, (n,); `values`: of all unknowns.
+
+        Where no jump tells, they are those below the first force of the contact on the approach, and below its loss
+        on the retraction.
+        """
+        branch, stiffness, point = self.parts(values)
+        z = self.curve.positions - point
+        ends = np.where(self.approaching, branch.displacements[0], branch.snap_out(stiffness)[0])
+        return np.asarray(self.apart | (self.undecided & (z < ends)))
+
+    def resting(self, values: Sequence[float], compared: Sequence[Indices]) -> Resting | None:
+        """Return the measured forces of bodies apart in compared runs; None where these are fewer than 30 points.
+
+        Their line has a level for each run, and a slope in forces over the range of positions, which is the last
+        column.
+
+        Args:
+            values: of all unknowns.
+            compared: indices of the points of each run.
+        """
+        apart = self.apart_at(values)
+        runs = [run[apart[run]] for run in compared if apart[run].sum() > 3]
+        points = np.concatenate([np.zeros(0, dtype=np.intp), *runs])
+        if points.size < FEWEST_RESTING:
+            return None
+        levels = np.repeat(np.eye(len(runs)), [run.size for run in runs], axis=0)
+        z = (self.curve.positions[points] - self.curve.positions[points].mean())[:, None]
+        return Resting(tuple(runs), self.curve.forces[points], np.hstack([levels, z / self.curve.depth]))
 
     def forces(self, values: Sequence[float]) -> Array:
-        """Return F [FU], compression positive and with the offset, at every measured position, (n,).
+        """Return F [FU], compression positive and with the baseline, at every measured position, (n,).
 
-        Points certainly apart, or within a jump of the force, have the offset. Those certainly in contact have the
-        force of the contact, continued steeply below its instability. Points of a segment without a jump have the force
-        of the contact, and the offset beyond its instability and, on the approach, before the bodies touch.
+        Points certainly apart, or within a jump of the force, have that of the baseline. Those certainly in contact
+        have the force of the contact, continued steeply below its instability. Points of a segment without a jump have
+        the force of the contact, and none of it beyond its instability and, on the approach, before the bodies touch.
 
         `values`: of all unknowns, in their order and units.
         """
-        branch, stiffness, point, offset = self.parts(values)
+        branch, stiffness, point = self.parts(values)
         z = self.curve.positions - point
         forces = np.zeros_like(z)
         for points, held in ((self.held, True), (self.undecided, False)):
             if points.any():
                 forces[points] = branch.forces_at(z[points], stiffness, held, self.pitch)
         forces[self.approaching & (z < branch.displacements[0])] = 0.0  # no force before the bodies touch
-        return np.asarray(forces + offset)
+        return np.asarray(forces + self.baseline(values))
 
     def completed(self, u: Array) -> Array:
-        """Return a copy of u (p,) with the offset of the force and the contact point set from the measured curve.
+        """Return a copy of u (p,) with the baseline and the contact point set from the measured curve.
 
-        The offset is the baseline; the contact point is the one for which the contact has the largest measured force,
-        less the baseline, at its measured position. A contact point that is given has its value. Both are ratios to the
-        ranges of measured positions and forces, other unknowns logarithms of ratios to their first guess.
+        The offsets are the level of the baseline; the contact point is the one for which the contact has the largest
+        measured force, less the baseline, at its measured position. A contact point that is given has its value. All
+        are ratios to the ranges of measured positions and forces, other unknowns logarithms of ratios to their first
+        guess.
         """
         u, index, measured = u.copy(), self.names.index(POINT), self.curve
-        point, offset = self.unknowns[index], self.names.index(OFFSET)
-        u[offset] = measured.baseline / self.unknowns[offset].scale
+        point = self.unknowns[index]
+        for i, unknown in enumerate(self.unknowns):
+            if unknown.name in OFFSETS.values():
+                u[i] = measured.baseline / unknown.scale
         if point.known is not None:
             u[index] = point.known[0] / point.scale
             return u
-        branch, stiffness, *_ = self.parts(self.problem.values(u))
+        branch, stiffness, _ = self.parts(self.problem.values(u))
         least, top = int(np.argmin(branch.forces)), int(np.argmax(measured.forces))
         z, F = branch.positions(stiffness)[least:], branch.forces[least:]
         u[index] = (measured.positions[top] - np.interp(measured.forces[top] - measured.baseline, F, z)) / point.scale
