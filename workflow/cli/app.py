@@ -308,11 +308,13 @@ def cost(
 def report(
     folders: Annotated[
         list[Path],
-        typer.Argument(metavar="DIR…", help="Run folders, shown together, or one sweep folder.", show_default=False),
+        typer.Argument(
+            metavar="DIR…", help="Run folders, shown together, or one of a sweep or fit.", show_default=False
+        ),
     ],
     out: Annotated[Path, typer.Option(help="HTML file to write.")] = Path("report.html"),
 ) -> None:
-    """Write a page of runs or of a sweep, with interactive figures; it needs no network and no other file.
+    """Write a page of runs, a sweep or a fit, with interactive figures; it needs no network and no other file.
 
     Prints the path. An earlier page is replaced, any other file is not (exit code 2).
     """

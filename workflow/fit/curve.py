@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -18,32 +19,33 @@ BESIDE_JUMP = 3
 """Points to each side of a jump that are not compared: there the force is no smooth function of the parameters."""
 APPROACH, HOLD, RETRACT = SEGMENTS = ("approach", "hold", "retract")
 """The names of segments, in the order of time. A hold is at the largest force or displacement."""
+NOUNS = {APPROACH: "approach", HOLD: "hold", RETRACT: "retraction"}
+"""The names of segments in texts."""
 
 
 @dataclass(frozen=True)
 class Segment:
-    """The approach or the retraction of a curve, in the order of time.
+    """The approach, the hold or the retraction of a curve, in the order of time.
 
     Attributes:
-        name: "approach" or "retract".
+        name: "approach", "hold" or "retract".
         points: indices of its points in the curve, (n,).
         jump: positions in `points` of the last point before and the first one after a jump of the force; None: no jump.
-        ends_held: whether it is a retraction without a jump whose last point is certainly in contact.
+        change: the same of the change between contact and bodies apart where no jump is seen: from a contact model, or
+            the end of a retraction that ends in contact; None: it is not known.
     """
 
     name: str
     points: Indices
     jump: tuple[int, int] | None
-    ends_held: bool = False
+    change: tuple[int, int] | None = None
 
     def _sides(self, margin: int = 0) -> tuple[Indices, Indices]:
-        """Return the rising indices in the curve of the points (before, after) the jump of the force.
+        """Return the rising indices in the curve of the points (before, after) the jump, or the change, of the force.
 
-        Points within the jump are in neither; `margin` further points at the jump are left out on each side. Both are
-        empty without a jump.
+        Points within it are in neither; `margin` further points are left out on each side. Both are empty without any.
         """
-        last = self.points.size
-        before, after = self.jump or ((last - 1, last) if self.ends_held else (-1, last))
+        before, after = self.jump or self.change or (-1, self.points.size)
         return self.points[: max(0, before + 1 - margin)], self.points[after + margin :]
 
     @property
@@ -66,11 +68,20 @@ class Segment:
     def compared(self) -> Indices:
         """Indices in the curve, rising, of the points that a model is compared with.
 
-        All points without a jump of the force; else without those within the jump and the three next to it on each
-        side. A retraction that ends in contact lacks its last three.
+        All points without a jump or change of the force; else without those within it and the three next to it on each
+        side.
         """
-        decided = self.jump is not None or self.ends_held
-        return np.concatenate(self._sides(BESIDE_JUMP)) if decided else self.points
+        return np.concatenate(self._sides(BESIDE_JUMP)) if self.is_decided else self.points
+
+    @property
+    def ends_in_contact(self) -> bool:
+        """Whether its last point is certainly in contact: a retraction without baseline."""
+        return self.change == (self.points.size - 1, self.points.size)
+
+    @property
+    def is_decided(self) -> bool:
+        """Whether it is known which points are in contact."""
+        return self.jump is not None or self.change is not None
 
 
 @dataclass(frozen=True)
@@ -86,6 +97,7 @@ class ForceCurve:
         lines: line of each point in its file, (n,).
         times: of each point [s], (n,), rising; None where they are not known.
         level: force [FU] of bodies apart, known from another segment; None: by this curve.
+        changes: of segments by name, as in `Segment`.
     """
 
     positions: Array
@@ -94,30 +106,33 @@ class ForceCurve:
     lines: NDArray[np.int_]
     times: Array | None = None
     level: float | None = None
+    changes: Mapping[str, tuple[int, int]] = field(default_factory=dict)
 
     def of(self, name: str) -> Indices:
         """Return the indices of the points of a segment, (m,): of "approach", "hold" or "retract"; maybe empty."""
         return np.flatnonzero(self.kinds == SEGMENTS.index(name))
 
-    def only(self, name: str) -> ForceCurve:
-        """Return the curve of one segment alone: of "approach" or "retract"."""
-        points = self.of(name)
+    def only(self, *names: str) -> ForceCurve:
+        """Return the curve of some segments alone, such as "approach" and "retract", without the hold."""
+        points = np.flatnonzero(np.isin(self.kinds, [SEGMENTS.index(name) for name in names]))
         times = None if self.times is None else self.times[points]
         columns = (self.positions[points], self.forces[points], self.kinds[points], self.lines[points])
         return ForceCurve(*columns, times, self.baseline)
 
     @cached_property
     def segments(self) -> tuple[Segment, ...]:
-        """The approach and the retraction of the curve, as far as it has them, each with its jump, if any; cached.
+        """The segments of the curve in the order of time, as far as it has them, each with its jump, if any; cached.
 
         The jump of the approach is a snap-in, at which the force falls; that of the retraction is a snap-out, at which
-        it rises.
+        it rises. A hold has none.
         """
         found = []
-        for name, sign in ((APPROACH, -1.0), (RETRACT, 1.0)):
+        for name, sign in ((APPROACH, -1.0), (HOLD, 0.0), (RETRACT, 1.0)):
             if (points := self.of(name)).size:
-                jump = self._jump(points, sign)
-                found.append(Segment(name, points, jump, jump is None and name == RETRACT and self._is_held(points)))
+                change = self.changes.get(name)
+                if name == RETRACT and self._is_held(points):
+                    change = points.size - 1, points.size
+                found.append(Segment(name, points, self._jump(points, sign) if sign else None, change))
         return tuple(found)
 
     def _is_held(self, points: Indices) -> bool:
@@ -174,8 +189,8 @@ class ForceCurve:
     def baseline(self) -> float:
         """The median force [FU] of the points certainly apart, those before a snap-in or after a snap-out; cached.
 
-        With fewer than ten of these, it is a known level, else that of the first fifth of the approach, or of the last fifth of the
-        retraction where there is no approach; three points at least.
+        With fewer than ten of these, it is a known level, else that of the first fifth of the approach, or of the last
+        fifth of the retraction where there is no approach; three points at least.
         """
         apart = np.concatenate([segment.apart for segment in self.segments])
         if apart.size < 10 and self.level is not None:

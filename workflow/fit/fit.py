@@ -17,10 +17,11 @@ import numpy as np
 from contact1d.files import AnyPath
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import Contact1dError, FolderError
-from contact1d.workflow.fit.curve import RETRACT, ForceCurve
+from contact1d.workflow.fit.curve import NOUNS, RETRACT, ForceCurve
 from contact1d.workflow.fit.data import DataError, curves_of, files_of
 from contact1d.workflow.fit.forward import LAWS
 from contact1d.workflow.fit.plan import STIFFNESS, AnyFit, FitPlan, read_fit
+from contact1d.workflow.fit.relaxing import relaxed
 from contact1d.workflow.fit.segments import BAD, CurveFit, fit_curve
 from contact1d.workflow.fit.solution import Fitted, compared, model_of
 from contact1d.workflow.fit.subject import POINT
@@ -218,13 +219,13 @@ def differences(fits: CurveFit) -> str:
         texts = []
         for segment, part in fits.fits.items():
             low, high = part.intervals[name]
-            texts.append(f"{Quantity(part.values[name], 0.5 * (high - low), fit.unit(name))} on {segment}")
+            texts.append(f"{Quantity(part.values[name], 0.5 * (high - low), fit.unit(name))} on {NOUNS[segment]}")
         parts.append(f"{name} is {', '.join(texts)}")
     cause = (
         "bodies that adhere more while they separate, or relax, do so"
         if fit.subject.model.needs
-        else "bodies that relax or yield do so, and E of the approach is an apparent modulus; with a column t the terms "
-        'of [viscoelasticity] can be fitted, such as parameters = ["viscoelasticity.terms[0].share"]'
+        else "bodies that relax or yield do so, and E of the approach is an apparent modulus; with a column t the "
+        'terms of [viscoelasticity] can be fitted, such as parameters = ["viscoelasticity.terms[0].share"]'
     )
     return f"approach and retraction differ by more than their intervals: {'; '.join(parts)}: {cause}"
 
@@ -263,6 +264,9 @@ def _run(result: FitResult, load_steps: int = 15) -> None:
     """
     rows = []
     for fit in result.segments.shown:
+        if fit.plan.base.viscoelasticity is not None:
+            rows.append((_difference_in_time(fit, load_steps), float(fit.spread().max())))
+            continue
         F, d = fit.branch.forces, fit.branch.displacements
         least = max(int(np.argmin(fit.branch.positions(fit.values.get(STIFFNESS, math.inf)))), int(np.argmin(d)))
         top = float(np.interp((fit.forces - fit.baseline).max(), F[least:], d[least:]))
@@ -279,6 +283,30 @@ def _run(result: FitResult, load_steps: int = 15) -> None:
                 f"LAMMPS differs from the fit's model by up to {difference:.3g} N, more than the fit's own "
                 f"uncertainty, {allowed:.3g} N: lower accuracy.tolerance in [base]"
             )
+
+
+def _difference_in_time(fit: Fitted, load_steps: int) -> float:
+    """Return the largest difference [N] of a run on LAMMPS from the model, of a fit of bodies that relax.
+
+    The history has as many points of the fitted displacements as `load_steps`, with straight lines between.
+
+    Raises:
+        Contact1dError: the scene does not run.
+    """
+    curve, values = fit.curve, fit.solution.values
+    branch, stiffness, point = fit.subject.parts(values)
+    assert curve.times is not None
+    d = curve.positions - point - (fit.forces - fit.baseline) / stiffness
+    first = max(0, int(np.argmax(d > 0.0)) - 1)
+    corners = np.unique(np.linspace(first, d.size - 1, load_steps).astype(int))
+    times, d = curve.times[corners] - curve.times[first], np.append(min(0.0, d[first]), d[corners[1:]])
+    history = {"kind": "history", "displacement": np.column_stack([times, d]).tolist()}
+    with TemporaryDirectory(prefix="contact1d-fit-") as folder:
+        found = run(fit.scene.with_({"experiment": history}), Path(folder) / "run", figures=False).curve
+    t = np.asarray(found["time"])
+    fine = np.union1d(np.linspace(0.0, times[-1], 4000), t)
+    predicted, _ = relaxed(branch, fit.subject.terms(values), fine, np.interp(fine, times, d))
+    return float(np.abs(np.asarray(found["force"]) - np.interp(t, fine, predicted)).max())
 
 
 def fit_folder(folder: Path) -> Path:

@@ -29,6 +29,8 @@ BODIES = {"particles": "auto", "spacing": "auto", "lower": "rigid_plane"}
 """Defaults of the bodies of a base scene."""
 LOAD = {"kind": "load", "force": "1 nN"}
 """The experiment of a base scene, which gives none."""
+HISTORY = {"kind": "history", "displacement": [["0 s", "0 nm"], ["1 s", "1 nm"]]}
+"""The same of a body that relaxes."""
 
 
 class Instrument(Table):
@@ -154,7 +156,7 @@ def _base(base: Mapping[str, Any], folder: Path) -> tuple[Scene | None, list[Pro
     does not have, or no material in SI. Paths of problems begin with "base.". `folder`: for the file of a profile.
     """
     bodies = base.get("bodies", {})
-    given = {"title": "fit", "experiment": LOAD, **base}
+    given = {"title": "fit", "experiment": HISTORY if "viscoelasticity" in base else LOAD, **base}
     given["bodies"] = {**BODIES, **bodies} if isinstance(bodies, Mapping) else bodies
     try:
         scene = read_scene(given, folder=folder)
@@ -163,8 +165,10 @@ def _base(base: Mapping[str, Any], folder: Path) -> tuple[Scene | None, list[Pro
     if scene.bodies.lower != "rigid_plane" or scene.bodies.reduction != "mdr":
         return scene, [Problem("base.bodies.lower", 'must be "rigid_plane", with the reduction "mdr"')]
     for name, effect in zip(scene.effects, scene.present, strict=True):
-        if not effect.keeps_springs:
+        if not effect.keeps_springs and name != "viscoelasticity":
             return scene, [Problem(f"base.{name}", "not in a fit, whose contact models are of linear springs")]
+    if scene.viscoelasticity is not None and not scene.viscoelasticity.terms:
+        return scene, [Problem("base.viscoelasticity", "must have terms, whose relaxation a fit can follow")]
     material = scene.material
     if material is None or (material.length_unit, material.force_unit) != (1.0, 1.0):
         hint = (
@@ -177,7 +181,7 @@ def _base(base: Mapping[str, Any], folder: Path) -> tuple[Scene | None, list[Pro
 def _of_parameters(plan: FitPlan) -> list[Problem]:
     """Return the problems of the names of parameters: unknown, of a number that is 0, or named twice; [] for none."""
     problems, names = [], plan.fit.parameters
-    tables = ("bodies.", "material.", "adhesion.")
+    tables = ("bodies.", "material.", "adhesion.", "viscoelasticity.")
     unfitted = ("bodies.spacing", "material.length_unit", "material.force_unit")
     for i, name in enumerate(names):
         must = "is no number of the base scene" if name not in plan.numbers else ""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -26,9 +26,12 @@ from contact1d.workflow.laws import law_of
 from contact1d.workflow.scene.problems import tables_as_toml
 from contact1d.workflow.units import Quantity, scale_of
 
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
 RECORD, TABLE, FIGURE = "fit.json", "curve.csv", "fit.png"
-NAMES = {curves.APPROACH: ("approach", COMPRESSION), curves.RETRACT: ("retraction", TENSION)}
-"""Name and colour of each segment in figures."""
+COLOURS = {curves.APPROACH: COMPRESSION, curves.HOLD: "#009E73", curves.RETRACT: TENSION}
+"""Colour of each segment in figures."""
 
 
 def write(result: FitResult, folder: Path) -> None:
@@ -39,8 +42,8 @@ def write(result: FitResult, folder: Path) -> None:
     from pandas import DataFrame, concat
 
     fit = result.fit
-    finite = json.loads(json.dumps(document(result)), parse_constant=lambda constant: None)
-    write_whole(folder / RECORD, json.dumps(finite, indent=2, ensure_ascii=False, allow_nan=False) + "\n")
+    record = json.loads(json.dumps(document(result)), parse_constant=lambda constant: None)
+    write_whole(folder / RECORD, json.dumps(record, indent=2, ensure_ascii=False, allow_nan=False) + "\n")
     write_whole(folder / "scene.toml", tables_as_toml(fit.scene.tables))
     table = concat(
         DataFrame(
@@ -50,13 +53,14 @@ def write(result: FitResult, folder: Path) -> None:
                 "position [m]": part.curve.positions,
                 "force [N]": part.curve.forces,
                 "predicted force [N]": part.forces,
+                "baseline [N]": part.baseline,
                 "compared": np.where(np.isin(np.arange(part.forces.size), part.solution.problem.kept), "yes", "no"),
             }
         )
         for part in result.segments.shown
     )
     write_whole(folder / TABLE, table.to_csv(index=False, float_format="%.9g", lineterminator="\n"))
-    plots.save_figure(plots.draw(chart(result).written(scale_of)), folder / FIGURE)
+    plots.save_figure(plots.draw(chart(record, table).written(scale_of)), folder / FIGURE)
 
 
 def document(result: FitResult) -> dict[str, Any]:
@@ -75,10 +79,8 @@ def document(result: FitResult) -> dict[str, Any]:
         "data": str(result.file),
         "model": fit.model,
         "parameters": agreed(result.segments, plan.fit.parameters),
-        "segments": {
-            name: {"parameters": entries(part, plan.fit.parameters), **entries(part, UNITS), "reduced_chi_squared": part.misfit}
-            for name, part in result.segments.fits.items() if name != BOTH
-        } | {name: {"refused": reason} for name, reason in result.segments.refused.items()},
+        "segments": {name: alone(part) for name, part in result.segments.fits.items() if name != BOTH}
+        | {name: {"refused": reason} for name, reason in result.segments.refused.items()},
         "pull_off_force": pull_off(result),
         "fitted": modulus_words(fit),
         "contact_modulus": _modulus(fit),
@@ -133,6 +135,12 @@ def agreed(fits: CurveFit, keys: Iterable[str]) -> dict[str, Any]:
         key: estimate and {"value": estimate[0], "unit": fits.main.unit(key), "interval": list(estimate[1])}
         for key, estimate in found.items()
     }
+
+
+def alone(fit: Fitted) -> dict[str, Any]:
+    """Return the entry in fit.json of a segment alone: parameters, numbers of the measurement, and reduced χ²."""
+    parameters = entries(fit, fit.plan.fit.parameters)
+    return {"parameters": parameters, **entries(fit, UNITS), "reduced_chi_squared": fit.misfit}
 
 
 def entry(fit: Fitted, key: str) -> dict[str, Any]:
@@ -205,38 +213,60 @@ def _tabor(fit: Fitted) -> dict[str, Any] | None:
     return {"value": value, "range": reach, "assumed": not given}
 
 
-def chart(result: FitResult) -> Chart:
-    """Return the figure of data and fitted curve, F less its offset [N] over z from the contact point [m].
+def chart(record: Mapping[str, Any], table: DataFrame) -> Chart:
+    """Return the figure of data and fitted curve, F less its baseline [N] over z from the contact point [m].
 
     A second panel has the residuals, measured less predicted [N], of compared points. Outliers are marked; a note has
-    the fitted parameters with half their intervals.
+    the fitted parameters with half their intervals, of each segment where these differ.
+
+    `record`: content of fit.json; `table`: that of curve.csv.
     """
     above, below, models = list[Series](), list[Series](), list[Series]()
-    for fit in result.segments.shown:
-        z, level, far = fit.curve.positions - fit.values[POINT], fit.baseline, fit.solution.outliers
-        measured, predicted = fit.curve.forces - level, fit.forces - level
-        residual = np.full_like(z, math.nan)
-        kept = fit.solution.problem.kept
-        residual[kept] = (measured - predicted)[kept]
-        for segment in fit.curve.segments:
-            points, (name, colour) = segment.points, NAMES[segment.name]
-            above.append(Series(z[points], measured[points], name, colour, "."))
-            below.append(Series(z[points], residual[points], "", colour, "."))
-            models.append(Series(z[points], predicted[points], fit.model, BLACK, width=1.2))
-        models += [Series(z[far], measured[far], "outlier", "#CC79A7", "x")] if far.size else []
-        below.append(Series(z, 0.0 * z, "", THEORY, "--"))
-    notes = []
-    for key, estimate in result.segments.estimates.items():
-        values = [estimate] if estimate else [(fit.values[key], fit.intervals[key]) for fit in result.segments.shown]
-        if key != POINT:
-            unit = result.fit.unit(key)
-            words = " and ".join(str(Quantity(value, 0.5 * (high - low), unit)) for value, (low, high) in values)
-            notes.append(f"{key.rpartition('.')[2].replace('_', ' ')} = {words}")
+    far = [outlier["line"] for outlier in record["outliers"]]
+    for segment, rows in table.groupby("segment", sort=False):
+        point = record[POINT] or record["segments"][segment][POINT]
+        z, level = np.asarray(rows["position [m]"]) - point["value"], rows["baseline [N]"]
+        measured, predicted = (np.asarray(rows[name] - level) for name in ("force [N]", "predicted force [N]"))
+        residual = np.where(rows["compared"] == "yes", measured - predicted, math.nan)
+        name, colour = curves.NOUNS[str(segment)], COLOURS[str(segment)]
+        above.append(Series(z, measured, name, colour, "."))
+        below += [Series(z, residual, "", colour, "."), Series(z, 0.0 * z, "", THEORY, "--")]
+        models.append(Series(z, predicted, record["model"], BLACK, width=1.2))
+        left_out = np.asarray(rows["line"].isin(far))
+        models += [Series(z[left_out], measured[left_out], "outlier", "#CC79A7", "x")] * bool(left_out.any())
+    notes = [f"{key.rpartition('.')[2].replace('_', ' ')} = {words}" for key, words in in_words(record).items()]
     panels = [
         Panel(Axis("force", "N", zero=True), above + models, note=", ".join(notes), height=2.7),
         Panel(Axis("residual", "N", zero=True), below, height=1.2),
     ]
-    return Chart(Axis("position of the piezo from the contact point", "m"), panels, result.fit.plan.fit.title)
+    return Chart(Axis("position of the piezo from the contact point", "m"), panels, record["title"])
+
+
+def in_words(record: Mapping[str, Any]) -> dict[str, str]:
+    """Return value and half the interval of each parameter as text by key, of each segment where these differ.
+
+    `record`: content of fit.json.
+    """
+    found = {}
+    for key, estimate in record["parameters"].items():
+        parts = {"": estimate} if estimate else {name: part["parameters"][key] for name, part in _alone(record)}
+        found[key] = ", ".join(
+            f"{written(part)} {curves.NOUNS.get(name, name)}".strip() for name, part in parts.items()
+        )
+    return found
+
+
+def written(entry: Mapping[str, Any]) -> str:
+    """Return the value of an entry in fit.json and half its interval as text."""
+    low, high = entry["interval"]
+    if low is None or high is None:
+        return f"{Quantity(entry['value'], 0.0, entry['unit'])}, without a limit"
+    return str(Quantity(entry["value"], 0.5 * (high - low), entry["unit"]))
+
+
+def _alone(record: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield name and entry of each segment that was fitted alone; `record`: content of fit.json."""
+    yield from ((name, part) for name, part in record["segments"].items() if "refused" not in part)
 
 
 def lines(result: FitResult) -> list[str]:
@@ -249,9 +279,9 @@ def lines(result: FitResult) -> list[str]:
     fit, best = result.fit, result.fit.solution.best
     shown = [fit.plan.fit.title]
     for key, estimate in result.segments.estimates.items():
-        parts = {"": estimate} if estimate else {
-            f" of {name}": (part.values[key], part.intervals[key]) for name, part in result.segments.fits.items()
-        }  # fmt: skip
+        parts = {"": estimate} if estimate else {}
+        for name, part in result.segments.fits.items() if not estimate else ():
+            parts[f" of {curves.NOUNS[name]}"] = part.values[key], part.intervals[key]
         for words, (value, ends) in parts.items():
             factor, unit = scale_of(value, fit.unit(key))
             low, high = (end * factor for end in ends)

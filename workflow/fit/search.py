@@ -38,6 +38,7 @@ class Unknown:
         positive: whether p = scale·exp(u), else p = scale·u.
         known: mean and standard deviation of its calibration, in the unit of the parameter; None without one.
         fitted: whether it is a parameter of the fit; else a nuisance parameter.
+        most: largest value that is allowed.
     """
 
     name: str
@@ -45,6 +46,12 @@ class Unknown:
     positive: bool = True
     known: tuple[float, float] | None = None
     fitted: bool = False
+    most: float = math.inf
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """The least and largest u: of a positive parameter three decades to both sides of its scale, to `most`."""
+        return (-LIMIT, min(LIMIT, math.log(self.most / self.scale))) if self.positive else (-math.inf, math.inf)
 
     def value(self, u: float) -> float:
         """Return the parameter p in its unit: scale·exp(u) of a positive one, with u limited to ±50, else scale·u."""
@@ -75,6 +82,8 @@ class Problem:
         forces: measured forces at all points, (n,).
         runs: indices of the points that are compared, one array for each run.
         resting: function of the values of all unknowns and of runs that returns the forces of bodies apart in these.
+        excess: function of the values of all unknowns that returns by how much each of some bounds is exceeded, over
+            what is tolerated, (b,), ≥ 0.
     """
 
     unknowns: tuple[Unknown, ...]
@@ -82,6 +91,7 @@ class Problem:
     forces: Array
     runs: tuple[Indices, ...]
     resting: Callable[[Sequence[float], Sequence[Indices]], Resting | None]
+    excess: Model
 
     @property
     def kept(self) -> Indices:
@@ -134,10 +144,11 @@ class Problem:
         return np.column_stack(columns)
 
     def prior(self, u: Array) -> Array:
-        """Return a row for each calibrated unknown, (q, p + 1): derivatives of its value by u and, last, its misfit.
+        """Return a row for each calibrated unknown and each bound, (q, p + 1): derivatives by u and, last, its misfit.
 
-        Both are over the standard deviation of the calibration. The misfit is the calibrated mean less the value at u.
-        Rows are in the order of the unknowns; (0, p + 1) without any.
+        Those of a calibration are of the value over its standard deviation; the misfit is the calibrated mean less the
+        value at u. Those of a bound are of its excess, which should be 0. Calibrations come first, in the order of the
+        unknowns.
 
         `u`: logarithm of the ratio of each positive unknown to its scale, the ratio of any other, (p,).
         """
@@ -148,7 +159,9 @@ class Problem:
                 row = np.zeros(u.size + 1)
                 row[i], row[-1] = unknown.slope(float(u[i])) / spread, (mean - unknown.value(float(u[i]))) / spread
                 rows.append(row)
-        return np.array(rows).reshape(-1, u.size + 1)
+        excess = self.excess(self.values(u))
+        slopes = self.derivative(self.excess, u) if excess.any() else np.zeros((excess.size, u.size))
+        return np.concatenate([np.array(rows).reshape(-1, u.size + 1), np.column_stack([slopes, -excess])])
 
     def least(
         self, u: Array, noise: Noise, deviation: float, fixed: int | None = None, robust: bool = False
@@ -187,11 +200,11 @@ class Problem:
                 [noise.whitened(self.slopes(full, free)) / deviation, self.prior(full)[:, :-1][:, free]]
             )
 
-        limits = np.array([LIMIT if unknown.positive else math.inf for unknown in self.unknowns])[free]
-        start, bounds = np.clip(u[free], -limits, limits), limits + 1e-3  # a start must be inside the bounds
+        low, high = np.array([unknown.limits for unknown in self.unknowns])[free].T
+        start, bounds = np.clip(u[free], low, high), (low - 1e-3, high + 1e-3)  # a start must be inside the bounds
         options: dict[str, Any] = {"xtol": 1e-6, "ftol": 1e-6, "gtol": 1e-12, "max_nfev": 60}
         options |= {"loss": "soft_l1", "f_scale": 2.0} if robust else {}
-        fit = least_squares(rows, start, jacobian, (-bounds, bounds), x_scale="jac", **options)
+        fit = least_squares(rows, start, jacobian, bounds, x_scale="jac", **options)
         return completed(fit.x), 2.0 * float(fit.cost)
 
 
@@ -254,8 +267,8 @@ def global_search(
         return total if total < 1e100 else 1e100  # of NaN, too; and the square of it is a number
 
     population = differential_evolution(
-        misfit, [(-LIMIT, LIMIT)] * len(sought), rng=1, maxiter=generations, popsize=size, tol=0.02, init="sobol",
-        polish=False, x0=np.zeros(len(sought)),
+        misfit, [problem.unknowns[i].limits for i in sought], rng=1, maxiter=generations, popsize=size, tol=0.02,
+        init="sobol", polish=False, x0=np.zeros(len(sought)),
     )  # fmt: skip
     order = np.argsort(population.population_energies)[:STARTS]
     return [completed(population.population[i]) for i in order]
@@ -356,4 +369,6 @@ def interval(solution: Solution, index: int, farthest: float = 4.0) -> tuple[flo
             else:
                 change = low[0] + (high[0] - low[0]) * (wanted - low[1]) / (high[1] - low[1])
         ends.append(float(solution.u[index] + side * change))
-    return ends[0], ends[1]
+    unknown = problem.unknowns[index]
+    most = unknown.limits[1] if math.isfinite(unknown.most) else math.inf
+    return ends[0], min(ends[1], most)

@@ -21,6 +21,7 @@ from scipy.special import ndtri
 
 from contact1d.workflow.errors import Contact1dError
 from contact1d.workflow.fit.curve import APPROACH, RETRACT, ForceCurve
+from contact1d.workflow.fit.data import DataError
 from contact1d.workflow.fit.forward import ContactModel
 from contact1d.workflow.fit.plan import FitPlan
 from contact1d.workflow.fit.search import LEVEL
@@ -93,24 +94,34 @@ def fit_curve(plan: FitPlan, curve: ForceCurve, model: ContactModel) -> CurveFit
     """Fit a contact model to the segments of a curve, and return the fits.
 
     A curve with approach and retraction is fitted as a whole and by each segment alone. Where these differ by more than
-    chance, there is no fit of the whole.
+    chance, there is no fit of the whole. Of bodies that relax there is that of the whole only, with the hold, which is
+    left out otherwise.
 
     Raises:
+        DataError: the bodies relax, and the curve has no times.
         UndeterminedError: the curve does not determine the parameters.
     """
-    if len(curve.segments) == 1:
-        return CurveFit(curve, {curve.segments[0].name: fitted(plan, curve, model)})
+    relaxes = plan.base.viscoelasticity is not None
+    if relaxes and curve.times is None:
+        raise DataError("has no column t with a unit, such as t [s], which a fit with [viscoelasticity] needs")
+    curve = curve if relaxes else curve.only(APPROACH, RETRACT)
+    if relaxes or len(curve.segments) == 1:
+        whole = BOTH if len(curve.segments) > 1 else curve.segments[0].name
+        return CurveFit(curve, {whole: fitted(plan, curve, model)})
     together = solution_of(plan, curve, model)
     alone, refused = dict[str, Fitted](), dict[str, str]()
     for segment in curve.segments:
         part = curve.only(segment.name)
         try:
-            fit = fitted(plan, part, model, together)
-            alone[segment.name] = fitted(plan, part, model) if fit.misfit > BAD else fit
+            fit = solution_of(plan, part, model, together, alone.get(APPROACH))
+            fit = solution_of(plan, part, model, None, alone.get(APPROACH)) if fit.misfit > BAD else fit
+            alone[segment.name] = checked(fit, by_profile=False)
         except (Contact1dError, ArithmeticError, np.linalg.LinAlgError) as error:
             refused[segment.name] = str(error)
-    if not refused and (names := differing(alone[APPROACH], alone[RETRACT])):
-        return CurveFit(curve, alone, names)
+    if not refused and differing(alone[APPROACH], alone[RETRACT]):  # perhaps by skewed intervals
+        alone = {name: checked(fit) for name, fit in alone.items()}
+        if names := differing(alone[APPROACH], alone[RETRACT]):
+            return CurveFit(curve, alone, names)
     return CurveFit(curve, {BOTH: checked(together), **alone}, (), refused)
 
 

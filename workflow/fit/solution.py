@@ -19,7 +19,7 @@ from contact1d.workflow.fit.curve import APPROACH, RETRACT, ForceCurve, Indices
 from contact1d.workflow.fit.forward import LAWS, RANGE, Branch, ContactModel
 from contact1d.workflow.fit.noise import noises
 from contact1d.workflow.fit.plan import STIFFNESS, FitPlan
-from contact1d.workflow.fit.search import TWO_SIDED, Solution, Unknown, global_search, interval, solved
+from contact1d.workflow.fit.search import LEVEL, TWO_SIDED, Solution, Unknown, global_search, interval, solved
 from contact1d.workflow.fit.subject import OFFSETS, POINT, SLOPE, Subject, modulus_of
 from contact1d.workflow.scene import Scene
 
@@ -109,13 +109,21 @@ class Fitted:
         """
         return UNITS.get(name) or self.plan.unit(name)
 
+    def deviation(self, name: str) -> float:
+        """Return the standard deviation of an unknown by its covariance, in its unit."""
+        index = self.subject.names.index(name)
+        spread = math.sqrt(self.solution.best.covariance[index, index])
+        return abs(self.subject.unknowns[index].slope(float(self.solution.u[index]))) * spread
+
     @property
     def cost_of_baseline(self) -> float:
         """How many times as wide the unknown offset makes the widest interval of a parameter; 1 with a baseline.
 
         The intervals are those of the covariance, with and without the offset of the segments as an unknown.
         """
-        if self.subject.resting(self.solution.values, self.solution.problem.runs) is not None:
+        known = [unknown.name for unknown in self.subject.unknowns if unknown.known]
+        resting = self.subject.resting(self.solution.values, self.solution.problem.runs)
+        if resting is not None or any(name in known for name in OFFSETS.values()):
             return 1.0
         names, C = self.subject.names, self.solution.best.covariance
         apart = [names.index(name) for name in OFFSETS.values() if name in names]
@@ -206,14 +214,15 @@ class Fitted:
         first = min(max(0, int(np.argmin(forces)) - 7), max(0, points.size - 15))
         points, forces = points[first : first + 15], forces[first : first + 15]
         x = np.linspace(-1.0, 1.0, points.size)
-        best, index = self.solution.best, self.subject.names.index(OFFSETS[RETRACT])
+        best, offset = self.solution.best, OFFSETS[RETRACT]
+        offset = offset if offset in self.values else OFFSETS[APPROACH]
         (noise,) = noises([(best.noise.share, best.noise.memory)], [points])
         rows = noise.whitened(np.column_stack([np.ones_like(x), x, x**2, forces]))
         powers, *_ = np.linalg.lstsq(rows[:, :3], rows[:, 3])
         parabola = np.vander(x, 3, increasing=True)
         lowest = parabola[int(np.argmin(parabola @ powers))]
         variance = best.deviation**2 * float(lowest @ np.linalg.solve(rows[:, :3].T @ rows[:, :3], lowest))
-        variance += best.covariance[index, index] * self.subject.unknowns[index].scale ** 2
+        variance += self.deviation(offset) ** 2
         return -float(lowest @ powers), TWO_SIDED * math.sqrt(variance)
 
     def spread(self) -> Array:
@@ -279,30 +288,30 @@ def _starts(subject: Subject, outliers: Indices) -> list[Array]:
     return starts[:3]
 
 
-def fitted(
-    plan: FitPlan, curve: ForceCurve, model: ContactModel, near: Fitted | None = None, widest: float = 1.0
-) -> Fitted:
+def fitted(plan: FitPlan, curve: ForceCurve, model: ContactModel) -> Fitted:
     """Fit a contact model to a curve, and return the fit with the 95 % intervals of parameters and contact point.
 
     Args:
         plan: with the parameters.
         curve: the measured curve.
         model: the contact model.
-        near: a fit of the same model to a similar curve, from which the search begins; None: it is global.
-        widest: distance of an end of an interval from the estimate, in log p, beyond which a parameter p is
-            undetermined; the contact point may be.
 
     Raises:
         UndeterminedError: the curve does not determine the parameters, has too many outliers or too few points in
             contact, or the cantilever is too soft.
     """
-    return checked(solution_of(plan, curve, model, near), widest)
+    return checked(solution_of(plan, curve, model))
 
 
-def checked(fit: Fitted, widest: float = 1.0) -> Fitted:
+def checked(fit: Fitted, widest: float = 1.0, by_profile: bool = True) -> Fitted:
     """Return a fit with the 95 % intervals of parameters and contact point, after checks of the result.
 
-    `widest`: as in `fitted`.
+    Args:
+        fit: without intervals.
+        widest: distance of an end of an interval from the estimate, in log p, beyond which a parameter p is
+            undetermined; the contact point and terms of a viscoelasticity may be.
+        by_profile: whether the intervals are those of the profile likelihood; else those of the covariance, which cost
+            nothing and are symmetric.
 
     Raises:
         UndeterminedError: as in `fitted`.
@@ -319,14 +328,24 @@ def checked(fit: Fitted, widest: float = 1.0) -> Fitted:
     intervals = {}
     for i, unknown in enumerate(subject.unknowns):
         if unknown.fitted or unknown.name == POINT:
-            low, high = interval(solution, i)
-            if unknown.fitted and not max(high - solution.u[i], solution.u[i] - low) < widest:
+            if by_profile:
+                low, high = interval(solution, i)
+            else:
+                low, high = (solution.u[i] + solution.average.quantile(i, 0.5 + side * LEVEL) for side in (-0.5, 0.5))
+            free = unknown.name.startswith("viscoelasticity.")  # a term slower than the curve has a wide interval
+            if unknown.fitted and not free and not max(high - solution.u[i], solution.u[i] - low) < widest:
                 raise UndeterminedError(_undetermined(fit, i, low, high))
             intervals[unknown.name] = unknown.value(low), unknown.value(high)
     return replace(fit, intervals=intervals)
 
 
-def solution_of(plan: FitPlan, curve: ForceCurve, model: ContactModel, near: Fitted | None = None) -> Fitted:
+def solution_of(
+    plan: FitPlan,
+    curve: ForceCurve,
+    model: ContactModel,
+    near: Fitted | None = None,
+    approach: Fitted | None = None,
+) -> Fitted:
     """Fit a contact model to a curve, and return the fit without intervals and without checks of the result.
 
     The baseline has a slope if the plan says so, or by "auto" if the forces of bodies apart show one at 99.9 %.
@@ -336,17 +355,22 @@ def solution_of(plan: FitPlan, curve: ForceCurve, model: ContactModel, near: Fit
         curve: the measured curve.
         model: the contact model.
         near: a fit of the same model to a similar curve, from which the search begins; None: it is global.
+        approach: of a retraction alone, the fit of the approach, whose offset counts where the retraction has none.
 
     Raises:
         UndeterminedError: the curve does not depend on a parameter, or parameters trade off.
     """
     none = np.zeros(0, dtype=np.intp)
-    subject = _subject(plan, curve, model, plan.baseline == "sloped")
+    subject = _subject(plan, curve, model, plan.baseline == "sloped", approach)
     starts = _starts(subject, none) if near is None else [subject.embedded(near.values)]
     require_distinct(subject, starts[0])
     solution = solved(subject.problem, starts)
+    decided = subject.decided(solution.values, solution.best.deviation)
+    if decided is not subject:
+        subject, curve = decided, decided.curve
+        solution = solved(subject.problem, [solution.u])
     if plan.baseline == "auto" and _is_sloped(subject, solution):
-        sloped = _subject(plan, curve, model, True)
+        sloped = _subject(plan, curve, model, True, approach)
         values = dict(zip(subject.names, solution.values, strict=True))
         subject, solution = sloped, solved(sloped.problem, [sloped.embedded(values)])
     return Fitted(plan, curve, subject, solution, {})
@@ -363,13 +387,16 @@ def _is_sloped(subject: Subject, solution: Solution) -> bool:
     return not low < 0.0 < high
 
 
-def _subject(plan: FitPlan, curve: ForceCurve, model: ContactModel, sloped: bool) -> Subject:
+def _subject(
+    plan: FitPlan, curve: ForceCurve, model: ContactModel, sloped: bool, approach: Fitted | None = None
+) -> Subject:
     """Return the scene, instrument and unknowns of a contact model for a curve; the scene lacks [adhesion] for Hertz.
 
     The unknowns are, in this order, the parameters and then numbers with ± on which the forces depend, the instrument's
     stiffness where it is finite, the contact point, the offset of the force of each segment and, if `sloped`, the slope
     of the baseline. A number with ± has a calibration, as has a contact point that is given; a stiffness without ± one
-    of 1e-6.
+    of 1e-6. A retraction that ends in contact has the offset of the approach: of the same curve, or as a calibration
+    that of a fit of the `approach`.
     """
     scene = plan.base if model.needs else plan.base.model_copy(update={"adhesion": None})
     exact = 1e-6  # ± over the value of a number that is given without one
@@ -381,15 +408,21 @@ def _subject(plan: FitPlan, curve: ForceCurve, model: ContactModel, sloped: bool
         share = plan.known.get(key, exact if key == STIFFNESS else None)
         known = None if share is None else (value, share * value / TWO_SIDED)
         if math.isfinite(value):
-            unknowns.append(Unknown(key, value, known=known, fitted=key in plan.fit.parameters))
+            most = 1.0 if key.endswith(".share") else math.inf
+            unknowns.append(Unknown(key, value, known=known, fitted=key in plan.fit.parameters, most=most))
     point, depth = plan.fit.contact_point, curve.depth
     known = None
     if point != "free":
         known = point, plan.known.get(POINT, 0.0) * abs(point) / TWO_SIDED + exact * depth
     unknowns.append(Unknown(POINT, depth, positive=False, known=known))
     range_of_forces = float(np.ptp(curve.forces))
-    for segment in curve.segments:
-        unknowns.append(Unknown(OFFSETS[segment.name], range_of_forces, positive=False))
+    for name in dict.fromkeys(OFFSETS[segment.name] for segment in curve.segments):
+        known, ends = None, curve.segments[-1].ends_in_contact and name == OFFSETS[RETRACT]
+        if ends and len(curve.segments) > 1:
+            continue  # the offset of the approach is the only one that is seen
+        if ends and approach is not None:
+            known = approach.values[OFFSETS[APPROACH]], approach.deviation(OFFSETS[APPROACH])
+        unknowns.append(Unknown(name, range_of_forces, positive=False, known=known))
     if sloped:
         unknowns.append(Unknown(SLOPE, range_of_forces / depth, positive=False))
     return Subject(scene, model, curve, tuple(unknowns))

@@ -9,22 +9,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.workflow.fit.curve import APPROACH, RETRACT, ForceCurve
+from contact1d.workflow.fit.curve import APPROACH, HOLD, RETRACT, ForceCurve
 from contact1d.workflow.fit.forward import Body, Branch, ContactModel, cached
 from contact1d.workflow.fit.noise import Indices, Resting
 from contact1d.workflow.fit.plan import STIFFNESS
+from contact1d.workflow.fit.relaxing import relaxed
 from contact1d.workflow.fit.search import Problem, Unknown
 from contact1d.workflow.laws import law_of
 from contact1d.workflow.scene import Scene
 
 Array = NDArray[np.float64]
 POINT, SLOPE = "contact_point", "force_slope"
-OFFSETS = {APPROACH: "force_offset", RETRACT: "force_offset_of_retraction"}
+OFFSETS = {APPROACH: "force_offset", HOLD: "force_offset", RETRACT: "force_offset_of_retraction"}
 """Names of the offset of the force by segment."""
 MEASURED = (POINT, SLOPE, STIFFNESS, *OFFSETS.values())
 """Names of the unknowns of the measurement, which no scene has."""
@@ -64,7 +65,7 @@ class Subject:
         self.held, self.apart, self.undecided, self.approaching = (np.zeros(n, dtype=bool) for _ in range(4))
         for segment in self.curve.segments:
             self.held[segment.held] = self.apart[segment.apart] = True
-            if segment.jump is None and not segment.ends_held:
+            if not segment.is_decided:
                 self.undecided[segment.points] = True
                 self.approaching[segment.points] = segment.name == APPROACH
         self.pitch = float(np.median(np.abs(np.diff(self.curve.positions)))) or 1e-300
@@ -79,7 +80,7 @@ class Subject:
     def problem(self) -> Problem:
         """The least-squares problem of the compared points, those of the approach before those of the retraction."""
         runs = tuple(segment.compared for segment in self.curve.segments)
-        return Problem(self.unknowns, self.forces, self.curve.forces, runs, self.resting)
+        return Problem(self.unknowns, self.forces, self.curve.forces, runs, self.resting, self.excess)
 
     def embedded(self, values: Mapping[str, float]) -> Array:
         """Return u of all unknowns, (p,), from values by name, such as those of another fit.
@@ -140,7 +141,8 @@ class Subject:
         named = dict(zip(self.names, values, strict=True))
         forces = named.get(SLOPE, 0.0) * (self.curve.positions - named[POINT])
         for segment in self.curve.segments:
-            forces[segment.points] += named[OFFSETS[segment.name]]
+            name = OFFSETS[segment.name]
+            forces[segment.points] += named[name if name in named else OFFSETS[APPROACH]]
         return np.asarray(forces)
 
     def apart_at(self, values: Sequence[float]) -> NDArray[np.bool_]:
@@ -153,6 +155,22 @@ class Subject:
         z = self.curve.positions - point
         ends = np.where(self.approaching, branch.displacements[0], branch.snap_out(stiffness)[0])
         return np.asarray(self.apart | (self.undecided & (z < ends)))
+
+    def excess(self, values: Sequence[float]) -> Array:
+        """Return how far the contact exists where the model has none, over the distance of positions, (b,), ≥ 0.
+
+        On the retraction it is the model's loss of the contact above the last position in contact, on the approach its
+        first force above the first one. Segments of which it is not known count 0. `values`: of all unknowns.
+        """
+        branch, stiffness, point = self.parts(values)
+        found = []
+        for segment in self.curve.segments:
+            held = segment.held
+            if segment.name == RETRACT and held.size:
+                found.append(point + branch.snap_out(stiffness)[0] - self.curve.positions[held[-1]])
+            elif segment.name == APPROACH and held.size:
+                found.append(point + branch.displacements[0] - self.curve.positions[held[0]])
+        return np.asarray(np.maximum(0.0, np.array(found)) / self.pitch)
 
     def resting(self, values: Sequence[float], compared: Sequence[Indices]) -> Resting | None:
         """Return the measured forces of bodies apart in compared runs; None where these are fewer than 30 points.
@@ -173,6 +191,63 @@ class Subject:
         z = (self.curve.positions[points] - self.curve.positions[points].mean())[:, None]
         return Resting(tuple(runs), self.curve.forces[points], np.hstack([levels, z / self.curve.depth]))
 
+    def terms(self, values: Sequence[float]) -> list[tuple[float, float]]:
+        """Return share and relaxation time [s] of each term of the scene's bodies; [] if these do not relax.
+
+        `values`: of all unknowns, in their order and units.
+        """
+        if self.scene.viscoelasticity is None:
+            return []
+        effect = self.scene_with(values).viscoelasticity
+        return [(term.share, term.time) for term in (effect and effect.terms) or ()]
+
+    def _relaxed(self, values: Sequence[float]) -> Array:
+        """Return F [FU] of bodies that relax, with the baseline, at every measured position, (n,).
+
+        With a cantilever the displacement that the measured force F′ tells, z − z₀ − F′/k_c, has its noise. To first
+        order F follows from the force f and the stiffness S at that displacement: F = F′ + (f − F′)/(1 + S/k_c).
+
+        `values`: of all unknowns, in their order and units.
+        """
+        branch, stiffness, point = self.parts(values)
+        baseline = self.baseline(values)
+        measured = self.curve.forces - baseline
+        assert self.curve.times is not None
+        d = self.curve.positions - point - measured / stiffness
+        forces, slope = relaxed(branch, self.terms(values), self.curve.times, d)
+        predicted = forces if math.isinf(stiffness) else measured + (forces - measured) / (1.0 + slope / stiffness)
+        return np.asarray(predicted + baseline)
+
+    def decided(self, values: Sequence[float], deviation: float, most: int = 20) -> Subject:
+        """Return the subject in which the change between contact and bodies apart has its likeliest place.
+
+        It is sought in segments without a jump, between the forces of the contact and of the baseline; it lies between
+        all places whose sum of squares is larger by nine variances of the noise at most. Where the forces of the model
+        are continuous, as without adhesion, and where these are more than `most` points, it stays undecided, and moves
+        with the parameters: a sum of squares with many minima, one for each point.
+
+        Args:
+            values: of all unknowns, in their order and units.
+            deviation: standard deviation of the noise [FU].
+            most: largest number of such places.
+        """
+        if not self.model.needs:
+            return self
+        branch, stiffness, point = self.parts(values)
+        level, changes = self.baseline(values), dict[str, tuple[int, int]]()
+        for segment in self.curve.segments:
+            if segment.is_decided or segment.name not in (APPROACH, RETRACT):
+                continue
+            i = segment.points
+            off = self.curve.forces[i] - level[i]
+            contact = branch.forces_at(self.curve.positions[i] - point, stiffness, held=True)
+            gain = np.append(0.0, np.cumsum((off - contact) ** 2 - off**2))  # of contact up to a point
+            squares = (gain if segment.name == RETRACT else -gain) / deviation**2
+            likely = np.flatnonzero(squares < squares.min() + 9.0)
+            if likely[-1] - likely[0] < most and likely[0] > 3 and likely[-1] < i.size - 3:
+                changes[segment.name] = int(likely[0]) - 1, int(likely[-1])
+        return replace(self, curve=replace(self.curve, changes=changes)) if changes else self
+
     def forces(self, values: Sequence[float]) -> Array:
         """Return F [FU], compression positive and with the baseline, at every measured position, (n,).
 
@@ -182,6 +257,8 @@ class Subject:
 
         `values`: of all unknowns, in their order and units.
         """
+        if self.scene.viscoelasticity is not None:
+            return self._relaxed(values)
         branch, stiffness, point = self.parts(values)
         z = self.curve.positions - point
         forces = np.zeros_like(z)

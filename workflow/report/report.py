@@ -1,4 +1,4 @@
-"""The HTML page of runs or of a sweep, which needs no network and no other file.
+"""The HTML page of runs, of a sweep or of a fit, which needs no network and no other file.
 
 A scene is described for readers who have not seen its file, with the descriptions of its tables and keys.
 """
@@ -20,6 +20,9 @@ from contact1d.analysis.curve import read_states
 from contact1d.files import AnyPath, write_whole
 from contact1d.workflow.body.theory import in_words
 from contact1d.workflow.errors import FolderError
+from contact1d.workflow.fit.report import RECORD as FIT
+from contact1d.workflow.fit.report import TABLE, chart, written
+from contact1d.workflow.fit.subject import POINT
 from contact1d.workflow.report.charts import Data, charts_of, path_of, symbols
 from contact1d.workflow.runs.charts import charts
 from contact1d.workflow.runs.finished import Run, read_run
@@ -39,30 +42,33 @@ SIGNATURES = (
 
 
 def report(folders: Sequence[AnyPath], out: AnyPath = "report.html") -> Path:
-    """Return the path of the page of runs or of a sweep, after writing it.
+    """Return the path of the page of runs, of a sweep or of a fit, after writing it.
 
     A failed run is on the page, with its reason.
 
     Args:
-        folders: folders of one or several runs, 24 at most, which are overlaid; or the folder of one sweep.
+        folders: folders of one or several runs, 24 at most, which are overlaid; or the folder of one sweep or one fit.
         out: file to write; an earlier page is replaced.
 
     Raises:
-        FolderError: a folder holds neither a run nor a sweep, there are too many, or a sweep among others; a file in it
-            can't be read; or the file is there and no page.
+        FolderError: a folder holds neither a run nor a sweep nor a fit, there are too many, or a sweep or fit among
+            others; a file in it can't be read; or the file is there and no page.
     """
     path = Path(out)
     if path.exists() and not (path.is_file() and any(signature in path.read_bytes() for signature in SIGNATURES)):
         raise FolderError(f"{path} is no page of contact1d: a page replaces an earlier page only; choose another file")
     paths = [Path(folder) for folder in folders]
-    sweeps = [folder for folder in paths if (folder / RECORD).is_file()]
-    if sweeps and len(paths) > 1:
-        raise FolderError(f"{sweeps[0]} holds a sweep: a page shows one sweep, or runs")
+    single = [folder for folder in paths if any((folder / name).is_file() for name in (RECORD, FIT))]
+    if single and len(paths) > 1:
+        raise FolderError(f"{single[0]} holds a sweep or a fit: a page shows one of them, or runs")
     most_runs = 24  # more make neither a table nor a figure that can be read: they are for a sweep
     if len(paths) > most_runs:
         raise FolderError(f"{len(paths)} runs are too many for one page; at most {most_runs}")
     try:
-        page = _of_sweep(paths[0]) if sweeps else _of_runs([read_run(folder) for folder in paths])
+        if single:
+            page = _of_sweep(paths[0]) if (paths[0] / RECORD).is_file() else _of_fit(paths[0])
+        else:
+            page = _of_runs([read_run(folder) for folder in paths])
     except (OSError, LookupError, TypeError, ValueError, EOFError, BadZipFile, csv.Error) as error:
         raise FolderError(
             f"a file in {' or '.join(map(str, paths))} can't be read ({error}): start the run or the sweep again"
@@ -144,6 +150,31 @@ def _of_sweep(folder: Path) -> str:
         titles={axis.key: title_of(plan, axis) for axis in plan.axes},
         rows=list(islice(read_table(folder), most_rows)), counts=counts_in(folder),
         base=json.dumps(plan.base, indent=2, ensure_ascii=False),
+    )  # fmt: skip
+
+
+def _of_fit(folder: Path) -> str:
+    """Return the HTML page of a fit, from the files in its folder."""
+    from pandas import read_csv
+
+    record = json.loads((folder / FIT).read_text(encoding="utf-8"))
+    both = record["parameters"] | {POINT: record[POINT]}
+    columns = {"both segments": both} if len(record["segments"]) != 1 else {}
+    for name, part in record["segments"].items():
+        columns[name] = {} if "refused" in part else part["parameters"] | {POINT: part[POINT]}
+    rows = {
+        key: {name: written(entries[key]) if entries.get(key) else "—" for name, entries in columns.items()}
+        for key in both
+    }
+    if record["pull_off_force"]:
+        measured = Quantity.of(record["pull_off_force"])
+        rows["measured pull-off force"] = dict.fromkeys(columns, "—") | {list(columns)[-1]: str(measured)}
+    noise = record["noise"]
+    memory = f"{noise['share_with_memory']:.0%} of the variance with a memory of {noise['memory']:.0f} points"
+    return _page(
+        "fit.html", charts_of({"": {"fit": chart(record, read_csv(folder / TABLE))}}), None, record=record, rows=rows,
+        columns=[*columns], folder=folder, noise=f"{Quantity(noise['value'], 0.0, 'N')}, {memory}",
+        scene=(folder / "scene.toml").read_text(encoding="utf-8"),
     )  # fmt: skip
 
 
