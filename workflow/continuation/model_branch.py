@@ -194,7 +194,7 @@ class ModelBranch:
         about = np.clip(peak + step * np.arange(-3.0, 4.0), end, zero)
         positions = np.unique(np.append(positions, about))[::-1]
         positions = positions[positions < zero]
-        last = int(np.count_nonzero(positions >= peak - 0.5 * step)) if peak < zero else 0
+        last = int(np.count_nonzero(positions >= peak)) if peak < zero else 0
         if (near := positions[max(last - nearest, 0) : last]).size:
             tensions = -self.model.held(near)  # a chain may lose a part at the limit point, the maximum of its law
             loses = tensions[-1] < (1.0 - self.settings.tolerance) * tensions.max()

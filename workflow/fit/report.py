@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from importlib.metadata import version
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -182,10 +183,16 @@ def modulus_words(fit: Fitted) -> str:
     key = next((key for key in fit.plan.fit.parameters if key.endswith("_modulus")), None)
     if key is None:
         return "no modulus is fitted: it is that of the base scene"
+    kind = ""
+    if fit.subject.scene.viscoelasticity is not None:
+        kind = "; it is the instantaneous modulus"
+    elif not fit.subject.model.needs and [segment.name for segment in fit.curve.segments] == [curves.APPROACH]:
+        kind = "; of an approach alone it is an apparent modulus, lower than the instantaneous one if the body relaxes"
     if key.endswith("contact_modulus"):
-        return "E* is fitted: no Poisson's ratio is assumed"
+        return f"E* is fitted: no Poisson's ratio is assumed{kind}"
     ratio = getattr(fit.subject.scene.material, key.split(".")[1]).poisson_ratio
-    return f"E is fitted with ν = {ratio:g} assumed; the curve determines E* alone, and another ν changes E as 1 − ν²"
+    known = "the curve determines E* alone, and another ν changes E as 1 − ν²"
+    return f"E is fitted with ν = {ratio:g} assumed; {known}{kind}"
 
 
 def _modulus(fit: Fitted) -> dict[str, Any]:
@@ -236,10 +243,10 @@ def chart(record: Mapping[str, Any], table: DataFrame) -> Chart:
         models += [Series(z[left_out], measured[left_out], "outlier", "#CC79A7", "x")] * bool(left_out.any())
     notes = [f"{key.rpartition('.')[2].replace('_', ' ')} = {words}" for key, words in in_words(record).items()]
     panels = [
-        Panel(Axis("force", "N", zero=True), above + models, note=", ".join(notes), height=2.7),
+        Panel(Axis("force", "N", zero=True), above + models, note="\n".join(fill(note, 76) for note in notes), height=2.7),
         Panel(Axis("residual", "N", zero=True), below, height=1.2),
     ]
-    return Chart(Axis("position of the piezo from the contact point", "m"), panels, record["title"])
+    return Chart(Axis("position of the piezo from the contact point", "m"), panels, fill(record["title"], 70))
 
 
 def in_words(record: Mapping[str, Any]) -> dict[str, str]:
@@ -285,8 +292,12 @@ def lines(result: FitResult) -> list[str]:
         for words, (value, ends) in parts.items():
             factor, unit = scale_of(value, fit.unit(key))
             low, high = (end * factor for end in ends)
+            # As many digits as show the interval, four at least.
+            share = abs(high - low) / max(abs(value * factor), 1e-300)
+            digits = max(4, 2 - math.floor(math.log10(share))) if 0.0 < share < math.inf else 4
             name = f"{key}{words}"
-            shown.append(f"  {name:<44}{value * factor:.4g} {unit}, 95 %: {low:.4g} to {high:.4g} {unit}")
+            text = f"{value * factor:.{digits}g} {unit}, 95 %: {low:.{digits}g} to {high:.{digits}g} {unit}"
+            shown.append(f"  {name:<44}{text}")
     measured = pull_off(result)
     if measured:
         shown.append(f"  {'measured pull-off force':<44}{Quantity(measured['value'], measured['uncertainty'], 'N')}")

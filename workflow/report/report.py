@@ -20,6 +20,7 @@ from contact1d.analysis.curve import read_states
 from contact1d.files import AnyPath, write_whole
 from contact1d.workflow.body.theory import in_words
 from contact1d.workflow.errors import FolderError
+from contact1d.workflow.fit.curve import NOUNS
 from contact1d.workflow.fit.report import RECORD as FIT
 from contact1d.workflow.fit.report import TABLE, chart, written
 from contact1d.workflow.fit.subject import POINT
@@ -161,7 +162,7 @@ def _of_fit(folder: Path) -> str:
     both = record["parameters"] | {POINT: record[POINT]}
     columns = {"both segments": both} if len(record["segments"]) != 1 else {}
     for name, part in record["segments"].items():
-        columns[name] = {} if "refused" in part else part["parameters"] | {POINT: part[POINT]}
+        columns[NOUNS[name]] = {} if "refused" in part else part["parameters"] | {POINT: part[POINT]}
     rows = {
         key: {name: written(entries[key]) if entries.get(key) else "—" for name, entries in columns.items()}
         for key in both
