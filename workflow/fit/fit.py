@@ -200,7 +200,7 @@ def _warn_of_fit(result: FitResult) -> None:
         )
     if not curve.positions.min() < base_fit.values[POINT] < curve.positions.max():
         result.warnings[POINT] = "the contact point is outside the curve: the baseline is not in it"
-    elif (cost := base_fit.cost_of_baseline) > 1.0:
+    if (cost := base_fit.cost_of_baseline) > 1.0:
         result.warnings["baseline"] = (
             f"the curve has no baseline: an unknown level of the force makes the widest interval {cost:.2g} times as "
             "wide; record more of the approach before the bodies touch"

@@ -26,6 +26,8 @@ from scipy.special import softmax, stdtr
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
+UNDETERMINED = 100.0
+"""Standard deviation of the unknowns of the least squares where the data say nothing of them."""
 EXCLUDED = 6.9
 """Natural logarithm of the likelihood below the largest one from which on a noise is excluded: 99.9 % of the χ²
 distribution with two degrees of freedom, those of s and τ."""
@@ -122,10 +124,12 @@ def _estimates(grid: Sequence[Noise], residuals: Array, slopes: Array, prior: Ar
     P, misfit = (np.broadcast_to(part, (len(grid), *part.shape)) for part in (prior[:, :-1], prior[:, -1:]))
     freedom = max(1.0, residuals.size - float(J.shape[2] - prior.shape[0]))
     deviation = np.sqrt((np.sum(r**2, axis=(1, 2)) + rest**2) / freedom)
+    weak = np.broadcast_to(np.eye(J.shape[2]) / UNDETERMINED, (len(grid), *[J.shape[2]] * 2))
+    rest_of_step = np.zeros((len(grid), J.shape[2], 1))
     for _ in range(3):  # σ weighs the data against the calibrations
         scale = deviation[:, None, None]
-        q, triangle = np.linalg.qr(np.concatenate([J / scale, P], axis=1))
-        step = np.linalg.solve(triangle, q.mT @ np.concatenate([r / scale, misfit], axis=1))
+        q, triangle = np.linalg.qr(np.concatenate([J / scale, P, weak], axis=1))
+        step = np.linalg.solve(triangle, q.mT @ np.concatenate([r / scale, misfit, rest_of_step], axis=1))
         deviation = np.sqrt((np.sum((r - J @ step) ** 2, axis=(1, 2)) + rest**2) / freedom)
     logs = -0.5 * np.asarray([noise.log_determinant for noise in grid]) - residuals.size * np.log(deviation)
     logs -= 0.5 * np.sum((misfit - P @ step) ** 2, axis=(1, 2))

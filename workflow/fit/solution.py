@@ -126,7 +126,7 @@ class Fitted:
         if resting is not None or any(name in known for name in OFFSETS.values()):
             return 1.0
         names, C = self.subject.names, self.solution.best.covariance
-        apart = [names.index(name) for name in OFFSETS.values() if name in names]
+        apart = [i for i, name in enumerate(names) if name in OFFSETS.values()]
         sought = self.subject.sought
         gained = C[np.ix_(sought, apart)] @ np.linalg.solve(C[np.ix_(apart, apart)], C[np.ix_(apart, sought)])
         full = np.diag(C)[sought]
