@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 
 from contact1d import Run, run
-from validation.doors import on_plane
-from validation.hard.surfaces import Surface, kinked_body
+from validation.hard.surfaces import Surface, kinked_body, on_plane
 from validation.references.axisymmetric import Contact, with_rest_radius
 
 R, FORCE, FLAT = 1000.0, 40.0, 10.0

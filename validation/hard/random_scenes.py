@@ -106,7 +106,7 @@ def random_law(random: Random, spacing: float, stiffness: float, radius: float) 
     rows = 1.0 + 2.0 * reach / spacing
     amplitude = random.uniform(0.02, 0.1) * 0.5 * stiffness / unit.steepest_rise / rows**2
     law = law_table(strength * amplitude, reach / shorter, amplitude, reach)
-    return law, random.uniform(3.0, 20.0) * amplitude * unit.largest_tension * math.sqrt(radius * reach) / spacing
+    return law, random.uniform(3.0, 20.0) * (amplitude * unit.largest_tension) * math.sqrt(radius * reach) / spacing
 
 
 def model_of(scene: Scene, particles: int) -> ChainModel:
