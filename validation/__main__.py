@@ -1,7 +1,5 @@
 """`python -m validation paper|hard|speed`, in a checkout: nothing of this is installed."""
 
-from __future__ import annotations
-
 import importlib
 from pathlib import Path
 from typing import Annotated

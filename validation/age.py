@@ -4,8 +4,6 @@ Age counts the commits since then that touch the program itself, and days. What 
 committed has a + behind the commit.
 """
 
-from __future__ import annotations
-
 import datetime
 import json
 import subprocess
@@ -14,18 +12,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from validation.row import tables_beside
+
 ROOT = Path(__file__).parents[1]
 CODE = ("src", "workflow", "analysis", "potentials", "lammps_inputs")
 """Folders of the program itself."""
-RECORDS = {
-    "the paper": "validation/results/paper.json", "hard cases": "validation/results/hard.json",
-    "speed": "validation/results/speed.json", "grains": "validation/results/grains.json",
-    "random faults": "validation/results/mutants.json",
-    "listed faults": "validation/results/faults.json", "slow tests": "docs/slow.json",
-    "calibration": "validation/results/calibration.csv", "costs of effects": "validation/results/costs",
-    "figure of tolerances": "docs/tolerance.png",
-    "figure of validity": "docs/validity.png",
-}  # fmt: skip
+RECORDS = tables_beside(__file__)
 NAMED = 4
 """Parts of a record that are named; of more the number is."""
 
@@ -84,11 +76,8 @@ def ages() -> Iterator[str]:
         for when in sorted(set(parts.values())):
             those = [part for part, other in parts.items() if other == when]
             which = ", ".join(those) if len(those) <= NAMED else f"{len(those)} of {len(parts)}"
-            yield f"{name}{f' ({which})' if len(those) < len(parts) else ''}: {when}, {_age(when)}"
-
-
-def _age(when: Measured) -> str:
-    since = git("rev-list", "--count", f"{when.commit.rstrip('+')}..HEAD", "--", *CODE)
-    days = (datetime.date.today() - datetime.date.fromisoformat(when.date)).days if when.date else 0
-    commits = f"{since} commits to the program" if since else "a commit that is not here"
-    return f"{commits} and {days} days ago"
+            since = git("rev-list", "--count", f"{when.commit.rstrip('+')}..HEAD", "--", *CODE)
+            commits = f"{since} commits to the program" if since else "a commit that is not here"
+            days = (datetime.date.today() - datetime.date.fromisoformat(when.date)).days if when.date else 0
+            part = f" ({which})" if len(those) < len(parts) else ""
+            yield f"{name}{part}: {when}, {commits} and {days} days ago"

@@ -3,8 +3,6 @@
 `contact_of` opens a contact in a deck, so that single particles can be moved and read.
 """
 
-from __future__ import annotations
-
 import os
 import platform
 import re
@@ -26,7 +24,7 @@ from contact1d.workflow.deck.lattice import start_offset
 from contact1d.workflow.deck.steps import Displace, UnderLoad
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Silent
-from contact1d.workflow.engine.session import Engine, EngineError, Session
+from contact1d.workflow.engine.session import Engine, Session
 from contact1d.workflow.engine.worker import load_lammps
 from contact1d.workflow.errors import Contact1dError, FolderError, RunError, SettingsError
 from contact1d.workflow.experiments import kind_of, planned
@@ -95,18 +93,29 @@ def finish(scenes: Mapping[str, Scene], folder: Path, workers: int) -> None:
 @contextmanager
 def contact_of(tables: dict[str, Any], folder: Path, **motion: Any) -> Iterator[Contact]:
     """The contact of a scene, at displacement 0; numbers of its `motion` in place of the chosen ones."""
-    scene = read_scene({"title": folder.name} | tables)
+    with context_of(read_scene({"title": folder.name} | tables), folder, **motion).contact() as contact:
+        yield contact
+
+
+def context_of(scene: Scene, folder: Path, **motion: Any) -> RunContext:
+    """What opens contacts of a scene in a folder; numbers of its `motion` in place of the chosen ones."""
     settings = settings_for(scene)
     deck = Deck(scene, replace(settings, motion=replace(settings.motion, **motion)))
     folder.mkdir(parents=True, exist_ok=True)
     write_system(deck, folder)
-    with RunContext(deck, folder, Silent(), TIME_LIMIT).contact() as contact:
-        yield contact
+    return RunContext(deck, folder, Silent(), TIME_LIMIT)
 
 
 def law_table(A: float, a: float, B: float, b: float) -> dict[str, dict[str, float]]:
     """[interaction] of A [FU·LU], a [LU], B [FU·LU], b [LU]."""
     return {"repulsion": {"amplitude": A, "range": a}, "attraction": {"amplitude": B, "range": b}}
+
+
+def on_plane(profile: dict[str, Any], spacing: float, tolerance: float = 1e-3) -> dict[str, Any]:
+    """[bodies] and [accuracy] of a profile in model units on a rigid plane, E* = 1 FU/LU²."""
+    bodies = {"particles": "auto", "spacing": spacing, "bulk_stiffness": spacing, "reduction": "mdr",
+              "lower": "rigid_plane", "profile": profile}  # fmt: skip
+    return {"bodies": bodies, "accuracy": {"tolerance": tolerance}}
 
 
 def law_of(scene: Scene) -> tuple[float, float, float, float]:
@@ -126,11 +135,6 @@ def modelled(scene: Scene) -> dict[str, Quantity]:
     none = np.zeros(len(trace))
     found = budgeted(case, trace, ForceErrors(none, none, law=0.0, anchor=0.0))
     return {name: Quantity(one.value, sum(one.errors.values()), one.unit) for name, one in found.items()}
-
-
-def still_step() -> float:
-    """ω_max·Δt that the program chooses for a contact at rest."""
-    return CALIBRATION.still_step
 
 
 def deck_text(scene: Scene) -> str:

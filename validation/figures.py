@@ -84,8 +84,7 @@ def figure(caption: str, *panels: Panel) -> dict[str, Drawing]:
 def save(drawing: Drawing, path: Path) -> None:
     """Draw the panels side by side, and save them whole or not at all."""
     figure = new_figure(ONE if len(drawing.panels) == 1 else TWO)
-    axes = figure.subplots(1, len(drawing.panels), squeeze=False)[0]
-    for axis, panel in zip(axes, drawing.panels, strict=True):
+    for axis, panel in zip(figure.subplots(1, len(drawing.panels), squeeze=False)[0], drawing.panels, strict=True):
         _draw(axis, panel)
     save_figure(figure, path)
 

@@ -1,7 +1,5 @@
 """How numbers and rows are said, and the two pages: VALIDATION.md for a person, and the tables beside it."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections import Counter
@@ -10,7 +8,7 @@ from pathlib import Path
 
 from validation.age import Measured, times
 from validation.doors import rounded, write_whole
-from validation.row import WIDE, Evidence, Row, judged, verdicts
+from validation.row import WIDE, Evidence, Row, judged, verdicts, worst
 from validation.study import Answer, Record
 
 NO_NUMBER = "no number"
@@ -82,18 +80,10 @@ def agreement(rows: Sequence[Row]) -> str:
 def margins_of(record: Record) -> dict[str, list[float]]:
     """By class, the distance of each judged row from its reference over what is allowed, 1 at most."""
     found = {
-        answer.name: [
-            one.off / one.allowed for one in judged(answer.rows) if one.allowed > 0.0 and math.isfinite(one.off)
-        ]
-        for answer in record.answers
+        one.name: [row.off / row.allowed for row in judged(one.rows) if row.allowed > 0.0 and math.isfinite(row.off)]
+        for one in record.answers
     }
     return {name: shares for name, shares in found.items() if shares}
-
-
-def worst_deviation(rows: Iterable[Row]) -> float:
-    """Largest |value/reference − 1|; infinite where a row has no number."""
-    off = [abs(row.value / row.reference.value - 1.0) for row in rows]
-    return math.inf if any(map(math.isnan, off)) else max(off)
 
 
 def outcome(rows: Sequence[Row]) -> str:
@@ -191,10 +181,10 @@ def summary(paper: Record, hard: Record, speed: Record) -> str:
         "speed": f"{agreement(speed.rows)} (measured {_when(speed.answers)})",
         "failing": _failing([*paper.answers, *hard.answers, *speed.answers]),
         "evidence": table(("reference", "meaning", "rows", "pass", "differ"), counted),
-        "studies": studies_table(paper),
+        "studies": table(("study", "subject", "result", "verdict", "measured"), map(_study, paper.answers)),
         "differing": _differing(paper),
         "classes": table(("class", "what is tested", "rows", "smallest margin", "measured"),
-                         [_class(answer) for answer in hard.answers]),
+                         map(_class, hard.answers)),
         "kinds": _kinds(hard),
         "made": f"Made with {made}; the hard cases took {took}, one after the other, on {hard.machine}.",
     }  # fmt: skip
@@ -210,11 +200,6 @@ def _kinds(record: Record) -> str:
     )
     quick = [f"`{answer.name}`" for answer in record.answers if answer.form != "full"]
     return f"{text} Measured in their short form, without `--full`: {', '.join(quick)}." if quick else text
-
-
-def studies_table(record: Record) -> str:
-    """A row for each study: its name, what was asked, what came out, the verdict, when."""
-    return table(("study", "subject", "result", "verdict", "measured"), [_study(answer) for answer in record.answers])
 
 
 def speed_table(record: Record) -> str:
@@ -242,10 +227,13 @@ def _when(answers: Sequence[Answer]) -> str:
 
 
 def _differing(record: Record) -> str:
-    """What the paper says and this program does not find: as the paper has it, as it is here, and why."""
+    """What the paper says and this program does not find: as printed, or a qualitative statement and how it is tested;
+    as it is here, and why."""
     rows = [
-        (f"`{answer.name}`", row.name, _in_the_paper(row), measured(row.value, row.uncertainty, row.unit),
-         row.known.source)
+        (f"`{answer.name}`", row.name,
+         reference(row) if row.reference.evidence == "printed value"
+         else f"{row.reference.source}; tested as {allowed(row)}, the uncertainty of the runs",
+         measured(row.value, row.uncertainty, row.unit), row.known.source)
         for answer in record.answers
         for row in judged(answer.rows)
         if row.known and row.reference.evidence in ("printed value", "paper's words")
@@ -253,34 +241,21 @@ def _differing(record: Record) -> str:
     return table(("study", "quantity", "in the paper", "here", "reason"), rows)
 
 
-def _in_the_paper(row: Row) -> str:
-    """A printed number, or a qualitative statement with the number by which it is tested."""
-    if row.reference.evidence == "printed value":
-        return reference(row)
-    return f"{row.reference.source}; tested as {allowed(row)}, the uncertainty of the runs"
-
-
 def _study(answer: Answer) -> tuple[str, ...]:
     words, own = outcome(answer.rows), judged(answer.rows)
-    off = [row for row in own if row.bound.kind in ("relative", "claim") and row.reference.value and not row.known]
-    if off and math.isfinite(worst := worst_deviation(off)):
-        words += f"; largest relative deviation {share(worst)}"
-    found = {row.verdict for row in own}
-    verdict = next((word for word in ("FAIL", "DIFFERS") if word in found), "PASS")
-    badge = f"**{verdict}**" if verdict == "FAIL" else verdict
-    return f"`{answer.name}`", answer.title, words, badge, _when([answer])
+    compared = [row for row in own if row.bound.kind in ("relative", "claim") and row.reference.value and not row.known]
+    largest = worst([abs(row.value / row.reference.value - 1.0) for row in compared])
+    if math.isfinite(largest):
+        words += f"; largest relative deviation {share(largest)}"
+    verdict = "**FAIL**" if verdicts(own, "FAIL") else "DIFFERS" if verdicts(own, "DIFFERS") else "PASS"
+    return f"`{answer.name}`", answer.title, words, verdict, _when([answer])
 
 
 def _class(answer: Answer) -> tuple[str, ...]:
     margins = [row.margin for row in answer.rows if math.isfinite(row.margin)]
+    least = number(min(margins), 3) if margins else "no difference found"
     rows = f"{len(verdicts(answer.rows, 'PASS'))} of {len(answer.rows)}"
-    return (
-        f"`{answer.name}`",
-        f"{answer.title}: {answer.question}",
-        rows,
-        number(min(margins), 3) if margins else "no difference found",
-        _when([answer]),
-    )
+    return f"`{answer.name}`", f"{answer.title}: {answer.question}", rows, least, _when([answer])
 
 
 def _failing(answers: Sequence[Answer]) -> str:

@@ -14,8 +14,10 @@ within a margin of what the difference is known to be; FAIL elsewhere, and FAIL 
 from __future__ import annotations
 
 import math
+import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
+from pathlib import Path
 from typing import Any, Literal
 
 Evidence = Literal["closed form", "independent solver", "printed value", "paper's words", "set bound"]
@@ -52,6 +54,11 @@ class Known:
     value: float
     margin: float
     source: str
+
+
+def tables_beside(file: str) -> dict[str, Any]:
+    """The tables of the TOML file that lies beside a module and has its name."""
+    return tomllib.loads(Path(file).with_suffix(".toml").read_text(encoding="utf-8"))
 
 
 def relative(size: float, source: str) -> Bound:
@@ -183,9 +190,9 @@ def at_least(name: str, value: float, bound: float, source: str) -> Row:
     return Row(name, value, Reference(bound, source), Bound("at least", 0.0, "–"))
 
 
-def so(name: str, wrong: bool, source: str = "what must be", limited_by: str = "–") -> Row:
+def so(name: str, wrong: bool, source: str) -> Row:
     """A row about what must not be; its value is 1 where it is so."""
-    return at_most(name, float(wrong), 0.0, source, limited_by, "set bound")
+    return at_most(name, float(wrong), 0.0, source, evidence="set bound")
 
 
 def worst(values: Sequence[float]) -> float:

@@ -1,7 +1,5 @@
 """A slide as the independent integrator has it."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import fields, replace
 
@@ -20,14 +18,13 @@ def slide_model(scene: Scene, settings: Settings) -> SlideModel:
     assert isinstance(scene.experiment, Slide)
 
     def row(count: int, spacing: float) -> Array:
-        return np.asarray((np.arange(count) - 0.5 * (count - 1)) * spacing, dtype=np.float64)
+        return (np.arange(count, dtype=np.float64) - 0.5 * (count - 1)) * spacing
 
     below, along = row(settings.chains.lower, bodies.spacing), row(settings.chains.upper, bodies.own_spacing)
     height = settings.forces.rest + bodies.profile.height(along)
-    upper = np.column_stack([along + start_offset(scene, settings), height])
     return SlideModel(
         lower=np.column_stack([below, np.zeros_like(below)]),
-        upper=upper,
+        upper=np.column_stack([along + start_offset(scene, settings), height]),
         law=law_of(scene),
         cutoff=settings.forces.cutoff,
         normal_stiffness=scene.bulk_stiffness,
@@ -49,17 +46,24 @@ RESIDUAL = 1e-6
 """Force over that of the law, B/b, below which the integrator's bodies are at rest before they slide."""
 
 
-def integrated(scene: Scene, settings: Settings) -> Trace:
-    """All legs by the independent integrator, in the program's timesteps, measured where the program measures."""
+def integrated(scene: Scene, settings: Settings, residual: float = 0.0, rows: float = math.inf) -> Trace:
+    """All legs by the independent integrator, in the program's timesteps, measured where the program measures.
+
+    Args:
+        scene, settings: of the slide.
+        residual: force [FU] below which the bodies are at rest before they slide; 0: RESIDUAL of the law's.
+        rows: of a leg, at most.
+    """
     _, _, amplitude, reach = law_of(scene)
-    body = Integrator(slide_model(scene, settings))
-    body.settle(settings.motion.time_step, RESIDUAL * amplitude / reach, drag=settings.motion.settling_damping)
+    body, motion = Integrator(slide_model(scene, settings)), settings.motion
+    body.settle(motion.time_step, residual or RESIDUAL * amplitude / reach, drag=motion.settling_damping)
     legs, drive, time, impulse = [], 0.0, 0.0, 0.0
-    for leg in settings.motion.drive:
-        trace = body.run(leg.rows * leg.steps, leg.time_step, leg.velocity, start=drive, every=leg.steps)
+    for leg in motion.drive:
+        steps = leg.steps * int(min(leg.rows, rows))
+        trace = body.run(steps, leg.time_step, leg.velocity, start=drive, every=leg.steps)
         drive += leg.velocity * leg.rows * leg.row_time
         legs.append(replace(trace, time=time + trace.time, impulse=impulse + trace.impulse))
-        time, impulse = float(legs[-1].time[-1]), float(legs[-1].impulse[-1])
+        time, impulse = legs[-1].time[-1], legs[-1].impulse[-1]
     return Trace(*(np.concatenate([getattr(leg, one.name) for leg in legs]) for one in fields(Trace)))
 
 

@@ -5,8 +5,6 @@ Scenes that a study names beforehand are run several at a time, each once for al
 ends; studies of the same versions that were not asked for stay in it.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import multiprocessing
@@ -145,11 +143,12 @@ class Rows:
         reference: Reference,
         bound: Bound,
         *,
-        on: Sequence[str],
+        on: str | Sequence[str],
         despite: Mapping[str, str] | None = None,
         **more: Any,
     ) -> Row:
-        """A row; `on`: names of its runs, `despite`: in place of the maker's."""
+        """A row; `on`: names of its runs, or of its only one, `despite`: in place of the maker's."""
+        on = [on] if isinstance(on, str) else on
         warned = sorted({str(one["name"]) for run in on for one in self.runs[run].document.get("warnings", ())})
         answers = {warning: (despite or self.despite).get(warning, "") for warning in warned}
         if isinstance(value, Quantity):

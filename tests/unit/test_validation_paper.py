@@ -95,7 +95,7 @@ class WrongBench:
 def test_no_row_passes_where_every_run_is_wrong(study: Study, monkeypatch: pytest.MonkeyPatch) -> None:
     """The integrator, which takes minutes and knows nothing of the runs, has about what is right."""
     known = np.full(SLIDE // 2, 0.07)
-    slid = fig9.curved.Integrated(0.07, 0.17, Trace(known, known, known, known, known))
+    slid = fig9.curved.Integrated(0.07, 0.17, Trace(known, known, known, known))
     monkeypatch.setattr(fig9.curved, "integrated", lambda _: slid)
     monkeypatch.setattr(asperity, "smoluchowski", cache(asperity.smoluchowski))
     bench: Any = WrongBench()

@@ -1,14 +1,11 @@
 """LAMMPS's granular models by the decks beside this module, each a run that `lmp -in` repeats."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from validation.doors import load_lammps
 
@@ -21,8 +18,7 @@ INCREMENT = 4e-7
 """Of the overlap that is prescribed, in units of R*."""
 
 
-@dataclass(frozen=True)
-class Found:
+class Found(NamedTuple):
     """A value in the finer of two runs, and what half the timestep changed of it."""
 
     value: float

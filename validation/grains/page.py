@@ -1,25 +1,25 @@
 """docs/grains.md from the record of the studies: its tables, between markers, and its two figures."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
 from validation.figures import Drawing, Panel, Series
 from validation.grains import cases
-from validation.grains.cases import OURS, SPHERES, at_number, near_name, row_name
+from validation.grains.cases import OURS, SPHERES, at_number, at_velocity, near_name, row_name
 from validation.grains.studies import ABOUT, AGREES, LATE, LENGTH, TENSION
 from validation.page import measured, number, table
 from validation.references.grains import kelvin_voigt
-from validation.row import Row
+from validation.row import Row, tables_beside
 from validation.study import Record
 
 DENSE = 25
 """Points of a line."""
 HEAD = ("model", "quantity", "LAMMPS", "exact", "deviation", "what to use")
-NOWHERE, STICK, EXACT = "–", "the spheres stick", "exact"
+NOWHERE, STICK = "–", "the spheres stick"
+TABLES = tables_beside(__file__)
+QUANTITIES = TABLES["quantities"]
 JKR_IN_NAMES = {"jkr": "`jkr`", "dmt": "`dmt`", "nearest jkr": f"`jkr`, {cases.STRONGER:g} γ"}
 
 
@@ -95,39 +95,17 @@ def _models(rows: Rows) -> Iterator[Sequence[str]]:
     near = {name: f"{all_of[1]:g}" for name, all_of in cases.NEAREST.items()}
     eta = f"`limit_damping` and η = {near[cases.LIMITED.name]} · 2 E* τ/m"
     stronger = f"a surface energy of {cases.STRONGER:g} γ, if restitution matters more than pull-off"
-    lines = (
-        ("hertz", "`hertz`, no damping", "", "restitution", EXACT),
-        ("hertz", "`hertz`, no damping", "", "contact_time", EXACT),
-        ("viscoelastic", "`viscoelastic`", "A = 0.3", "restitution", eta),
-        ("viscoelastic", "`viscoelastic`", "A = 0.3", "contact_time", "`limit_damping`"),
-        ("viscoelastic limit_damping", "`viscoelastic` with `limit_damping`", "A = 0.3", "restitution", eta),
-        ("coeff_restitution", "`coeff_restitution`", "e = 0.6", "restitution",
-         "exact at every velocity"),
-        (
-            "coeff_restitution limit_damping", "`coeff_restitution` with `limit_damping`", "e = 0.6", "restitution",
-            "`coeff_restitution` without `limit_damping`",
-        ),
-        ("tsuji", "`tsuji`", "e = 0.6", "restitution", "`coeff_restitution`, or a newer LAMMPS"),
-        ("jkr", "`jkr`", "v = 1.5 v_s", "restitution", stronger),
-        ("jkr", "`jkr`", "", "sticking velocity", stronger),
-        ("jkr", "`jkr`", "", "pull off", EXACT),
-        ("jkr", "`jkr`", "", "dissipated", stronger),
-        ("dmt", "`dmt`", "v = 1.5 v_s", "restitution", "exact for small hard spheres (Tabor parameter far below 1)"),
-        ("wall hertz/material", "`fix wall/gran`", "", "E*", "`fix wall/gran` with 2 E in place of E"),
-    )  # fmt: skip
-    for model, shown, at, quantity, use in lines:
+    for model, shown, at, quantity, use in TABLES["models"]:
         row = rows[row_name(model, at, quantity)]
-        where = f"{_quantity(quantity)}{', ' * bool(at)}{at}"
-        yield shown, where, value(row.value), value(row.reference.value), deviation(row), use
-
-
-def _quantity(name: str) -> str:
-    """As the page has it, with its unit."""
-    return {
-        "contact_time": "contact time [T]", "pull off": "pull-off force [(3/2)πWR]",
-        "E*": "E* of a sphere on a rigid wall [E]",
-        "sticking velocity": "sticking velocity [v_s]", "dissipated": "dissipated energy [(W⁵R⁴/E*²)^(1/3)]",
-    }.get(name, name)  # fmt: skip
+        where = f"{QUANTITIES.get(quantity, quantity)}{', ' * bool(at)}{at}"
+        yield (
+            shown,
+            where,
+            value(row.value),
+            value(row.reference.value),
+            deviation(row),
+            use.format(eta=eta, stronger=stronger),
+        )
 
 
 def _viscoelastic(rows: Rows) -> str:
@@ -136,8 +114,8 @@ def _viscoelastic(rows: Rows) -> str:
 
 
 def _times(rows: Rows) -> str:
-    names = {"contact_time": "contact time [T]", "peak_force": "largest force [m v/T]"}
-    lines = [[f"{A:g}", words, *rows.beside(A, name)] for A in cases.TIMED for name, words in names.items()]
+    names = ("contact_time", "peak_force")
+    lines = [[f"{A:g}", QUANTITIES[name], *rows.beside(A, name)] for A in cases.TIMED for name in names]
     return table(["A", "quantity", "exact", OURS, *map(_words, cases.DAMPED)], lines)
 
 
@@ -166,7 +144,7 @@ def _nearest(rows: Rows) -> str:
 def _adhesive(rows: Rows) -> str:
     lines = []
     for over in cases.OVER_STICKING:
-        at = f"v = {over:g} v_s"
+        at = at_velocity(over)
         found = [rows.get(row_name(name, at, "restitution")) for name in JKR_IN_NAMES]
         assert found[0]
         exact = value(found[0].reference.value) if over > 1.0 else STICK
@@ -176,14 +154,10 @@ def _adhesive(rows: Rows) -> str:
 
 
 def _drawn(rows: Rows) -> str:
-    quantities = {
-        "pull off": "pull-off force [(3/2)πWR]", "separation": "overlap at separation [(π²W²R/E*²)^(1/3)]",
-        "dissipated": "dissipated energy [(W⁵R⁴/E*²)^(1/3)]",
-    }  # fmt: skip
     lines = []
-    for name, words in quantities.items():
+    for name in ("pull off", "separation", "dissipated"):
         jkr, dmt = (rows[row_name(model, "", name)] for model in ("jkr", "dmt"))
-        lines.append([words, value(jkr.reference.value), both(jkr), value(dmt.reference.value), both(dmt)])
+        lines.append([QUANTITIES[name], value(jkr.reference.value), both(jkr), value(dmt.reference.value), both(dmt)])
     return table(["quantity", "exact, JKR", "`jkr`", "exact, DMT", "`dmt`"], lines)
 
 
@@ -205,15 +179,18 @@ def _points(rows: Rows, label: str, x: Sequence[float], names: Sequence[str]) ->
     return Series(label, x, [rows[name].value if name in rows else math.nan for name in names])
 
 
+def _restitutions(rows: Rows, labels: Mapping[str, str], x: Sequence[float], places: Iterable[str]) -> list[Series]:
+    """What was found of models at the same places."""
+    at = list(places)
+    names = {label: [row_name(name, one, "restitution") for one in at] for name, label in labels.items()}
+    return [_points(rows, label, x, those) for label, those in names.items()]
+
+
 def _damped_drawing(rows: Rows) -> Drawing:
     numbers = np.geomspace(cases.NUMBERS[0], cases.NUMBERS[-1], DENSE).tolist()
     exact = Series("exact, Kelvin-Voigt", numbers, [kelvin_voigt(A).restitution for A in numbers])
     shown = {"viscoelastic": "viscoelastic", "viscoelastic limit_damping": "with limit_damping", OURS: OURS}
-    at = [at_number(A) for A in cases.NUMBERS]
-    points = [
-        _points(rows, label, cases.NUMBERS, [row_name(name, one, "restitution") for one in at])
-        for name, label in shown.items()
-    ]
+    points = _restitutions(rows, shown, cases.NUMBERS, map(at_number, cases.NUMBERS))
     decade = np.geomspace(cases.DECADE[0], cases.DECADE[-1], DENSE).tolist()
     lines = [(v, kelvin_voigt(A * v**0.2).restitution if v else math.nan) for A in cases.TIMED for v in [*decade, 0.0]]
     curves = Series("exact, A = 0.1, 0.3, 1 at v = 1", *np.transpose(lines))
@@ -238,15 +215,9 @@ def _adhesive_drawing(rows: Rows) -> Drawing:
     velocities = 1.0 + np.geomspace(1e-5, 9.0, 3 * DENSE)
     exact = Series("exact, JKR", velocities, np.sqrt(1.0 - velocities**-2))
     labels = {"jkr": "jkr", "nearest jkr": f"jkr, {cases.STRONGER:g} γ", "dmt": "dmt", OURS: OURS}
-    at = [f"v = {over:g} v_s" for over in cases.OVER_STICKING]
-    points = [
-        _points(rows, label, cases.OVER_STICKING, [row_name(name, one, "restitution") for one in at])
-        for name, label in labels.items()
-    ]
-    return Drawing(
-        "Adhesive spheres that are drawn apart, and that meet",
-        (
-            Panel("overlap / (π²W²R/E*²)^(1/3)", "force / pull-off force", [pulled], [loop], title="drawn apart"),
-            Panel("v / v_s", "restitution", points, [exact], log="x", title="impact"),
-        ),
+    points = _restitutions(rows, labels, cases.OVER_STICKING, map(at_velocity, cases.OVER_STICKING))
+    panels = (
+        Panel("overlap / (π²W²R/E*²)^(1/3)", "force / pull-off force", [pulled], [loop], title="drawn apart"),
+        Panel("v / v_s", "restitution", points, [exact], log="x", title="impact"),
     )
+    return Drawing("Adhesive spheres that are drawn apart, and that meet", panels)

@@ -19,9 +19,8 @@ from validation.hard import (
 )
 from validation.study import Study
 
-_STIFFNESS, _SHARP = pairs.CLASSES
 STUDIES: tuple[Study, ...] = (
-    _STIFFNESS, _SHARP, random_scenes.RANDOM, settling.SETTLING, *thermal.CLASSES, extremes.EXTREMES, faults.FAULTS,
+    *pairs.CLASSES, random_scenes.RANDOM, settling.SETTLING, *thermal.CLASSES, extremes.EXTREMES, faults.FAULTS,
     fuzz.FUZZ, random_plane.RANDOM_PLANE, *kinks.CLASSES, scans.SCANS, coarse_paths.COARSE_PATHS, cohesive.COHESIVE,
     fits.FITS, relaxing.RELAXING, impacts.IMPACTS,
 )  # fmt: skip

@@ -3,8 +3,6 @@
 python -m validation.hard.any_law SEED COUNT FOLDER [LAW or EXPERIMENT ...]     FOLDER/summary.txt, numbers.json
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from collections import Counter

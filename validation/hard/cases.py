@@ -5,8 +5,6 @@ ratio = steepest rise of the pair's force / (k/2): above 1 pairs snap. The conta
 would have the largest tension, h(x) = G_m − r0 + d: G_m = G(r_m), or where pairs have snapped the gap at which they do.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -16,6 +14,7 @@ from scipy.optimize import brentq
 
 from validation.doors import IN_TIME, law_table
 from validation.hard.judge import Case, Expected
+from validation.hard.surfaces import power_of
 from validation.hard.units import Scene
 from validation.references.folded_pairs import FoldedPairs
 from validation.references.interaction import Floats, PairInteraction
@@ -23,15 +22,19 @@ from validation.references.interaction import Floats, PairInteraction
 REPULSION, ATTRACTION = (0.011, 0.015), (0.01, 0.03)
 """Amplitude [FU LU] and range [LU]."""
 LAW = PairInteraction.of(*REPULSION, *ATTRACTION)
-STEEPEST = float(LAW.force_slope(np.array(max(LAW.extremum_distance(2), 0.0))))
+STEEPEST = LAW.steepest_rise
 """[FU/LU]"""
-TENSION = float(-LAW.force(np.array(LAW.extremum_distance(1))))
+TENSION = LAW.largest_tension
 """Largest tension of a pair [FU]."""
-CORE = float(LAW.force(np.array(0.0)))
+CORE = float(LAW.force(0.0))
 """Force of a pair at no distance [FU]."""
 PAPER_NUMBERS = (0.18, 0.13, 0.09, 0.26)
 PAPER_LAW = law_table(*PAPER_NUMBERS)
 """The paper's kind of contact: ranges near the spacing, so that particles feel several opposite ones."""
+PAPER_BODIES: Scene = {
+    "particles": 200, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 1000.0}, "bulk_stiffness": 0.83,
+}  # fmt: skip
+"""Those of pull_off.toml."""
 CAPACITY = 0.9
 """Share of the core's force up to which a case counts as solvable."""
 LOOKS = 4000
@@ -98,7 +101,7 @@ class PairCase:
             top = self.pairs.deepest(self.preload)
         except ValueError:
             return False
-        gap = np.array([LAW.force_free_distance() + float(np.min(self.pairs.heights)) - top])
+        gap = np.array([LAW.force_free_distance() + np.min(self.pairs.heights) - top])
         joined = np.array([self.pairs.fold is None or gap[0] <= self.pairs.fold.gap_on])
         return float(LAW.force(self.pairs.distance(gap, joined))[0]) < CAPACITY * CORE
 
@@ -123,10 +126,10 @@ class PairCase:
         """The first displacement [LU] at which a body drawn back from `top` [LU] carries `force` [FU]."""
         pairs = self.pairs
         far = 0.0 if pairs.fold is None else pairs.fold.gap_off
-        places = np.linspace(top, -float(np.ptp(pairs.heights)) - far - 12.0 * ATTRACTION[1], LOOKS)
+        places = np.linspace(top, -np.ptp(pairs.heights) - far - 12.0 * ATTRACTION[1], LOOKS)
         below = int(np.argmax(pairs.unloading(places, top) <= force))
         ends = places[below - 1], places[below]
-        return float(brentq(lambda d: float(pairs.unloading(d, top)) - force, *ends, xtol=1e-15) if below else top)
+        return float(brentq(lambda d: pairs.unloading(d, top) - force, *ends, xtol=1e-15) if below else top)
 
     def radii(self, joining: bool = False, inside: float = 0.0, **places: float) -> Numbers:
         """Radii [LU] at displacements [LU]; `joining`: of a body on its way in.
@@ -165,25 +168,13 @@ def shaped(kind: str, particles: int, edge: float) -> Scene:
     return {"kind": "power", "exponent": 6.0, "radius": half, "height": edge}
 
 
-def _powers(profile: Scene) -> tuple[float, float]:
-    """c and n of z = c xⁿ; written apart from the program's own. Raises KeyError for what has none."""
-    match profile["kind"]:
-        case "flat_punch":
-            return 0.0, 1.0
-        case "parabola":
-            return 0.5 / profile["radius"], 2.0
-        case "cone":
-            return profile["slope"], 1.0
-    return profile["height"] / profile["radius"] ** profile["exponent"], profile["exponent"]
-
-
 def heights(profile: Scene, particles: int) -> Floats:
     """Heights over the apex of a chain of spacing 1, shape (particles,) [LU]."""
-    c, n = _powers(profile)
-    return np.asarray(c * np.abs(np.arange(particles) - 0.5 * (particles - 1)) ** n)
+    one = power_of(profile)
+    return np.asarray(one.factor * np.abs(np.arange(particles) - 0.5 * (particles - 1)) ** one.exponent)
 
 
 def _place(profile: Scene, height: float) -> float:
     """The place [LU] at which a profile is `height` [LU] above its apex."""
-    c, n = _powers(profile)
-    return math.pow(max(height, 0.0) / c, 1.0 / n)
+    one = power_of(profile)
+    return math.pow(max(height, 0.0) / one.factor, 1.0 / one.exponent)

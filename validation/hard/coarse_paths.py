@@ -5,16 +5,14 @@ that are as wide as the loop see these jumps at their ends alone, or not at all.
 with what it may be off by, or is named as not known.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import product
 
 from validation.hard.expected import looked_up
-from validation.hard.judge import Case, Judge, judged
+from validation.hard.judge import Case, judged
 from validation.hard.surfaces import surface
 from validation.references.axisymmetric import with_rest_radius
-from validation.row import Row, at_most
+from validation.row import at_most, tables_beside
 from validation.study import LONGEST, Bench, Findings, Study
 
 RADIUS, SLOPE = 10.0, 0.01
@@ -24,9 +22,6 @@ SHAPES = {
     "parabola": surface(RADIUS, "parabola", radius=RADIUS / SLOPE),
     "power": surface(RADIUS, "power", exponent=3.0, radius=RADIUS, height=SLOPE * RADIUS / 3.0),
 }
-STEPS, FULL_STEPS = (1, 3, 12), (1, 2, 3, 4, 6, 9, 14, 25, 60)
-TURNS, FULL_TURNS = (0.5, 1.3), (0.5, 0.95, 1.05, 1.3, 3.0)
-"""The farthest displacement apart over that of fixed grips: below 1 the contact is held."""
 LOADS = (2.0, 50.0)
 """Compression at the other end over F_A: beside the work of a large one the loss is small."""
 SPACING = 0.7
@@ -34,31 +29,27 @@ SOURCE, LOST = "the energies of the jumps by quadrature", ("dissipated_energy", 
 
 
 def measure(bench: Bench) -> Findings:
-    """Loops of every shape."""
-    rows: list[Row] = []
+    """Loops of every shape; a row each of losses that are no number."""
+    rows = []
     for words, judge in judged(bench, cases(bench.full)).items():
-        rows += [*judge.rows(words, SOURCE), _unseen(words, judge)]
+        none = [n.label for n in judge.numbers if n.name in LOST and n.reference and abs(n.value) <= n.uncertainty]
+        unseen = f"{words}: losses reported as less than their uncertainty"
+        rows += [*judge.rows(words, SOURCE), at_most(unseen, len(none), 0.0, SOURCE, ", ".join(none)[:LONGEST] or "–")]
     return Findings(rows)
-
-
-def _unseen(words: str, judge: Judge) -> Row:
-    """A row of losses that are no number."""
-    none = [n.label for n in judge.numbers if n.name in LOST and n.reference and abs(n.value) <= n.uncertainty]
-    words = f"{words}: losses reported as less than their uncertainty"
-    return at_most(words, len(none), 0.0, SOURCE, ", ".join(none)[:LONGEST] or "–")
 
 
 def cases(full: bool) -> Iterator[Case]:
     """Out of the contact and back, or in and out, in different numbers of steps."""
-    shapes = [*SHAPES.items()][: None if full else 2]
-    for (name, solid), turn in product(shapes, FULL_TURNS if full else TURNS):
+    form = tables_beside(__file__)["full" if full else "short"]
+    for name, turn in product(form["shapes"], form["turns"]):
+        solid = SHAPES[name]
         contact = with_rest_radius(solid.body, 1.0, RADIUS)
         apart = turn * contact.displacement(contact.fixed_grips(RADIUS))
         for words, start, load in product(("out", "in"), ("approach", "contact"), LOADS):
             deep = contact.displacement(contact.pressed_radius(-load * contact.force(contact.critical(RADIUS)), RADIUS))
             first, last = (deep, apart) if words == "out" else (apart, deep)
             group = f"{name}, {words} to {turn:g} of fixed grips from {start}, {load:g} F_A"
-            for steps in FULL_STEPS if full else STEPS:
+            for steps in form["steps"]:
                 way = {"from": first, "to": last, "steps": steps, "return": True}
                 tables = {"adhesion": {"work_of_adhesion": contact.work},
                           "experiment": {"kind": "path", "start": start, "displacements": way}}  # fmt: skip

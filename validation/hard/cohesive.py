@@ -6,8 +6,6 @@ which share neither the MDR nor Abel's transforms with the program, and random s
 quadratures.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace
@@ -16,10 +14,9 @@ from typing import Any
 import numpy as np
 
 from validation.doors import Run
+from validation.hard import random_plane
 from validation.hard.draws import cohesive
 from validation.hard.kinks import LAND, SLOPE, WORN_TIP
-from validation.hard.random_plane import COHESIVE as RANDOM
-from validation.hard.random_plane import random_rows
 from validation.hard.surfaces import Surface, pieces, surface
 from validation.hard.units import Scene
 from validation.references.dugdale import Cohesive
@@ -55,7 +52,7 @@ def measure(bench: Bench) -> Findings:
     rows = [row for mu in TABOR for row in _paraboloid(bench, mu)]
     sharpness = FULL_SHARPNESS if bench.full else SHARPNESS
     rows += [row for name, solid in shapes().items() for mu in sharpness for row in _shape(bench, name, mu, *solid)]
-    return Findings([*rows, *random_rows(bench, RANDOM, QUADRATURE)])
+    return Findings([*rows, *random_plane.random_rows(bench, random_plane.COHESIVE, QUADRATURE)])
 
 
 def scene(solid: Surface, contact: Cohesive | Paraboloid, spacing: float, tolerance: float, experiment: Scene) -> Scene:
@@ -97,8 +94,7 @@ def _paraboloid(bench: Bench, mu: float) -> list[Row]:
         run = bench.run(f"fine_{mu:g}", scene(solid, one, spacing, FINE, pull))
         excess = (_value(run, "adhesion_force") / (1.5 * one.unit_force) - 1.0) * reduced.parameter**2
         name, limited = f"{words}: (F_A/F_JKR − 1) λ² over {EXCESS:g}, less 1", f"the next order; F_A to {FINE:g}"
-        bound = reduced.parameter**-NEXT
-        rows.append(at_most(name, abs(excess / EXCESS - 1.0), bound, MAUGIS, said(limited, run)))
+        rows.append(at_most(name, abs(excess / EXCESS - 1.0), reduced.parameter**-NEXT, MAUGIS, said(limited, run)))
     return rows
 
 
@@ -138,12 +134,12 @@ def _shape(bench: Bench, name: str, mu: float, solid: Surface, height: Callable[
 def _compared(words: str, run: Run | Refused, of: Callable[[float, float], State], unit: float, by: str) -> list[Row]:
     """F(a) over a force, c(a) and d(a) of each point of a curve; c and d over themselves and the range's own."""
     names, limited = ("F(a) over πWR" if by == MAUGIS else "F(a) over F_A", "c(a)", "d(a)"), said("what is asked", run)
-    off: list[tuple[float, ...]] = []
+    off = []
     if not isinstance(run, Refused) and "cohesive_radius" in run.curve:
         curve: Any = run.curve
         columns = [np.asarray(curve[key]) for key in ("contact_radius", "cohesive_radius", "force", "displacement")]
         held = np.stack(columns, axis=1)[columns[1] > 0.0]
-        deepest = float(np.abs(held[:, 3]).max())
+        deepest = np.abs(held[:, 3]).max()
         for a, c, force, d in held.tolist():
             exact = of(a, c)
             off.append((abs(force - exact.load) / unit, abs(c / exact.c - 1.0), abs(d - exact.displacement) / deepest))

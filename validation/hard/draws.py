@@ -4,17 +4,16 @@ All are drawn in units of the model with E* = 1, with a radius of the contact an
 written in SI, a part leaves the spacing to the program. What a scene has is looked up in `expected`.
 """
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from validation.hard.expected import deepest, expected
 from validation.hard.judge import Case
-from validation.hard.surfaces import KINKED, SMOOTH, Surface, kinked_body, smooth
+from validation.hard.surfaces import KINKED, Surface, kinked_body, smooth
 from validation.hard.units import Scene, random_units
 from validation.references import impact
 from validation.references.axisymmetric import Contact, with_rest_radius
@@ -23,7 +22,7 @@ from validation.references.relaxing import KelvinVoigt, Legs, Material, Power
 
 SAMPLED = "sampled"
 """A table of a paraboloid."""
-ANY, POWERS = (*SMOOTH, SAMPLED), ("parabola", "cone", "cubic", "power")
+POWERS = ("parabola", "cone", "cubic", "power")
 RADII, SLOPES, TOLERANCES = (0.0, 2.0), (-4.0, -1.5), (-4.0, -2.0)
 """Decades of the contact radius [LU], the slope there, the tolerance."""
 PARTICLES, PARTICLES_IN_TIME = (5.0, 60.0), (8.0, 60.0)
@@ -49,7 +48,7 @@ class RandomClass:
     quick: int
     full: int
     kinds: Mapping[str, float]
-    shapes: tuple[str, ...] = POWERS
+    shapes: Sequence[str] = POWERS
     kinked: float = 0.0
 
     def cases(self, count: int) -> Iterator[Case]:
@@ -57,14 +56,11 @@ class RandomClass:
         number = made = 0
         while made < count:
             rng = np.random.default_rng((self.seed, number))
-            try:
-                case = drawn(rng, self, f"{self.name}_{self.seed}_{number}")
-            except ValueError:
-                case = None
-            if case is not None:
+            number += 1
+            with suppress(ValueError):
+                case = drawn(rng, self, f"{self.name}_{self.seed}_{number - 1}")
                 made += 1
                 yield case
-            number += 1
 
 
 def decades(rng: Random, low: float, high: float) -> float:
@@ -86,13 +82,17 @@ def drawn(rng: Random, of: RandomClass, name: str) -> Case:
     kinked = not in_time and rng.random() < of.kinked
     shape = str(rng.choice(KINKED if kinked else of.shapes))
     radius, slope = decades(rng, *RADII), decades(rng, *SLOPES)
-    b = radius * float(rng.uniform(0.2, 0.95)) if kinked else radius
+    b = radius * rng.uniform(0.2, 0.95) if kinked else radius
     solid = smooth("parabola" if kinked or shape == SAMPLED else shape, radius, slope, rng)
     solid = replace(solid, body=kinked_body(shape, b, slope, rng)) if kinked else solid
     per = between(rng, PARTICLES_IN_TIME if in_time else PARTICLES)
     spacing = 2.0 * radius / round(2.0 * per) if solid.punch else radius / per  # a whole number of half spacings
     scene = solid.tables(spacing, decades(rng, *TOLERANCES))
-    scene |= OVER_TIME[experiment](rng, solid, law) if in_time else AT_REST[experiment](rng, CONTACTS[law](rng, solid))
+    if in_time:
+        scene |= OVER_TIME[experiment](rng, solid, law)
+    else:
+        scales = CONTACTS[law](rng, solid)
+        scene |= scales.tables | AT_REST[experiment](rng, scales)
     digits = None
     if kinked or shape == SAMPLED:
         inside = between(rng, POINTS)
@@ -102,7 +102,7 @@ def drawn(rng: Random, of: RandomClass, name: str) -> Case:
         solid = solid.sampled(max(b / inside, reach / MOST_POINTS), reach, digits)
         scene["bodies"]["profile"] = solid.profile
     if experiment == "tangential":
-        scene["bodies"]["bulk_stiffness_tangential"] = spacing * float(rng.uniform(0.67, 1.0))
+        scene["bodies"]["bulk_stiffness_tangential"] = spacing * rng.uniform(0.67, 1.0)
     units = random_units(rng)
     if digits:  # in other units a table would have all digits, and no run could know of the rounding
         units = replace(units, texts=False, automatic=False)
@@ -134,7 +134,7 @@ def _elastic(rng: Random, solid: Surface) -> Scales:
 def _friction(rng: Random, solid: Surface) -> Scales:
     if solid.punch:
         raise ValueError("no annulus of slip")
-    return replace(_elastic(rng, solid), tables={"friction": {"coefficient": float(rng.uniform(0.05, 1.0))}},
+    return replace(_elastic(rng, solid), tables={"friction": {"coefficient": rng.uniform(0.05, 1.0)}},
                    limit=Contact(solid.body).displacement(solid.radius))  # fmt: skip
 
 
@@ -183,40 +183,40 @@ def _widest(solid: Surface, scene: Scene) -> float:
 def _load(rng: Random, one: Scales) -> Scene:
     """From 0.01 to 100 times the unit."""
     force = one.unit * decades(rng, -2.0, 2.0 if one.adhesive else 0.5)
-    return one.tables | {"experiment": {"kind": "load", "force": force}}
+    return {"experiment": {"kind": "load", "force": force}}
 
 
 def _tension(rng: Random, one: Scales) -> Scene:
-    return one.tables | {"experiment": {"kind": "load", "force": -one.unit * float(rng.uniform(0.1, 0.95))}}
+    return {"experiment": {"kind": "load", "force": -one.unit * rng.uniform(0.1, 0.95)}}
 
 
 def _pull_off(rng: Random, one: Scales) -> Scene:
-    return one.tables | {"experiment": {"kind": "pull_off", "preload": one.unit * decades(rng, -1.0, 2.5)}}
+    return {"experiment": {"kind": "pull_off", "preload": one.unit * decades(rng, -1.0, 2.5)}}
 
 
 def _path(rng: Random, one: Scales) -> Scene:
     """Coarse and fine, in and out or one way, from afar or in contact, beyond separation or not."""
     deep = one.under(one.unit * decades(rng, -1.5, 1.5 if one.adhesive else 0.5))
-    apart = one.limit * float(rng.uniform(1.02, 3.0))
+    apart = one.limit * rng.uniform(1.02, 3.0)
     if rng.random() < 0.4:
-        share = float(rng.uniform(0.02, 1.0))
+        share = rng.uniform(0.02, 1.0)
         apart = one.limit * share if rng.random() < 0.5 else one.limit + share * (max(one.rest, 0.0) - one.limit)
     if one.adhesive and rng.random() < 0.1:
-        deep = 0.3 * abs(apart) * float(rng.random())
+        deep = 0.3 * abs(apart) * rng.random()
     if deep - apart < 1e-3 * abs(one.limit):
         raise ValueError("no way")
     ends = (apart, deep) if rng.random() < 0.6 else (deep, apart)
-    steps, closed = round(between(rng, STEPS)), bool(rng.random() < 0.7)
+    steps, closed = round(between(rng, STEPS)), rng.random() < 0.7
     way = {"from": ends[0], "to": ends[1], "steps": steps, "return": closed}
     start = str(rng.choice(["approach", "approach", "contact"])) if one.adhesive else "approach"
     ranged = "range" in one.tables.get("adhesion", {})
-    return one.tables | {"experiment": {"kind": "path", "displacements": way} | ({} if ranged else {"start": start})}
+    return {"experiment": {"kind": "path", "displacements": way} | ({} if ranged else {"start": start})}
 
 
 def _held(rng: Random, one: Scales) -> Scene:
     """A load that comes to rest in time, and a displacement that is held."""
     force = one.unit * decades(rng, -0.5, 0.5)
-    tables = one.tables | {"damping": {"coefficient": "auto"}}
+    tables = {"damping": {"coefficient": "auto"}}
     if rng.random() < 0.5:
         return tables | {"plate": {}, "experiment": {"kind": "load", "force": force}}
     return tables | {"experiment": {"kind": "hold", "displacement": one.under(force), "duration": 50.0}}
@@ -225,11 +225,11 @@ def _held(rng: Random, one: Scales) -> Scene:
 def _tangential(rng: Random, one: Scales) -> Scene:
     """Out, back, and cycles, from amplitudes that are small against full slip up to it."""
     u = one.tables["friction"]["coefficient"] * one.limit * decades(rng, -3.0, 0.2)
-    steps, count, back = int(rng.integers(1, 20)), int(rng.integers(1, 4)), bool(rng.random() < 0.5)
+    steps, count, back = int(rng.integers(1, 20)), int(rng.integers(1, 4)), rng.random() < 0.5
     along: Scene = {"displacements": {"from": 0.0, "to": u, "steps": steps, "return": back}}
     if rng.random() < 0.5:
         along = {"cycles": {"amplitude": u, "number": count, "points": 4 * max(1, steps // 2)}}
-    return one.tables | {"experiment": {"kind": "tangential", "normal_force": one.unit} | along}
+    return {"experiment": {"kind": "tangential", "normal_force": one.unit} | along}
 
 
 CONTACTS = {"elastic": _elastic, "JKR": _jkr, "Maugis": _maugis, "friction": _friction}
@@ -257,8 +257,8 @@ def _law(rng: Random, solid: Surface, law: str, duration: float, fluid: float = 
     """
     radius = solid.radius
     if law in ("JKR", "rate"):
-        a, body = radius * float(rng.uniform(0.3, 1.2)), power_of(solid)
-        rate = {"velocity": radius / duration * decades(rng, -0.5, 4.0), "exponent": float(rng.uniform(0.3, 1.0))}
+        a, body = radius * rng.uniform(0.3, 1.2), power_of(solid)
+        rate = {"velocity": radius / duration * decades(rng, -0.5, 4.0), "exponent": rng.uniform(0.3, 1.0)}
         tables: Scene = {"work_of_adhesion": body.depth(a) ** 2 / (2.0 * math.pi * a)}
         return {"adhesion": tables | ({"rate": rate} if law == "rate" else {})}
     if law == "Kelvin–Voigt":
@@ -267,7 +267,7 @@ def _law(rng: Random, solid: Surface, law: str, duration: float, fluid: float = 
         return {}
     arms, far = int(rng.integers(1, 4)), law == "far Prony"
     flows = rng.random() < fluid and not far
-    shares = rng.dirichlet(np.ones(arms)) * (1.0 if flows else float(rng.uniform(0.05, 0.98)))
+    shares = rng.dirichlet(np.ones(arms)) * (1.0 if flows else rng.uniform(0.05, 0.98))
     times = duration * np.sort(10.0 ** rng.uniform(-1.5, 20.0 if far else 1.5, arms))
     return {"viscoelasticity": terms_of(Material(tuple(zip(shares.tolist(), times.tolist(), strict=True))))}
 
@@ -285,9 +285,9 @@ def _some(rng: Random, share: float, *values: float) -> list[float]:
 def _one_maximum(rng: Random, law: str) -> list[float]:
     """Held or not, with one or two rates of rising, and an end in contact or far outside."""
     out = 3.0 if law in ("JKR", "rate") else 0.5
-    fall = float(rng.uniform(0.6, 0.9) if rng.random() < 0.25 else rng.uniform(-out, 0.0))
-    values = [0.0 if rng.random() < 0.6 else -float(rng.uniform(0.05, 0.5))]
-    values += [*_some(rng, 0.4, float(rng.uniform(0.2, 0.8))), 1.0, *_some(rng, 0.4, 1.0)]
+    fall = rng.uniform(0.6, 0.9) if rng.random() < 0.25 else rng.uniform(-out, 0.0)
+    values = [0.0 if rng.random() < 0.6 else -rng.uniform(0.05, 0.5)]
+    values += [*_some(rng, 0.4, rng.uniform(0.2, 0.8)), 1.0, *_some(rng, 0.4, 1.0)]
     return [*values, *_some(rng, 0.85, fall)]
 
 
@@ -295,16 +295,16 @@ def _sawtooth(rng: Random, law: str) -> list[float]:
     """Several maxima, parts that are held, and an end in contact or outside."""
     values = [0.0 if rng.random() < 0.6 else -0.3]
     for _ in range(int(rng.integers(2, 4))):
-        top = float(rng.uniform(0.3, 1.0))
-        low = float(rng.uniform(-0.3, 0.6)) * top
+        top = rng.uniform(0.3, 1.0)
+        low = rng.uniform(-0.3, 0.6) * top
         values += [top, *_some(rng, 0.25, top), low, *_some(rng, 0.25, low)]
-    return [*values, *_some(rng, 0.7, -float(rng.uniform(0.1, 1.0)))]
+    return [*values, *_some(rng, 0.7, -rng.uniform(0.1, 1.0))]
 
 
 def _forces(rng: Random, law: str) -> list[float]:
     """A rise of one or two rates, held or not, and a fall to nothing, to a part, or none."""
-    values = [0.0, *_some(rng, 0.3, float(rng.uniform(0.2, 0.8))), 1.0, *_some(rng, 0.6, 1.0)]
-    end = 0.0 if rng.random() < 0.6 else float(rng.uniform(0.1, 0.9))
+    values = [0.0, *_some(rng, 0.3, rng.uniform(0.2, 0.8)), 1.0, *_some(rng, 0.6, 1.0)]
+    end = 0.0 if rng.random() < 0.6 else rng.uniform(0.1, 0.9)
     return [*values, *_some(rng, 1.0 if len(values) == 2 else 0.7, end)]
 
 

@@ -4,8 +4,6 @@ Scenes are in units of their model with E* = 1 FU/LU². Bodies of any profile ar
 those that take time, in their material or at an adhesive edge, are powers of r or punches.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -55,8 +53,12 @@ def expected(surface: Surface, scene: Scene) -> Expected:
         ratio = bodies["bulk_stiffness_tangential"] / bodies["bulk_stiffness"]
         return _tangential(adherent, surface, experiment, scene["friction"]["coefficient"], ratio)
     if kind == "pull_off":
-        return _split(marks(adherent, surface.radius) | _without_load(adherent, surface) | {
-            "preload": experiment["preload"]})  # fmt: skip
+        found = marks(adherent, surface.radius) | {"preload": experiment["preload"]}
+        if not surface.punch:
+            rest, edge = found["zero_load_radius"], found["critical_radius"]
+            states = {"zero_load": (rest, adherent.displacement(rest)), "critical": (edge, adherent.displacement(edge))}
+            found |= middle_and_peak(adherent, *states["zero_load"]) | pressures(adherent, **states)
+        return _split(found)
     if kind == "path" and adherent.work:
         return _split(_loop(adherent, surface.radius, experiment))
     a, d = deepest(adherent, experiment, surface.radius)
@@ -138,15 +140,6 @@ def marks(contact: Contact, guess: float) -> Numbers:
         "work_of_separation": contact.energy(contact.fixed_grips(guess)) - contact.energy(rest),
         "adhesion_energy": math.pi * rest**2 * contact.work,
     }  # fmt: skip
-
-
-def _without_load(contact: Contact, surface: Surface) -> Numbers:
-    """Pressures of a pull-off."""
-    if surface.punch:
-        return {}
-    rest, edge = contact.pressed_radius(0.0, surface.radius), contact.critical(surface.radius)
-    states = {"zero_load": (rest, contact.displacement(rest)), "critical": (edge, contact.displacement(edge))}
-    return middle_and_peak(contact, *states["zero_load"]) | pressures(contact, **states)
 
 
 def _loop(contact: Contact, guess: float, experiment: Scene) -> Numbers:

@@ -4,10 +4,9 @@ One maximum of a displacement is by quadrature, several by springs with events i
 compliance; pressures are those of line loads.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
+from functools import partial
 from itertools import groupby, pairwise
 
 import numpy as np
@@ -16,12 +15,8 @@ from scipy.interpolate import PchipInterpolator
 from validation.hard.judge import Curve, Expected, Function
 from validation.hard.surfaces import Surface, power
 from validation.hard.units import Scene
-from validation.references import impact
-from validation.references.axisymmetric import Contact
-from validation.references.creeping import Creeping
-from validation.references.dashpots import Pressed
+from validation.references import axisymmetric, creeping, dashpots, impact, line_load
 from validation.references.interaction import Floats
-from validation.references.line_load import Line, lines
 from validation.references.receding_edge import Path, Receding, path
 from validation.references.recovering import Followed, Prony, Retarded, evenly, followed
 from validation.references.relaxing import (
@@ -33,7 +28,6 @@ from validation.references.relaxing import (
     Power,
     Punch,
     has_one_maximum,
-    smooth,
 )
 
 PER_LEG, SPRINGS = 60, 1000
@@ -54,6 +48,7 @@ NAMES = {1: "loading", -1: "unloading", 0: "holding"}
 Law = Material | KelvinVoigt
 Numbers = dict[str, float]
 Pressures = Mapping[str, Function]
+_each = partial(np.vectorize, otypes=[float])
 
 
 def expected(surface: Surface, scene: Scene) -> Expected:
@@ -70,7 +65,7 @@ def expected(surface: Surface, scene: Scene) -> Expected:
             return _pulled(edge, experiment["preload"], experiment["velocity"])
         if kind == "history":
             return _receded(edge, given)
-        return _stuck_or_bounced(contact, scene["plate"]["mass"], experiment["velocity"])
+        return _bounced(body, contact, scene["plate"]["mass"], experiment["velocity"])
     law: Law = Material(tuple((one["share"], one["time"]) for one in table.get("terms", [])))
     if "retardation_time" in table:
         assert isinstance(body, Power)
@@ -87,29 +82,24 @@ def expected(surface: Surface, scene: Scene) -> Expected:
     return _crept(body, law, given)
 
 
-def _bounce(found: impact.Bounce, mass: float, velocity: float) -> Expected:
-    return Expected(vars(found) | {"dissipated_energy": found.lost(mass, velocity)}, EXACT)
-
-
-def _bounced(body: Power | Flat, law: Law, mass: float, velocity: float) -> Expected:
+def _bounced(body: Power | Flat, law: Law | impact.Adhesive, mass: float, velocity: float) -> Expected:
+    """An impact; adhesive bodies stick below a velocity."""
     assert isinstance(body, Power)
     if isinstance(law, KelvinVoigt):
         found = impact.kelvin_voigt(law, mass, velocity)
-    else:
+    elif isinstance(law, Material):
         found = impact.relaxing(body, law, mass, velocity) if law.terms else impact.elastic(body, 1.0, mass, velocity)
-    return _bounce(found, mass, velocity)
-
-
-def _stuck_or_bounced(contact: impact.Adhesive, mass: float, velocity: float) -> Expected:
-    if velocity > contact.sticking_velocity(mass):
-        return _bounce(contact.impact(mass, velocity), mass, velocity)
-    lost = {"restitution": 0.0, "dissipated_energy": 0.5 * mass * velocity**2, "contact_time": math.inf}
-    return Expected(lost, EXACT)
+    elif velocity > law.sticking_velocity(mass):
+        found = law.impact(mass, velocity)
+    else:
+        lost = {"restitution": 0.0, "dissipated_energy": 0.5 * mass * velocity**2, "contact_time": math.inf}
+        return Expected(lost, EXACT)
+    return Expected(vars(found) | {"dissipated_energy": found.lost(mass, velocity)}, EXACT)
 
 
 def _of_edge(body: Power, work: float, a: float, d: float, name: str) -> tuple[Numbers, Pressures]:
     """p(0), the largest pressure and p(r) of an edge with a jump of q, or without."""
-    contact = Contact(power(body, a).body, 1.0, work)
+    contact = axisymmetric.Contact(power(body, a).body, 1.0, work)
     middle = contact.central_pressure(a, d)
     peak = math.inf if d - body.depth(a) > 1e-9 * abs(d) else contact.peak_pressure(a, d)
     at = {name: lambda r: 0.0 if r >= a else contact.pressure(r, a, d) if r else middle}
@@ -154,21 +144,21 @@ def _withdrawn(edge: Receding, way: Path, d: Legs) -> Curve:
 
     def values(times: Floats) -> Floats:
         a = edge_at(times)
-        falls = np.array([d.rate(float(time)) < 0.0 for time in times])
+        falls = np.array([d.rate(time) < 0.0 for time in times])
         drawn = [edge.force(*one) if one[0] > 0.0 else 0.0 for one in zip(a, map(d, times), strict=True)]
         return np.where(falls, drawn, math.nan)
 
-    return Curve("time", values, -float(force.min()) or 1.0)
+    return Curve("time", values, -force.min() or 1.0)
 
 
 def _largest(path: Followed, d: Legs) -> float:
     """The largest force: a sample at a corner, or of a parabola between samples of one leg."""
     i = int(np.argmax(path.force))
-    if i in (0, path.force.size - 1) or float(path.times[i]) in d.times:
+    if i in (0, path.force.size - 1) or path.times[i] in d.times:
         return float(path.force[i])
-    before, here, after = (float(y) for y in path.force[i - 1 : i + 2])
+    before, here, after = path.force[i - 1 : i + 2].tolist()
     bend = before - 2.0 * here + after
-    return here - (after - before) ** 2 / (8.0 * bend) if bend < 0.0 else here
+    return float(here - (after - before) ** 2 / (8.0 * bend) if bend < 0.0 else here)
 
 
 def _pressed_in(body: Power | Flat, law: Law, d: Legs, spacing: float) -> Expected:
@@ -188,20 +178,20 @@ def _pressed_in(body: Power | Flat, law: Law, d: Legs, spacing: float) -> Expect
             found["contact_radius"] = one.radius(d.times[-1])
         else:
             found |= {"dissipated_energy": one.work, "contact_time": one.end - one.start}
-        values = np.vectorize(one.force, otypes=[float])
+        values = _each(one.force)
     else:
         cells, per_leg = (MORE * SPRINGS, OFTENER * PER_LEG) if jumps else (SPRINGS, PER_LEG)
         way, error = followed(rule, body.depth, width, d, evenly(d, per_leg), cells), JUMPING if jumps else SAMPLED
-        found |= {"peak_force": _largest(way, d), "force": float(way.force[-1])}
+        found |= {"peak_force": _largest(way, d), "force": way.force[-1]}
         if not way.radius[-1]:
-            found |= {"dissipated_energy": float(way.work[-1]), "contact_time": way.last - way.first}
+            found |= {"dissipated_energy": way.work[-1], "contact_time": way.last - way.first}
     if isinstance(law, KelvinVoigt) and has_one_maximum(d):
         dashpot, before = law, 1e-12 * d.times[-1]
         scale = 2.0 * law.time * max(map(d.rate, d.times)) * spacing / ALONG
-        values = np.vectorize(lambda t: dashpot.force(d(t), d.rate(t - before)), otypes=[float])
+        values = _each(lambda t: dashpot.force(d(t), d.rate(t - before)))
     elif isinstance(body, Flat) and isinstance(law, Material):
         punch = Punch(body.end, law)
-        values = np.vectorize(lambda t: max(0.0, punch.force(d, t)), otypes=[float])
+        values = _each(lambda t: max(0.0, punch.force(d, t)))
     more, pressures = of_lines(body, law, d, d)
     curve = Curve("time", values, scale + found["peak_force"])
     return Expected(more | found, error, pressures, LINES, curves={"force": curve})
@@ -218,8 +208,8 @@ def _width(body: Power | Flat, d: float, more: float) -> float:
 
 def _crept(body: Power, material: Material, force: Legs) -> Expected:
     """A force over time that rises, is held and falls. Raises ValueError where its radius has several maxima."""
-    one, last = Creeping(body, material, force), force.times[-1]
-    before = [one.before(float(t)) for t in np.linspace(one.turn, last, 12)]
+    one, last = creeping.Creeping(body, material, force), force.times[-1]
+    before = [one.before(t) for t in np.linspace(one.turn, last, 12).tolist()]
     if any(x < y for x, y in pairwise(before)):
         raise ValueError("the contact radius has several maxima")
     found = {"peak_force": max(force.values), "peak_displacement": one.peak_displacement,
@@ -227,35 +217,24 @@ def _crept(body: Power, material: Material, force: Legs) -> Expected:
     if force.values[-1] > 0.0:
         found["contact_radius"] = one.radius(last)
     else:
-        corners = sorted({*force.times, one.turn})
-        lost = -sum(
-            force.rate(0.5 * (low + high)) * smooth(one.displacement, low, high, 24) for low, high in pairwise(corners)
-        )
-        found |= {"dissipated_energy": lost, "contact_time": last - force.times[0]}
-    more, pressures = of_lines(body, material, crept(body, material, force), force)
-    curve = Curve("time", np.vectorize(one.displacement, otypes=[float]), one.peak_displacement,
-                  FEWEST * one.radius(one.turn))  # fmt: skip
-    return Expected(more | found, EXACT, pressures, LINES, curves={"displacement": curve})
-
-
-def crept(body: Power, material: Material, force: Legs) -> Legs:
-    """The displacements of a force over time."""
-    one = Creeping(body, material, force)
+        found |= {"dissipated_energy": force.work(one.displacement, one.turn), "contact_time": last - force.times[0]}
     times = [a + (b - a) * (i / PER_CREEP) ** 2 for a, b in pairwise(force.times) for i in range(PER_CREEP)]
-    return Legs(tuple((t, one.displacement(t)) for t in [*times, force.times[-1]]))
+    more, pressures = of_lines(body, material, Legs(tuple((t, one.displacement(t)) for t in [*times, last])), force)
+    curve = Curve("time", _each(one.displacement), one.peak_displacement, FEWEST * one.radius(one.turn))
+    return Expected(more | found, EXACT, pressures, LINES, curves={"displacement": curve})
 
 
 def _punched(punch: Punch, force: Legs) -> Expected:
     """A flat punch under a force is the creep compliance itself."""
     top = max(punch.displacement(force, t) for t in evenly(force, 400))
     found = {"displacement": punch.displacement(force, force.times[-1]), "peak_displacement": top}
-    places = np.vectorize(lambda t: punch.displacement(force, t), otypes=[float])
+    places = _each(lambda t: punch.displacement(force, t))
     return Expected(found, 1e-6, curves={"displacement": Curve("time", places, top)})
 
 
 def _under_force(law: KelvinVoigt, force: Legs) -> Expected:
     """Dashpots; a slope of unloading there is none, where a jump of the force is one of the rate."""
-    one, last = Pressed(law, force), force.times[-1]
+    one, last = dashpots.Pressed(law, force), force.times[-1]
     pressures: dict[str, Function] = {}
     end = one.displacement(last)
     deepest = one.displacement(min(one.turn, last))
@@ -278,7 +257,7 @@ def _under_force(law: KelvinVoigt, force: Legs) -> Expected:
 def marked(given: Legs) -> dict[str, float]:
     """When the states of a history are that have a name: the ends of its phases, the last one the final one."""
     kinds = [int(np.sign(b - a)) for a, b in pairwise(given.values)]
-    found: dict[str, float] = {}
+    found = {}
     counts = dict.fromkeys(NAMES.values(), 0)
     for kind, same in groupby(range(len(kinds)), key=kinds.__getitem__):
         counts[NAMES[kind]] += 1
@@ -294,12 +273,12 @@ def of_lines(body: Power | Flat, law: Law, d: Legs, given: Legs) -> tuple[Number
     creep of the moment before; dashpots have a jump of F there, and no slope.
     """
     names, width = marked(given), _width(body, max(d.values), 1.02)
-    at = lines(_springs(law), body.depth, width, d, sorted(names.values()), body.exponent)
+    at = line_load.lines(_springs(law), body.depth, width, d, sorted(names.values()), body.exponent)
     states = dict(zip(names, at, strict=True))
     last = states["final"]
     found: Numbers = {}
     if d is not given and given.values[-1] == 0.0:  # a body without a force that it is pressed by does not touch
-        states["final"] = last = Line(np.zeros(0), np.zeros(0))
+        states["final"] = last = line_load.Line(np.zeros(0), np.zeros(0))
     if last.edge:
         force = last.force if d is given else given.values[-1]
         found |= {"contact_radius": last.edge, "mean_pressure": force / (math.pi * last.edge**2),
@@ -316,7 +295,7 @@ def of_lines(body: Power | Flat, law: Law, d: Legs, given: Legs) -> tuple[Number
     return found, {name: one.pressure for name, one in states.items() if one.edge}
 
 
-def _slopes(law: Law, corner: Line, d: Legs, falls: int) -> Numbers:
+def _slopes(law: Law, corner: line_load.Line, d: Legs, falls: int) -> Numbers:
     if not isinstance(law, Material):
         return {"unloading_stiffness": math.inf, "creep_corrected_stiffness": math.inf}
     own = 2.0 * law.modulus * corner.edge

@@ -4,8 +4,6 @@ A flat punch of equal pairs has F_A = N f_max whatever the springs between neigh
 motion stretches; and a rigid plane carries F = k Σ max(0, d − h_i).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np
@@ -13,12 +11,11 @@ import numpy as np
 from validation.hard.cases import TENSION, PairCase, shaped
 from validation.hard.judge import Case, Expected, judged
 from validation.hard.units import Scene
-from validation.row import Row
+from validation.row import Row, tables_beside
 from validation.study import Bench, Findings, Study, claim_row
 
 RADII = (1.0, 1e3, 1e6, 1e9)
-COUNTS, FULL_COUNTS = (3, 1000, 100_000), (3, 30, 1000, 100_000, 1_000_000)
-STIFFNESSES, FULL_STIFFNESSES = (1e-6, 1e-3, 1e3, 1e6), (1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6)
+FORMS = tables_beside(__file__)
 PLANE = 1e-5
 """Relative: a hundredth of the tolerance; without neighbours the plane is exact."""
 WIDTH = 10.3
@@ -31,12 +28,12 @@ def on_plane(full: bool) -> Iterator[Case]:
     shapes: dict[str, tuple[Scene, int, float]] = {
         f"R = {R:g} LU": ({"kind": "parabola", "radius": R}, 61, WIDTH**2 / R) for R in RADII
     }
-    for count in FULL_COUNTS if full else COUNTS:
+    for count in FORMS["full" if full else "short"]["counts"]:
         shapes[f"N = {count}"] = {"kind": "flat_punch", "radius": 0.5 * count}, count, 0.1
     for words, (profile, count, d) in shapes.items():
         x = np.arange(count) - 0.5 * (count - 1)
         heights = x**2 / profile["radius"] if profile["kind"] == "parabola" else 0.0 * x
-        force = 0.5 * float(np.sum(np.maximum(0.0, d - heights)))
+        force = 0.5 * np.sum(np.maximum(0.0, d - heights))
         bodies = {"particles": count, "spacing": 1.0, "profile": profile, "bulk_stiffness": 0.5, "lower": "rigid_plane"}
         scene = {"bodies": bodies, "experiment": {"kind": "path", "displacements": [d]}}
         yield Case(words, words, words, scene, Expected({"largest_force": force}))
@@ -55,7 +52,7 @@ def _springs(bench: Bench) -> Iterator[Row]:
     case = PairCase("springs", RATIO, shaped("flat_punch", PUNCH, 0.0), PUNCH, TENSION)
     scene, load = case.scene(), -0.5 * PUNCH * TENSION
     held = {"horizontal": {}, "experiment": {"kind": "load", "method": "quasistatic", "force": load}}
-    for factor in FULL_STIFFNESSES if bench.full else STIFFNESSES:
+    for factor in FORMS["full" if bench.full else "short"]["stiffnesses"]:
         k = factor * case.stiffness
         bodies = {"bodies": scene["bodies"] | {"bulk_stiffness_tangential": k}}
         kinds = {

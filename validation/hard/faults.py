@@ -1,7 +1,5 @@
 """Faults from outside: a run that is killed and made again, files that cannot grow, two runs in one folder."""
 
-from __future__ import annotations
-
 import json
 import resource
 import signal
@@ -11,8 +9,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from validation.doors import read_scene
-from validation.hard.cases import PAPER_LAW
+from validation.doors import shipped
 from validation.row import so
 from validation.study import Bench, Findings, Study
 
@@ -20,26 +17,11 @@ COMMAND = (sys.executable, "-m", "contact1d", "run")
 MOST = 1800.0
 """Wall time of one command [s]."""
 RESULTS, TORN = "results.json", "torn"
-SCENE = {
-    "title": "pull-off that is disturbed",
-    "bodies": {
-        "particles": 200,
-        "spacing": 1.0,
-        "profile": {"kind": "parabola", "radius": 1000.0},
-        "bulk_stiffness": 0.83,
-    },
-    "interaction": PAPER_LAW,
-    "neighbours": {"stiffness": 0.3},
-    "horizontal": {},
-    "experiment": {"kind": "pull_off", "method": "quasistatic", "preload": 1.0},
-}
 
 
 def measure(bench: Bench) -> Findings:
     """All three kinds; the reference is the same run undisturbed, whose phases and files are those of the others."""
-    scene = bench.folder / "scene.toml"
-    scene.write_text(str(read_scene(SCENE)), encoding="utf-8")
-    whole = bench.folder / "undisturbed"
+    scene, whole = shipped("scenes/pull_off.toml"), bench.folder / "undisturbed"
     phases = _start(scene, whole).communicate(timeout=MOST)[1].splitlines()
     undisturbed = _force(whole)
     sizes = {path.name: path.stat().st_size for path in sorted(whole.iterdir()) if path.is_file()}
@@ -56,7 +38,7 @@ def measure(bench: Bench) -> Findings:
         what = f"disk full at the last byte of {name}: a traceback, another exit code than 0, 2, 3, another F_A"
         rows.append(so(what, bad, f"exit 0, 2 or 3 and no traceback; it is {code}"))
     refused = "second run in a folder at work that is not refused with exit 2"
-    return Findings([*rows, so(refused, _second(scene, bench), "one run for each folder")])
+    return Findings([*rows, so(refused, _second(scene, bench.folder / "two"), "one run for each folder")])
 
 
 def _killed(scene: Path, run: Path, lines: int, file: str, undisturbed: Any) -> bool:
@@ -116,8 +98,7 @@ def _force(run: Path) -> Any:
     return document.get("adhesion_force", {}).get("value")
 
 
-def _second(scene: Path, bench: Bench) -> bool:
-    run = bench.folder / "two"
+def _second(scene: Path, run: Path) -> bool:
     first = _start(scene, run)
     _wait_for("in.lammps", run, first)
     first.send_signal(signal.SIGSTOP)  # at work for as long as it takes

@@ -4,21 +4,18 @@ Curves are closed forms (`references.force_curves`) with noise of 1 % of the pul
 off by what their ± allows, drawn anew for each curve. A curve that is refused counts as not covered.
 """
 
-from __future__ import annotations
-
 import csv
 import math
 import time
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from validation.doors import Contact1dError, cores, fit, fit_many
 from validation.references.force_curves import Sphere, measured, noise
-from validation.row import Row, at_least, at_most
+from validation.row import Row, at_least, at_most, tables_beside
 from validation.study import Bench, Findings, Study
 
 MODULUS, WORK, RADIUS, POINT = 2e6, 0.05, 5e-6, 3e-7
@@ -37,8 +34,7 @@ DRAWS, FULL_DRAWS = 2, 10
 MAP, FULL_MAP = 40, 1000
 
 
-@dataclass(frozen=True)
-class Group:
+class Group(NamedTuple):
     """Curves of one kind.
 
     Attributes:
@@ -97,11 +93,7 @@ class Group:
         return np.concatenate([positions, positions[::-1]]) + POINT, force
 
 
-GROUPS = (
-    Group("JKR", 0.0, 2.0), Group("JKR", MEMORY, 2.0), Group("JKR", MEMORY, 1.0), Group("JKR", 0.0, 4.0),
-    Group("Maugis", 0.0, 2.0), Group("Maugis", MEMORY, 2.0), Group("Maugis", MEMORY, 2.0, 0.4),
-    Group("Hertz", 0.0, 2.0), Group("Hertz", MEMORY, 2.0), Group("Hertz", MEMORY, 1.0),
-)  # fmt: skip
+GROUPS = [Group(**group) for group in tables_beside(__file__)["groups"]]
 
 
 def write(group: Group, places: Mapping[int, str], head: str, path: Path) -> Path:
@@ -131,16 +123,9 @@ def covered(table: Path, group: Group) -> Iterator[tuple[str, bool]]:
                 yield name, all(ends) and float(ends[0]) <= exact <= float(ends[1])
 
 
-def chosen(group: Group, seed: int, folder: Path) -> bool:
-    """Whether the most likely contact model is the one that the curve was made with."""
-    data = write(group, {seed: ""}, "", folder / "curve.csv")
-    found = fit(group.plan(data, group.sphere.range or 1e-9))
-    return bool(next(iter(found.models)) == group.kind)
-
-
 def measure(bench: Bench) -> Findings:
     """Coverage, choice of the model, and time."""
-    rows, all_of = list[Row](), dict[str, list[bool]]()
+    rows, all_of = [], dict[str, list[bool]]()
     for i, group in enumerate(GROUPS):
         folder = bench.folder / f"group_{i}"
         count = FULL_CURVES if bench.full else CURVES
@@ -165,14 +150,18 @@ def measure(bench: Bench) -> Findings:
 
 
 def _choices(bench: Bench) -> Iterator[Row]:
-    """The choice of the contact model."""
+    """How often the most likely contact model is the one that a curve was made with."""
     kinds = [Group("JKR", MEMORY, 2.0), Group("DMT", MEMORY, 2.0), Group("Hertz", MEMORY, 2.0)]
     kinds += [Group("Maugis", MEMORY, 2.0, tabor) for tabor in (0.3, 1.0, 1.67)]
     for i, group in enumerate(kinds):
-        right, seeds = list[bool](), range(FULL_DRAWS if bench.full else DRAWS)
+        right, seeds = [], range(FULL_DRAWS if bench.full else DRAWS)
         for seed in seeds:
             try:
-                right.append(chosen(group, 50_000 + 100 * i + seed, bench.folder / f"choice_{i}_{seed}"))
+                data = write(
+                    group, {50_000 + 100 * i + seed: ""}, "", bench.folder / f"choice_{i}_{seed}" / "curve.csv"
+                )
+                likely = next(iter(fit(group.plan(data, group.sphere.range or 1e-9)).models))
+                right.append(bool(likely == group.kind))
             except Contact1dError as error:  # of a curve without adhesion the refusal names Hertz's contact
                 right.append(group.kind == "Hertz" and "no adhesion" in str(error))
         words = f"share of {len(right)} curves of {group.kind}{f', µ = {group.tabor}' if group.sphere.range else ''}"

@@ -5,8 +5,6 @@ line taken away, doubled or moved, a character changed. What still is a scene go
 of those are run.
 """
 
-from __future__ import annotations
-
 import random
 import re
 import warnings
@@ -28,7 +26,6 @@ SLOW, RUN, HANGS = 10, 60, 600
 """Seconds of work for a scene to become a deck or a sentence, of LAMMPS in a run, and of the clock for what hangs."""
 NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 VALUES = '0 -1 1e-300 1e300 1e20 1e-6 1e6 nan inf -inf true "auto" "x" [] {} 3 1e-3 0.5 2.0 1000000 10.0 7'
-SPOILT = "\"'[]{}=#.,\\\0é\n -"
 TRACEBACK = "a traceback"
 
 
@@ -80,7 +77,7 @@ def edited(text: str, draw: random.Random) -> str:
                 text = "\n".join(lines)
             case _:
                 place = draw.randrange(len(text))
-                text = text[:place] + draw.choice(SPOILT) + text[place + draw.randrange(2) :]
+                text = text[:place] + draw.choice("\"'[]{}=#.,\\\0é\n -") + text[place + draw.randrange(2) :]
     return text
 
 

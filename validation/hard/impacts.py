@@ -4,22 +4,14 @@ Restitution, duration and peaks of a half-space that is elastic, of Kelvin and V
 against motions of few variables that no chain takes part in; a pull-off at a velocity against the equation of its edge.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
-from validation.hard.draws import history, terms_of
+from validation.hard import draws, random_plane, relaxing, surfaces, units
 from validation.hard.expected import looked_up
 from validation.hard.judge import Case, Number, absolute, judged
-from validation.hard.random_plane import IMPACTS as RANDOM
-from validation.hard.random_plane import random_rows
-from validation.hard.relaxing import MATERIALS, bodies
-from validation.hard.surfaces import Surface, power
-from validation.hard.units import Scene
 from validation.references.impact import Adhesive, elastic
 from validation.references.receding_edge import Receding
 from validation.references.relaxing import KelvinVoigt, Legs, Power, sphere
-from validation.row import Row
 from validation.study import Bench, Findings, Study
 
 PARTICLES = 40.0
@@ -43,14 +35,16 @@ MOTION, ENERGY, EDGE = "the motion, by scipy", "Johnson and Pollock's balance of
 
 def cases() -> Iterator[Case]:
     """Of each body."""
-    for name, body in (bodies(1.0, 1.0) | {"sphere": sphere(1.0)}).items():
-        solid = power(body, 1.0)
-        laws: dict[str, dict[str, Scene]] = {
+    for name, body in (relaxing.bodies(1.0, 1.0) | {"sphere": sphere(1.0)}).items():
+        solid = surfaces.power(body, 1.0)
+        laws: dict[str, dict[str, units.Scene]] = {
             "elastic impact": {name: {}},
             "impact on Kelvin and Voigt's": {
-                f"{name}, T = {time:g}": terms_of(KelvinVoigt(body, time)) for time in RETARDED
+                f"{name}, T = {time:g}": draws.terms_of(KelvinVoigt(body, time)) for time in RETARDED
             },
-            "impact on a body that relaxes": {f"{name}, {kind}": terms_of(one) for kind, one in MATERIALS.items()},
+            "impact on a body that relaxes": {
+                f"{name}, {kind}": draws.terms_of(one) for kind, one in relaxing.MATERIALS.items()
+            },
         }
         width = elastic(body, 1.0, 1.0, 1.0).peak_contact_radius
         for group, tables in laws.items():
@@ -67,13 +61,13 @@ def cases() -> Iterator[Case]:
         yield from _edges(name, solid, body)
 
 
-def hit(solid: Surface, width: float, velocity: float) -> Scene:
+def hit(solid: surfaces.Surface, width: float, velocity: float) -> units.Scene:
     """An impact of the mass 1 whose contact is so wide."""
     experiment = {"kind": "impact", "velocity": velocity}
     return solid.tables(width / PARTICLES) | {"plate": {"mass": 1.0}, "experiment": experiment}
 
 
-def _edges(name: str, solid: Surface, body: Power) -> Iterator[Case]:
+def _edges(name: str, solid: surfaces.Surface, body: Power) -> Iterator[Case]:
     """Pull-offs at velocities; pressed in at equilibrium, then drawn off at a velocity, as a history."""
     for velocity in VELOCITIES:
         words = f"{name}, V = {velocity:g} v₀"
@@ -83,9 +77,10 @@ def _edges(name: str, solid: Surface, body: Power) -> Iterator[Case]:
         yield looked_up(f"edge_{words}", "pull-off at a velocity", words, solid, scene)
         contact = Adhesive(body, WORK_OF_IMPACTS)
         edge, deepest = Receding(contact, RATE["velocity"], RATE["exponent"]), body.depth(2.5 * contact.touch)
-        way = 1.5 * float(edge.drawn(edge.at(deepest), velocity).t[-1])  # half as far again as where they part
+        # Half as far again as where they part.
+        way = 1.5 * float(edge.drawn(contact.radius_at(deepest), velocity).t[-1])
         legs = Legs(((0.0, -deepest), (2.0, deepest), (2.0 + way / velocity, deepest - way)))
-        scene = solid.tables(contact.touch / PARTICLES) | history(legs)
+        scene = solid.tables(contact.touch / PARTICLES) | draws.history(legs)
         scene |= {"adhesion": {"work_of_adhesion": WORK_OF_IMPACTS, "rate": RATE}}
         if velocity > VELOCITIES[0]:
             yield looked_up(f"history_{words}", "history of an edge with a speed", words, solid, scene)
@@ -98,7 +93,7 @@ def squared(n: Number) -> float:
 
 def measure(bench: Bench) -> Findings:
     """Elastic, of Kelvin and Voigt, relaxing, adhesive; then the edge; then random scenes of all."""
-    rows: list[Row] = []
+    rows = []
     for words, judge in judged(bench, cases()).items():
         source = EDGE if "edge" in words or "velocity" in words else ENERGY if words.startswith("adhesive") else MOTION
         rows += judge.rows(words, source)
@@ -111,7 +106,7 @@ def measure(bench: Bench) -> Findings:
         else:
             bound = STILL if words.startswith("elastic") else RESTITUTION
             rows.append(judge.near(words, "restitution", bound, source, absolute))
-    return Findings([*rows, *random_rows(bench, RANDOM, MOTION)])
+    return Findings([*rows, *random_plane.random_rows(bench, random_plane.IMPACTS, MOTION)])
 
 
 IMPACTS = Study(

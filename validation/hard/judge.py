@@ -4,8 +4,6 @@ A claim is a standard a person reads: value ± uncertainty. It is to hold, a num
 tolerance is to have a warning that names it, and one that is missing is to be missed with a word.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections import Counter, defaultdict
@@ -177,13 +175,13 @@ class Judge:
                 continue
             scale = case.units.size(quantity.unit)
             named = any(re.search(rf"\b{name}\b", run.warnings.get(w, "")) for w in NAMING)
-            self._number(case, name, quantity.value / scale, quantity.uncertainty / scale, float(reference),
+            self._number(case, name, quantity.value / scale, quantity.uncertainty / scale, reference,
                          named or any(w in run.warnings for w in self.of_all))  # fmt: skip
         for column, curve in exact.curves.items():
             places, values, radii = (np.asarray(run.curve[one]) for one in (curve.of, column, "contact_radius"))
             right = curve.values(places)
             off = np.abs(values - right)[(radii >= curve.narrowest) & ~np.isnan(right)] / curve.scale
-            self.along[column][scene] = float(off.max()) if off.size else math.nan
+            self.along[column][scene] = off.max() if off.size else math.nan
 
     def _number(
         self, case: Case, name: str, value: float, uncertainty: float, reference: float, named: bool = True
@@ -216,13 +214,13 @@ class Judge:
                 self.absent.setdefault(name, []).append(case.name)
                 continue
             radii, values, errors = (columns[state][key] for key in ("r", "pressure", "pressure_uncertainty"))
-            scale = abs(pressure(0.5 * float(radii[-1]) / length))
+            scale = abs(pressure(0.5 * radii[-1] / length))
             for i in sorted({round(part * (radii.size - 1)) for part in POINTS}):
-                reference = float(pressure(float(radii[i]) / length))
+                reference = pressure(radii[i] / length)
                 if math.isfinite(reference):
                     # Where a pressure crosses 0, its reference is as exact as it is in the middle.
                     slack = max(0.0, scale - abs(reference)) * exact.pressure_error
-                    self._number(case, name, float(values[i]) / stress, float(errors[i]) / stress + slack, reference)
+                    self._number(case, name, values[i] / stress, errors[i] / stress + slack, reference)
 
     @property
     def outside(self) -> list[Number]:

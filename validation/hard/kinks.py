@@ -6,8 +6,6 @@ gives is to be within its uncertainty of the body's, whatever the distance of th
 between them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np
@@ -17,24 +15,16 @@ from validation.hard.judge import Case, judged, rows_of
 from validation.hard.surfaces import KINKED, Surface, kinked_body, pieces, surface
 from validation.hard.units import Scene, Units
 from validation.references.axisymmetric import Body, Contact, with_rest_radius
+from validation.row import tables_beside
 from validation.study import Bench, Findings, Study
 
 SOURCE = "the MDR by quadrature of the body"
 LAND, REACH, SLOPE = 10.0, 60.0, 0.02
 """b and where the table ends [LU], slope of the cone."""
-WORKS, FULL_WORKS = (5e-4,), (8e-4, 5e-4, 5e-5)
-"""W of the worn tip [FU/LU]."""
-COUNTS, FULL_COUNTS = (201, 1001), (201, 351, 1001, 4001)
-"""Points of the table."""
-PER_LAND, FULL_PER_LAND = (13.7, 55.5), (5.0, 8.3, 13.7, 21.0, 34.0, 55.5)
-"""Spacings in b."""
-INSIDE, FULL_INSIDE = (27.3,), (10.0, 27.3, 60.0)
-"""Points from the axis to the kink."""
+FORMS = tables_beside(__file__)
 BALL, WORN = 1e4, 200.0
 """R and radius of the worn land [µm]."""
 BALLS = Units(length=1e-6, stress=115e9, texts=True, automatic=True)
-PITCHES, FULL_PITCHES = (1.0, 2.0), (1.0, 2.0, 5.0, 8.7)
-"""Distances of the points [µm]."""
 LOADS = (50.0, 200.0)
 """[N]"""
 ROUNDINGS = (None, 6, 5)
@@ -58,14 +48,14 @@ def pulled(contact: Contact, preload: float = 0.0) -> Scene:
 
 def kinks(full: bool) -> Iterator[Case]:
     """Loads and pull-offs of the worn tip, at several distances of points and particles; then of other bodies."""
-    body = WORN_TIP
-    for count in FULL_COUNTS if full else COUNTS:
+    body, form = WORN_TIP, FORMS["full" if full else "short"]
+    for count in form["counts"]:
         tip, points = Surface({}, body, LAND).sampled(REACH / (count - 1), REACH), f"worn tip of {count} points"
         kinds = {"load": (f"tip_load_{count}", pressed(body, 1.7 * LAND))}
-        for work in FULL_WORKS if full else WORKS:
+        for work in form["works"]:
             kinds[f"W = {work:g}"] = f"tip_{count}_{work:g}", pulled(Contact(body, 1.0, work))
         for words, (name, tables) in kinds.items():
-            for share in FULL_PER_LAND if full else PER_LAND:
+            for share in form["per_land"]:
                 scene = tip.tables(LAND / share) | tables
                 yield looked_up(f"{name}_{share:g}", f"{points}, {words}", f"spacing b/{share:g}", tip, scene)
     rng = np.random.default_rng(11)
@@ -73,7 +63,7 @@ def kinks(full: bool) -> Iterator[Case]:
         body = kinked_body(kind, LAND, SLOPE, rng)
         pull, load = pulled(with_rest_radius(body, 1.0, 1.4 * LAND)), pressed(body, 2.0 * LAND)
         for words, tables in {"pull-off": pull, "load": load}.items():
-            for inside in FULL_INSIDE if full else INSIDE:
+            for inside in form["inside"]:
                 solid = Surface({}, body, LAND).sampled(LAND / inside, REACH)
                 yield looked_up(f"{kind}_{words}_{inside:g}", f"{kind}, {words}", f"{inside:g} points to the kink",
                                 solid, solid.tables(LAND / 17.0) | tables)  # fmt: skip
@@ -82,7 +72,7 @@ def kinks(full: bool) -> Iterator[Case]:
 def tables(full: bool) -> Iterator[Case]:
     """Worn balls in SI at several distances of the points, and paraboloids with few digits."""
     ball = Surface({}, pieces((0.0, 0.0, 0.0), (WORN, WORN / BALL, 1.0 / BALL)), WORN)
-    for pitch in FULL_PITCHES if full else PITCHES:
+    for pitch in FORMS["full" if full else "short"]["pitches"]:
         solid = ball.sampled(pitch, 3.0 * WORN)
         for newtons in LOADS:
             scene = solid.tables(1.0) | {"experiment": {"kind": "load", "force": newtons / BALLS.sizes["N"]}}

@@ -3,8 +3,6 @@
 Pairs that feel their opposite only have every number exactly (`cases`), smooth, about to snap, or with snaps.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import replace
@@ -14,17 +12,11 @@ import numpy as np
 from validation.hard.cases import CAPACITY, PAIRS, TENSION, PairCase, reach, shaped
 from validation.hard.judge import OF_ALL, REFUSED, Case, Judge, judged
 from validation.hard.units import Scene
-from validation.row import at_most
+from validation.row import at_most, tables_beside
 from validation.study import Bench, Findings, Study
 
-RATIOS = (0.3, 0.7, 0.9, 0.99, 1.01, 1.5, 3.0, 10.0, 100.0)
-FULL_RATIOS = (0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.99, 0.999, 1.001, 1.01, 1.1, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 30.0, 50.0,
-               100.0)  # fmt: skip
-DYNAMIC_RATIOS, FULL_DYNAMIC = (0.3, 0.9, 3.0), (0.3, 0.7, 0.9, 0.99, 1.01, 1.5, 3.0, 10.0, 30.0, 100.0)
-"""In time a tension that passes one tooth is carried by the next that is higher: the highest counts there as well."""
 TOLERANCES = (1e-2, 1e-3, 1e-4)
 SHAPES = (("flat_punch", 3), ("flat_punch", 10), ("cone", 9), ("parabola", 21), ("power", 40), ("parabola", 200))
-DYNAMIC_SHAPES, FULL_DYNAMIC_SHAPES = (SHAPES[0], SHAPES[3]), (SHAPES[1], SHAPES[3], SHAPES[4])
 SHARP, FULL_SHARP, SEED = 20, 100, 3
 KINDS = ("flat_punch", "parabola", "cone", "power")
 TIMED, CALM = 0.3, 0.97
@@ -34,15 +26,15 @@ under a load lands where its momentum takes it."""
 
 def stiffnesses(full: bool) -> Iterator[Case]:
     """Every shape at every ratio in the long form, every second in the quick one; the tolerance goes round."""
-    for i, ratio in enumerate(FULL_RATIOS if full else RATIOS):
+    table = tables_beside(__file__)["full" if full else "short"]
+    for i, ratio in enumerate(table["ratios"]):
         for j, shape in enumerate(SHAPES):
             wide = j == len(SHAPES) - 1
             if full or not ((i + j) % 2 or (wide and ratio > 1.0)):
                 yield from _pull_off(shape, ratio, TOLERANCES[(i + 2 * j) % len(TOLERANCES)], dynamic=False)
-    for i, ratio in enumerate(FULL_DYNAMIC if full else DYNAMIC_RATIOS):
-        for j, shape in enumerate(FULL_DYNAMIC_SHAPES if full else DYNAMIC_SHAPES):
-            tolerance = TOLERANCES[(i + 2 * j) % len(TOLERANCES) if full else 0]
-            yield from _pull_off(shape, ratio, tolerance, dynamic=True)
+    for i, ratio in enumerate(table["dynamic_ratios"]):
+        for j, shape in enumerate(table["dynamic_shapes"]):
+            yield from _pull_off(shape, ratio, TOLERANCES[(i + 2 * j) % len(TOLERANCES) if full else 0], dynamic=True)
 
 
 def _pull_off(shape: tuple[str, int], ratio: float, tolerance: float, dynamic: bool) -> Iterator[Case]:
@@ -60,11 +52,11 @@ def sharp(wanted: int) -> Iterator[Case]:
     """Few particles, ratio 0.3 to 3, all of load, pull_off and path, at rest and in time."""
     rng, number = np.random.default_rng(SEED), 0
     while number < wanted:
-        kind, timed = str(rng.choice(["load", "pull_off", "path"])), bool(rng.random() < TIMED)
+        kind, timed = str(rng.choice(["load", "pull_off", "path"])), rng.random() < TIMED
         highest = CALM if timed and kind != "path" else 3.0
         ratio = float(np.exp(rng.uniform(math.log(0.3), math.log(highest))))
         particles, shape = int(rng.integers(3, 13)), str(rng.choice(KINDS))
-        profile = shaped(shape, particles, reach(ratio) * float(rng.uniform(1.0, 2.0)))
+        profile = shaped(shape, particles, reach(ratio) * rng.uniform(1.0, 2.0))
         preload = TENSION * float(10.0 ** rng.uniform(-1.0, 1.0))
         tolerance = float(10.0 ** rng.uniform(-4.0, -2.0))
         case = PairCase(f"sharp_{number}", ratio, profile, particles, preload, tolerance, timed and kind != "path")
@@ -81,7 +73,7 @@ def _sharp(rng: np.random.Generator, case: PairCase, kind: str, timed: bool) -> 
     """
     pairs, load, method = case.pairs, case.preload, "dynamic" if timed else "quasistatic"
     if kind == "load" and rng.random() < 0.5:
-        load = -float(rng.uniform(0.1, 0.95)) * pairs.adhesion(0.0)[0]
+        load = -rng.uniform(0.1, 0.95) * pairs.adhesion(0.0)[0]
     if not case.solvable():
         return None
     deepest, lowest = pairs.deepest(case.preload), -(reach(case.ratio) + float(np.ptp(pairs.heights)))

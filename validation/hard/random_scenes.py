@@ -1,17 +1,13 @@
 """Random scenes of many particles that do not snap: bodies, law, effects, experiment and tolerance, with their numbers
 by the independent solver."""
 
-from __future__ import annotations
-
 import math
 from contextlib import suppress
 from random import Random
-from typing import Any
 
-import numpy as np
-
-from validation.doors import IN_TIME, Run, law_table, read_scene, settings_for
+from validation.doors import IN_TIME, law_table, read_scene, settings_for
 from validation.hard.judge import OF_ALL, REFUSED, Case, Expected, Judge
+from validation.hard.units import Scene
 from validation.references.interaction import Exponential, PairInteraction
 from validation.references.model import ChainModel
 from validation.references.pull_off import pull_off
@@ -41,11 +37,18 @@ def measure(bench: Bench) -> Findings:
         group = f"{scene['experiment']['kind']} {scene['experiment'].get('method', 'quasistatic')}"
         run = bench.run(name, scene)
         with suppress(RuntimeError):
-            judge.add(Case(name, group, group, scene, Expected(_exact(scene, run), SOLVER)), run)
+            if isinstance(run, Refused):
+                expected = settings_for(read_scene({"title": "expected"} | scene))
+                particles, near = expected.chains.upper, expected.largest_displacement
+            else:
+                particles = next(iter(run.profiles.values())).x.size
+                near = run.results["displacement"].value if "displacement" in run.results else 0.0
+            exact = exact_results(scene, model_of(scene, particles), near)
+            judge.add(Case(name, group, group, scene, Expected(exact, SOLVER)), run)
     return Findings(judge.rows("random scenes", "the independent solver", REFUSED))
 
 
-def varied(scene: dict[str, Any], random: Random) -> dict[str, Any]:
+def varied(scene: Scene, random: Random) -> Scene:
     """The scene, some of them a path in place of a pull-off, and more of them in time."""
     experiment = scene["experiment"]
     path, timed = random.random() < PATHS, random.random() < TIMED
@@ -58,12 +61,12 @@ def varied(scene: dict[str, Any], random: Random) -> dict[str, Any]:
     return scene
 
 
-def random_scene(random: Random) -> dict[str, Any]:
+def random_scene(random: Random) -> Scene:
     """A pull_off or a load of two chains, or a load of one chain on the rigid plane."""
     spacing = 2.0 ** random.uniform(-2.0, 2.0)
     stiffness = random.uniform(0.4, 2.0) * spacing
     radius = 10.0 ** random.uniform(1.7, 2.5) * spacing  # the solver takes seconds for thousands of particles
-    scene: dict[str, Any] = {
+    scene: Scene = {
         "title": "random",
         "bodies": {
             "particles": "auto",
@@ -83,17 +86,15 @@ def random_scene(random: Random) -> dict[str, Any]:
     scene["interaction"], force = random_law(random, spacing, stiffness, radius)
     if random.random() < 0.3:
         scene["horizontal"] = {}
-    if random.random() < 0.7:
-        scene["experiment"] = {"kind": "pull_off", "preload": force}
-    else:
-        scene["experiment"] = {"kind": "load", "force": force}
+    kind, key = ("pull_off", "preload") if random.random() < 0.7 else ("load", "force")
+    scene["experiment"] = {"kind": kind, key: force}
     if random.random() < 0.15:
         scene |= IN_TIME
         scene["experiment"]["method"] = "dynamic"
     return scene
 
 
-def random_law(random: Random, spacing: float, stiffness: float, radius: float) -> tuple[dict[str, Any], float]:
+def random_law(random: Random, spacing: float, stiffness: float, radius: float) -> tuple[Scene, float]:
     """A law that reaches from a fifth of the spacing to all of it, no pair so strong that it snaps, and a load [FU].
 
     A pair snaps where its tension rises by k/2 per length; here by a tenth of that at most, as in the paper's contact,
@@ -102,15 +103,13 @@ def random_law(random: Random, spacing: float, stiffness: float, radius: float) 
     reach = random.uniform(0.2, 1.0) * spacing
     strength, shorter = random.uniform(1.8, 3.0), random.uniform(1.7, 2.5)
     unit = PairInteraction.of(strength, reach / shorter, 1.0, reach)
-    steepest = float(unit.force_slope(np.array(unit.extremum_distance(2))))
     rows = 1.0 + 2.0 * reach / spacing
-    amplitude = random.uniform(0.02, 0.1) * 0.5 * stiffness / steepest / rows**2
-    largest = -amplitude * float(unit.force(np.array(unit.extremum_distance(1))))
+    amplitude = random.uniform(0.02, 0.1) * 0.5 * stiffness / unit.steepest_rise / rows**2
     law = law_table(strength * amplitude, reach / shorter, amplitude, reach)
-    return law, random.uniform(3.0, 20.0) * largest * math.sqrt(radius * reach) / spacing
+    return law, random.uniform(3.0, 20.0) * (amplitude * unit.largest_tension) * math.sqrt(radius * reach) / spacing
 
 
-def model_of(scene: dict[str, Any], particles: int) -> ChainModel:
+def model_of(scene: Scene, particles: int) -> ChainModel:
     """The solver's model of a scene, of so many particles per body."""
     bodies = scene["bodies"]
     law = None
@@ -156,7 +155,7 @@ def radius_of(model: ChainModel, state: State) -> float:
     return band_limited_radius(model.places(), state.pair_force[:, 1])
 
 
-def exact_results(scene: dict[str, Any], model: ChainModel, near: float) -> dict[str, float]:
+def exact_results(scene: Scene, model: ChainModel, near: float) -> dict[str, float]:
     """Main results by the solver, a load's from a displacement [LU] that is near.
 
     Those of a path are those of a pull-off from any load, since nothing snaps. On the plane neighbour springs leave the
@@ -177,15 +176,6 @@ def exact_results(scene: dict[str, Any], model: ChainModel, near: float) -> dict
     radius = radius_of(model, state)
     pressure = experiment["force"] / (math.pi * radius**2)
     return {"displacement": state.displacement, "contact_radius": radius, "mean_pressure": pressure}
-
-
-def _exact(scene: dict[str, Any], run: Run | Refused) -> dict[str, float]:
-    """The solver's numbers. Raises RuntimeError where it does not carry the scene."""
-    if isinstance(run, Refused):
-        expected = settings_for(read_scene({"title": "expected"} | scene))
-        return exact_results(scene, model_of(scene, expected.chains.upper), expected.largest_displacement)
-    near = run.results["displacement"].value if "displacement" in run.results else 0.0
-    return exact_results(scene, model_of(scene, next(iter(run.profiles.values())).x.size), near)
 
 
 RANDOM = Study(

@@ -6,19 +6,16 @@ LAMMPS besides. Under a load F the displacement is off by δd where at a given d
 2E*a δd: the two are the same statement.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from scipy.signal import lfilter
 
 from validation.doors import Quantity, modelled, read_scene
 from validation.hard.surfaces import pieces
 from validation.hard.units import Scene
+from validation.references import force_curves
 from validation.references.axisymmetric import Contact
 from validation.row import Row, at_most
 from validation.study import Bench, Findings, Refused, Study
@@ -36,7 +33,6 @@ MODULUS, LOAD, WORK, PRELOAD = 1.0 / ((1.0 - 0.3**2) / 210e9 + (1.0 - 0.22**2) /
 TILT, OFFSET = 0.1, 40.0
 """[°], [µm]"""
 SOURCE = "the MDR by quadrature of the body"
-Array = np.ndarray[Any, np.dtype[np.float64]]
 
 
 @dataclass(frozen=True)
@@ -68,23 +64,18 @@ class Case:
     def scene(self, seed: int) -> Scene:
         """Its scene with the noise of this seed."""
         x = np.arange(self.ends[0], self.ends[1] + 0.5 * self.pitch, self.pitch)
+        draw = np.random.default_rng((seed, round(self.memory)))
+        drawn = force_curves.noise(draw, x.size + 1000, self.memory / self.pitch)[1000:]
         height = np.maximum(x**2 - self.land**2, 0.0) / (2.0 * RADIUS)
-        z = height + OFFSET + math.tan(math.radians(self.tilt)) * x + 1e-3 * self.noise * self._drawn(seed, x.size)
+        z = height + OFFSET + math.tan(math.radians(self.tilt)) * x + 1e-3 * self.noise * drawn
         profile = {"kind": "table", "x": (UNIT * x).tolist(), "z": (UNIT * z).tolist(), **self.keys}
         bodies = {"particles": "auto", "spacing": self.spacing * UNIT, "reduction": "mdr", "lower": "rigid_plane",
                   "profile": profile}  # fmt: skip
         material = {"contact_modulus": MODULUS, "length_unit": 1.0, "force_unit": 1.0}
-        tables: Scene = {"title": self.words, "bodies": bodies, "material": material}
+        tables = {"title": self.words, "bodies": bodies, "material": material}
         load, pull = {"kind": "load", "force": LOAD}, {"kind": "pull_off", "preload": PRELOAD}
         held = {"adhesion": {"work_of_adhesion": WORK}, "experiment": pull}
         return tables | (held if self.adheres else {"experiment": load})
-
-    def _drawn(self, seed: int, count: int) -> Array:
-        white = np.random.default_rng((seed, round(self.memory))).standard_normal(count + 1000)
-        if self.memory:
-            kept = math.exp(-self.pitch / self.memory)
-            white = lfilter([math.sqrt(1.0 - kept**2)], [1.0, -kept], white)
-        return np.asarray(white[1000:])
 
     def exact(self) -> dict[str, float]:
         """What the body has."""
@@ -117,7 +108,7 @@ def cases(full: bool) -> Iterator[Case]:
 
 def measure(bench: Bench) -> Findings:
     """Rows of each case, and of its first seed on LAMMPS."""
-    rows = list[Row]()
+    rows = []
     for case in cases(bench.full):
         exact, seeds = case.exact(), range(FIRST_SEED, FIRST_SEED + (FULL_SEEDS if bench.full else SEEDS))
         found = [modelled(read_scene(case.scene(seed))) for seed in seeds]
@@ -135,7 +126,7 @@ def measure(bench: Bench) -> Findings:
 def judged(case: Case, name: str, found: list[Quantity], exact: float) -> list[Row]:
     """How many are within their uncertainties, and how wide these are."""
     off, spread = np.abs([one.value - exact for one in found]), np.asarray([one.uncertainty for one in found])
-    outside, width = float(np.mean(off > spread)), float(np.median(spread) / np.median(off))
+    outside, width = float(np.mean(off > spread)), np.median(spread) / np.median(off)
     said = f"median uncertainty {np.median(spread) / exact:.1e} of it"
     rows = [at_most(f"{case.words}: share of {len(found)} values of {name} outside", outside, OUTSIDE, SOURCE, said)]
     if name in ("displacement", "adhesion_force"):

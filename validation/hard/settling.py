@@ -6,8 +6,6 @@ particle moves at (1 + s)/2 of the plate's velocity and its lower one at (1 − 
 under the load W. Near the fold both times go as |1 − W/F_A|^(−1/2).
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -51,7 +49,7 @@ def measure(bench: Bench) -> Findings:
     pairs, shares = case.pairs, np.array(FULL_SHARES if bench.full else SHARES)
     largest, fold = pairs.adhesion(0.0)
     near, begin = shares <= NEAR, _place(pairs, -START * largest, fold)
-    checks: list[Row] = []
+    checks = []
     for words, sign in (("settle", -1.0), ("part", 1.0)):
         found = []
         for share in shares.tolist():
@@ -82,7 +80,7 @@ def measure(bench: Bench) -> Findings:
                 Row(f"time to {words} under (1 {'+−'[sign < 0]} {share:g}) F_A", taken, Reference(expected, SOURCE),
                     relative(TIMES, "particles that lag behind; the table's share of F_A"), unit="TU")
             )  # fmt: skip
-        slope = float(np.polyfit(np.log(shares[near]), np.log(np.maximum(found, 1e-300)[near]), 1)[0])
+        slope = np.polyfit(np.log(shares[near]), np.log(np.maximum(found, 1e-300)[near]), 1)[0]
         name = f"exponent of the time to {words} over |1 − W/F_A|, from −1/2"
         source, limit = "the fold: inverse square root", "next term of the fold"
         checks.append(at_most(name, abs(slope + 0.5), EXPONENT, source, limit))
@@ -90,7 +88,7 @@ def measure(bench: Bench) -> Findings:
 
 
 def _place(pairs: FoldedPairs, load: float, fold: float) -> float:
-    return float(brentq(lambda d: float(pairs.loading(d)) - load, fold, 0.05, xtol=1e-15))
+    return float(brentq(lambda d: pairs.loading(d) - load, fold, 0.05, xtol=1e-15))
 
 
 def reduced_time(pairs: FoldedPairs, settings: Settings, mass: float, load: float, begin: float, end: float) -> float:

@@ -12,8 +12,10 @@ from itertools import accumulate, pairwise
 
 import numpy as np
 
+from validation.doors import on_plane
 from validation.hard.units import Scene
 from validation.references.axisymmetric import Body
+from validation.references.numerics import integral
 from validation.references.relaxing import Flat, Power
 
 SMOOTH = ("parabola", "cone", "power", "circle", "flat_punch", "ellipsoid")
@@ -39,23 +41,14 @@ class Surface:
 
     @property
     def power(self) -> Power | Flat:
-        """z = c rⁿ of a parabola, a cone, a power; or a flat punch. Raises ValueError."""
-        table = self.profile
-        match table["kind"]:
-            case "parabola":
-                return Power(2.0, 0.5 / table["radius"])
-            case "cone":
-                return Power(1.0, table["slope"])
-            case "power":
-                return Power(table["exponent"], table["height"] / table["radius"] ** table["exponent"])
-            case "flat_punch":
-                return Flat(table["radius"])
-        raise ValueError(f"{table['kind']} is no power of r")
+        """The body as z = c rⁿ, or as a flat punch. Raises ValueError."""
+        return power_of(self.profile)
 
     def sampled(self, pitch: float, reach: float, digits: int | None = None) -> Surface:
         """The table of its heights at every `pitch` up to `reach` [LU], with so many digits of the largest height."""
         radii = [pitch * i for i in range(math.ceil(reach / pitch) + 1)]
-        heights = [0.0, *accumulate(_rise(self.body, low, high) for low, high in pairwise(radii))]
+        rises = (integral(self.body.slope, *self.body.corners(*ends)) for ends in pairwise(radii))
+        heights = [0.0, *accumulate(rises)]
         if digits is not None:
             places = digits - 1 - math.floor(math.log10(heights[-1]))
             heights = [round(z, places) for z in heights]
@@ -66,11 +59,18 @@ class Surface:
         return on_plane(self.profile, spacing, tolerance)
 
 
-def on_plane(profile: Scene, spacing: float, tolerance: float = 1e-3) -> Scene:
-    """[bodies] and [accuracy] of a profile in model units on a rigid plane, E* = 1 FU/LU²."""
-    bodies = {"particles": "auto", "spacing": spacing, "bulk_stiffness": spacing, "reduction": "mdr",
-              "lower": "rigid_plane", "profile": profile}  # fmt: skip
-    return {"bodies": bodies, "accuracy": {"tolerance": tolerance}}
+def power_of(profile: Scene) -> Power | Flat:
+    """z = c rⁿ of a parabola, a cone, a power; or a flat punch. Raises ValueError."""
+    match profile["kind"]:
+        case "parabola":
+            return Power(2.0, 0.5 / profile["radius"])
+        case "cone":
+            return Power(1.0, profile["slope"])
+        case "power":
+            return Power(profile["exponent"], profile["height"] / profile["radius"] ** profile["exponent"])
+        case "flat_punch":
+            return Flat(profile["radius"])
+    raise ValueError(f"{profile['kind']} is no power of r")
 
 
 def surface(radius: float, kind: str, /, **numbers: float) -> Surface:
@@ -112,7 +112,7 @@ def _body(kind: str, radius: float = 0.0, slope: float = 0.0, height: float = 0.
 
 def smooth(kind: str, radius: float, slope: float, rng: np.random.Generator) -> Surface:
     """A profile with about that slope at a radius [LU]."""
-    end, n = radius / slope, float(rng.uniform(1.05, 4.0))
+    end, n = radius / slope, rng.uniform(1.05, 4.0)
     match kind:
         case "cone":
             return surface(radius, kind, slope=slope)
@@ -149,24 +149,10 @@ def kinked_body(kind: str, b: float, slope: float, rng: np.random.Generator) -> 
         case "worn_ball":
             return pieces(flat, (b, slope, bend))
         case "two_slopes":
-            return pieces((0.0, slope * float(rng.uniform(0.1, 0.8)), 0.0), (b, slope, 0.0))
+            return pieces((0.0, slope * rng.uniform(0.1, 0.8), 0.0), (b, slope, 0.0))
         case "two_radii":
-            return pieces((0.0, 0.0, bend / float(rng.uniform(1.5, 8.0))), (b, slope, bend))
+            return pieces((0.0, 0.0, bend / rng.uniform(1.5, 8.0)), (b, slope, bend))
         case "rounded_punch":
             return pieces(flat, (b, 0.0, bend))
-    further, low = b * float(rng.uniform(1.3, 2.0)), slope * float(rng.uniform(0.2, 0.6))
+    further, low = b * rng.uniform(1.3, 2.0), slope * rng.uniform(0.2, 0.6)
     return pieces(flat, (b, low, 0.0), (further, slope, 0.0))
-
-
-def _rise(body: Body, low: float, high: float) -> float:
-    """∫ f′ dr by Gauss between kinks: exact for the slopes up to cubic, and to round-off for these pitches."""
-    ends = [low, *(b for b in body.kinks if low < b < high), high]
-    u, w = np.polynomial.legendre.leggauss(8)
-    return float(
-        sum(
-            0.5
-            * (q - p)
-            * sum(wi * body.slope(0.5 * (p + q) + 0.5 * (q - p) * ui) for ui, wi in zip(u, w, strict=True))
-            for p, q in pairwise(ends)
-        )
-    )

@@ -1,15 +1,13 @@
 """Thermal averages: a load against Boltzmann's integral, and the scatter of seeds against the claim."""
 
-from __future__ import annotations
-
 import math
-from typing import Any
 
 import numpy as np
 from scipy.stats import chi2
 
 from validation.doors import IN_TIME, Run
-from validation.hard.cases import PAPER_LAW, PAPER_NUMBERS
+from validation.hard.cases import PAPER_BODIES, PAPER_LAW, PAPER_NUMBERS
+from validation.hard.units import Scene
 from validation.references.boltzmann_pairs import BoltzmannPairs
 from validation.references.folded_pairs import FoldedPairs
 from validation.references.interaction import Floats, PairInteraction
@@ -23,20 +21,20 @@ CHANCE = 1e-4
 BLOCKS = 20
 FORGOTTEN = 60
 """First rows of a thermal load, on the way to equilibrium."""
-BODIES = {"particles": 41, "spacing": 4.0, "profile": {"kind": "parabola", "radius": 1000.0}, "bulk_stiffness": 0.83}
+BODIES = PAPER_BODIES | {"particles": 41, "spacing": 4.0}
 """Pull_off.toml's bodies, four times as far apart so that particles feel their opposite only."""
 LOAD = 0.25
 TEMPERATURES = (1e-4, 1e-3, 3e-3)
 LIMIT = f"statistics: {SIGMAS:g} of the run's standard errors"
 LAW_HERE = PairInteraction.of(*PAPER_NUMBERS)
-HEIGHTS: Floats = np.asarray((4.0 * np.arange(-20.0, 21.0)) ** 2 / 2000.0)
+HEIGHTS: Floats = (4.0 * np.arange(-20.0, 21.0)) ** 2 / 2000.0
 NEAR, WIDTH = 0.24, {1e-4: 0.05, 1e-3: 0.13, 3e-3: 0.22}
 """Interval of displacements of the integral [LU]: eight standard deviations."""
 
 
-def thermal_scene(temperature: float, seed: int, tolerance: float = 2e-3) -> dict[str, Any]:
+def thermal_scene(temperature: float, seed: int, tolerance: float = 2e-3) -> Scene:
     """A load under noise; without, at temperature 0, the same at rest."""
-    scene: dict[str, Any] = {
+    scene: Scene = {
         "bodies": BODIES,
         "interaction": PAPER_LAW,
         "accuracy": {"tolerance": tolerance},
@@ -48,7 +46,7 @@ def thermal_scene(temperature: float, seed: int, tolerance: float = 2e-3) -> dic
 
 
 def measure_boltzmann(bench: Bench) -> Findings:
-    """⟨d⟩ under a load at three temperatures, and how much of it is thermal."""
+    """⟨d⟩ under a load at three temperatures, how much of it is thermal, and the variance of d in time."""
     rest = FoldedPairs(LAW_HERE, 0.83, HEIGHTS).deepest(LOAD)
     still = bench.run("rest", thermal_scene(0.0, 0))
     rows = [claim_row("d at kT = 0 off over its claim", still, "displacement", rest, "independent pairs")]
@@ -66,18 +64,14 @@ def measure_boltzmann(bench: Bench) -> Findings:
                 Row(f"d(kT = {kT:g}) − d(0)", d.value - rest, Reference(exact - rest, source), claim(limit),
                     uncertainty=SIGMAS * d.uncertainty, unit="LU")
             )  # fmt: skip
-        rows.append(_swing_row(run, kT, swing))
+        # It tells the temperature where the mean does not.
+        sampled = np.asarray(run.curve.displacement)[FORGOTTEN:]
+        squares = (sampled - sampled.mean()) ** 2 / swing**2
+        error = np.std([block.mean() for block in np.array_split(squares, BLOCKS)], ddof=1) / math.sqrt(BLOCKS)
+        name = f"variance of d in time at kT = {kT:g} off over its standard error"
+        rows.append(at_most(name, abs(squares.mean() - 1.0) / error, SIGMAS, "Boltzmann's integral",
+                            f"statistics: {sampled.size} samples, ± {error:.2g}"))  # fmt: skip
     return Findings(rows)
-
-
-def _swing_row(run: Run, temperature: float, swing: float) -> Row:
-    """The variance of d in time: it tells the temperature where the mean does not."""
-    sampled = np.asarray(run.curve.displacement)[FORGOTTEN:]
-    squares = (sampled - sampled.mean()) ** 2 / swing**2
-    error = np.std([block.mean() for block in np.array_split(squares, BLOCKS)], ddof=1) / math.sqrt(BLOCKS)
-    name = f"variance of d in time at kT = {temperature:g} off over its standard error"
-    return at_most(name, float(abs(squares.mean() - 1.0) / error), SIGMAS, "Boltzmann's integral",
-                   f"statistics: {sampled.size} samples, ± {error:.2g}")  # fmt: skip
 
 
 def measure_seeds(bench: Bench) -> Findings:
@@ -87,12 +81,12 @@ def measure_seeds(bench: Bench) -> Findings:
     runs = [bench.run(f"seed_{seed}", thermal_scene(temperature, seed, 5e-3)) for seed in range(1, count + 1)]
     means = [found(run, "displacement") for run in runs if isinstance(run, Run)]
     sigmas = [(d.value - exact) / d.uncertainty for d in means]
-    square = float(np.sum(np.square(sigmas))) if len(sigmas) == count else math.nan
+    square = np.sum(np.square(sigmas)) if len(sigmas) == count else math.nan
     source, limit = "Boltzmann's integral; χ² of as many independent seeds", "statistics"
     words, mean = f"of {count} seeds", abs(float(np.mean(sigmas))) * math.sqrt(count)
-    least = float(chi2.ppf(CHANCE, count)) / square
+    least = chi2.ppf(CHANCE, count) / square
     # The errors are known from BLOCKS blocks only: each is an F-variable.
-    most = float(chi2.ppf(1.0 - CHANCE, count)) * (BLOCKS - 1) / (BLOCKS - 3)
+    most = chi2.ppf(1.0 - CHANCE, count) * (BLOCKS - 1) / (BLOCKS - 3)
     return Findings([
         at_most(f"χ² {words} by their claims: not too large", square, most, source, limit),
         at_most(f"least χ² that chance allows over χ² {words}: claims not too wide", least, 1.0, source, limit),

@@ -1,7 +1,5 @@
 """How a scene in units of its model, with E* = 1 FU/LU², is written: as it is, with the units' sizes, or in SI."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,14 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from validation.row import tables_beside
+
 Scene = dict[str, Any]
-KEYS = {
-    "m": ("radius", "height", "spacing", "from", "to", "amplitude", "r", "z", "range", "displacement", "displacements"),
-    "N": ("force", "preload", "normal_force"), "s": ("time", "retardation_time"), "m/s": ("velocity",),
-    "kg": ("mass",), "J/m²": ("work_of_adhesion",),
-}  # fmt: skip
-"""Keys of the numbers that have a unit."""
-UNIT_OF = {key: unit for unit, keys in KEYS.items() for key in keys}
+UNIT_OF = {key: unit for unit, keys in tables_beside(__file__).items() for key in keys}
+"""By the keys of the numbers that have a unit."""
 DECADES = ((-9.0, -3.0), (3.0, 12.0), (-9.0, 7.0))
 """Of random units of length [m], stress [Pa] and time [s]."""
 
@@ -57,8 +52,7 @@ class Units:
         bodies |= {"spacing": "auto"} if self.automatic else {}
         scene = scene | {"bodies": bodies}
         if not self.texts:
-            force = self.sizes["N"]
-            sizes = {"contact_modulus": self.stress, "length_unit": self.length, "force_unit": force}
+            sizes = {"contact_modulus": self.stress, "length_unit": self.length, "force_unit": self.sizes["N"]}
             return scene | {"material": sizes}
         material = {"contact_modulus": f"{self.stress!r} Pa"} if along is None else self._elastic(along / stiffness)
         return self._written(scene | {"material": material})
@@ -92,5 +86,5 @@ MODEL = Units()
 def random_units(rng: np.random.Generator) -> Units:
     """Units of a scene: one in four leaves the spacing to the program, and two in five are written in SI."""
     length, stress, time = (float(10.0 ** rng.uniform(*decades)) for decades in DECADES)
-    free = bool(rng.random() < 0.25)
+    free = rng.random() < 0.25
     return Units(length, stress, time, True, free) if rng.random() < 0.4 else Units(automatic=free)

@@ -8,11 +8,9 @@ The model is known to differ from JKR, and by how much is the independent chain 
 to the largest tension; the work of separation is the difference of its energies.
 """
 
-from __future__ import annotations
-
 import math
-from dataclasses import dataclass
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from scipy.integrate import quad
@@ -45,8 +43,7 @@ ZONE = 0.2
 """How sharp the border of a zone is: a convention, to some ten percent."""
 
 
-@dataclass(frozen=True)
-class Case:
+class Case(NamedTuple):
     """A scene: words for it, names of its pull-off and of its parting, its R [LU] and range of attraction [LU]."""
 
     words: str
@@ -89,11 +86,8 @@ def scenes(paper: Scene) -> Scenes:
 
 def jkr_work() -> float:
     """∫ −F̃ dd̃ from ã = 1 to the fold at prescribed displacement, in F_A a₀²/R: 0.42."""
-
-    def work(a: float) -> float:
-        return -float(jkr_reduced(a)) * (2.0 * a - 1.0 / (3.0 * math.sqrt(a)))
-
-    return float(quad(work, FIXED_GRIPS_RADIUS_RATIO, 1.0)[0])
+    work = quad(lambda a: -jkr_reduced(a) * (2.0 * a - 1.0 / (3.0 * math.sqrt(a))), FIXED_GRIPS_RADIUS_RATIO, 1.0)
+    return float(work[0])
 
 
 @cache

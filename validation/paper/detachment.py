@@ -4,8 +4,6 @@ The pairs are too far apart to feel each other, so that the free energy of the p
 quadrature. The density of the plate is followed in time as the load grows, over three decades of its rate.
 """
 
-from __future__ import annotations
-
 import math
 from functools import cache
 
@@ -15,9 +13,7 @@ from validation.doors import Scene, law_table, read_scene
 from validation.figures import Array
 from validation.page import number
 from validation.paper.heat import BY_CHANCE, SIGMAS, together
-from validation.references.boltzmann_pairs import BoltzmannPairs
-from validation.references.detachment import detachment_in_time, drag_of_pairs, garg
-from validation.references.interaction import PairInteraction
+from validation.references import boltzmann_pairs, detachment, interaction
 from validation.row import Row, absolute, relative, solver
 from validation.study import Bench, Findings, Rows, Scenes, Study, found
 
@@ -40,7 +36,6 @@ MOST_RMS = 2.2
 SPREAD_ERROR = 1.0 / math.sqrt(2.0 * (PULLS - 1))
 """Standard error of a spread over it."""
 STATISTICS = "statistics: four standard errors"
-LAGGING = {"lagging": "the reference has the same drag"}
 
 
 def scene(rate: float, repeats: int = PULLS) -> Scene:
@@ -73,9 +68,9 @@ def scenes(_: Scene) -> Scenes:
 @cache
 def free_energy(temperature: float = TEMPERATURE) -> tuple[Array, Array]:
     """Displacements d [LU] and A(d) [FU·LU] of all pairs."""
-    law = PairInteraction.of(*LAW)
+    law = interaction.PairInteraction.of(*LAW)
     d = np.linspace(FARTHEST, DEEPEST, PLACES)
-    pairs = BoltzmannPairs(law, STIFFNESS, np.zeros(1), temperature)
+    pairs = boltzmann_pairs.BoltzmannPairs(law, STIFFNESS, np.zeros(1), temperature)
     return d, -temperature * PAIRS * pairs.log_partition(law.force_free_distance() - d)
 
 
@@ -84,7 +79,7 @@ def largest() -> tuple[float, float]:
     d, energy = free_energy()
     tension = -np.gradient(energy, d)
     top = int(tension.argmax())
-    return float(tension[top]), abs(float(np.gradient(np.gradient(tension, d), d)[top]))
+    return float(tension[top]), abs(np.gradient(np.gradient(tension, d), d)[top])
 
 
 @cache
@@ -100,19 +95,19 @@ def barrier() -> float:
 def expected(rate: float) -> tuple[float, float]:
     """Mean and standard deviation [FU] by Smoluchowski's equation."""
     d, energy = free_energy()
-    drag = drag_of_pairs(d, energy, PAIRS, STIFFNESS, DRAG)
-    return detachment_in_time(d, energy, drag, TEMPERATURE, rate, barrier())
+    drag = detachment.drag_of_pairs(d, energy, PAIRS, STIFFNESS, DRAG)
+    return detachment.detachment_in_time(d, energy, drag, TEMPERATURE, rate, barrier())
 
 
 def by_garg(rate: float) -> float:
     """Of his closed form [FU], with F_A at this temperature; NaN where it has none."""
     strongest, bend = largest()
-    return garg(strongest, bend, PAIRS * DRAG, TEMPERATURE, rate)
+    return detachment.garg(strongest, bend, PAIRS * DRAG, TEMPERATURE, rate)
 
 
 def judge(bench: Bench) -> Findings:
     """Means and spreads within their errors, and all means together."""
-    row = Rows(bench.runs, LAGGING)
+    row = Rows(bench.runs, {"lagging": "the reference has the same drag"})
     means, spreads = [_mean(row, rate) for rate in RATES], [_spread(row, rate) for rate in RATES]
     ratio = float(np.mean([(one.value / one.reference.value) ** 2 for one in spreads])) ** 0.5
     width = row("spread of the detachment force over that of the equation, rms of all rates", ratio,
@@ -135,7 +130,7 @@ def _mean(row: Rows, rate: float) -> Row:
     ours, (mean, spread) = found(row.runs[run_name(rate)], "detachment_force"), expected(rate)
     return row(f"mean detachment force, Ḟ = {rate:g} FU/TU, {PULLS} pulls", ours,
                solver(mean, "Smoluchowski's equation"),
-               absolute(SIGMAS * spread / math.sqrt(PULLS), STATISTICS), on=[run_name(rate)],
+               absolute(SIGMAS * spread / math.sqrt(PULLS), STATISTICS), on=run_name(rate),
                wide=BY_CHANCE)  # fmt: skip
 
 
@@ -143,7 +138,7 @@ def _spread(row: Rows, rate: float) -> Row:
     ours = found(row.runs[run_name(rate)], "detachment_force_spread")
     return row(f"spread of the detachment force, Ḟ = {rate:g} FU/TU", ours,
                solver(expected(rate)[1], "Smoluchowski's equation"),
-               relative(SIGMAS * SPREAD_ERROR, STATISTICS), on=[run_name(rate)], wide=BY_CHANCE)  # fmt: skip
+               relative(SIGMAS * SPREAD_ERROR, STATISTICS), on=run_name(rate), wide=BY_CHANCE)  # fmt: skip
 
 
 STUDY = Study(

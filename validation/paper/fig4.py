@@ -1,7 +1,5 @@
 """Fig. 4: pressure and contact radius at zero load; Fig. 3b: springs between neighbours; Fig. 5: iteration in time."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 
@@ -39,27 +37,27 @@ def judge(bench: Bench) -> Findings:
     paper, row = bench.paper, Rows(bench.runs)
     pressure = solved(paper).zero_load.pair_force[:, 1] / paper.bodies.spacing
     profile, radius = row.runs[RUN].profiles["zero_load"], found(row.runs[RUN], "zero_load_radius")
-    tension = -float(pressure.min())
-    rms = float(np.sqrt(np.mean((profile.pressure - pressure) ** 2))) / tension
+    tension = -pressure.min()
+    rms = np.sqrt(np.mean((profile.pressure - pressure) ** 2)) / tension
     lowest = int(np.argmin(pressure))
     between = float(pressure[lowest - 1] - 2.0 * pressure[lowest] + pressure[lowest + 1]) / (8.0 * tension)
     setting = SETTING * paper.accuracy.tolerance
     checks = [
         row.at_most("pressure at zero load, rms distance to the solver's over the largest tension", rms,
-            solver(setting, AGAINST), "share of the tolerance of the run that a setting may use up", on=[RUN]),
+            solver(setting, AGAINST), "share of the tolerance of the run that a setting may use up", on=RUN),
         *against_solver(row, paper, RUN),
         row.at_most(
             "sum of the pressure at zero load over the largest tension times a_0",
-            abs(float(profile.pressure.sum())) * paper.bodies.spacing / (tension * radius.value),
+            abs(profile.pressure.sum()) * paper.bodies.spacing / (tension * radius.value),
             Reference(setting, "equilibrium: the force of the contact is 0"),
-            "search for F = 0", on=[RUN], standing="by construction"),
+            "search for F = 0", on=RUN, standing="by construction"),
         row(
             "largest tension of a particle at zero load",
-            -float(profile.pressure.min()) * paper.bodies.spacing,
+            -profile.pressure.min() * paper.bodies.spacing,
             Reference(row_tension(paper), "the law's largest tension before a straight row: no singularity"),
             relative(between,
                      "a particle lies at most half a spacing from the maximum: curvature of the pressure there"),
-            unit="FU", on=[RUN], wide="the particle nearest to the maximum is nearer to it"),
+            unit="FU", on=RUN, wide="the particle nearest to the maximum is nearer to it"),
     ]  # fmt: skip
     finding = (
         "The pressure falls from the compressed middle to a finite tension, largest at the radius a_0: what one "
@@ -80,7 +78,7 @@ def against_solver(row: Rows, scene: Scene, name: str, words: str = "") -> list[
     )  # fmt: skip
     return [
         row(symbol + words, found(row.runs[name], quantity), solver(reference, AGAINST),
-            claim("what the run claims", scene.accuracy.tolerance), on=[name], wide=wide)
+            claim("what the run claims", scene.accuracy.tolerance), on=name, wide=wide)
         for quantity, symbol, reference, wide in expected
     ]  # fmt: skip
 

@@ -7,8 +7,6 @@ is known to be none. What could scatter in the paper is computed beside it: an i
 left, where the radius is that of F = −(1 − δ) F_A.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.optimize import brentq
 
@@ -57,20 +55,11 @@ def scenes(paper: Scene) -> Scenes:
     }
 
 
-def slip_displacement(paper: Scene) -> float:
-    """d* [LU] at which an independent pair gives way sideways."""
-    law, k = interaction(paper), paper.tangential_stiffness
-
-    free = law.force_free_distance()
-    r = float(brentq(lambda r: float(law.force(np.array(r))) / r - 0.5 * k, 1e-3 * free, free))
-    return free - r + r * k / paper.bulk_stiffness
-
-
 def judge(bench: Bench) -> Findings:
     """F_A and a_cr after each F_D, where horizontal freedom ends the model, and what could scatter in the paper."""
     paper, runs = bench.paper, bench.runs
     row = Rows(runs)
-    spreads: list[Row] = []
+    spreads = []
     kinds = {
         "vertical only": {_still(False, p): p for p in PRELOADS},
         OWN: {_still(True, p): p for p in PRELOADS},
@@ -79,12 +68,14 @@ def judge(bench: Bench) -> Findings:
     for kind, preloads in kinds.items():
         on = [name for name in preloads if runs[name].status == "done"]
         held = [preloads[name] for name in on]
-        why = SAME_TENSIONS if kind.startswith("dynamic") else SAME_STATES
+        why = "unloading passes through the same states after every preload, since no pair snaps"
+        if kind.startswith("dynamic"):
+            why = "the search comes to rest at F = 0 and tries the same tensions after every preload"
         for quantity, symbol in (("adhesion_force", "F_A"), ("critical_radius", "a_cr")):
             each = [found(runs[name], quantity) for name in on]
-            mean = np.mean([one.value for one in each])
-            stated = float(max(one.uncertainty for one in each) / mean)
-            spread = float(max(abs(one.value / mean - 1.0) for one in each))
+            mean = float(np.mean([one.value for one in each]))
+            stated = max(one.uncertainty for one in each) / mean
+            spread = max(abs(one.value / mean - 1.0) for one in each)
             reach = f"{min(held):g} to {max(held):g} FU"
             name = f"largest deviation of {symbol} from its mean, F_D = {reach}: {kind}"
             if kind == OWN:
@@ -121,29 +112,28 @@ def judge(bench: Bench) -> Findings:
     return Findings([*spreads, *solved, *slipped], text=finding)
 
 
-SAME_STATES = "unloading passes through the same states after every preload, since no pair snaps"
-SAME_TENSIONS = "the search comes to rest at F = 0 and tries the same tensions after every preload"
-
-
 def _left_open(paper: Scene) -> float:
     """a(F = −(1 − δ) F_A)/a_cr − 1 of independent pairs, δ = BRACKET."""
     pairs = independent_pairs(local(paper))
     largest, low, high = pairs.adhesion_force(), pairs.critical_displacement(), pairs.zero_load_displacement()
-    place = float(brentq(lambda d: pairs.force(d) + (1.0 - BRACKET) * largest, low, high))
+    place = brentq(lambda d: pairs.force(d) + (1.0 - BRACKET) * largest, low, high)
     return pairs.contact_radius(place) / pairs.critical_radius() - 1.0
 
 
 def _slips(paper: Scene, row: Rows) -> list[Row]:
-    """The displacement at which horizontal runs end, where one does."""
+    """The displacement at which horizontal runs end, where one does, beside d* of an independent pair."""
     name = next((name for p in PRELOADS if row.runs[name := _still(True, p)].status != "done"), None)
     if name is None:
         return []
+    law, k = interaction(paper), paper.tangential_stiffness
+    free = law.force_free_distance()
+    r = brentq(lambda r: law.force(r) / r - 0.5 * k, 1e-3 * free, free)
     message = str(row.runs[name].document["error"]["message"])
     place = float(message.split("at displacement ")[1].split(" LU")[0]) if "went through" in message else float("nan")
     return [row("displacement at which horizontal freedom lets the chains slip past each other", place,
-                Reference(slip_displacement(paper), "closed form of an independent pair, f/r = k/2"),
+                Reference(free - r + r * k / paper.bulk_stiffness, "closed form of an independent pair, f/r = k/2"),
                 relative(SLIP, "neighbour springs, non-opposite particles, increments of the displacement"),
-                unit="LU", on=[name])]  # fmt: skip
+                unit="LU", on=name)]  # fmt: skip
 
 
 STUDY = Study(

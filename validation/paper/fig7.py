@@ -3,17 +3,15 @@
 Closed form where only opposite particles meet: F_A ∝ √R and a₀ ∝ √R exactly, whatever the law (`independent_pairs`).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 
-import numpy as np
-from scipy.stats import linregress, t
+from scipy.stats import t
 
 from validation.doors import Quantity, Scene
 from validation.figures import Panel, Series, figure
 from validation.paper.scenes import HALF_DIGIT, IN_PLACE, TABLE_1, changed, independent_pairs, local, with_radius
+from validation.paper.section2 import fitted_order
 from validation.row import Evidence, Reference, Row, absolute, claim
 from validation.study import Bench, Findings, Rows, Scenes, Study, found
 
@@ -59,13 +57,9 @@ def fitted(radii: Sequence[float], found_values: Sequence[Quantity]) -> Quantity
 
     Its uncertainty is half the confidence interval and what the runs claim, δp = t s + Σ |c_i| claim_i/value_i.
     """
-    x = np.log(radii)
-    values = np.array([one.value for one in found_values])
-    claims = np.array([one.uncertainty for one in found_values]) / values
-    result = linregress(x, np.log(values))
-    weights = np.abs(x - x.mean()) / float(np.sum((x - x.mean()) ** 2))
-    half_width = float(t.ppf(0.5 + 0.5 * CONFIDENCE, len(radii) - 2)) * float(result.stderr)
-    return Quantity(float(result.slope), half_width + float(weights @ claims), "1")
+    claims = [one.uncertainty / one.value for one in found_values]
+    slope, error, spread = fitted_order(radii, [one.value for one in found_values], claims)
+    return Quantity(slope, t.ppf(0.5 + 0.5 * CONFIDENCE, len(radii) - 2) * error + spread, "1")
 
 
 def exponents(
@@ -150,7 +144,7 @@ def judge_exponents(bench: Bench) -> Findings:
     values = [
         row(f"{symbol} in the local limit, R = {radius:g} LU", found(row.runs[local_run(radius)], quantity),
             Reference(getattr(independent_pairs(scene), quantity)(), "closed form of independent pairs"),
-            claim("what the run claims", scene.accuracy.tolerance), on=[local_run(radius)], wide=HALVED)
+            claim("what the run claims", scene.accuracy.tolerance), on=local_run(radius), wide=HALVED)
         for radius in LOCAL_RADII
         for scene in [with_radius(local(bench.paper), radius)]
         for quantity, symbol in QUANTITIES.items()

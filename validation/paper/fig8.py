@@ -3,18 +3,17 @@
 The closed form holds in the local limit (`paper.local`), whose curves have N and R of their own.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import cache
 
 import numpy as np
 
-from validation.doors import Run, Scene
+from validation.doors import Run, Scene, estimated
 from validation.figures import Array, Panel, Series, figure
 from validation.page import share
 from validation.paper.fig4 import AGAINST, CAREFUL, STENCIL
 from validation.paper.scenes import (
+    FIRST_ROW,
     IN_PLACE,
     MOVING,
     READ,
@@ -25,7 +24,6 @@ from validation.paper.scenes import (
     changed,
     curve_scene,
     equilibrium_under,
-    found_anew,
     independent_pairs,
     jkr_reduced,
     local,
@@ -117,13 +115,12 @@ def refined(paper: Scene, count: int) -> Scene:
         f"neighbours.stiffness={paper.neighbours.stiffness / spacing}",
         f"accuracy.tolerance={REFINED_TOLERANCE}",
     )
-    return found_anew(scene)
+    return estimated(scene, FIRST_ROW)
 
 
 def local_counted(paper: Scene, count: int) -> Scene:
     """The local limit with `count` particles on a given length."""
-    scene = with_radius(local(paper, LOCAL_LENGTH / count), LOCAL_RADIUS)
-    return changed(scene, f"bodies.particles={count}")
+    return changed(with_radius(local(paper, LOCAL_LENGTH / count), LOCAL_RADIUS), f"bodies.particles={count}")
 
 
 def branch(run: Run) -> tuple[Array, Array, Array, Array]:
@@ -140,7 +137,7 @@ def reduced(force: Array, contact_radius: Array) -> tuple[Array, Array]:
     largest = int(np.argmin(force))
     stable = slice(0, largest + 1)
     order = np.argsort(force[stable])
-    a_0 = float(np.interp(0.0, force[stable][order], contact_radius[stable][order]))
+    a_0 = np.interp(0.0, force[stable][order], contact_radius[stable][order])
     return force / -force[largest], contact_radius / a_0
 
 
@@ -158,7 +155,7 @@ def broken() -> float:
 def _distances(tension: Array, a: Array) -> tuple[float, float]:
     compared = (np.arange(len(a)) <= int(np.argmin(tension))) & (tension <= HIGHEST)
     theories = (jkr_reduced, barquins_reduced)
-    jkr, barquins = (float(np.sqrt(np.mean((tension - law(a))[compared] ** 2))) for law in theories)
+    jkr, barquins = (np.sqrt(np.mean((tension - law(a))[compared] ** 2)) for law in theories)
     return jkr, barquins
 
 
@@ -197,7 +194,7 @@ def judge_both(bench: Bench) -> Findings:
     limit = Reference(broken(), "JKR suits much better: nearer than springs that break", "paper's words")
     checks = [
         row.at_most(f"rms distance to JKR over that to Barquins, {name}", jkr / barquins, limit,
-            "range of the interaction: at zero range springs break", on=[run], standing=_standing(name))
+            "range of the interaction: at zero range springs break", on=run, standing=_standing(name))
         for name, run in (OF_N | OF_R).items()
         for jkr, barquins in [distances(row.runs[run])]
     ]  # fmt: skip
@@ -218,7 +215,7 @@ def _jkr_checks(names: Mapping[str, str], runs: Runs) -> list[Row]:
     row, bound = Rows(runs, READ), Reference(ASKED, "bound asked for; Fig. 8: curves lie on JKR's", "set bound")
     return [
         row.at_most(f"rms distance of F/F_A to JKR up to 1.5, {name} (to Barquins: {barquins:.3f})", jkr, bound,
-            "range of the interaction", on=[run], standing=_standing(name))
+            "range of the interaction", on=run, standing=_standing(name))
         for name, run in names.items()
         for jkr, barquins in [distances(runs[run])]
     ]  # fmt: skip
@@ -233,18 +230,18 @@ def _closed_form_checks(laws: Mapping[str, tuple[str, Scene]], runs: Runs) -> li
         expected = np.array([law.force(x) for x in d])
         radii = np.array([law.contact_radius(x) for x in d])
         touching = radii > 2.0 * scene.bodies.spacing
-        off = float(np.sqrt(np.mean((force - expected) ** 2))) / law.adhesion_force()
+        off = np.sqrt(np.mean((force - expected) ** 2)) / law.adhesion_force()
         claim = found(runs[run], "adhesion_force")
         over = (np.abs(a - radii) / spread)[touching]
         checks += [
             row.at_most(f"rms distance of F to the closed form over F_A, local limit, {name}", off,
                 Reference(claim.uncertainty / claim.value, "what the run claims for F_A"), "what the run claims",
-                on=[run], wide=NARROW),
+                on=run, wide=NARROW),
             row.at_most(
                 f"share of {over.size} radii farther from the closed form than they claim (worst: {over.max():.2g} of "
                 f"the claim), local limit, {name}",
-                float(np.mean(over > 1.0)), Reference(OUTSIDE, "closed form of independent pairs"),
-                "a claim is an estimate: 95 % are to be inside", on=[run]),
+                np.mean(over > 1.0), Reference(OUTSIDE, "closed form of independent pairs"),
+                "a claim is an estimate: 95 % are to be inside", on=run),
         ]  # fmt: skip
     return checks
 
@@ -255,7 +252,7 @@ def _dynamic_checks(paper: Scene, runs: Runs) -> list[Row]:
     return [
         row(f"contact radius of the dynamic method at F = {load:g} FU", found(runs[name], "contact_radius"),
             solver(state_radius(model, equilibrium_under(model, load), STENCIL), AGAINST),
-            claim("what the run claims", paper.accuracy.tolerance), on=[name], wide=CAREFUL)
+            claim("what the run claims", paper.accuracy.tolerance), on=name, wide=CAREFUL)
         for load, name in DYNAMIC.items()
     ]  # fmt: skip
 

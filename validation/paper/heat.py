@@ -4,12 +4,9 @@ Slow, the overdamped equation holds, by quadrature and finite volumes; fast, ine
 and the reference is an ensemble of the equations of motion. ⟨F⟩(T, v) spans three decades of v.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from functools import cache
-from typing import Any
 
 import numpy as np
 
@@ -19,7 +16,7 @@ from validation.page import number
 from validation.references.langevin_ensemble import PulledParticle, ensemble_friction
 from validation.references.prandtl_tomlinson import corrugation, slow_friction
 from validation.references.thermal_friction import free_corrugation, textbook_friction, thermal_friction
-from validation.row import Reference, Row, absolute, solver
+from validation.row import Reference, Row, absolute, solver, tables_beside
 from validation.study import Bench, Findings, Rows, Scenes, Study, found
 
 LAW, LOAD, SPACING = (2.0, 0.5, 1.0, 1.0), 0.5, 1.0
@@ -46,22 +43,10 @@ SIGMAS, MOST_RMS = 4.0, 1.8
 INTERVAL = 1.96
 """Half-width of the intervals of 95 % that a run states, over its standard error."""
 BY_CHANCE = "four standard errors, and by chance it is near"
-TEMPERATURE, RATIO = 2e-3, 3.0
-"""Of the flat pair at rest [FU·LU], and the standard errors that its ratio is allowed."""
-FLAT_PAIR: dict[str, Any] = {
-    "bodies": {
-        "particles": 8, "upper_particles": 8, "spacing": 1.0, "lower": "rigid_chain", "periodic": True,
-        "profile": {"kind": "flat"}, "bulk_stiffness": 1.0,
-    },
-    "interaction": law_table(1.0, 0.5, 0.5, 1.0),
-    "horizontal": {},
-    "damping": {"coefficient": 0.4},
-    "noise": {"temperature": TEMPERATURE, "seed": 3},
-    "plate": {"free": ["x", "z"], "mass": 8.0, "damping": 4.0},
-    "cantilever": {"stiffness": 0.4, "velocity": 5e-3},
-    "accuracy": {"tolerance": 1e-2},
-}  # fmt: skip
-"""Eight particles on a rigid row, under heat; the plate's own drag is ten times that of one of them."""
+FLAT_PAIR = tables_beside(__file__)
+"""Tables of a flat pair that is at rest."""
+TEMPERATURE, RATIO = FLAT_PAIR["noise"]["temperature"], 3.0
+"""Of it [FU·LU], and the standard errors that its ratio is allowed."""
 STATISTICS = "statistics: four standard errors of the run"
 AT_REST = {
     "energy": "the plate's temperature is asked for, not the balance of energies",
@@ -99,12 +84,6 @@ def scene(share: float, velocity: float, distance: float, seed: int = 1) -> Scen
     })  # fmt: skip
 
 
-def _plate_at_rest() -> Scene:
-    """The flat pair, which does not slide."""
-    at_rest = {"kind": "slide", "normal_force": 1.6, "path": [[0.0, 20.0]]}
-    return read_scene({"title": "a plate at rest, under heat"} | FLAT_PAIR | {"experiment": at_rest})
-
-
 def run_name(share: float, velocity: float) -> str:
     """Of a run of this study."""
     return f"heat_T{share:g}_v{velocity:g}"
@@ -117,7 +96,9 @@ def scenes(_: Scene) -> Scenes:
         for velocity, distance in DRIVES.items()
         for share in SHARES
     }
-    return slides | {"heat_plate": _plate_at_rest()}
+    at_rest = {"kind": "slide", "normal_force": 1.6, "path": [[0.0, 20.0]]}
+    plate = read_scene({"title": "a plate at rest, under heat"} | FLAT_PAIR | {"experiment": at_rest})
+    return slides | {"heat_plate": plate}
 
 
 @cache
@@ -157,7 +138,7 @@ def judge(bench: Bench) -> Findings:
         row("temperature of a plate with drag of its own over that of the particles", plate.value / TEMPERATURE,
             Reference(1.0, "equipartition"),
             absolute(RATIO * sigma if math.isfinite(sigma) else 0.0, "statistics: three standard errors"),
-            uncertainty=sigma, on=["heat_plate"], despite=AT_REST)
+            uncertainty=sigma, on="heat_plate", despite=AT_REST)
     )  # fmt: skip
     figures = figure(
         "Mean friction with thermal noise over velocity: runs, references, and the (ln v)^(2/3) law",
@@ -195,7 +176,7 @@ def friction_row(row: Rows, words: str, name: str, top: float, known: Reference,
     sigma = math.hypot(ours.uncertainty / INTERVAL, error) / top
     limit = STATISTICS + " and of the reference" * (error > 0.0)
     return row(words, ours.value / top, known, absolute(SIGMAS * sigma if math.isfinite(sigma) else 0.0, limit),
-               uncertainty=ours.uncertainty / top, on=[name], wide=BY_CHANCE)  # fmt: skip
+               uncertainty=ours.uncertainty / top, on=name, wide=BY_CHANCE)  # fmt: skip
 
 
 def together(row: Rows, words: str, rows: Sequence[Row], most: float) -> Row:

@@ -4,17 +4,15 @@ The bulk stiffness, which the paper does not print, decides how near the curve i
 the interaction found anew for each (`workflow.identify.estimated`), show by how much.
 """
 
-from __future__ import annotations
-
 import math
 from functools import cache
 
 import numpy as np
 
-from validation.doors import Quantity, Scene
+from validation.doors import Quantity, Scene, estimated
 from validation.figures import Array
 from validation.paper.fig8 import ASKED, DEEPEST, LENGTHENED, SAME, STEPS, branch
-from validation.paper.scenes import READ, TABLE_1, changed, curve_scene, found_anew, jkr_reduced
+from validation.paper.scenes import FIRST_ROW, READ, TABLE_1, changed, curve_scene, jkr_reduced
 from validation.paper.table1 import pull_off_run, scales
 from validation.row import Reference, absolute, printed, relative
 from validation.study import Bench, Findings, Rows, Runs, Scenes, Study, found
@@ -37,7 +35,7 @@ def stiffness_run(stiffness: float) -> str:
 @cache  # asked for twice
 def softened(paper: Scene, stiffness: float) -> Scene:
     """The paper's scene with another bulk stiffness and the first row's F_A and a₀."""
-    return found_anew(changed(paper, f"bodies.bulk_stiffness={stiffness}"))
+    return estimated(changed(paper, f"bodies.bulk_stiffness={stiffness}"), FIRST_ROW)
 
 
 def pressure_scenes(paper: Scene) -> Scenes:
@@ -84,7 +82,7 @@ def judge_pressure(bench: Bench) -> Findings:
                      "range of the interaction: the curve is near JKR's and not on it; chosen by the stiffness"),
             uncertainty=spread / by_law, on=[CURVE, pull_off], despite=READ),
         row(f"mean pressure {place}, by Eq. (8) with the run's F_A and a_0", Quantity(by_law, spread, "MPa"), paper,
-            absolute(DIGIT, "print: one digit; F_A and a_0 are those of Table 1"), on=[pull_off],
+            absolute(DIGIT, "print: one digit; F_A and a_0 are those of Table 1"), on=pull_off,
             standing="by construction"),
     ]  # fmt: skip
     others = [at_place(*_stable(runs, stiffness_run(k))) for k in STIFFNESSES]

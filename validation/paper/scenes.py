@@ -6,11 +6,9 @@ lies nearest to JKR's, so the nearness of that curve and the mean pressure are n
 table, the exponents, and that curves of other R and N fall on the same one, are.
 """
 
-from __future__ import annotations
-
 import math
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq
@@ -21,7 +19,6 @@ from validation.doors import (
     RunError,
     Scene,
     Target,
-    estimated,
     identify,
     law_of,
     load_run,
@@ -41,8 +38,7 @@ SURFACE_ENERGY = 1.0
 """γ of the paper's example [J/m²]."""
 
 
-@dataclass(frozen=True)
-class Printed:
+class Printed(NamedTuple):
     """A row of Table 1: R and a₀ [LU], F_A [FU], one LU [m], one FU [N]."""
 
     radius: float
@@ -97,11 +93,6 @@ MOVING = ("damping.coefficient=auto", "plate.mass=auto")
 """What a method in time needs besides."""
 
 
-def found_anew(scene: Scene) -> Scene:
-    """The scene with the interaction that gives it F_A and a₀ of the first row."""
-    return estimated(scene, FIRST_ROW)
-
-
 def changed(scene: Scene, *overrides: str) -> Scene:
     """The scene with `table.key=value` changed."""
     return read_scene(scene, overrides)
@@ -109,13 +100,8 @@ def changed(scene: Scene, *overrides: str) -> Scene:
 
 def curve_scene(scene: Scene, deepest: float, steps: int) -> Scene:
     """The scene's F(a) by prescribed displacement: from 0 to `deepest` [LU] and back to separation in `steps`."""
-    back = [deepest - (deepest + 1.5 * separation(scene)) * i / steps for i in range(steps + 1)]
+    back = [deepest - (deepest + 1.5 * law_of(scene)[3]) * i / steps for i in range(steps + 1)]
     return changed(scene, f"experiment={{ kind = 'path', displacements = {[round(d, 6) for d in back]} }}")
-
-
-def separation(scene: Scene) -> float:
-    """Displacement [LU] of some two ranges, at which the contact has detached."""
-    return law_of(scene)[3]
 
 
 def local(scene: Scene, spacing: float = LOCAL_SPACING) -> Scene:
@@ -123,16 +109,15 @@ def local(scene: Scene, spacing: float = LOCAL_SPACING) -> Scene:
 
     Stiffness and interaction per length are those of the scene, whose spacing is 1 LU.
     """
-    data = scene.model_dump(by_alias=True, exclude_none=True)
-    data.pop("neighbours", None)
-    data["bodies"] |= {
-        "spacing": spacing,
-        "particles": "auto",
-        "bulk_stiffness": spacing * scene.bulk_stiffness / scene.bodies.spacing,
-    }
-    for term in ("repulsion", "attraction"):
-        data["interaction"][term]["amplitude"] *= spacing / scene.bodies.spacing
-    return read_scene(data)
+    (A, _, B, _), wider = law_of(scene), spacing / scene.bodies.spacing
+    keys = (
+        f"bodies.spacing={spacing}",
+        "bodies.particles=auto",
+        f"bodies.bulk_stiffness={wider * scene.bulk_stiffness}",
+        f"interaction.repulsion.amplitude={wider * A}",
+        f"interaction.attraction.amplitude={wider * B}",
+    )
+    return read_scene(scene, keys, "neighbours")
 
 
 def with_radius(scene: Scene, radius: float) -> Scene:
@@ -185,7 +170,7 @@ def equilibrium_under(model: ChainModel, force: float) -> State:
     if before is state:
         return state
     ends = (before.displacement - BEYOND * towards, state.displacement + BEYOND * towards)  # a step may end on it
-    place = float(brentq(lambda d: solver.equilibrium(d, before).force - force, *ends, xtol=1e-12))
+    place = brentq(lambda d: solver.equilibrium(d, before).force - force, *ends, xtol=1e-12)
     return solver.equilibrium(place, before)
 
 
@@ -198,22 +183,21 @@ def row_tension(scene: Scene) -> float:
     """Largest tension [FU] of a particle that faces a straight row: f(r) = Σ_j f_pair(ϱ_j) r/ϱ_j, ϱ_j² = r² + (js)²."""
     law, spacing = interaction(scene), scene.bodies.spacing
     r = np.linspace(law.force_free_distance(), law.force_free_distance() + ROW_REACH * law.longest_range, ROW_POINTS)
-    offsets = spacing * np.arange(-ROW_HALF, ROW_HALF + 1)
-    distance = np.hypot(r[:, None], offsets)
+    distance = np.hypot(r[:, None], spacing * np.arange(-ROW_HALF, ROW_HALF + 1))
     return float(-(law.force(distance) * r[:, None] / distance).sum(axis=1).min())
 
 
 def jkr_reduced(a: Array | float) -> Array:
     """F/F_A = 4 ã³ − 4 ã^{3/2} at ã = a/a₀ (Eq. 8)."""
-    return np.asarray(4.0 * np.asarray(a) ** 3 - 4.0 * np.asarray(a) ** 1.5)
+    return 4.0 * a**3 - 4.0 * a**1.5
 
 
 def breaking_reduced(a: Array | float) -> Array:
     """F/F_A = (3√3/2)(ã³ − ã) of springs that break: the model's own limit of zero range, whatever the law."""
-    return np.asarray(1.5 * math.sqrt(3.0) * (np.asarray(a) ** 3 - np.asarray(a)))
+    return np.asarray(1.5 * math.sqrt(3.0) * (a**3 - a))
 
 
 def barquins_reduced(a: Array | float) -> Array:
     """F/F_A of a cylinder, ∝ ã² − √ã with the minimum −1 (Barquins 1988)."""
     lowest = 4.0 ** (-2.0 / 3.0)  # where 2ã = 1/(2√ã)
-    return np.asarray((np.asarray(a) ** 2 - np.sqrt(a)) / (lowest**0.5 - lowest**2))
+    return np.asarray((a**2 - np.sqrt(a)) / (lowest**0.5 - lowest**2))

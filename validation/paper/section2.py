@@ -11,10 +11,8 @@ integral by derivatives at the edge, times polynomials of the place of the edge 
 and F of any profile g(x): h² B₂ c [g′(a) + g′(0)], with the layer's stiffness c = F′(a)/2a g′(a).
 """
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,26 +22,13 @@ from validation.doors import Reduction, Run, Scene, read_scene
 from validation.figures import Values
 from validation.references import hertz
 from validation.references.mdr import ReducedContact
-from validation.row import Known, Reference, Row, claim, printed, relative
+from validation.row import Known, Reference, Row, claim, printed, relative, tables_beside
 from validation.study import Bench, Findings, Rows, Scenes, Study, found
 
 MODULUS = 210e9
 """Young's modulus of both bodies [Pa]."""
 LENGTH_UNIT, FORCE_UNIT = 1e-9, 1e-6
-BASE = {"d": 1.0, "R": 1000.0, "nu": 0.3, "h": 0.25}
-"""Displacement, radius, spacing in LU; Poisson's ratio of both bodies."""
-SWEEPS = {
-    "d": (0.1, 0.3, 1.0, 3.0, 10.0),
-    "R": (100.0, 300.0, 1000.0, 3000.0, 10000.0),
-    "nu": (0.0, 0.3, 0.49),
-    "h": (1.0, 0.5, 0.25, 0.125, 0.0625),
-}
-WORDS = {
-    "d": "displacement from 0.1 to 10 LU",
-    "R": "radius from 100 to 10000 LU",
-    "nu": "Poisson's ratio from 0 to 0.49",
-    "h": "spacing from 0.0625 to 1 LU",
-}
+BASE, SWEEPS, WORDS = (tables_beside(__file__)[name] for name in ("base", "sweeps", "words"))
 EDGE, RATE_SPACINGS = 32.0, (8.0, 4.0, 2.0, 1.0)
 """Half-width of the contact [LU] in the runs that measure the rate, a whole number of each spacing in them [LU]."""
 RATE_TOLERANCE, SPARE = 1e-7, 4
@@ -57,23 +42,28 @@ SLOPE, EXPONENT, PUNCH, DEPTH = 0.05, 4.0, 20.0, 3.0
 
 def reduction_scene(reduction: Reduction, d: float, R: float, nu: float, h: float, tolerance: float = 1e-3) -> Scene:
     """A sphere of two equal materials pressed by d [LU]; R the sphere's radius, h the spacing [LU]."""
-    body = {"youngs_modulus": MODULUS, "poisson_ratio": nu}
-    return read_scene(
-        {
-            "title": f"{reduction}: d = {d:g}, R = {R:g}, nu = {nu:g}, h = {h:g}",
-            "bodies": {
-                "particles": "auto",
-                "spacing": h,
-                "profile": {"kind": "parabola", "radius": R},
-                "reduction": reduction,
-                "bulk_stiffness": "auto",
-                "lower": "rigid_plane",
-            },
-            "material": {"upper": body, "lower": body, "length_unit": LENGTH_UNIT, "force_unit": FORCE_UNIT},
-            "accuracy": {"tolerance": tolerance},
-            "experiment": {"kind": "path", "displacements": [d]},
-        }
-    )
+    title, path = f"{reduction}: d = {d:g}, R = {R:g}, nu = {nu:g}, h = {h:g}", {"kind": "path", "displacements": [d]}
+    materials = ((MODULUS, nu), (MODULUS, nu))
+    return pressed(title, reduction, R, materials, path, {"spacing": h}, accuracy={"tolerance": tolerance})
+
+
+def pressed(
+    title: str,
+    reduction: Reduction,
+    R: float,
+    materials: Iterable[tuple[float, float]],
+    experiment: Any,
+    bodies: Any,
+    **more: Any,
+) -> Scene:
+    """A sphere R [LU] of two materials, E [Pa] and ν, on a plane; `bodies` beside what all have, `more` tables."""
+    upper, lower = ({"youngs_modulus": E, "poisson_ratio": nu} for E, nu in materials)
+    own = {
+        "particles": "auto", "profile": {"kind": "parabola", "radius": R}, "reduction": reduction,
+        "bulk_stiffness": "auto", "lower": "rigid_plane",
+    }  # fmt: skip
+    material = {"upper": upper, "lower": lower, "length_unit": LENGTH_UNIT, "force_unit": FORCE_UNIT}
+    return read_scene({"title": title, "bodies": own | bodies, "material": material, "experiment": experiment, **more})
 
 
 def shape_scene(kind: str, reduction: Reduction = "mdr") -> Scene:
@@ -152,10 +142,9 @@ def sweep(reduction: Reduction, name: str) -> list[Case]:
 def rate_cases(reduction: Reduction) -> list[Case]:
     """Runs of falling spacing whose contact ends midway between two of these very particles, at the half-width EDGE."""
     depth = EDGE**2 / BASE["R"] / FACTORS[reduction]
-    cases = [BASE | {"d": depth, "h": h} for h in RATE_SPACINGS]
     return [
         Case(f"eq3_{reduction}_rate_{_label(v)}", reduction, v, RATE_TOLERANCE, 2 * round(EDGE / v["h"]) + SPARE)
-        for v in cases
+        for v in [BASE | {"d": depth, "h": h} for h in RATE_SPACINGS]
     ]
 
 
@@ -240,14 +229,11 @@ def _sweep_checks(row: Rows, reduction: Reduction, name: str) -> list[Row]:
 def _rate_checks(row: Rows, reduction: Reduction) -> list[Row]:
     """Fitted orders; their uncertainty is that of the fit and of the runs, δp = Σ |c_i| claim_i/error_i."""
     cases = rate_cases(reduction)
-    spacing = np.log([case.values["h"] for case in cases])
-    weight = np.abs(spacing - spacing.mean()) / float(np.sum((spacing - spacing.mean()) ** 2))
     checks = []
     for what, order, first in (("force", 2.0, "first"), ("energy", 4.0, "third")):
         values, claims = np.array([ratio(case, row.runs[case.name], what) for case in cases]).T
         errors = np.abs(values - 1.0)
-        slope, error = fitted_order([case.values["h"] for case in cases], errors)
-        spread = error + float(weight @ (claims / errors))
+        slope, error, spread = fitted_order([case.values["h"] for case in cases], errors, claims / errors)
         checks.append(
             row(
                 f"order of convergence of the {what} in the spacing ({reduction})",
@@ -256,7 +242,7 @@ def _rate_checks(row: Rows, reduction: Reduction) -> list[Row]:
                     order, f"Euler and Maclaurin: the first derivative at the edge that does not vanish is the {first}"
                 ),
                 claim("residual forces of the minimisation: the series of a parabola ends here"),
-                uncertainty=spread,
+                uncertainty=error + spread,
                 on=[case.name for case in cases],
                 wide="the claim takes each run at its worst, and a sum over springs in place leaves round-off",
             )
@@ -264,10 +250,12 @@ def _rate_checks(row: Rows, reduction: Reduction) -> list[Row]:
     return checks
 
 
-def fitted_order(spacings: Sequence[float], errors: Values) -> tuple[float, float]:
-    """Slope of ln error over ln spacing, and its standard error."""
-    fitted, covariance = np.polyfit(np.log(spacings), np.log(errors), 1, cov=True)
-    return float(fitted[0]), float(np.sqrt(covariance[0, 0]))
+def fitted_order(places: Sequence[float], values: Values, claims: Values = ()) -> tuple[float, float, float]:
+    """Slope p of ln value over ln place, its standard error, and δp = Σ |c_i| claim_i of relative claims."""
+    x = np.log(places)
+    fitted, covariance = np.polyfit(x, np.log(values), 1, cov=True)
+    weights = np.abs(x - x.mean()) / np.sum((x - x.mean()) ** 2)
+    return float(fitted[0]), float(np.sqrt(covariance[0, 0])), float(weights[: len(claims)] @ claims)
 
 
 def _width_check(row: Rows, reduction: Reduction) -> Row:
@@ -285,7 +273,7 @@ def _width_check(row: Rows, reduction: Reduction) -> Row:
         ),
         claim("round-off, residual forces"),
         uncertainty=radius["uncertainty"] / hertzian,
-        on=[case.name],
+        on=case.name,
         wide=EXACT,
     )
 
@@ -344,8 +332,8 @@ def _shape_checks(row: Rows, kind: str) -> list[Row]:
     return [
         row(f"force of a {words} (mdr)", ours, Reference(force, source),
             relative(lattice + between + ours.uncertainty / ours.value, limit),
-            on=[name], despite=answers, wide=BY_CHANCE),
-        row(f"contact radius of a {words} (mdr)", width, Reference(radius, source), claim(limit), on=[name],
+            on=name, despite=answers, wide=BY_CHANCE),
+        row(f"contact radius of a {words} (mdr)", width, Reference(radius, source), claim(limit), on=name,
             despite=answers, wide=EXACT, standing="by construction" if kind == "flat_punch" else "judged"),
     ]  # fmt: skip
 
@@ -359,7 +347,7 @@ def _drawn_cone(row: Rows) -> Row:
     return row("force of two equal cones as drawn over Sneddon's (geike_popov)", ours.value / expected,
                Reference(0.5 * math.pi, "closed form of the springs: the reduction as drawn is for parabolas only"),
                relative((BASE["h"] * SLOPE / DEPTH) ** 2 / 3.0 + ours.uncertainty / ours.value, LATTICE),
-               uncertainty=ours.uncertainty / expected, on=[name], wide=LEVEL)  # fmt: skip
+               uncertainty=ours.uncertainty / expected, on=name, wide=LEVEL)  # fmt: skip
 
 
 STUDY_EQ3 = Study(

@@ -4,8 +4,6 @@
 (`workflow.runs.scales`). A printed number is good to half its last digit; a prediction also has the first row's.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from validation import doors
@@ -71,7 +69,7 @@ def judge(bench: Bench) -> Findings:
                 row(f"{symbol}, R = {entry.radius:g} LU", value,
                     printed(expected, "Table 1, first row: identified by it" if fixed else "Table 1"),
                     relative(tolerance, "print, of this number" + ("" if fixed else " and of the first row")),
-                    on=[name], standing="by construction" if fixed else "judged", known=known)
+                    on=name, standing="by construction" if fixed else "judged", known=known)
             )  # fmt: skip
     finding = (
         "The interaction is identified by F_A and a_0 of the first row. The numbers of the other rows are predictions. "

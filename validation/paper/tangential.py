@@ -7,17 +7,15 @@ F_x = μ [S(d) − S(d − u k_t/μk_n)]. The relative error of S is (3/2) B₂ 
 (h/a)²/4 (1 + c/a) of μN.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from validation.doors import Reduction, Scene, read_scene
+from validation.doors import Reduction, Scene
 from validation.figures import Array
-from validation.paper.section2 import FACTORS, FORCE_UNIT, LENGTH_UNIT, MODULUS, fitted_order
+from validation.paper.section2 import FACTORS, FORCE_UNIT, LENGTH_UNIT, MODULUS, fitted_order, pressed
 from validation.references.hertz import hertz_force
 from validation.references.mindlin import mindlin_force, mindlin_loop_area, raised_load_force
 from validation.row import Reference, Row, absolute, relative
@@ -74,23 +72,10 @@ class Case:
 
     def scene(self, places: Array, depths: float | list[float] = DEPTH, **bodies: Any) -> Scene:
         """The body at the depths [LU], drawn along places [LU]."""
-        upper, lower = (
-            {"youngs_modulus": E, "poisson_ratio": nu} for E, nu in zip(self.moduli, self.poisson_ratios, strict=True)
-        )
-        own = {
-            "particles": "auto", "spacing": SPACING, "profile": {"kind": "parabola", "radius": RADIUS},
-            "reduction": self.reduction, "bulk_stiffness": "auto", "lower": "rigid_plane",
-        }  # fmt: skip
         experiment = {"kind": "tangential", "normal_displacement": depths, "displacements": places.tolist()}
-        return read_scene(
-            {
-                "title": f"tangential: {self.name}",
-                "bodies": own | bodies,
-                "material": {"upper": upper, "lower": lower, "length_unit": LENGTH_UNIT, "force_unit": FORCE_UNIT},
-                "friction": {"coefficient": FRICTION},
-                "experiment": experiment,
-            }
-        )
+        materials = zip(self.moduli, self.poisson_ratios, strict=True)
+        return pressed(f"tangential: {self.name}", self.reduction, RADIUS, materials, experiment,
+                       {"spacing": SPACING} | bodies, friction={"coefficient": FRICTION})  # fmt: skip
 
 
 def stiffness_ratio(moduli: tuple[float, float], poisson_ratios: tuple[float, float]) -> float:
@@ -102,11 +87,6 @@ def stiffness_ratio(moduli: tuple[float, float], poisson_ratios: tuple[float, fl
 def initial_path(u: float) -> float:
     """F_x/μN at u/u* ≤ 1."""
     return float(mindlin_force(u, 1.0, 1.0, 1.0))
-
-
-def loop_force(u: float) -> float:
-    """F_x/μN on the reverse path from TURN, at u/u*: the initial path at twice its size (Masing)."""
-    return initial_path(TURN) - 2.0 * initial_path(0.5 * (TURN - u))
 
 
 def _equal(reduction: Reduction, nu: float) -> Case:
@@ -164,6 +144,9 @@ def _fineness(case: Case) -> float:
 
 def _loop_checks(row: Rows) -> list[Row]:
     half, back = OUT[HALF], len(OUT) + 15
+    reverse = initial_path(TURN) - 2.0 * initial_path(
+        0.5 * TURN
+    )  # at u = 0: the initial path at twice its size (Masing)
     each = []
     for case in CASES:
         run, unit = row.runs[case.name], FRICTION * case.load()
@@ -172,9 +155,9 @@ def _loop_checks(row: Rows) -> list[Row]:
         loop = mindlin_loop_area(TURN, 1.0, 1.0, 1.0) * case.sliding() * unit
         distance = 4.0 * TURN * case.sliding() * unit
         each.append((
-            (float(force[HALF]) / unit, initial_path(half), 0.5 * lattice),
-            (float(force[back]) / unit, loop_force(0.0), 1.5 * lattice),
-            (float(radius), math.sqrt(1.0 - half), ROUND_OFF),
+            (force[HALF] / unit, initial_path(half), 0.5 * lattice),
+            (force[back] / unit, reverse, 1.5 * lattice),
+            (radius, math.sqrt(1.0 - half), ROUND_OFF),
             (float(energy[-1] - energy[len(OUT) - 1]) / loop, 1.0, 1.5 * lattice * distance / loop),
         ))  # fmt: skip
     pairs = f"worst of {len(CASES)} pairs of bodies"
@@ -201,10 +184,10 @@ def _raised_checks(row: Rows) -> list[Row]:
     force = run.friction["tangential_force"]
     raised = f"load raised by {1.0 / FIRST**1.5 - 1.0:.0%} at {RAISED:g} u*"
     return [
-        row(f"F_x over μN, {raised}, {words} to the old edge on", float(force[i]) / unit,
-            Reference(raised_load_force(float(places[i]), float(places[0]), loads, slidings, 1.0),
+        row(f"F_x over μN, {raised}, {words} to the old edge on", force[i] / unit,
+            Reference(raised_load_force(places[i], places[0], loads, slidings, 1.0),
                       "Mindlin and Deresiewicz: what slipped sticks anew"),
-            absolute(1.5 * _fineness(BASE) / FIRST, LATTICE), on=["tangential_raised"], wide=BY_CHANCE)
+            absolute(1.5 * _fineness(BASE) / FIRST, LATTICE), on="tangential_raised", wide=BY_CHANCE)
         for i, words in ((2, "half of the distance"), (4, "one and a half times the distance"))
     ]  # fmt: skip
 
@@ -214,7 +197,7 @@ def _order_check(row: Rows) -> Row:
     names = list(_order_runs())
     exact = FRICTION * BASE.load(EDGE**2 / RADIUS) * (1.0 - STUCK**3)
     errors = [abs(row.runs[name].friction["tangential_force"][-1] / exact - 1.0) for name in names]
-    order, error = fitted_order(ORDER_SPACINGS, errors)
+    order, error, _ = fitted_order(ORDER_SPACINGS, errors)
     return row("order of convergence of F_x in the spacing", order,
                Reference(2.0, "Euler and Maclaurin: both edges are kinks of a sum"), relative(ROUND_OFF, "round-off"),
                uncertainty=error, on=names,

@@ -16,8 +16,6 @@ grips E(a_fg). Everything is by adaptive quadrature between the kinks; nothing i
 Sources: V. L. Popov, M. Hess, Method of Dimensionality Reduction (2015), chapters 3 to 5; K. L. Johnson (1985).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -146,7 +144,7 @@ class Contact:
 
     def _grid(self, guess: float) -> list[float]:
         low, high = guess * 10.0**-DECADES, min(guess * 10.0 ** (0.5 * DECADES), self.body.limit)
-        points: list[float] = []
+        points = []
         for start, stop in pairwise(self.body.corners(low, high)):
             count = max(SCAN, round(SCAN * math.log10(stop / start)))
             points += [start * (stop / start) ** (i / count) for i in range(count)]
@@ -185,10 +183,6 @@ class Contact:
         """a at the largest tension of the contacts that fixed grips hold [length]."""
         least = self.fixed_grips(guess)
         return min([least, *(a for a in self._turns(1.5, guess) if a > least)], key=self.force)
-
-    def softest_outer(self, guess: float) -> float:
-        """a of the outermost force maximum, where a load that falls ends the contact [length]."""
-        return max([self.fixed_grips(guess), *self._turns(1.5, guess)])
 
     def touch_radius(self, guess: float) -> float:
         """a of the contact that forms at d = 0: the first at which d(a) rises to 0 [length]."""

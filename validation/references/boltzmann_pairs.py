@@ -6,9 +6,7 @@ plate, whose place d moves all gaps G_i = r0 + h_i - d, has under the load F the
 w(d) = exp(F d/kT) prod_i z(G_i), so <d> = int d w / int w, and <F_contact> = F. As kT -> 0 this is the equilibrium.
 """
 
-from __future__ import annotations
-
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -22,8 +20,7 @@ FINE, MOST, GAPS = 0.6, 8000, 1500
 how many distances there may be; gaps at which ln z is tabulated, between which a cubic spline is exact to 1e-9."""
 
 
-@dataclass(frozen=True, eq=False)
-class BoltzmannPairs:
+class BoltzmannPairs(NamedTuple):
     """Pairs with given heights at a temperature.
 
     Args:
@@ -44,13 +41,11 @@ class BoltzmannPairs:
         Distances down to 0 count: the core is finite, and what lies behind it is another branch.
         """
         spread = SPREAD * np.sqrt(2.0 * self.temperature / self.bulk_stiffness)
-        pull = 2.0 * abs(float(self.interaction.force(np.array(0.0)))) / self.bulk_stiffness
-        tension = -float(self.interaction.force(np.array(self.interaction.extremum_distance(1))))
-        low = np.maximum(gap - spread - 2.0 * tension / self.bulk_stiffness, 0.0)
-        high = np.maximum(gap + spread, 0.0) + np.minimum(
-            pull, np.maximum(-gap, 0.0) + 8.0 * self.interaction.longest_range
-        )
-        steepest = abs(float(self.interaction.force_slope(np.array(0.0)))) + 0.5 * self.bulk_stiffness
+        pull = 2.0 * abs(self.interaction.force(0.0)) / self.bulk_stiffness
+        low = np.maximum(gap - spread - 2.0 * self.interaction.largest_tension / self.bulk_stiffness, 0.0)
+        beyond = np.maximum(-gap, 0.0) + 8.0 * self.interaction.longest_range
+        high = np.maximum(gap + spread, 0.0) + np.minimum(pull, beyond)
+        steepest = abs(self.interaction.force_slope(0.0)) + 0.5 * self.bulk_stiffness
         nodes = int(np.max(high - low) / (FINE * np.sqrt(self.temperature / steepest))) + 2
         if nodes > MOST:
             raise ValueError(
@@ -79,5 +74,5 @@ class BoltzmannPairs:
         for height in self.heights:
             log_weight = log_weight + table(rest + height - d)
         weight = np.exp(log_weight - log_weight.max())
-        mean = float(np.sum(d * weight) / np.sum(weight))
+        mean = np.sum(d * weight) / np.sum(weight)
         return mean, float(np.sqrt(np.sum((d - mean) ** 2 * weight) / np.sum(weight)))

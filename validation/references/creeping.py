@@ -4,8 +4,6 @@ While the radius grows 2 n/(n + 1) kappa_n c a^(n + 1) = int C(t - s) dF(s), and
 a(t) = a(t_1) with F(t) = 2 int_0^(t_1) E(t - s) a(s) dd(s), and d follows from int_(t_1)^t E(t - s) dd(s) = 0, by C.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -69,28 +67,25 @@ class Creeping:
             return t
         target = self.force(t)
 
-        def off(s: float) -> float:
-            return self._held(s, t) - target
-
         start = self.force.touched(0.0)
+
+        def off(s: float) -> float:
+            return self._past(self._volume, start, s, t) - target
+
         if target <= 0.0 or off(self.turn) <= 0.0:  # at the turn itself by round-off
             return start if target <= 0.0 else self.turn
         return root(off, start, self.turn, 1e-13)
 
     def _past(self, values: Callable[[Floats], Floats], low: float, high: float, t: float) -> float:
         """int_low^high E(t - s) d values(s), by parts: the values have a steep start, and no derivative there."""
-        total, corners = 0.0, [low, *(c for c in self.force.times if low < c < high), high]
-        for start, stop in pairwise(corners):
+        total = 0.0
+        for start, stop in pairwise(self.force.corners(low, high)):
             s = start + (stop - start) * PLACES
             fading = sum(p / tau * np.exp((s - t) / tau) for p, tau in self.material.terms)
             total += (stop - start) * float(PARTS @ (values(s) * fading))
-        ends = values(np.array([low, high]))
+        first, last = values(np.array([low, high])).tolist()
         relaxed = self.material.relaxed
-        return relaxed(t - high) * float(ends[1]) - relaxed(t - low) * float(ends[0]) - self.material.modulus * total
-
-    def _held(self, before: float, t: float) -> float:
-        """2 int_0^t1 E(t - s) a(s) dd(s)."""
-        return self._past(self._volume, self.force.touched(0.0), before, t)
+        return float(relaxed(t - high) * last - relaxed(t - low) * first - self.material.modulus * total)
 
     def _lost(self, t: float) -> float:
         """int_(t_1)^(t_m) E(t - s) dd(s)."""
@@ -105,10 +100,9 @@ class Creeping:
         if t <= self.turn:
             return self._approach(t)
         lost, turn = self._lost, self.turn
-        corners = [turn, *(c for c in self.force.times if turn < c < t), t]
         past = sum(
             smooth(lambda s: self.material.creep_rate(t - s) * lost(s), low, high, NODES)
-            for low, high in pairwise(corners)
+            for low, high in pairwise(self.force.corners(turn, t))
         )
         return self._approach(turn) - self.material.retarded[0] * lost(t) - past
 

@@ -7,8 +7,6 @@ With V(d) = F_el/E* and V' = 2 a d' the force of a growing contact, F = E* (V + 
 until V = F/E*, from which on the contact recedes, V(a) = F/E*, and the body lags behind it: d + T d' = g(a).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property, partial
@@ -58,21 +56,16 @@ class Pressed:
         if t <= turn:
             return body.depth(self.radius(t))
         d = body.depth(self.radius(turn))
-        for low, high in pairwise([turn, *(c for c in self.force.times if turn < c < t), t]):
+        for low, high in pairwise(self.force.corners(turn, t)):
             parts = max(1, min(40, math.ceil((high - low) / T)))
-            ends = [low + (high - low) * i / parts for i in range(parts + 1)]
-            for a, b in pairwise(ends):
+            for a, b in pairwise([low + (high - low) * i / parts for i in range(parts + 1)]):
                 d = d * math.exp((a - b) / T) + smooth(partial(self._drawn, b), a, b, 40)
         return d
 
     @property
     def lost(self) -> float:
-        """int F dd of a force that ends at 0, -int d dF [energy]."""
-        corners = sorted({*self.force.times, self.turn})
-        return -sum(
-            self.force.rate(0.5 * (low + high)) * smooth(self.displacement, low, high, 24)
-            for low, high in pairwise(corners)
-        )
+        """int F dd of a force that ends at 0 [energy]."""
+        return self.force.work(self.displacement, self.turn)
 
     def _drawn(self, end: float, s: float) -> float:
         """What the edge at a time draws the body to, at the end [length/time]."""

@@ -15,15 +15,13 @@ h(y, t) the chance to be on the near side of the barrier then or at any later ti
 Garg's closed form (1995) takes the barrier as ΔE₀ (1 − F/F_A)^{3/2}, the form next to the fold, for all of it.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import solve_banded
 
-Array = NDArray[np.float64]
+from validation.references.numerics import Floats, Pair
+
 TENSIONS = 300
 SMALL = 1e-5
 """Difference of an energy over kT below which B(x) is its series."""
@@ -31,17 +29,17 @@ GONE, MOST_STEPS = 1e-6, 30_000
 """Share of the density that counts as none, and steps of the load after which it is not waited for."""
 
 
-def drag_of_pairs(displacement: Array, free_energy: Array, pairs: int, stiffness: float, drag: float) -> Array:
+def drag_of_pairs(displacement: Floats, free_energy: Floats, pairs: int, stiffness: float, drag: float) -> Floats:
     """Γ(d) = N γ [(1 − c)² + c²] [FU·TU/LU] of N opposite pairs, by what either particle moves where the plate does.
 
     c = A″/(N k): half of the way goes to the lower particle where both stand on each other, nothing where they are
     apart. A [FU·LU] at even places d [LU], k [FU/LU] of each spring, γ [FU·TU/LU] of each particle.
     """
     lower = np.gradient(np.gradient(free_energy, displacement), displacement) / (pairs * stiffness)
-    return np.asarray(pairs * drag * ((1.0 - lower) ** 2 + lower**2))
+    return pairs * drag * ((1.0 - lower) ** 2 + lower**2)
 
 
-def escape_time(place: Array, energy: Array, barrier: int, drag: float, temperature: float) -> float:
+def escape_time(place: Floats, energy: Floats, barrier: int, drag: float, temperature: float) -> float:
     """τ [TU] from the deepest of the first `barrier` places of the energy U [FU·LU] to the last place y [LU]."""
     step = place[1] - place[0]
     u = (energy - energy.min()) / temperature
@@ -52,8 +50,8 @@ def escape_time(place: Array, energy: Array, barrier: int, drag: float, temperat
 
 
 def detachment(
-    displacement: Array, free_energy: Array, drag: float, temperature: float, rate: float, strongest: float
-) -> tuple[float, float]:
+    displacement: Floats, free_energy: Floats, drag: float, temperature: float, rate: float, strongest: float
+) -> Pair:
     """Mean and standard deviation of the detachment force [FU].
 
     Args:
@@ -67,24 +65,22 @@ def detachment(
     tensions = np.linspace(0.0, 1.2 * strongest, TENSIONS)
     y, energy = -displacement[::-1], free_energy[::-1]
     barrier = int(np.argmax(np.gradient(energy, y)))
-    rates = np.asarray([1.0 / escape_time(y, energy - F * y, barrier, drag, temperature) for F in tensions])
+    rates = np.array([1.0 / escape_time(y, energy - F * y, barrier, drag, temperature) for F in tensions])
     step = tensions[1] - tensions[0]
     survival = np.exp(-np.concatenate([[0.0], np.cumsum(0.5 * (rates[1:] + rates[:-1]))]) * step / rate)
-    mean = float(np.trapezoid(survival, tensions))
-    square = float(2.0 * np.trapezoid(tensions * survival, tensions))
-    return mean, float(np.sqrt(max(square - mean**2, 0.0)))
+    return _moments(survival, tensions)
 
 
 def detachment_in_time(
-    displacement: Array,
-    free_energy: Array,
-    drag: float | Array,
+    displacement: Floats,
+    free_energy: Floats,
+    drag: float | Floats,
     temperature: float,
     rate: float,
     barrier: float,
     spring: float = 0.0,
     end: float = 0.0,
-) -> tuple[float, float]:
+) -> Pair:
     """Mean and standard deviation of the detachment force [FU], by the density of the plate as the load grows.
 
     It begins as Boltzmann's without load and ends where the places end; the force is that of the last time at the
@@ -104,17 +100,16 @@ def detachment_in_time(
         ArithmeticError: the plate stays, or was never held.
     """
     y, energy = -displacement[::-1], free_energy[::-1]
-    h, held, middle = float(y[1] - y[0]), y < -barrier, 0.5 * (y[1:] + y[:-1])
-    strongest = float(np.max(np.gradient(energy, y)))
-    step = strongest / rate / TENSIONS
+    h, held, middle = y[1] - y[0], y < -barrier, 0.5 * (y[1:] + y[:-1])
+    step = np.max(np.gradient(energy, y)) / rate / TENSIONS
     own = np.diff(energy) / h + spring * (middle + end)
     start = energy + 0.5 * spring * (y + end) ** 2
     p = np.where(held, np.exp(-(start - start[held].min()) / temperature), 0.0)
     p /= p.sum()
-    drags = np.broadcast_to(np.asarray(drag, dtype=np.float64), y.shape)[::-1]
+    drags = np.broadcast_to(drag, y.shape)[::-1]
     share = temperature / (0.5 * (drags[1:] + drags[:-1])) / h**2 * step
 
-    def bands(force: float) -> Array:
+    def bands(force: float) -> Floats:
         return implicit(share, h / temperature * (own - force), absorbing=True)
 
     forces, densities = [0.0], [p]
@@ -127,19 +122,23 @@ def detachment_in_time(
         densities.append(p)
     returns, stays = held.astype(np.float64), []  # chance to be held then or later, by place
     for force, density in zip(reversed(forces), reversed(densities), strict=True):
-        stays.append(float(density @ returns))
+        stays.append(density @ returns)
         forward = bands(force)
         transposed = np.zeros_like(forward)
         transposed[1], transposed[0, 1:], transposed[2, :-1] = forward[1], forward[2, :-1], forward[0, 1:]
         returns[-1] = 0.0
         returns = np.where(held, 1.0, solve_banded((1, 1), transposed, returns, check_finite=False))
-    survival, load = np.asarray(stays[::-1]), np.asarray(forces) - spring * (end - barrier)
-    mean = float(load[0] + np.trapezoid(survival, load))
-    square = float(load[0] ** 2 + 2.0 * np.trapezoid(load * survival, load))
-    return mean, float(np.sqrt(max(square - mean**2, 0.0)))
+    return _moments(np.array(stays[::-1]), np.array(forces) - spring * (end - barrier))
 
 
-def implicit(share: Array, rise: Array, absorbing: bool = False) -> Array:
+def _moments(survival: Floats, force: Floats) -> Pair:
+    """Mean and standard deviation of the force at which a plate detaches, by the share held at rising forces."""
+    mean = force[0] + np.trapezoid(survival, force)
+    square = force[0] ** 2 + 2.0 * np.trapezoid(force * survival, force)
+    return float(mean), float(np.sqrt(max(square - mean**2, 0.0)))
+
+
+def implicit(share: Floats, rise: Floats, absorbing: bool = False) -> Floats:
     """Return the implicit step of a density, as `solve_banded` has it: the rows of a matrix beside its diagonal.
 
     Fluxes as of Scharfetter and Gummel, D Δt/h² [B(Δu) p_i − B(−Δu) p_{i+1}], B(x) = x/(e^x − 1).

@@ -19,8 +19,6 @@ and under fixed grips it goes on after a = 0 while d falls with c. Sources: D. M
 Popov, M. Hess, Method of Dimensionality Reduction (2015), chapter 3, for the transforms.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -28,7 +26,7 @@ from functools import cached_property, partial
 from itertools import pairwise
 
 from validation.references.axisymmetric import Body, Contact
-from validation.references.numerics import integral, rising, root
+from validation.references.numerics import Pair, integral, rising, root
 
 ACCURACY, ACCEPTED = 1e-11, 1e-8
 """Relative accuracy asked of each piece of a quadrature, and what one may have that round-off beside a kink stops."""
@@ -82,12 +80,14 @@ class Cohesive:
         """The gap at c [length] of a contact with sqrt(c^2 - a^2) = s."""
         t, c = math.atan2(s, a), math.hypot(a, s)
 
-        def opened(r: float, phi: float) -> float:
-            return self.body.slope(r) * (math.cos(phi) * math.atan2(s, a * math.cos(phi)) - t)
-
+        inside = self._over(
+            lambda r, phi: self.body.slope(r) * (math.cos(phi) * math.atan2(s, a * math.cos(phi)) - t),
+            a,
+            self.reach / a if a else 0.0,
+        )
         outside = 0.5 * math.pi * self._rise(a, c)
         stretched = self._kappa * c * (t * math.sin(t) - 2.0 * math.sin(0.5 * t) ** 2)
-        return 2.0 / math.pi * (a * self._over(opened, a, self.reach / a if a else 0.0) + outside + stretched)
+        return 2.0 / math.pi * (a * inside + outside + stretched)
 
     def zone(self, a: float) -> float:
         """s = sqrt(c^2 - a^2) [length] of a contact; a >= 0."""
@@ -102,7 +102,7 @@ class Cohesive:
         pressed = 2.0 * self.modulus * (a * inner - self.body.area(a))
         return State(a, c, inner - self._kappa * s, pressed - 2.0 * self.stress * (a * s + t * c * c))
 
-    def slopes(self, a: float) -> tuple[float, float]:
+    def slopes(self, a: float) -> Pair:
         """dd/da [1] and dF/da [force/length]; a > 0, beside a kink."""
         s = self.zone(a)
         t, c = math.atan2(s, a), math.hypot(a, s)
@@ -247,8 +247,7 @@ class Cohesive:
         return Contact(self.body, self.modulus).central_pressure(state.a) - self._of_zone(state.a, state)
 
     def _of_zone(self, inside: float, state: State) -> float:
-        s = math.sqrt((state.c - state.a) * (state.c + state.a))
-        return 2.0 * self.stress / math.pi * math.atan2(s, inside)
+        return 2.0 * self.stress / math.pi * math.atan2(math.sqrt((state.c - state.a) * (state.c + state.a)), inside)
 
     def energy(self, state: State) -> float:
         """Elastic and of adhesion, 0 where the bodies are apart [energy].

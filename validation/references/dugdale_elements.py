@@ -70,7 +70,10 @@ class Elements:
 
     def _with_zone(self, a: float, c: float) -> Solved:
         """Gap 0 in the middle of each annulus; unknown are d and all pressures but the last, which is -sigma_0."""
-        ends = self._mesh(a)
+        u = np.linspace(0.0, 1.0, self.count + 1)
+        graded = u**STEEP / (u**STEEP + (1.0 - u) ** STEEP)
+        corners = [0.0, *(b for b in self.kinks if b < a), a]
+        ends = np.concatenate([[0.0], *(low + (high - low) * graded[1:] for low, high in pairwise(corners))])
         middles = 0.5 * (ends[1:] + ends[:-1])
         influence, zone = (self.pressed(middles, edges) for edges in (ends, np.array([a, c])))
         tension = influence[:, -1] + zone[:, 0]
@@ -78,16 +81,9 @@ class Elements:
         *pressures, displacement = np.linalg.solve(matrix, self.height(middles) - self.stress * tension)
         return Solved(self, a, c, float(displacement), ends, np.array([*pressures, -self.stress]))
 
-    def _mesh(self, a: float) -> Floats:
-        """Ends of the annuli."""
-        u = np.linspace(0.0, 1.0, self.count + 1)
-        graded = u**STEEP / (u**STEEP + (1.0 - u) ** STEEP)
-        corners = [0.0, *(b for b in self.kinks if b < a), a]
-        return np.concatenate([[0.0], *(low + (high - low) * graded[1:] for low, high in pairwise(corners))])
-
     def pressed(self, radii: Floats, ends: Floats) -> Floats:
         """u(r)/p [length/stress] of annuli, shape (radii, annuli)."""
-        return np.asarray(np.diff(pressed_down(radii, ends), axis=1) / self.modulus)
+        return np.diff(pressed_down(radii, ends), axis=1) / self.modulus
 
 
 @dataclass(frozen=True)
@@ -111,7 +107,7 @@ class Solved:
         """h(r) [length]."""
         one, zone = self.problem, np.array([self.a, self.c])
         down = one.pressed(radii, self.ends) @ self.pressures - one.stress * one.pressed(radii, zone)[:, 0]
-        return np.asarray(one.height(radii) - self.displacement + down)
+        return one.height(radii) - self.displacement + down
 
     def violation(self) -> float:
         """The most by which an inequality does not hold [sigma_0 or h_0]; at most 0 where all hold."""

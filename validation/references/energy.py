@@ -4,8 +4,6 @@ U = sum_p [k_t u_px^2 + k u_pz^2]/2 + (k_n/2) sum_neighbours |u_p - u_q|^2 + sum
 u the displacement of a particle from its undeformed place and r_ij the distance in the plane.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -42,8 +40,7 @@ class EnergySurface:
         self.law = model.interaction
         self._tether = np.array([k_x, k_z])[2 - self.directions :]
         self._gap_at_touch = model.undeformed_gap(0.0)
-        reach = math.ceil(REACH * self.law.longest_range / model.spacing) + 1
-        self._offset = min(max(2, reach), model.particles - 1)
+        self._offset = min(max(2, math.ceil(REACH * self.law.longest_range / model.spacing) + 1), model.particles - 1)
         pairs = np.arange(model.particles)[:, None] + np.arange(-self._offset, self._offset + 1)[None, :]
         inside = (pairs >= 0) & (pairs < model.particles)
         self.lower: NDArray[np.intp] = np.nonzero(inside)[0]
@@ -76,8 +73,7 @@ class EnergySurface:
         gradient = self._tether * v
         gradient[:-1] -= k_n * stretch
         gradient[1:] += k_n * stretch
-        components = (dx, dz)[2 - self.directions :]
-        for axis, component in enumerate(components):
+        for axis, component in enumerate((dx, dz)[2 - self.directions :]):
             on_upper = force * component / r
             gradient[:, 1, axis] -= self._sum_over(self.upper, on_upper)
             gradient[:, 0, axis] += self._sum_over(self.lower, on_upper)
@@ -102,7 +98,13 @@ class EnergySurface:
             for column in range(self.directions):
                 block = (force / r - slope) * normal[row] * normal[column] - (force / r if row == column else 0.0)
                 self._add_pair_terms(band, row, column, block)
-        self._add_spring_terms(band)
+        # The springs to the bulk and between neighbours, both constant.
+        c, k_n = self.directions, self.model.neighbour_stiffness
+        band[0] += np.tile(self._tether, 2 * self.model.particles)
+        if k_n > 0.0 and self.model.particles > 1:
+            band[0, 2 * c :] += k_n
+            band[0, : -2 * c] += k_n
+            band[2 * c, : -2 * c] -= k_n
         return band
 
     def _sum_over(self, index: NDArray[np.intp], weights: Floats) -> Floats:
@@ -118,12 +120,3 @@ class EnergySurface:
         if row >= column:
             band[row - column, column :: 2 * c] += self._sum_over(self.lower, block)
             band[row - column, c + column :: 2 * c] += self._sum_over(self.upper, block)
-
-    def _add_spring_terms(self, band: Floats) -> None:
-        """Add the springs to the bulk and between neighbours, both constant."""
-        c, k_n = self.directions, self.model.neighbour_stiffness
-        band[0] += np.tile(self._tether, 2 * self.model.particles)
-        if k_n > 0.0 and self.model.particles > 1:
-            band[0, 2 * c :] += k_n
-            band[0, : -2 * c] += k_n
-            band[2 * c, : -2 * c] -= k_n

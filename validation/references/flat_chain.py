@@ -9,19 +9,15 @@ Prandtl and Tomlinson; without end the plate no longer moves as one of them slip
 plate gives way to each slip, and friction is lower by a share that falls as 1/N.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from validation.references.interaction import PairInteraction
+from validation.references.interaction import Floats, LawNumbers, PairInteraction
 
-Array = NDArray[np.float64]
-State = tuple[Array, Array, float]
+State = tuple[Floats, Floats, float]
 """x_i, z_i and Z [LU]."""
 REACH = 45
 """Particles of the row to each side: what is left out is below e^−45 B/b where b = s."""
@@ -47,7 +43,7 @@ class FlatChain:
         normal_stiffness, tangential_stiffness: k_n, k_t [FU/LU].
     """
 
-    law: tuple[float, float, float, float]
+    law: LawNumbers
     spacing: float
     count: int
     below: int
@@ -61,9 +57,9 @@ class FlatChain:
         return PairInteraction.of(*self.law)
 
     @property
-    def places(self) -> Array:
+    def places(self) -> Floats:
         """a_i [LU]."""
-        return np.asarray(np.arange(self.count) * self.below * self.spacing / self.count)
+        return np.arange(self.count) * self.below * self.spacing / self.count
 
     def friction(self) -> float:
         """Mean force along x on a particle [FU] for v → 0: the energy that slips lose on a way s/N, over s.
@@ -106,7 +102,7 @@ class FlatChain:
         pairs = self.pair.energy(self._distances(x, z)[1])
         return float(pairs.sum() + 0.5 * springs.sum()) + self.count * self.load * height
 
-    def _at_rest(self, plate: float, x: Array, z: Array, height: float) -> State:
+    def _at_rest(self, plate: float, x: Floats, z: Floats, height: float) -> State:
         """The minimum of E that lies downhill: Newton's method near it, else along the forces."""
         count, k_n, scale = self.count, self.normal_stiffness, self.law[2] / self.law[3]
         for _ in range(MOST):
@@ -114,24 +110,24 @@ class FlatChain:
             along += self.tangential_stiffness * (x - self.places - plate)
             up += k_n * (z - height)
             xx, zz = xx + self.tangential_stiffness, zz + k_n
-            lift = k_n * float(np.sum(height - z)) + self.load * count
-            if max(float(np.abs(along).max()), float(np.abs(up).max()), abs(lift)) < RESIDUAL * scale:
+            lift = k_n * np.sum(height - z) + self.load * count
+            if max(np.abs(along).max(), np.abs(up).max(), abs(lift)) < RESIDUAL * scale:
                 return x, z, height
             bend = xx * zz - xz**2
             if (bend > 0.0).all() and (xx > 0.0).all():
                 own = (xz * up - zz * along) / bend, (xz * along - xx * up) / bend
                 given = -xz * k_n / bend, xx * k_n / bend  # where the plate rises by 1
-                stiff = k_n * (count - float(given[1].sum()))
-                rise = (k_n * float(own[1].sum()) - lift) / stiff
+                stiff = k_n * (count - given[1].sum())
+                rise = (k_n * own[1].sum() - lift) / stiff
                 dx, dz = own[0] + given[0] * rise, own[1] + given[1] * rise
                 if stiff > 0.0 and max(np.abs(dx).max(), np.abs(dz).max(), abs(rise)) < LONGEST * self.spacing:
                     x, z, height = x + dx, z + dz, height + rise
                     continue
-            move = FLOW / float(np.max(np.abs(xx) + np.abs(zz) + 2.0 * np.abs(xz)))
+            move = FLOW / np.max(np.abs(xx) + np.abs(zz) + 2.0 * np.abs(xz))
             x, z, height = x - move * along, z - move * up, height - move * lift / count
         raise ArithmeticError("the chain comes to rest nowhere")
 
-    def _row(self, x: Array, z: Array) -> tuple[Array, Array, Array, Array, Array]:
+    def _row(self, x: Floats, z: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats]:
         """∂U/∂x, ∂U/∂z, and the second derivatives xx, zz, xz of each particle's energy over the row."""
         aside, r = self._distances(x, z)
         _, force, rise = self.pair.evaluate(r)
@@ -144,7 +140,7 @@ class FlatChain:
             ((turn - rise) * cos * sin).sum(axis=1),
         )
 
-    def _distances(self, x: Array, z: Array) -> tuple[Array, Array]:
+    def _distances(self, x: Floats, z: Floats) -> tuple[Floats, Floats]:
         """Along x, and in all, of each particle from those of the row around it [LU]."""
         nearest = np.round(x / self.spacing)[:, None]
         aside = x[:, None] - self.spacing * (nearest + np.arange(-REACH, REACH + 1)[None, :])

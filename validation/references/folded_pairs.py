@@ -9,8 +9,6 @@ back has the area sum_i (drop at G_on + drop at G_off). Holds where a particle f
 springs, ranges far below the spacing.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property
@@ -65,8 +63,7 @@ class FoldedPairs:
     @cached_property
     def ratio(self) -> float:
         """Steepest rise of the pair's force over k/2: above 1 a pair snaps."""
-        steepest = max(self.interaction.extremum_distance(2), 0.0)
-        return float(self.interaction.force_slope(np.array(steepest))) / (0.5 * self.bulk_stiffness)
+        return self.interaction.steepest_rise / (0.5 * self.bulk_stiffness)
 
     @cached_property
     def fold(self) -> Fold | None:
@@ -75,19 +72,19 @@ class FoldedPairs:
             return None
 
         def rise(r: float) -> float:
-            return 1.0 - 2.0 * float(self.interaction.force_slope(np.array(r))) / self.bulk_stiffness
+            return 1.0 - 2.0 * float(self.interaction.force_slope(r)) / self.bulk_stiffness
 
         middle, far = self.interaction.extremum_distance(2), self.interaction.longest_range * TAIL
         while rise(middle + far) <= 0.0:
             far *= 2.0
-        r_off = float(brentq(rise, 0.0, middle, xtol=1e-16, rtol=1e-15))
-        r_on = float(brentq(rise, middle, middle + far, xtol=1e-16, rtol=1e-15))
+        r_off = brentq(rise, 0.0, middle, xtol=1e-16, rtol=1e-15)
+        r_on = brentq(rise, middle, middle + far, xtol=1e-16, rtol=1e-15)
         return Fold(r_off, float(self.gap(r_off)), r_on, float(self.gap(r_on)))
 
     def gap(self, distance: Floats | float) -> Floats:
         """Return G = r - 2 f(r)/k [LU], shape of `distance` r [LU]."""
-        r = np.asarray(distance, dtype=np.float64)
-        return np.asarray(r - 2.0 * self.interaction.force(r) / self.bulk_stiffness)
+        r = np.asarray(distance)
+        return r - 2.0 * self.interaction.force(r) / self.bulk_stiffness
 
     def distance(self, gap: Floats, joined: Flags) -> Floats:
         """Return r(G) of each pair on its branch [LU].
@@ -102,9 +99,8 @@ class FoldedPairs:
         if np.any(gap < self.gap(0.0)):
             raise ValueError("the gap is so small that the particles are pushed through each other")
         fold = self.fold
-        pull = 2.0 * float(-self.interaction.force(np.array(self.interaction.extremum_distance(1))))
         low = np.zeros_like(gap) if fold is None else np.where(joined, 0.0, fold.r_on)
-        far = np.maximum(gap, self.interaction.force_free_distance()) + pull / self.bulk_stiffness
+        far = np.maximum(gap, self._rest) + 2.0 * self.interaction.largest_tension / self.bulk_stiffness
         high = far if fold is None else np.where(joined, fold.r_off, np.maximum(far, fold.r_on))
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
@@ -134,7 +130,7 @@ class FoldedPairs:
         Raises:
             ValueError: if the finite core gives way before.
         """
-        low, high = float(np.min(self.heights)), self._rest + float(np.min(self.heights)) - float(self.gap(0.0))
+        low, high = np.min(self.heights), self._rest + np.min(self.heights) - float(self.gap(0.0))
         side = SIDE * self.interaction.longest_range
         for first, last in self._between(low, high, None if self.fold is None else self.fold.gap_on):
             places = self._looks(first + side, last - side)
@@ -143,7 +139,7 @@ class FoldedPairs:
                 return float(places[0])
             if reached.size:
                 ends = places[reached[0] - 1], places[reached[0]]
-                return float(brentq(lambda d: float(self.loading(d)) - preload, *ends, xtol=1e-15))
+                return float(brentq(lambda d: self.loading(d) - preload, *ends, xtol=1e-15))
         raise ValueError("the finite core gives way before the preload is carried")
 
     def adhesion(self, preload: float) -> tuple[float, float]:
@@ -154,7 +150,7 @@ class FoldedPairs:
         """
         top, fold = self.deepest(preload), self.fold
         far = TAIL * self.interaction.longest_range + (0.0 if fold is None else fold.gap_off)
-        bottom = min(top, self._rest) - float(np.ptp(self.heights)) - far
+        bottom = min(top, self._rest) - np.ptp(self.heights) - far
         side = SIDE * self.interaction.longest_range
         parts = self._between(bottom, top, None if fold is None else fold.gap_off)
         return max(self._largest(first + side, last, top) for first, last in parts)
@@ -164,13 +160,10 @@ class FoldedPairs:
         fold = self.fold
         if fold is None:
             return 0.0
-        count = float(self._alike[1] @ self._joined(self._gaps(deepest)))
-        yes, no = np.array([True]), np.array([False])
-        lost = 0.0
-        for gap, before, behind in ((fold.gap_on, no, yes), (fold.gap_off, yes, no)):
-            g = np.array([gap])
-            lost += float(self._energy(g, self.distance(g, before))[0] - self._energy(g, self.distance(g, behind))[0])
-        return count * lost
+        count = self._alike[1] @ self._joined(self._gaps(deepest))
+        gaps, before = np.array([fold.gap_on, fold.gap_off]), np.array([False, True])
+        lost = self._energy(gaps, self.distance(gaps, before)) - self._energy(gaps, self.distance(gaps, ~before))
+        return float(count * lost.sum())
 
     @property
     def _rest(self) -> float:
@@ -186,10 +179,10 @@ class FoldedPairs:
         return self._rest + self._alike[0] - np.asarray(displacement, dtype=np.float64)[..., None]
 
     def _joined(self, gap: Floats) -> Flags:
-        return np.asarray(gap <= (-math.inf if self.fold is None else self.fold.gap_on))
+        return gap <= (-math.inf if self.fold is None else self.fold.gap_on)
 
     def _force(self, gap: Floats, joined: Flags) -> Floats:
-        return np.asarray(self.interaction.force(self.distance(gap, joined)) @ self._alike[1])
+        return self.interaction.force(self.distance(gap, joined)) @ self._alike[1]
 
     def _energy(self, gap: Floats, distance: Floats) -> Floats:
         return self.interaction.energy(distance) + 0.25 * self.bulk_stiffness * (distance - gap) ** 2
@@ -197,8 +190,7 @@ class FoldedPairs:
     def _between(self, first: float, last: float, snap: float | None) -> list[tuple[float, float]]:
         """The stretches of a way that are parted by the snaps of its pairs at the gap `snap`."""
         places = [] if snap is None else (self._rest + self._alike[0] - snap).tolist()
-        ends = [first, *sorted(d for d in places if first < d < last), last]
-        return list(pairwise(ends))
+        return list(pairwise([first, *sorted(d for d in places if first < d < last), last]))
 
     def _looks(self, first: float, last: float) -> Floats:
         wanted = math.ceil((last - first) / (LOOK * self.interaction.shortest_range))
@@ -212,7 +204,7 @@ class FoldedPairs:
         r = self.interaction.extremum_distance(2) + width * np.linspace(-1.0, 1.0, KINKS) ** 3
         if self.fold is not None:
             r = r[(r < self.fold.r_off) | (r > self.fold.r_on)]
-        return np.asarray((self._rest + self._alike[0][:, None] - self.gap(r)[None, :]).ravel())
+        return (self._rest + self._alike[0][:, None] - self.gap(r)[None, :]).ravel()
 
     def _largest(self, first: float, last: float, top: float) -> tuple[float, float]:
         """The largest tension between two snaps, and its place."""
@@ -220,7 +212,7 @@ class FoldedPairs:
         tension = -self.unloading(places, top)
         i = int(np.argmax(tension))
         found = minimize_scalar(
-            lambda d: float(self.unloading(d, top)),
+            lambda d: self.unloading(d, top),
             bounds=(places[max(i - 1, 0)], places[min(i + 1, places.size - 1)]),
             method="bounded",
             options={"xatol": 1e-9 * self.interaction.longest_range},

@@ -6,13 +6,12 @@
 Source: D. Maugis, J. Colloid Interface Sci. 150 (1992) 243.
 """
 
-from __future__ import annotations
-
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import lfilter
 
 from validation.references.maugis import Paraboloid
 from validation.references.numerics import Floats
@@ -21,8 +20,7 @@ STATES, WIDEST = 6000, 12.0
 """States of a branch, and the largest radius in units of the theory."""
 
 
-@dataclass(frozen=True)
-class Sphere:
+class Sphere(NamedTuple):
     """A paraboloid on a plane: E* [Pa], W [J/m²], R [m], and h₀ [m] of Maugis's."""
 
     modulus: float
@@ -59,21 +57,18 @@ def measured(sphere: Sphere, kind: str, stiffness: float, positions: Floats) -> 
     inwards = np.searchsorted(np.maximum.accumulate(z), positions).clip(1, last + 1) - 1
     outwards = np.searchsorted(np.minimum.accumulate(z[::-1])[::-1], positions[::-1], side="right") - 1
     up = np.where(positions >= start, _between(z, F, inwards, positions), 0.0)
-    down = np.where(outwards >= 0, _between(z, F, outwards.clip(0, last), positions[::-1]), 0.0)
-    return np.concatenate([up, down])
+    return np.concatenate([up, np.where(outwards >= 0, _between(z, F, outwards.clip(0, last), positions[::-1]), 0.0)])
 
 
 def _between(z: Floats, F: Floats, low: NDArray[np.intp], wanted: Floats) -> Floats:
     rise = z[low + 1] - z[low]
     share = np.divide(wanted - z[low], rise, out=np.zeros_like(wanted), where=rise != 0.0)
-    return np.asarray(F[low] + share * (F[low + 1] - F[low]))
+    return F[low] + share * (F[low + 1] - F[low])
 
 
 def noise(draw: np.random.Generator, count: int, memory: float) -> Floats:
     """Noise of unit variance: white, or a first-order autoregression with a memory [points]."""
     white = draw.standard_normal(count)
     kept = math.exp(-1.0 / memory) if memory else 0.0
-    found = white.copy()
-    for i in range(1, count):
-        found[i] = kept * found[i - 1] + math.sqrt(1.0 - kept * kept) * white[i]
-    return found
+    white[1:] *= math.sqrt(1.0 - kept * kept)
+    return np.asarray(lfilter([1.0], [1.0, -kept], white))

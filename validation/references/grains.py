@@ -12,15 +12,11 @@ Sources: Johnson, Kendall and Roberts (1971); Brilliantov et al. (1996); Tsuji e
 surface of an unloaded Kelvin-Voigt body lags: Ting (1966).
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
-from validation.references import impact
-from validation.references.impact import Adhesive, Bounce
-from validation.references.numerics import Function
-from validation.references.relaxing import KelvinVoigt, sphere
+from validation.references import impact, numerics, relaxing
+from validation.references.impact import Bounce
 
 K = 4.0 / 3.0
 """k of E* = R = 1."""
@@ -37,14 +33,9 @@ class Impact(Bounce):
         return self.peak_displacement
 
 
-def spheres(work_of_adhesion: float) -> Adhesive:
-    """An adhesive contact by JKR; E* = R = 1."""
-    return Adhesive(sphere(1.0), work_of_adhesion)
-
-
 def kelvin_voigt(A: float) -> Impact:
     """Exact; A = retardation time over (m²/(E*² R v))^(1/5)."""
-    return Impact(**vars(impact.kelvin_voigt(KelvinVoigt(sphere(1.0), A), 1.0, 1.0)))
+    return Impact(**vars(impact.kelvin_voigt(relaxing.KelvinVoigt(relaxing.sphere(1.0), A), 1.0, 1.0)))
 
 
 def viscoelastic(damping: float, limited: bool) -> Impact:
@@ -67,7 +58,7 @@ def coeff_restitution(e: float) -> float:
     return -math.sqrt(5.0) * math.log(e) / math.hypot(math.pi, math.log(e))
 
 
-def _dashpot(damping: Function, limited: bool) -> Impact:
+def _dashpot(damping: numerics.Function, limited: bool) -> Impact:
     def force(y: Any) -> float:
         depth = max(float(y[0]), 0.0)
         return float(K * depth**1.5 + damping(depth) * y[1])
@@ -79,7 +70,6 @@ def _dashpot(damping: Function, limited: bool) -> Impact:
         return 1.0 if y[1] > 0.0 else force(y) if limited else float(y[0])
 
     done = impact.motion(lambda _, y: [y[1], -acting(y)], [0.0, 1.0], 1.0, LONGEST, left)
-    end = float(done.t[-1])
-    overlap = impact.peak(lambda t: float(done.sol(t)[0]), end)
-    strongest = impact.peak(lambda t: acting(done.sol(t)), end)
-    return Impact(-float(done.y[1, -1]), end, strongest, overlap, math.sqrt(overlap))
+    end = done.t[-1]
+    overlap = impact.peak(lambda t: done.sol(t)[0], end)
+    return Impact(-done.y[1, -1], end, impact.peak(lambda t: acting(done.sol(t)), end), overlap, math.sqrt(overlap))

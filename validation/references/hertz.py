@@ -5,8 +5,6 @@ a << R. Source: K. L. Johnson, Contact Mechanics (1985), section 4.2. Any consis
 with stress = force / length^2.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from validation.references.interaction import Floats
@@ -20,7 +18,7 @@ def hertz_force(displacement: Floats | float, radius: float, contact_modulus: fl
         radius: R [length].
         contact_modulus: E* [stress].
     """
-    d = np.maximum(np.asarray(displacement, dtype=np.float64), 0.0)
+    d = np.maximum(displacement, 0.0)
     return np.asarray(4.0 / 3.0 * contact_modulus * np.sqrt(radius) * d**1.5)
 
 
@@ -31,7 +29,7 @@ def hertz_contact_radius(displacement: Floats | float, radius: float) -> Floats:
         displacement: d [length].
         radius: R [length].
     """
-    return np.sqrt(radius * np.maximum(np.asarray(displacement, dtype=np.float64), 0.0))
+    return np.asarray(np.sqrt(radius * np.maximum(displacement, 0.0)))
 
 
 def hertz_peak_pressure(displacement: Floats | float, radius: float, contact_modulus: float) -> Floats:
@@ -42,5 +40,5 @@ def hertz_peak_pressure(displacement: Floats | float, radius: float, contact_mod
         radius: R [length].
         contact_modulus: E* [stress].
     """
-    d = np.maximum(np.asarray(displacement, dtype=np.float64), 0.0)
+    d = np.maximum(displacement, 0.0)
     return np.asarray(2.0 / np.pi * contact_modulus * np.sqrt(d / radius))

@@ -17,8 +17,6 @@ Nothing is shared with the program. Sources: K. L. Johnson, H. M. Pollock, J. Ad
 C. Thornton, Z. Ning, Powder Technol. 99 (1998) 154.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -92,15 +90,15 @@ def kelvin_voigt(one: KelvinVoigt, mass: float, velocity: float) -> Bounce:
         return float(y[0] + one.time * y[1])
 
     inwards = motion(change, [0.0, velocity], scale, until, turned)
-    top, end = float(inwards.y[0, -1]), float(inwards.t[-1])
+    top, end = inwards.y[0, -1], inwards.t[-1]
     outwards = motion(change, [top, 0.0], scale, until, parted)
 
     def force(t: float) -> float:
         d, rate = inwards.sol(t)
-        return one.force(max(0.0, float(d)), max(0.0, float(rate)))
+        return one.force(max(0.0, d), max(0.0, rate))
 
-    radii = max(one.radius(float(d), float(v)) for d, v in inwards.y.T)
-    return Bounce(-float(outwards.y[1, -1]) / velocity, end + float(outwards.t[-1]), peak(force, end), top, radii)
+    radii = max(one.radius(d, v) for d, v in inwards.y.T)
+    return Bounce(-outwards.y[1, -1] / velocity, end + outwards.t[-1], peak(force, end), top, radii)
 
 
 def elastic(body: Power, modulus: float, mass: float, velocity: float) -> Bounce:
@@ -121,10 +119,10 @@ def relaxing(body: Power, material: Material, mass: float, velocity: float) -> B
     until = SHARE * depth / velocity
 
     def held(y: Any) -> float:
-        return rest * body.volume(body.radius(float(y[0]))) + float(E @ y[2 : 2 + arms])
+        return float(rest * body.volume(body.radius(y[0])) + E @ y[2 : 2 + arms])
 
     def grow(_: float, y: Any) -> Any:
-        flow = 2.0 * body.radius(float(y[0])) * y[1]
+        flow = 2.0 * body.radius(y[0]) * y[1]
         return np.concatenate([[y[1], -held(y) / mass], flow - y[2 : 2 + arms] / tau, y[1] - y[2 + arms :] / tau])
 
     scale = min(depth, velocity, 1.0) * min(1.0, body.radius(depth))
@@ -148,19 +146,19 @@ def relaxing(body: Power, material: Material, mass: float, velocity: float) -> B
         earlier = before(turn + t, y)
         state = inwards.sol(earlier)
         fade = np.exp(-(turn + t - earlier) / tau)
-        force = rest * body.volume(body.radius(float(state[0]))) + float(E @ (state[2 : 2 + arms] * fade))
+        force = rest * body.volume(body.radius(state[0])) + float(E @ (state[2 : 2 + arms] * fade))
         return np.concatenate([[y[1], -(force if earlier > 0.0 else 0.0) / mass], y[1] - y[2:] / tau])
 
     def parted(t: float, y: Any) -> float:
-        return rest * float(y[0]) + float(E @ y[2:])
+        return float(rest * y[0] + E @ y[2:])
 
-    outwards = motion(shrink, [float(top[0]), 0.0, *top[2 + arms :]], scale, until, parted)
+    outwards = motion(shrink, [top[0], 0.0, *top[2 + arms :]], scale, until, parted)
     return Bounce(
-        -float(outwards.y[1, -1]) / velocity,
-        turn + float(outwards.t[-1]),
+        -outwards.y[1, -1] / velocity,
+        turn + outwards.t[-1],
         peak(lambda t: held(inwards.sol(t)), turn),
         float(top[0]),
-        body.radius(float(top[0])),
+        body.radius(top[0]),
     )
 
 
@@ -259,8 +257,7 @@ class Adhesive:
             return self.slope(x) / math.sqrt(2.0 * max(left(x), 1e-300) / mass)
 
         lasts = smooth(slowness, touch, a, 200) + smooth(slowness, self.grips, a, 200)
-        e = math.sqrt(1.0 - self.lost / kinetic)
-        return Bounce(e, lasts, self.force(a), self.displacement(a), a)
+        return Bounce(math.sqrt(1.0 - self.lost / kinetic), lasts, self.force(a), self.displacement(a), a)
 
 
 def _beyond(function: Function, low: float) -> float:

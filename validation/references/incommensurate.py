@@ -11,13 +11,12 @@ particle on the top is larger than that of one in a hollow: the threshold is abo
 limit of soft springs.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np
 from scipy.optimize import brentq
 
+from validation.references.interaction import LawNumbers
 from validation.references.prandtl_tomlinson import Corrugation, corrugation
 
 REACH = 0.1
@@ -27,7 +26,7 @@ POINTS = 4001
 
 
 def shared_corrugation(
-    law: tuple[float, float, float, float],
+    law: LawNumbers,
     spacing: float,
     load: float,
     normal_stiffness: float,
@@ -48,13 +47,13 @@ def shared_corrugation(
     return _shared(law, spacing, load, normal_stiffness, lambda wells: tangential_stiffness)
 
 
-def threshold(law: tuple[float, float, float, float], spacing: float, load: float, normal_stiffness: float) -> float:
+def threshold(law: LawNumbers, spacing: float, load: float, normal_stiffness: float) -> float:
     """The k_t [FU/LU] above which the chain slides freely: k_t = max(−U″) of the wells at this same k_t."""
     return _shared(law, spacing, load, normal_stiffness, lambda wells: wells.steepest).steepest
 
 
 def _shared(
-    law: tuple[float, float, float, float],
+    law: LawNumbers,
     spacing: float,
     load: float,
     normal_stiffness: float,
@@ -66,8 +65,8 @@ def _shared(
         wells = corrugation(law, spacing, load, normal_stiffness, place)
         return _mean_height(wells, tangential_stiffness(wells)) - place
 
-    middle = float(corrugation(law, spacing, load).heights[0])
-    place = float(brentq(excess, middle - REACH * spacing, middle + REACH * spacing, xtol=1e-7))
+    middle = corrugation(law, spacing, load).heights[0]
+    place = brentq(excess, middle - REACH * spacing, middle + REACH * spacing, xtol=1e-7)
     return corrugation(law, spacing, load, normal_stiffness, place)
 
 
@@ -81,8 +80,7 @@ def _mean_height(wells: Corrugation, stiffness: float) -> float:
     if falls.size:  # it slips from there to the next place in which it rests, and has gone on from one like that before
         begin = int(falls[0])
         beyond = np.flatnonzero((drive[:-1] < drive[begin]) & (drive[1:] >= drive[begin]))
-        end = int(beyond[beyond > begin][0])
-        x = np.linspace(x[end] - s, x[begin], POINTS)
+        x = np.linspace(x[int(beyond[beyond > begin][0])] - s, x[begin], POINTS)
         drive = x + wells.slope(x) / stiffness
     z = sum(h * np.cos(2.0 * np.pi * n * x[way] / s) for n, h in enumerate(wells.heights.tolist()))
     return float(np.trapezoid(z, drive[way]) / (drive[way][-1] - drive[way][0]))

@@ -8,8 +8,6 @@ and all marks by search on F(a) and d(a), so that nothing is shared with the clo
 Sources: Johnson, Kendall and Roberts (1971); Maugis and Barquins (1983); Popov and Hess (2015). Any consistent units.
 """
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -84,26 +82,19 @@ class Indenter(Marks):
 
     def displacement(self, radius: Floats | float) -> Floats:
         """d(a) [length]; a >= 0 [length]."""
-        a = np.asarray(radius, dtype=np.float64)
+        a = np.asarray(radius)
         stretch = np.sqrt(2.0 * math.pi * a * self.work_of_adhesion / self.contact_modulus)
-        return np.asarray(self.rise * a**self.exponent - stretch)
+        return self.rise * a**self.exponent - stretch
 
     def force(self, radius: Floats | float) -> Floats:
         """F(a) [force], positive in compression; a >= 0 [length]."""
-        a, n = np.asarray(radius, dtype=np.float64), self.exponent
-        return np.asarray(2.0 * self.contact_modulus * a * (self.displacement(a) - self.rise * a**n / (n + 1.0)))
+        a, n = np.asarray(radius), self.exponent
+        return 2.0 * self.contact_modulus * a * (self.displacement(a) - self.rise * a**n / (n + 1.0))
 
 
 def jkr(radius: float, contact_modulus: float, work_of_adhesion: float) -> Indenter:
     """JKR's contact of a sphere R [length]."""
     return Indenter(0.5 / radius, 2.0, contact_modulus, work_of_adhesion)
-
-
-def with_zero_load_radius(coefficient: float, exponent: float, contact_modulus: float, radius: float) -> Indenter:
-    """The indenter whose contact has that radius [length] without a load."""
-    at_rest = Indenter(coefficient, exponent, contact_modulus)
-    stretch = at_rest.rise * radius**exponent * exponent / (exponent + 1.0)  # of the edge, where F = 0
-    return Indenter(coefficient, exponent, contact_modulus, stretch**2 * contact_modulus / (2.0 * math.pi * radius))
 
 
 def _slope(curve: Callable[[float], Floats | float], a: float) -> float:

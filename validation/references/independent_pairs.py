@@ -10,8 +10,6 @@ The trapezoidal rule is used for the integral: the integrand is even and smooth,
 does the sum over particles itself, which is why it may stand for the integral once the edge spans a few particles.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -55,14 +53,14 @@ class IndependentPairs:
 
     def __post_init__(self) -> None:
         """Check that the pair law is one to one."""
-        steepest = self.interaction.force_slope(np.array(max(self.interaction.extremum_distance(2), 0.0)))
+        steepest = self.interaction.steepest_rise
         if steepest >= 0.5 * self.bulk_stiffness:
-            raise ValueError(f"pairs snap: steepest tension {float(steepest):.4g} FU/LU >= k/2")
+            raise ValueError(f"pairs snap: steepest tension {steepest:.4g} FU/LU >= k/2")
 
     def undeformed_gap(self, distance: Floats | float) -> Floats:
         """Return G = r - 2 f(r)/k [LU], shape of `distance` r [LU]."""
-        r = np.asarray(distance, dtype=np.float64)
-        return np.asarray(r - 2.0 * self.interaction.force(r) / self.bulk_stiffness)
+        r = np.asarray(distance)
+        return r - 2.0 * self.interaction.force(r) / self.bulk_stiffness
 
     def pair_distance(self, gap: Floats | float) -> Floats:
         """Return r(G) >= 0 by bisection to round-off [LU].
@@ -76,8 +74,7 @@ class IndependentPairs:
         g = np.asarray(gap, dtype=np.float64)
         if np.any(g < self.undeformed_gap(0.0)):
             raise ValueError("the gap is so small that the particles are pushed through each other")
-        strongest = float(self.interaction.force(np.array(self.interaction.extremum_distance(1))))
-        low = np.maximum(0.0, g + 2.0 * strongest / self.bulk_stiffness)
+        low = np.maximum(0.0, g - 2.0 * self.interaction.largest_tension / self.bulk_stiffness)
         high = np.maximum(g, self.interaction.force_free_distance())
         for _ in range(INVERSION_STEPS):
             middle = 0.5 * (low + high)
@@ -85,7 +82,7 @@ class IndependentPairs:
                 break
             below = self.undeformed_gap(middle) < g
             low, high = np.where(below, middle, low), np.where(below, high, middle)
-        return np.asarray(0.5 * (low + high))
+        return 0.5 * (low + high)
 
     def force(self, displacement: float) -> float:
         """Return F(d) [FU], compression positive; `displacement` d [LU], zero where the apexes are r0 apart."""
@@ -109,9 +106,8 @@ class IndependentPairs:
     def critical_displacement(self) -> float:
         """Return the d of the largest tension [LU], the root of dF/dd there."""
         reach = 10.0 * self.interaction.longest_range
-        deepest = self._deepest()
-        grid = np.linspace(-reach, min(reach, deepest), SCAN)
-        lowest = int(np.argmin([self.force(float(d)) for d in grid]))
+        grid = np.linspace(-reach, min(reach, self._deepest()), SCAN)
+        lowest = int(np.argmin([self.force(d) for d in grid]))
         lowest = min(max(lowest, 1), SCAN - 2)
         return float(brentq(self.stiffness, grid[lowest - 1], grid[lowest + 1], xtol=1e-14))
 
@@ -129,11 +125,10 @@ class IndependentPairs:
         Raises:
             ValueError: if the force stays a tension until particles are pushed through each other.
         """
-        low = self.critical_displacement()
         high = self._deepest()
         if self.force(high) <= 0.0:
             raise ValueError("the finite core gives way before the force is compressive")
-        return float(brentq(self.force, low, high, xtol=1e-14))
+        return float(brentq(self.force, self.critical_displacement(), high, xtol=1e-14))
 
     def zero_load_radius(self) -> float:
         """Return a_0, the radius of maximum tensile stress at F = 0 [LU]; proportional to sqrt(R)."""
@@ -150,5 +145,4 @@ class IndependentPairs:
         end = self.interaction.force_free_distance() + TAIL * self.interaction.longest_range
         y = np.linspace(0.0, math.sqrt(max(end - apex_gap, self.interaction.longest_range)), NODES)
         values = integrand(self.pair_distance(apex_gap + y**2))
-        total = float(np.sum(values) - 0.5 * (values[0] + values[-1])) * float(y[1])
-        return 2.0 * math.sqrt(2.0 * self.radius) / self.spacing * total
+        return 2.0 * math.sqrt(2.0 * self.radius) / self.spacing * float(np.trapezoid(values, y))

@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+LawNumbers = tuple[float, float, float, float]
+"""A [FU LU], a [LU], B [FU LU], b [LU]."""
 
 
 @dataclass(frozen=True)
@@ -80,21 +82,31 @@ class PairInteraction:
         """Return r0 [LU]: the root of the force."""
         return self.extremum_distance(0)
 
-    def energy(self, distance: Floats) -> Floats:
+    @property
+    def largest_tension(self) -> float:
+        """The largest -f [FU], positive."""
+        return -float(self.force(self.extremum_distance(1)))
+
+    @property
+    def steepest_rise(self) -> float:
+        """The largest df/dr at r >= 0 [FU/LU]."""
+        return float(self.force_slope(max(self.extremum_distance(2), 0.0)))
+
+    def energy(self, distance: Floats | float) -> Floats:
         """Return V [FU LU], shape of `distance` [LU]."""
         return self.evaluate(distance)[0]
 
-    def force(self, distance: Floats) -> Floats:
+    def force(self, distance: Floats | float) -> Floats:
         """Return f = -dV/dr [FU], positive if repulsive, shape of `distance` [LU]."""
         return self.evaluate(distance)[1]
 
-    def force_slope(self, distance: Floats) -> Floats:
+    def force_slope(self, distance: Floats | float) -> Floats:
         """Return df/dr [FU/LU], shape of `distance` [LU]."""
         return self.evaluate(distance)[2]
 
-    def evaluate(self, distance: Floats) -> tuple[Floats, Floats, Floats]:
+    def evaluate(self, distance: Floats | float) -> tuple[Floats, Floats, Floats]:
         """Return V [FU LU], f = -dV/dr [FU] and df/dr [FU/LU], each with the shape of `distance` [LU]."""
-        r = np.asarray(distance, dtype=np.float64)
+        r = np.asarray(distance)
         a = self.repulsion.range
         energy = self.repulsion.amplitude * np.exp(-r / a)
         force = energy / a

@@ -9,26 +9,21 @@ V(x, z) the sum over a periodic row, ξ of the variance 2γkT. Splitting BAOAB (
 drifts, and the drag with its heat exactly. ⟨F⟩ is the mean of ∂V/∂x over time and copies, its error that over copies.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from validation.references.interaction import PairInteraction
+from validation.references.interaction import Floats, LawNumbers, PairInteraction
 
-Array = NDArray[np.float64]
 WAVES, PLACES, HEIGHTS = 6, 64, 4000
 """Harmonics of V along x, places that they are found from, and heights of the table."""
 REACH = 30.0
 """Longer range of the law times it, beyond which rows are left out."""
 
 
-@dataclass(frozen=True)
-class PulledParticle:
+class PulledParticle(NamedTuple):
     """What slides.
 
     Attributes:
@@ -42,7 +37,7 @@ class PulledParticle:
         temperature: kT [FU·LU].
     """
 
-    law: tuple[float, float, float, float]
+    law: LawNumbers
     spacing: float
     normal_force: float
     stiffness: float
@@ -53,14 +48,9 @@ class PulledParticle:
     temperature: float
 
     @property
-    def spring(self) -> float:
-        """Of particle and cantilever in series [FU/LU]."""
-        return 1.0 / (1.0 / self.stiffness + 1.0 / self.cantilever)
-
-    @property
     def moving_mass(self) -> float:
-        """Of the particle, and of the plate as it follows it [MU]."""
-        return self.mass + self.plate_mass * (self.spring / self.cantilever) ** 2
+        """Of the particle, and of the plate as it follows it, by the springs of both in series [MU]."""
+        return self.mass + self.plate_mass / (1.0 + self.cantilever / self.stiffness) ** 2
 
 
 def ensemble_friction(
@@ -94,7 +84,7 @@ def ensemble_friction(
     return float(means.mean()), float(means.std(ddof=1) / math.sqrt(copies))
 
 
-def _forces(body: PulledParticle) -> Callable[[Array, Array], tuple[Array, Array]]:
+def _forces(body: PulledParticle) -> Callable[[Floats, Floats], tuple[Floats, Floats]]:
     """Forces on x, z, X, Z and that of the row against +x, by V(x, z) = V_0(z) + Σ V_n(z) cos(2πn x/s)."""
     pair, s = PairInteraction.of(*body.law), body.spacing
     count = math.ceil(REACH * pair.longest_range / s)
@@ -108,10 +98,10 @@ def _forces(body: PulledParticle) -> Callable[[Array, Array], tuple[Array, Array
     waves = np.real(np.fft.rfft(energy, axis=0))[: WAVES + 1] * 2.0 / PLACES
     steep = np.real(np.fft.rfft(slope, axis=0))[: WAVES + 1] * 2.0 / PLACES
     steep[0] *= 0.5
-    first, step = float(z[0]), float(z[1] - z[0])
+    first, step = z[0], z[1] - z[0]
     numbers = 2.0 * math.pi / s * np.arange(1, WAVES + 1)[:, None]
 
-    def forces(place: Array, drive: Array) -> tuple[Array, Array]:
+    def forces(place: Floats, drive: Floats) -> tuple[Floats, Floats]:
         at = (place[1] - first) / step
         low = at.astype(np.int64)
         part = at - low

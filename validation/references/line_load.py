@@ -8,16 +8,15 @@ end of a body q jumps, too. The springs are those of `recovering`, each with eve
 same pressures without any springs.
 """
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from validation.references.numerics import Function
 from validation.references.recovering import Floats, Law, Prony, Springs
 from validation.references.relaxing import Legs
 
@@ -27,8 +26,7 @@ LOOKED = np.sin(np.linspace(0.0, 0.5 * math.pi, 161))[:-1]
 """Radii over e at which the largest pressure is looked for."""
 
 
-@dataclass(frozen=True)
-class Line:
+class Line(NamedTuple):
     """q [force/length] at x from 0 to the edge [length], both empty where nothing touches; f(r) ~ r^n beside the apex.
 
     `flow` is -dF/dt [force/time] of arms alone while the body is held.
@@ -57,26 +55,25 @@ class Line:
         slope = np.diff(q) / np.diff(x)
         if r == 0.0:
             if n <= 1.0:
-                return (
-                    math.inf if slope[0] else (float(q[-1]) / e - float(slope[1:] @ np.log(x[2:] / x[1:-1]))) / math.pi
-                )
+                return math.inf if slope[0] else (q[-1] / e - slope[1:] @ np.log(x[2:] / x[1:-1])) / math.pi
             # q - c x^n between the springs, too: straight lines miss 1e-4 of a blunt cone.
-            inner = n / (n - 1.0) * float(np.diff(q) @ (np.diff(x ** (n - 1.0)) / np.diff(x**n)))
+            inner = n / (n - 1.0) * np.diff(q) @ (np.diff(x ** (n - 1.0)) / np.diff(x**n))
         else:
-            inner = float(slope @ np.diff(np.arccosh(np.maximum(x / r, 1.0))))
-        return (float(q[-1]) / math.sqrt((e - r) * (e + r)) - inner) / math.pi
+            inner = slope @ np.diff(np.arccosh(np.maximum(x / r, 1.0)))
+        return float(q[-1] / math.sqrt((e - r) * (e + r)) - inner) / math.pi
 
     @property
     def peak(self) -> float:
         """The largest p(r) [stress]; inf under a tip and at an edge where q jumps."""
         if self.q[-1] > 0.0:
             return math.inf
-        values = [self.pressure(float(r) * self.edge) for r in LOOKED]
+        radii = (self.edge * LOOKED).tolist()
+        values = [self.pressure(r) for r in radii]
         i = int(np.argmax(values))
         if i == 0:
             return values[0]
-        ends = self.edge * float(LOOKED[i - 1]), self.edge * float(LOOKED[min(i + 1, LOOKED.size - 1)])
-        found = minimize_scalar(lambda r: -self.pressure(float(r)), bounds=ends, method="bounded")
+        ends = radii[i - 1], radii[min(i + 1, LOOKED.size - 1)]
+        found = minimize_scalar(lambda r: -self.pressure(r), bounds=ends, method="bounded")
         return max(values[i], -float(found.fun))
 
 
@@ -88,39 +85,39 @@ def line_of(springs: Springs, x: Floats, d: float, rate: float, exponent: float 
     last, law = int(touching[-1]), springs.law
     near, q = x[: last + 1], law.pressure(springs.state, rate)[: last + 1].clip(0.0)
     if last + 1 == x.size:
-        edge, jump = float(x[last]), float(q[-1])
+        edge, jump = x[last], q[-1]
         near, q = near[:-1], q[:-1]
     else:
         edge, jump = _edge(springs, x, d, last, q)
     near, q = np.append(near, edge), np.append(q, jump)
     flow = 0.0
     if isinstance(law, Prony):
-        shares, times = (np.array([one[i] for one in law.material.terms]) for i in (0, 1))
+        shares, times = np.array(law.material.terms).T
         arms = law.material.modulus * (shares / times) @ springs.state[1:, : last + 1]
-        flow = 2.0 * float(np.trapezoid(np.append(arms, arms[-1])[: near.size], near))
+        flow = 2.0 * np.trapezoid(np.append(arms, arms[-1])[: near.size], near)
     return Line(near, q, exponent, flow)
 
 
 def _edge(springs: Springs, x: Floats, d: float, last: int, q: Floats) -> tuple[float, float]:
     """e [length] between the last spring that touches and the next one, and q there."""
-    here, there = float(x[last]) * (1.0 + 1e-12), float(x[last + 1])
-    fall = float((q[-1] - q[-2]) / (x[last] - x[last - 1]))
-    zero = float(x[last] - q[-1] / fall) if fall < 0.0 else math.inf
+    here, there = x[last] * (1.0 + 1e-12), x[last + 1]
+    fall = (q[-1] - q[-2]) / (x[last] - x[last - 1])
+    zero = x[last] - q[-1] / fall if fall < 0.0 else math.inf
     if zero < there or last + 2 >= x.size:
         return max(here, min(zero, there)), 0.0
     gap = springs.state[0] - (d - springs.depth)
-    opens = float(gap[last + 2] - gap[last + 1]) / float(x[last + 2] - x[last + 1])
-    edge = min(max(there - float(gap[last + 1]) / opens, here), there) if opens > 0.0 else there
-    return edge, max(0.0, float(q[-1]) + fall * (edge - float(x[last]))) if not isinstance(springs.law, Prony) else 0.0
+    opens = (gap[last + 2] - gap[last + 1]) / (x[last + 2] - x[last + 1])
+    edge = min(max(there - gap[last + 1] / opens, here), there) if opens > 0.0 else there
+    return edge, 0.0 if isinstance(springs.law, Prony) else max(0.0, q[-1] + fall * (edge - x[last]))
 
 
 def lines(
-    law: Law, depth: Callable[[float], float], width: float, d: Legs, times: Sequence[float], exponent: float = 2.0,
+    law: Law, depth: Function, width: float, d: Legs, times: Sequence[float], exponent: float = 2.0,
     cells: int = CELLS,
 ) -> list[Line]:  # fmt: skip
     """The line loads of a path at rising times, at a corner those of the leg before; springs up to `width`."""
     x = width * np.linspace(0.0, 1.0, cells + 1) ** 2
-    springs = Springs(law, np.array([depth(float(one)) for one in x]), np.gradient(x), time=d.times[0])
+    springs = Springs(law, np.array([depth(one) for one in x]), np.gradient(x), time=d.times[0])
     each = max(1, PARTS // len(d.times))
     parts = [a + (b - a) * i / each for a, b in pairwise(d.times) for i in range(each)]
     found = []

@@ -11,8 +11,6 @@ With a = 0 the zone goes on alone: N = -(pi/2) lambda C^2, D = C^2/2 - (8 lambda
 Source: D. Maugis, J. Colloid Interface Sci. 150 (1992) 243.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property
@@ -69,8 +67,7 @@ class Reduced:
         """In contact."""
         c, _ = self._width(t)
         a, s = c * np.cos(t), c * np.sin(t)
-        load = a**3 - self.parameter * (a * s + t * c * c)
-        return States(a, c, load, a * a - 4.0 / 3.0 * self.parameter * s)
+        return States(a, c, a**3 - self.parameter * (a * s + t * c * c), a * a - 4.0 / 3.0 * self.parameter * s)
 
     def slopes(self, t: float) -> Pair:
         """dN/dt, dD/dt."""

@@ -7,8 +7,6 @@ Dimensionality Reduction in Contact Mechanics and Friction (2015), chapters 3 an
 units. Geike and Popov (2007) is the older reduction, with another g and stiffness: see `winkler`.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -6,8 +6,6 @@ Sources: K. L. Johnson, Contact Mechanics (1985), sections 7.2 and 7.4; R. D. Mi
 (1953) 327. Any consistent units.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from validation.references.interaction import Floats
@@ -22,15 +20,13 @@ def mindlin_force(place: Floats | float, normal_force: float, friction: float, s
         friction: mu.
         sliding: u* [length].
     """
-    u = np.asarray(place, dtype=np.float64)
-    left = np.maximum(1.0 - np.abs(u) / sliding, 0.0)
-    return np.asarray(friction * normal_force * np.sign(u) * (1.0 - left**1.5))
+    left = np.maximum(1.0 - np.abs(place) / sliding, 0.0)
+    return np.asarray(friction * normal_force * np.sign(place) * (1.0 - left**1.5))
 
 
 def mindlin_stick_radius(place: Floats | float, contact_radius: float, sliding: float) -> Floats:
     """Return c on the first way out [length], 0 from u* on; arguments as of `mindlin_force`."""
-    left = np.maximum(1.0 - np.abs(np.asarray(place, dtype=np.float64)) / sliding, 0.0)
-    return np.asarray(contact_radius * np.sqrt(left))
+    return np.asarray(contact_radius * np.sqrt(np.maximum(1.0 - np.abs(place) / sliding, 0.0)))
 
 
 def mindlin_loop_area(amplitude: float, normal_force: float, friction: float, sliding: float) -> float:
@@ -56,10 +52,9 @@ def mindlin_shear(
         friction: mu.
         peak_pressure: p0 [stress].
     """
-    r = np.asarray(places, dtype=np.float64)
-    outer = np.sqrt(np.maximum(1.0 - (r / contact_radius) ** 2, 0.0))
-    inner = np.sqrt(np.maximum(stick_radius**2 - r**2, 0.0)) / contact_radius
-    return np.asarray(friction * peak_pressure * (outer - inner))
+    outer = np.sqrt(np.maximum(1.0 - (places / contact_radius) ** 2, 0.0))
+    inner = np.sqrt(np.maximum(stick_radius**2 - places**2, 0.0)) / contact_radius
+    return friction * peak_pressure * (outer - inner)
 
 
 def raised_load_force(

@@ -4,17 +4,14 @@ Undeformed places: x_i = (i - (N-1)/2) s, lower z = 0, upper z = r0 + profile(x_
 positive in compression and r0 the distance at which one opposite pair is force-free.
 """
 
-from __future__ import annotations
-
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from validation.references.interaction import Floats, PairInteraction
 
 
-@dataclass(frozen=True, eq=False)
-class ChainModel:
+class ChainModel(NamedTuple):
     """Everything that fixes the energy of the model except the displacement.
 
     Args:
@@ -44,20 +41,16 @@ class ChainModel:
 
     def places(self) -> Floats:
         """Return the undeformed x of both chains, (i - (N-1)/2) s, shape (N,) [LU]."""
-        index = np.arange(self.particles, dtype=np.float64)
-        return (index - 0.5 * (self.particles - 1)) * self.spacing
+        return (np.arange(self.particles, dtype=np.float64) - 0.5 * (self.particles - 1)) * self.spacing
 
     def profile(self) -> Floats:
         """Return the undeformed heights of the upper body over its apex plane, x^2/2R or as given, shape (N,) [LU]."""
         if self.heights is not None:
-            return np.array(self.heights, dtype=np.float64)
+            return np.array(self.heights)
         assert self.radius is not None
         return self.places() ** 2 / (2.0 * self.radius)
 
-    def touch_distance(self) -> float:
-        """Return r0 [LU]: the gap of the apexes at displacement 0; zero on a rigid plane."""
-        return 0.0 if self.interaction is None else self.interaction.force_free_distance()
-
     def undeformed_gap(self, displacement: float) -> Floats:
-        """Return r0 + profile - d, shape (N,) [LU]; `displacement` d [LU]."""
-        return self.touch_distance() + self.profile() - displacement
+        """Return r0 + profile - d, shape (N,) [LU]; `displacement` d [LU]; r0 is 0 on a rigid plane."""
+        apart = 0.0 if self.interaction is None else self.interaction.force_free_distance()
+        return apart + self.profile() - displacement

@@ -5,10 +5,9 @@ it from leaping over a barrier: the descent ends in the basin where a gradient f
 a negative curvature is not accepted but left along its softest direction.
 """
 
-from __future__ import annotations
-
+import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
@@ -38,8 +37,7 @@ POWER_STEPS = 12
 """Inverse iterations for the softest direction."""
 
 
-@dataclass(frozen=True)
-class Descent:
+class Descent(NamedTuple):
     """What a descent needs beside the energy.
 
     Args:
@@ -79,11 +77,12 @@ def minimise(
             if factor is not None:
                 last = np.asarray(cho_solve_banded((factor, True), gradient))
                 return u - last * min(1.0, KICK * descent.step_limit / max(float(np.max(np.abs(last))), 1e-300))
-            u = u + _kick(band, descent)
+            softest, _ = softest_direction(band, descent.preferred)
+            u = u + math.copysign(KICK * descent.step_limit, softest @ descent.preferred) * softest  # off the saddle
             energy, gradient = energy_gradient(u)
             continue
         step = -cho_solve_banded((factor, True), gradient) if factor is not None else _way_down(band, gradient, descent)
-        longest = float(np.max(np.abs(step)))
+        longest = np.max(np.abs(step))
         if factor is not None and longest < NEAR * descent.step_limit:
             new_energy, new_gradient = energy_gradient(u + step)
             if np.linalg.norm(new_gradient) < np.linalg.norm(gradient):
@@ -106,7 +105,7 @@ def softest_direction(band: Floats, first: Floats) -> tuple[Floats, Floats]:
     Returns:
         the direction, largest component 1, shape (dofs,), and the factor in lower band storage.
     """
-    shift = FIRST_SHIFT * float(np.mean(np.abs(band[0])))
+    shift = FIRST_SHIFT * np.mean(np.abs(band[0]))
     shifted = band.copy()
     shifted[0] += shift
     while (factor := _factor(shifted)) is None:
@@ -114,7 +113,7 @@ def softest_direction(band: Floats, first: Floats) -> tuple[Floats, Floats]:
         shifted[0] = band[0] + shift
     direction = first
     for _ in range(POWER_STEPS):
-        direction = np.asarray(cho_solve_banded((factor, True), direction))
+        direction = cho_solve_banded((factor, True), direction)
         direction = direction / np.max(np.abs(direction))
     return direction, factor
 
@@ -127,13 +126,6 @@ def _factor(band: Floats) -> Floats | None:
         return None
 
 
-def _kick(band: Floats, descent: Descent) -> Floats:
-    """Return a small displacement off a saddle, on the preferred side."""
-    direction, _ = softest_direction(band, descent.preferred)
-    side = -1.0 if direction @ descent.preferred < 0.0 else 1.0
-    return side * KICK * descent.step_limit * direction
-
-
 def _way_down(band: Floats, gradient: Floats, descent: Descent) -> Floats:
     """Return a descent step where H is indefinite: a shifted Newton step, and one along the softest direction.
 
@@ -143,9 +135,9 @@ def _way_down(band: Floats, gradient: Floats, descent: Descent) -> Floats:
     direction, factor = softest_direction(band, gradient)
     step = -np.asarray(cho_solve_banded((factor, True), gradient))
     unit = direction / np.linalg.norm(direction)
-    share = float(unit @ gradient)
-    if abs(share) > ALONG_SOFTEST * float(np.linalg.norm(gradient)):
-        step *= min(1.0, (1.0 - SOFTEST_STEP) * descent.step_limit / float(np.max(np.abs(step))))
+    share = unit @ gradient
+    if abs(share) > ALONG_SOFTEST * np.linalg.norm(gradient):
+        step *= min(1.0, (1.0 - SOFTEST_STEP) * descent.step_limit / np.max(np.abs(step)))
         step = step - np.sign(share) * SOFTEST_STEP * descent.step_limit * direction
     return step
 
@@ -154,8 +146,8 @@ def _search(
     energy_gradient: Callable[[Floats], tuple[float, Floats]], u: Floats, step: Floats, energy: float, gradient: Floats
 ) -> tuple[Floats, float, Floats]:
     """Halve the step until the energy falls enough; where round-off hides that, until the slope does not rise."""
-    slope = float(gradient @ step)
-    hidden = ROUND_OFF * (abs(energy) + float(np.max(np.abs(u))) * float(np.max(np.abs(gradient))))
+    slope = gradient @ step
+    hidden = ROUND_OFF * (abs(energy) + np.max(np.abs(u)) * np.max(np.abs(gradient)))
     fraction = 1.0
     while fraction > 1e-15:
         trial = u + fraction * step
@@ -163,7 +155,7 @@ def _search(
         change = new_energy - energy
         if change <= SUFFICIENT_DECREASE * fraction * slope:
             return trial, new_energy, new_gradient
-        if change <= hidden and float(new_gradient @ step) <= SLOPE_BOUND * abs(slope):
+        if change <= hidden and new_gradient @ step <= SLOPE_BOUND * abs(slope):
             return trial, new_energy, new_gradient
         fraction *= 0.5
     raise RuntimeError("no step goes downhill: the energy is not finite or not smooth here")

@@ -1,7 +1,5 @@
 """Roots, integrals and largest values that the references have in common: scipy's, at the accuracies that are asked."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from functools import cache
@@ -24,16 +22,16 @@ def root(function: Function, low: float, high: float, accuracy: float = 1e-14) -
     return float(brentq(function, low, high, xtol=1e-300, rtol=accuracy, maxiter=500))
 
 
-def rising(function: Function, guess: float, doublings: int = 600) -> float:
+def rising(function: Function, guess: float) -> float:
     """Return the root of a function of a positive number that is negative below it and positive above.
 
     Raises:
-        ValueError: there is none within so many doublings or halvings of the guess.
+        ValueError: there is none within 600 doublings or halvings of the guess.
     """
-    low = next((x for x in (guess * 0.5**i for i in range(doublings)) if function(x) < 0.0), None)
-    high = next((x for x in (guess * 2.0**i for i in range(doublings)) if function(x) > 0.0), None)
+    low = next((x for x in (guess * 0.5**i for i in range(600)) if function(x) < 0.0), None)
+    high = next((x for x in (guess * 2.0**i for i in range(600)) if function(x) > 0.0), None)
     if low is None or high is None:
-        raise ValueError(f"no root within {doublings} doublings of {guess:g}")
+        raise ValueError(f"no root within 600 doublings of {guess:g}")
     return root(function, low, high)
 
 

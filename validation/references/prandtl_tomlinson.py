@@ -9,19 +9,15 @@ where η > 1. For slow drives it follows a minimum of U + k (x − X)²/2 until 
 one: ⟨F⟩ is then the energy lost in that over s. A sinusoid has ⟨F⟩/F_max = 0, 0.2015, 0.5710 at η = 1, 2, 5.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-from validation.references.interaction import PairInteraction
+from validation.references.interaction import Floats, LawNumbers, PairInteraction
 from validation.references.numerics import root
 
-Array = NDArray[np.float64]
 POINTS = 128
 """Places in a period at which the corrugation is computed; its harmonics fall by a factor of ten each, or faster."""
 HARMONICS = 24
@@ -38,19 +34,19 @@ class Corrugation:
     """
 
     spacing: float
-    coefficients: Array
+    coefficients: Floats
     height: float = math.nan
-    heights: Array = field(default_factory=lambda: np.empty(0))
+    heights: Floats = field(default_factory=lambda: np.empty(0))
 
-    def energy(self, x: Array) -> Array:
+    def energy(self, x: Floats | float) -> Floats:
         """U(x) [FU·LU]."""
         return self._sum(x, lambda angle, n: np.cos(angle))
 
-    def slope(self, x: Array) -> Array:
+    def slope(self, x: Floats | float) -> Floats:
         """U′(x) [FU]: the force that holds a particle back."""
         return self._sum(x, lambda angle, n: -n * np.sin(angle))
 
-    def curvature(self, x: Array) -> Array:
+    def curvature(self, x: Floats | float) -> Floats:
         """U″(x) [FU/LU]."""
         return self._sum(x, lambda angle, n: -(n**2) * np.cos(angle))
 
@@ -65,19 +61,19 @@ class Corrugation:
         return float(np.max(-self.curvature(self._places)))
 
     @property
-    def _places(self) -> Array:
+    def _places(self) -> Floats:
         return np.linspace(0.0, self.spacing, 20_001)
 
-    def _sum(self, x: Array, term: Callable[[Array, float], Array]) -> Array:
+    def _sum(self, x: Floats | float, term: Callable[[Floats | float, float], Floats]) -> Floats:
         wave = 2.0 * math.pi / self.spacing
-        total = np.zeros_like(np.asarray(x, dtype=np.float64))
+        total = np.zeros_like(x)
         for n, c in enumerate(self.coefficients, 1):
-            total = total + c * term(n * wave * np.asarray(x), n * wave)
+            total = total + c * term(n * wave * x, n * wave)
         return total
 
 
 def corrugation(
-    law: tuple[float, float, float, float],
+    law: LawNumbers,
     spacing: float,
     normal_force: float,
     stiffness: float = 0.0,
@@ -98,7 +94,7 @@ def corrugation(
     places, z = spacing * np.arange(half) / POINTS, np.empty(half)
     grid = np.geomspace(1e-2 * pair.shortest_range, 20.0 * pair.longest_range, HEIGHTS)
 
-    def slope(x: float, heights: Array) -> Array:
+    def slope(x: float, heights: Floats) -> Floats:
         """dU/dz."""
         r = np.hypot(x - row, heights)
         return np.asarray(normal_force + stiffness * (heights - place) - (pair.force(r) * heights / r).sum(axis=0))
@@ -110,7 +106,7 @@ def corrugation(
         if above.size == 0:
             raise ArithmeticError(f"the row does not hold {normal_force:g} FU")
         ends = grid[above[0] : above[0] + 2].tolist()
-        z[i] = root(lambda height, x=x: float(slope(x, np.array([height]))[0]), *ends)  # type: ignore[misc]
+        z[i] = root(lambda height, x=x: slope(x, np.array([height]))[0], *ends)  # type: ignore[misc]
     energy = pair.energy(np.hypot(places - row, z)).sum(axis=0) + normal_force * z + 0.5 * stiffness * (z - place) ** 2
     waves, heights = (np.real(np.fft.hfft(values, POINTS)[:half]) / POINTS * 2.0 for values in (energy, z))
     heights[0] *= 0.5
@@ -126,19 +122,16 @@ def slow_friction(wells: Corrugation, stiffness: float) -> float:
         return 0.0
     s = wells.spacing
     x = np.linspace(0.5 * s, 1.5 * s, 200_001)  # from the hollow on; the slip begins where U″ = −k first
-    unstable = np.flatnonzero(wells.curvature(x) <= -stiffness)
-    begin = float(x[unstable[0]])
-    drive = begin + float(wells.slope(np.asarray(begin))) / stiffness
+    begin = float(x[np.flatnonzero(wells.curvature(x) <= -stiffness)[0]])
+    drive = begin + float(wells.slope(begin)) / stiffness
     beyond = np.linspace(begin + 1e-6 * s, begin + (2.0 + 2.0 * wells.largest_force / stiffness / s) * s, 400_001)
     rest = wells.slope(beyond) - stiffness * (drive - beyond)
-    settled = np.flatnonzero((rest[:-1] < 0.0) & (rest[1:] >= 0.0))
-    end = float(beyond[settled[0] + 1])
+    end = float(beyond[np.flatnonzero((rest[:-1] < 0.0) & (rest[1:] >= 0.0))[0] + 1])
 
     def total(place: float) -> float:
-        return float(wells.energy(np.asarray(place))) + 0.5 * stiffness * (drive - place) ** 2
+        return float(wells.energy(place)) + 0.5 * stiffness * (drive - place) ** 2
 
-    hops = max(1, round((end - begin) / s))
-    return (total(begin) - total(end)) / s / hops
+    return (total(begin) - total(end)) / s / max(1, round((end - begin) / s))
 
 
 def moving_friction(

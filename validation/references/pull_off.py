@@ -4,9 +4,7 @@ F_A = -min F(d) over the unloading branch that starts at F(d) = preload; a_cr is
 there, a_0 the same where F(d) = 0.
 """
 
-from __future__ import annotations
-
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -34,8 +32,7 @@ SMALLEST_STEP = 1e-10
 """Refinement ends here at a fold, where the force jumps beside its maximum [LU]."""
 
 
-@dataclass(frozen=True, eq=False)
-class PullOff:
+class PullOff(NamedTuple):
     """What a pull-off test measures.
 
     Args:
@@ -95,8 +92,8 @@ def _load(solver: ChainSolver, preload: float, step: float) -> list[State]:
     law = solver.model.interaction
     assert law is not None
     profile = solver.model.profile()
-    start = float(np.min(profile)) - APPROACH_IN_RANGES * law.longest_range
-    limit = float(np.max(profile)) + 10.0 * law.longest_range + preload / solver.model.bulk_stiffness
+    start = np.min(profile) - APPROACH_IN_RANGES * law.longest_range
+    limit = np.max(profile) + 10.0 * law.longest_range + preload / solver.model.bulk_stiffness
     states = [solver.equilibrium(start)]
     while states[-1].force < preload:
         if states[-1].displacement > limit:

@@ -8,8 +8,6 @@ from the equilibrium G = W under a preload. In the variable d that is one equati
 Sources: D. Maugis, M. Barquins, J. Phys. D 11 (1978) 1989; E. Barthel, J. Phys. D 41 (2008) 163001.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -18,7 +16,7 @@ from typing import Any
 from scipy.integrate import solve_ivp
 
 from validation.references.impact import Adhesive
-from validation.references.numerics import integral, root
+from validation.references.numerics import Pair, integral, root
 from validation.references.relaxing import Legs
 
 LEAST = 1e-3
@@ -58,15 +56,15 @@ class Receding:
         contact = self.contact
 
         def change(t: float, y: Any) -> list[float]:
-            radius, place = float(y[0]), d + rate * t
+            radius, place = y[0], d + rate * t
             return [-self.speed * self.excess(radius, place) ** (1.0 / self.exponent), rate * self.force(radius, place)]
 
         def small(_: float, y: Any) -> float:
             return float(y[0]) - LEAST * a
 
         def settled(t: float, y: Any) -> float:
-            g = contact.body.depth(float(y[0])) - d - rate * t
-            return contact.modulus * g * abs(g) / (2.0 * math.pi * float(y[0]) * contact.work) - 1.0
+            g = contact.body.depth(y[0]) - d - rate * t
+            return float(contact.modulus * g * abs(g) / (2.0 * math.pi * y[0] * contact.work)) - 1.0
 
         small.terminal = True  # type: ignore[attr-defined]  # scipy reads it off the function
         settled.terminal, settled.direction = settling, -1.0  # type: ignore[attr-defined]  # as above
@@ -81,15 +79,15 @@ class Receding:
         reach *= 1.0 + (velocity / self.speed) ** self.exponent
         return each.followed(start, one.displacement(start), -1.0, reach)
 
-    def pull_off(self, preload: float, velocity: float) -> tuple[float, float]:
+    def pull_off(self, preload: float, velocity: float) -> Pair:
         """The largest tension [force] of a body drawn off with a velocity, and the radius there [length]."""
         return self.largest(self.pressed(preload), velocity)
 
-    def largest(self, start: float, velocity: float) -> tuple[float, float]:
+    def largest(self, start: float, velocity: float) -> Pair:
         """The same from the equilibrium of a radius."""
         one, found = self.contact, self.drawn(start, velocity)
 
-        def state(way: float) -> tuple[float, float]:
+        def state(way: float) -> Pair:
             return float(found.sol(way)[0]), one.displacement(start) - way
 
         def slope(way: float) -> float:
@@ -100,7 +98,7 @@ class Receding:
 
         tensions = [-self.force(*state(way)) for way in found.t]
         i = tensions.index(max(tensions))
-        at = root(slope, float(found.t[max(0, i - 1)]), float(found.t[min(len(found.t) - 1, i + 1)]))
+        at = root(slope, found.t[max(0, i - 1)], found.t[min(len(found.t) - 1, i + 1)])
         return -self.force(*state(at)), state(at)[0]
 
     def separated(self, start: float, velocity: float) -> tuple[float, float, float]:
@@ -108,16 +106,12 @@ class Receding:
         top, found = self.contact.displacement(start), self.drawn(start, velocity)
 
         def force(way: float) -> float:
-            return self.force(float(found.sol(way)[0]), top - way)
+            return self.force(found.sol(way)[0], top - way)
 
-        i = next(i for i, way in enumerate(found.t) if force(float(way)) < 0.0)
-        at = root(force, float(found.t[i - 1]), float(found.t[i])) if i else 0.0
+        i = next(i for i, way in enumerate(found.t) if force(way) < 0.0)
+        at = root(force, found.t[i - 1], found.t[i]) if i else 0.0
         radius, work = map(float, found.sol(at))
-        return radius, top - at, float(found.y[1, -1]) - work
-
-    def at(self, displacement: float) -> float:
-        """The radius [length] of the equilibrium at a displacement."""
-        return self.contact.radius_at(displacement)
+        return radius, top - at, found.y[1, -1] - work
 
     def pressed(self, force: float) -> float:
         """The radius [length] of JKR's contact under a force."""
@@ -172,15 +166,10 @@ def _leg(
         found, first = one.followed(a, here, rate, stop - start, rate > 0.0), a
         states += [(start + t, here + rate * t, x, one.force(x, here + rate * t))
                    for t, x in zip(found.t, found.y[0], strict=True)]  # fmt: skip
-        start, a, work = start + float(found.t[-1]), float(found.y[0, -1]), float(found.y[1, -1])
+        start, a, work = start + found.t[-1], found.y[0, -1], found.y[1, -1]
         if a <= 1.001 * LEAST * first:
             return 0.0, work, start
     if math.isinf(one.speed) or (rate > 0.0 and start < stop):
         last = contact.radius_at(d(stop))
         work, a = work + at_rest(last), last
     return a, work, math.inf
-
-
-def equilibrium(contact: Adhesive, displacement: float) -> float:
-    """The radius [length] of the outer equilibrium at a displacement."""
-    return contact.radius_at(displacement)

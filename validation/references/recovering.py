@@ -9,8 +9,6 @@ and it is touched again where d - g = u. With d(t) linear in pieces both are sum
 leaving and touching are roots, found by bisection, for each spring its own. The force is the integral of q over x.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -136,7 +134,7 @@ class Springs:
     @property
     def last(self) -> float:
         """When the last spring was left; inf while one touches, and before."""
-        latest = float(self.left_at.max())
+        latest = self.left_at.max()
         return math.inf if self.touching.any() or latest < self.first else latest
 
     def move(self, start: float, stop: float, duration: float) -> None:
@@ -159,7 +157,7 @@ class Springs:
         if not some.size:
             return
         if touching:
-            self.first = min(self.first, float(times.min()))
+            self.first = min(self.first, times.min())
             self.touches += bool(some[0] == 0)
         else:
             self.left_at[some] = times
@@ -178,7 +176,7 @@ class Springs:
         def off(t: Floats, few: Any = slice(None)) -> NDArray[np.bool_]:
             """Whether the pressure of springs in contact, or the gap of those without, is negative."""
             state = after(t, few)
-            return np.asarray((law.pressure(state, rate) if held else state[0] - (gap[few] + rate * t)) < 0.0)
+            return (law.pressure(state, rate) if held else state[0] - (gap[few] + rate * t)) < 0.0
 
         low, high, found = np.zeros(some.size), rest.copy(), np.zeros(some.size, dtype=bool)
         for look in LOOKS:
@@ -233,7 +231,7 @@ def followed(
     x = np.concatenate([[0.0], (np.arange(cells) + 0.5) * width / cells])
     weight = np.full(x.size, 2.0 * width / cells)
     weight[0] = 0.0
-    springs = Springs(law, np.array([depth(float(one)) for one in x]), weight, time=d.times[0])
+    springs = Springs(law, np.array([depth(one) for one in x]), weight, time=d.times[0])
     every = sorted({*times, *(t for t in d.times if t <= max(times))})
     rows = {every[0]: (d(every[0]), 0.0, 0.0, 0.0)}
     for t0, t1 in pairwise(every):
@@ -244,8 +242,8 @@ def followed(
             springs.move(start, stop, 0.5 * (t1 - t0))
         forces.append(springs.force(rate))
         outermost = int(np.flatnonzero(springs.touching).max(initial=0))
-        edge = float(x[outermost]) + (0.5 * width / cells if outermost else 0.0)
-        rows[t1] = d1, forces[2], edge, work + float(np.dot((1.0, 4.0, 1.0), forces)) * (d1 - d0) / 6.0
+        edge = x[outermost] + (0.5 * width / cells if outermost else 0.0)
+        rows[t1] = d1, forces[2], edge, work + np.dot((1.0, 4.0, 1.0), forces) * (d1 - d0) / 6.0
     along, force, radius, work = np.array([rows[t] for t in times]).T
     return Followed(np.array(times), along, force, radius, work, springs.first, springs.last, springs.touches)
 

@@ -20,24 +20,20 @@ falls. Everything is by quadrature and root finding; nothing is shared with the 
 Sources: E. H. Lee, J. R. M. Radok, J. Appl. Mech. 27 (1960) 438; T. C. T. Ting, J. Appl. Mech. 33 (1966) 845.
 """
 
-from __future__ import annotations
-
 import math
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from itertools import pairwise
 from typing import TypeVar
 
 import numpy as np
 
 from validation.references import numerics
-from validation.references.numerics import Floats, Function, Pair, root
-from validation.references.numerics import smooth as smooth
+from validation.references.numerics import Floats, Function, Pair, root, smooth
 
 Number = TypeVar("Number", float, Floats)
-integral = partial(numerics.integral, accuracy=1e-11)
 NO_REST = 1e-12
 """Share of the modulus that remains below which nothing does."""
 SCAN = 60
@@ -88,7 +84,7 @@ class Material:
         if self.rest == 0.0 and self.terms:
             poles = np.poly1d(N.coeffs[:-1])
             flow = float(1.0 / poles(0.0))
-        rates = [float(np.real(root)) for root in np.roots(poles.coeffs)]
+        rates = np.roots(poles.coeffs).real.tolist()
         slope = np.polyder(N)
         return 1.0 / self.modulus, flow, [(float(D(s) / (s * slope(s))), s) for s in rates]
 
@@ -144,10 +140,11 @@ class Power:
 
 @dataclass(frozen=True)
 class Flat:
-    """The flat end of a punch, for springs: a body of no depth that ends at its radius [length]."""
+    """The flat end of a punch, for springs: a body 0 r^2 of no depth that ends at its radius [length]."""
 
     end: float
     exponent: float = 2.0
+    factor: float = 0.0
 
     def depth(self, a: float) -> float:
         """g(a) [length]."""
@@ -198,6 +195,17 @@ class Legs:
         """int_low^t kernel(t - s) d value(s), from the integral of the kernel; a first value that is not 0 is a jump
         that is not counted."""
         return sum(rate * (impulse(t - start) - impulse(t - stop)) for start, stop, rate in self.pieces(low, t))
+
+    def corners(self, low: float, high: float) -> list[float]:
+        """Two times and those of the points between them."""
+        return [low, *(t for t in self.times if low < t < high), high]
+
+    def work(self, displacement: Function, turn: float) -> float:
+        """int F dx of a force that begins and ends at 0, -int x dF; x(t) is smooth but at the points and at a turn."""
+        return -sum(
+            self.rate(0.5 * (low + high)) * smooth(displacement, low, high, 24)
+            for low, high in pairwise(sorted({*self.times, turn}))
+        )
 
     def touched(self, depth: float) -> float:
         """The first time at which the value is so large; inf if it never is."""
@@ -281,7 +289,7 @@ class Indentation:
 
             layers = [t - times * tau for _, tau in self.material.terms for times in LAYERS]
             ends = sorted({low, high, *(self.body.radius(self.d(s)) for s in layers if start < s < stop)})
-            total += integral(carried, *ends) if rate > 0.0 else 0.0
+            total += numerics.integral(carried, *ends, accuracy=1e-11) if rate > 0.0 else 0.0
         return 2.0 * total
 
     @cached_property

@@ -4,8 +4,6 @@
 undeformed gap and u the lift of a particle.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_banded
@@ -34,7 +32,10 @@ def contact_on_rigid_plane(gap: Floats, bulk_stiffness: float, neighbour_stiffne
     touching = gap < 0.0
     for _ in range(2 * gap.size + 10):
         lift = _lift(gap, touching, bulk_stiffness, neighbour_stiffness)
-        reaction = np.where(touching, _restoring(lift, bulk_stiffness, neighbour_stiffness), 0.0)
+        pull, stretch = bulk_stiffness * lift, neighbour_stiffness * np.diff(lift)
+        pull[:-1] -= stretch
+        pull[1:] += stretch
+        reaction = np.where(touching, pull, 0.0)
         now_touching = np.where(touching, reaction > 0.0, gap + lift < 0.0)
         if np.array_equal(now_touching, touching):
             return lift, reaction
@@ -52,15 +53,6 @@ def rigid_plane_sum(displacement: float, places: Floats, radius: float, bulk_sti
         bulk_stiffness: k of a particle [FU/LU].
     """
     return float(bulk_stiffness * np.sum(np.maximum(0.0, displacement - places**2 / (2.0 * radius))))
-
-
-def _restoring(lift: Floats, k: float, k_n: float) -> Floats:
-    """Return K u, shape (N,)."""
-    force = k * lift
-    stretch = k_n * np.diff(lift)
-    force[:-1] -= stretch
-    force[1:] += stretch
-    return force
 
 
 def _lift(gap: Floats, touching: NDArray[np.bool_], k: float, k_n: float) -> Floats:

@@ -13,8 +13,6 @@ with A of E* = 1, so that a step in time in which w is linear is A p = G w + h: 
 Nothing of it knows the reduction to one dimension.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -23,7 +21,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.special import ellipe, ellipk
 
-from validation.references.numerics import Floats as Floats
+from validation.references.numerics import Floats, Function, Pair
 
 ROUNDS = 200
 
@@ -51,7 +49,7 @@ class Rings:
 
     edges: Floats
     profile: Callable[[Floats], Floats]
-    terms: Sequence[tuple[float, float]] = ()
+    terms: Sequence[Pair] = ()
     retardation: float = 0.0
     modulus: float = 1.0
     surface: Floats = field(init=False)
@@ -80,8 +78,7 @@ class Rings:
             gain = 1.0 - self._shares.sum() + float(self._shares @ mean)
             kept = self._arms * fade[:, None] - mean[:, None] * self.surface
             history = self._shares @ kept
-        load = gain * (d - self._f) + history
-        p = self._solved(load)
+        p = self._solved(gain * (d - self._f) + history)
         w = (self._A @ p - history) / gain
         if not self.retardation and self._times.size:
             self._arms = self._arms * fade[:, None] + mean[:, None] * (w - self.surface)
@@ -112,7 +109,7 @@ class Rings:
         some = np.flatnonzero(self.pressure > 0.0)
         return float(self.edges[some[-1] + 1]) if some.size else 0.0
 
-    def follow(self, d: Callable[[float], float], times: Sequence[float]) -> list[float]:
+    def follow(self, d: Function, times: Sequence[float]) -> list[float]:
         """F at rising times from the second on; at the first one the surface is at rest."""
         found = []
         for before, after in pairwise(times):

@@ -9,15 +9,13 @@ f(r) = (A/a) exp(−r/a) − (B/b) exp(−r/b).
 and the same along z with the normal force, and no v there. A lower particle's drag is against rest: its v is 0.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from validation.references.interaction import Floats, LawNumbers
+
 SETTLING = 2000
 """Spans of 200 steps within which bodies come to rest."""
 
@@ -40,9 +38,9 @@ class SlideModel:
         neighbours: stiffness of springs between neighbours, of bodies that end [FU/LU].
     """
 
-    lower: Array
-    upper: Array
-    law: tuple[float, float, float, float]
+    lower: Floats
+    upper: Floats
+    law: LawNumbers
     cutoff: float
     normal_stiffness: float
     tangential_stiffness: float
@@ -60,13 +58,12 @@ class SlideModel:
 
 @dataclass(frozen=True)
 class Trace:
-    """What the slide does: times [TU], friction and force of the cantilever [FU], place of the plate [LU]."""
+    """What the slide does: times [TU], friction [FU], place of the plate [LU], impulse of the friction [FU·TU]."""
 
-    time: Array
-    friction: Array
-    cantilever_force: Array
-    place: Array
-    impulse: Array
+    time: Floats
+    friction: Floats
+    place: Floats
+    impulse: Floats
 
 
 class Integrator:
@@ -94,15 +91,13 @@ class Integrator:
             for place, speed, acceleration, drag in zip(self._places(), self.speeds, accelerations, drags, strict=True):
                 speed += 0.5 * time_step * (acceleration - drag * speed)
                 place += time_step * speed
-            drive = start + velocity * step * time_step
-            accelerations = self._accelerations(drive, velocity)
+            accelerations = self._accelerations(start + velocity * step * time_step, velocity)
             for speed, acceleration, drag in zip(self.speeds, accelerations, drags, strict=True):
                 speed += 0.5 * time_step * acceleration
                 speed /= 1.0 + 0.5 * time_step * drag  # the drag is that of the new velocity: second order
             impulse += 0.5 * time_step * (before + self.friction)
             if step % every == 0:
-                pull = model.cantilever_stiffness * (drive - self.plate[0])
-                rows.append((step * time_step, self.friction, pull, self.plate[0], impulse))
+                rows.append((step * time_step, self.friction, self.plate[0], impulse))
         return Trace(*(np.asarray(column) for column in zip(*rows, strict=True)))
 
     def settle(self, time_step: float, residual: float, drag: float | None = None) -> None:
@@ -123,15 +118,15 @@ class Integrator:
             self.model = own
         raise ArithmeticError("the bodies do not come to rest")
 
-    def _places(self) -> tuple[Array, Array, Array]:
+    def _places(self) -> tuple[Floats, Floats, Floats]:
         return self.lower, self.upper, self.plate
 
-    def _accelerations(self, drive: float, velocity: float) -> tuple[Array, Array, Array]:
+    def _accelerations(self, drive: float, velocity: float) -> tuple[Floats, Floats, Floats]:
         """Of lower particles, upper particles and plate, without the drag at their own velocities [LU/TU²]."""
         model = self.model
         stiffness = np.asarray([model.tangential_stiffness, model.normal_stiffness])
         on_upper, on_lower = self._opposite()
-        self.friction = -float(on_upper[:, 0].sum())
+        self.friction = -on_upper[:, 0].sum()
         held = stiffness * (self.upper - self.plate)
         upper = on_upper - held + self._neighbours(self.upper)
         lower = on_lower - stiffness * self.lower + self._neighbours(self.lower)
@@ -142,7 +137,7 @@ class Integrator:
         plate = held.sum(axis=0) + np.asarray([along, -model.normal_force])
         return lower / model.mass, upper / model.mass, plate / model.plate_mass
 
-    def _neighbours(self, moved: Array) -> Array:
+    def _neighbours(self, moved: Floats) -> Floats:
         """Forces of the springs between neighbours, which are at rest in the undeformed chain."""
         force = np.zeros_like(moved)
         if self.model.neighbours:
@@ -151,7 +146,7 @@ class Integrator:
             force[1:] -= pull
         return force
 
-    def _opposite(self) -> tuple[Array, Array]:
+    def _opposite(self) -> tuple[Floats, Floats]:
         """Forces on the upper and on the lower particles."""
         model = self.model
         A, a, B, b = model.law

@@ -10,11 +10,10 @@ is then a saddle, which is not kept; the upper chain slips towards +x, but which
 step of the path and on the solver. In that regime the branch is one of many, not the solution.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -34,8 +33,7 @@ MOVE_LIMIT_IN_RANGES = 0.25
 """Largest change of the displacement between two minimisations, over the shortest range."""
 
 
-@dataclass(frozen=True, eq=False)
-class State:
+class State(NamedTuple):
     """One equilibrium.
 
     Args:
@@ -84,43 +82,26 @@ class ChainSolver:
         Raises:
             RuntimeError: if a minimisation does not converge.
         """
-        if self.surface is None:
+        surface = self.surface
+        if surface is None:
             return self._on_rigid_plane(displacement)
-        assert self.model.interaction is not None
-        c = self.surface.directions
+        c, reach = surface.directions, surface.law.shortest_range
         if start is None:
-            d, u = min(displacement, 0.0), np.zeros(self.surface.dofs)
+            d, u = min(displacement, 0.0), np.zeros(surface.dofs)
         else:
             d, u = start.displacement, np.stack([start.lower, start.upper], axis=1)[:, :, 2 - c :].ravel()
-        move = MOVE_LIMIT_IN_RANGES * self.model.interaction.shortest_range
-        moves = max(1, math.ceil(abs(displacement - d) / move))
-        targets = np.linspace(d, displacement, moves + 1)
-        for target in targets if start is None else targets[1:]:
-            u = self._relax(u, float(target))
-        return self._state(u, displacement)
-
-    def _relax(self, u: Floats, displacement: float) -> Floats:
-        """Return the minimum downhill from u at this displacement, shape (dofs,)."""
-        surface, law = self.surface, self.model.interaction
-        assert surface is not None
-        assert law is not None
-        return minimise(
-            lambda v: surface.energy_gradient(v, displacement),
-            lambda v: surface.hessian(v, displacement),
-            u,
-            Descent(
-                step_limit=min(STEP_LIMIT, STEP_LIMIT_IN_RANGES * law.shortest_range),
-                gradient_tolerance=GRADIENT_TOLERANCE * self.model.bulk_stiffness * law.shortest_range,
-                preferred=_slip(self.model, surface.directions),
-            ),
+        descent = Descent(
+            step_limit=min(STEP_LIMIT, STEP_LIMIT_IN_RANGES * reach),
+            gradient_tolerance=GRADIENT_TOLERANCE * self.model.bulk_stiffness * reach,
+            preferred=_slip(self.model, c),
         )
-
-    def _state(self, u: Floats, displacement: float) -> State:
-        """Collect what is reported of an equilibrium of two chains."""
-        surface = self.surface
-        assert surface is not None
+        moves = max(1, math.ceil(abs(displacement - d) / (MOVE_LIMIT_IN_RANGES * reach)))
+        targets = np.linspace(d, displacement, moves + 1).tolist()
+        for target in targets if start is None else targets[1:]:
+            energy_gradient = partial(surface.energy_gradient, displacement=target)
+            u = minimise(energy_gradient, partial(surface.hessian, displacement=target), u, descent)
         places = np.zeros((self.model.particles, 2, 2))
-        places[:, :, 2 - surface.directions :] = u.reshape(self.model.particles, 2, surface.directions)
+        places[:, :, 2 - c :] = u.reshape(self.model.particles, 2, c)
         return State(
             displacement=displacement,
             force=float(self.model.bulk_stiffness * np.sum(places[:, 1, 1])),
@@ -161,7 +142,7 @@ def trace(model: ChainModel, displacements: Iterable[float], start: State | None
         RuntimeError: if a minimisation does not converge.
     """
     solver = ChainSolver(model)
-    states: list[State] = []
+    states = []
     for displacement in displacements:
         start = solver.equilibrium(float(displacement), start)
         states.append(start)

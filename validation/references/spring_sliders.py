@@ -8,8 +8,6 @@ force, one that touches begins with none. What is dissipated follows from the ba
 springs hold.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -50,8 +48,7 @@ class SpringSliders:
                 continue
             begin = -before / (after - before) if before < 0.0 else 0.0
             end = before / (before - after) if after < 0.0 else 1.0
-            way = (place - self.place) * (end - begin)
-            self._pass(i, way, self._limit(before), self._limit(after))
+            self._pass(i, (place - self.place) * (end - begin), self._limit(before), self._limit(after))
         self.displacement, self.place = displacement, place
 
     def _limit(self, overlap: float) -> float:

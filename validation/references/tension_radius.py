@@ -4,8 +4,6 @@ p_i = F_z,i / s; on each side of x = 0 the vertex of the parabola through the lo
 of a higher polynomial through more of them).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 
@@ -110,12 +108,8 @@ def state_radius(model: ChainModel, state: State, stencil: int = PARABOLA) -> fl
 def _vertex(x: Floats, p: Floats) -> float:
     """Return the x of the lowest point of the polynomial through all points, between the neighbours of the middle."""
     middle = x.size // 2
-    scale = x[middle + 1] - x[middle - 1]
-    t = (x - x[middle]) / scale
-    coefficients = np.linalg.solve(np.vander(t, increasing=True), p - p[middle])
-    flat = np.roots(np.polynomial.polynomial.polyder(coefficients)[::-1])
+    t = (x - x[middle]) / (x[middle + 1] - x[middle - 1])
+    curve = np.polynomial.Polynomial.fit(t, p, x.size - 1)
+    flat = curve.deriv().roots()
     candidates = flat.real[(np.abs(flat.imag) < 1e-9) & (flat.real >= t[middle - 1]) & (flat.real <= t[middle + 1])]
-    if candidates.size == 0:
-        return float(x[middle])
-    depth = np.polynomial.polynomial.polyval(candidates, coefficients)
-    return float(x[middle] + scale * candidates[np.argmin(depth)])
+    return float(x[middle] + (x[middle + 1] - x[middle - 1]) * min(candidates, key=curve, default=0.0))

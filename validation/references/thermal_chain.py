@@ -5,8 +5,6 @@ the equilibrium and H the Hessian there. Under the load F a plate that is free t
 exp((F d - A(d))/kT), whatever its mass. For independent pairs at any temperature see `boltzmann_pairs`.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.linalg import cholesky_banded
@@ -14,21 +12,10 @@ from scipy.linalg import cholesky_banded
 from validation.references.energy import EnergySurface
 from validation.references.interaction import Floats
 from validation.references.model import ChainModel
-from validation.references.solver import State, trace
+from validation.references.solver import trace
 
 NODES = 2001
 """Displacements of the average; between the given ones A is a cubic spline."""
-
-
-def free_energies(states: list[State], model: ChainModel, temperature: float) -> Floats:
-    """Return A(d) of equilibria of two chains, shape (n,) [FU LU]; an additive constant is left out."""
-    surface = EnergySurface(model)
-    energies = []
-    for state in states:
-        u = np.stack([state.lower, state.upper], axis=1)[:, :, 2 - surface.directions :].ravel()
-        factor = cholesky_banded(surface.hessian(u, state.displacement), lower=True)
-        energies.append(state.energy + temperature * float(np.log(factor[0]).sum()))
-    return np.asarray(energies)
 
 
 def displacement_under(model: ChainModel, load: float, temperature: float, places: Floats) -> tuple[float, float]:
@@ -40,11 +27,15 @@ def displacement_under(model: ChainModel, load: float, temperature: float, place
         temperature: kT, small against the energies of a pair [FU LU].
         places: displacements, rising or falling, that reach many standard deviations to both sides, shape (n,) [LU].
     """
-    energies = free_energies(trace(model, places), model, temperature)
+    surface, energies = EnergySurface(model), []
+    for state in trace(model, places):
+        u = np.stack([state.lower, state.upper], axis=1)[:, :, 2 - surface.directions :].ravel()
+        factor = cholesky_banded(surface.hessian(u, state.displacement), lower=True)
+        energies.append(state.energy + temperature * np.log(factor[0]).sum())
     order = np.argsort(places)
-    d = np.linspace(float(places.min()), float(places.max()), NODES)
-    exponent = (load * d - CubicSpline(places[order], energies[order])(d)) / temperature
+    d = np.linspace(places.min(), places.max(), NODES)
+    exponent = (load * d - CubicSpline(places[order], np.array(energies)[order])(d)) / temperature
     weight = np.exp(exponent - exponent.max())
     weight /= weight.sum()
-    mean = float(d @ weight)
+    mean = d @ weight
     return mean, float(np.sqrt((d - mean) ** 2 @ weight))

@@ -15,20 +15,16 @@ Dubé and Grant 2001): slips over a barrier ∝ (1 − F/F_c)^{3/2} come at a fo
 F_c [(kT/ΔE₀) ln X]^{2/3}, and so is the mean.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import solve_banded
 from scipy.optimize import brentq
 
 from validation.references.detachment import garg, implicit
-from validation.references.interaction import PairInteraction
+from validation.references.interaction import Floats, LawNumbers, PairInteraction
 from validation.references.prandtl_tomlinson import HARMONICS, POINTS, Corrugation, slow_friction
 
-Array = NDArray[np.float64]
 HEIGHTS, REACH = 1200, 30.0
 """Of the integral over z; and the longer range times it, beyond which rows are left out."""
 PLACES, FINER = 240, 4
@@ -42,7 +38,7 @@ ROOM = 8.0
 
 
 def free_corrugation(
-    law: tuple[float, float, float, float], spacing: float, normal_force: float, temperature: float
+    law: LawNumbers, spacing: float, normal_force: float, temperature: float
 ) -> tuple[Corrugation, Corrugation]:
     """A(x) and z(x), by their harmonics, of the law A, a, B, b over a row of this spacing [LU].
 
@@ -56,17 +52,15 @@ def free_corrugation(
     reach = math.ceil(REACH * pair.longest_range / spacing)
     row = spacing * np.arange(-reach, reach + 1)[:, None]
     x = spacing * np.arange(POINTS // 2 + 1) / POINTS
-    highest = 8.0 * pair.longest_range + 40.0 * temperature / normal_force
-    z = np.linspace(0.05 * pair.shortest_range, highest, HEIGHTS)
+    z = np.linspace(0.05 * pair.shortest_range, 8.0 * pair.longest_range + 40.0 * temperature / normal_force, HEIGHTS)
     energy = np.array([pair.energy(np.hypot(place - row, z)).sum(axis=0) + normal_force * z for place in x])
     lowest = energy.min(axis=1, keepdims=True)
     weights = np.exp(-(energy - lowest) / temperature)
     free = lowest[:, 0] - temperature * np.log(weights.sum(axis=1))
-    height = (weights @ z) / weights.sum(axis=1)
-    return _by_harmonics(free, spacing), _by_harmonics(height, spacing)
+    return _by_harmonics(free, spacing), _by_harmonics((weights @ z) / weights.sum(axis=1), spacing)
 
 
-def _by_harmonics(half: Array, spacing: float) -> Corrugation:
+def _by_harmonics(half: Floats, spacing: float) -> Corrugation:
     """An even function by its values from 0 to half of the spacing."""
     waves = np.fft.rfft(np.concatenate([half, half[-2:0:-1]])) / POINTS * 2.0
     return Corrugation(spacing, np.real(waves[1 : HARMONICS + 1]), float(half[-1]))
@@ -91,7 +85,7 @@ def thermal_friction(
     s, moments = wells.spacing, finer * places
     half = math.ceil((wells.largest_force / stiffness + s + ROOM * math.sqrt(temperature / stiffness)) / s * places)
     h, step = s / places, s / velocity / moments
-    y: Array = h * np.arange(-half, half + 1, dtype=np.float64)
+    y = h * np.arange(-half, half + 1, dtype=np.float64)
     between = y[1:] - 0.5 * h
     period = s * np.arange(moments) / moments  # the drive goes on by an entry at a time
     climb = heights.slope(period) ** 2
@@ -123,9 +117,8 @@ def textbook_friction(wells: Corrugation, stiffness: float, drag: float, tempera
 
     Slow without heat it is `slow_friction`; heat takes from the force at which it slips, and from the mean as much.
     """
-    place = float(brentq(lambda x: float(wells.curvature(np.asarray(x))), 0.55 * wells.spacing, 0.98 * wells.spacing))
+    place = brentq(wells.curvature, 0.55 * wells.spacing, 0.98 * wells.spacing)
     h = 1e-3 * wells.spacing
-    bend = abs(float(wells.slope(np.asarray([place + h, place, place - h])) @ [1.0, -2.0, 1.0])) / h**2
+    bend = abs(float(wells.slope(np.array([place + h, place, place - h])) @ [1.0, -2.0, 1.0])) / h**2
     largest = wells.largest_force
-    slips = garg(largest, bend, drag, temperature, stiffness * velocity)
-    return slow_friction(wells, stiffness) - (largest - slips)
+    return slow_friction(wells, stiffness) - (largest - garg(largest, bend, drag, temperature, stiffness * velocity))

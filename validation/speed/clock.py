@@ -1,7 +1,5 @@
 """What work costs: processor time and memory of this process and of its workers, whatever else the machine does."""
 
-from __future__ import annotations
-
 import os
 import re
 import time

@@ -4,37 +4,20 @@ Both decks of a scene read the same system.data and table and run turn by turn; 
 of LAMMPS's own loop times.
 """
 
-from __future__ import annotations
-
 import re
 import statistics
 from collections.abc import Sequence
 from pathlib import Path
 
 from validation.doors import Deck, Displace, Engine, Session, read_scene, settings_for, write_deck
-from validation.hard.cases import PAPER_LAW
 from validation.row import at_most
 from validation.study import Bench, Findings, Study
 
 HAND = Path(__file__).parent / "hand"
 STEPS, ROUNDS, LIMIT = 4_000, 15, 1.05
 """Steps of a turn, turns, and the ratio that was asked for."""
-BODIES = {"particles": 200, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 1000.0}, "bulk_stiffness": 0.83}
-TIMED = {
-    "damping": {"coefficient": 0.3}, "plate": {"mass": 200.0, "damping": 100.0},
-    "experiment": {"kind": "load", "method": "dynamic", "force": 1.0},
-}  # fmt: skip
-CHAINS = {"bodies": BODIES, "interaction": PAPER_LAW} | TIMED
-SCENES = {
-    "plate": CHAINS,
-    "plate_neighbours_horizontal": CHAINS | {"neighbours": {"stiffness": 0.3}, "horizontal": {}},
-    "plate_noise": CHAINS | {"noise": {"temperature": 1e-4, "seed": 1}},
-    "plane": TIMED | {"bodies": BODIES | {"lower": "rigid_plane"}},
-    "sweep": {
-        "bodies": BODIES | {"lower": "rigid_plane", "bulk_stiffness": 0.5},
-        "experiment": {"kind": "path", "displacements": [2.0]},
-    },
-}
+SCENES = ("plate", "plate_neighbours_horizontal", "plate_noise", "plane", "sweep")
+"""In HAND, each beside its deck by hand."""
 PLACES = tuple(2.0 * step / STEPS for step in range(STEPS))
 """Displacements of load steps that are steps of one run."""
 BY_HAND = f"variable row equal step-$(step)\nvariable places vector [{','.join(map(repr, PLACES))}]\n"
@@ -64,7 +47,7 @@ def loop_time(session: Session, folder: Path, steps: str) -> float:
 
 def ratio(name: str, folder: Path) -> float:
     """Of a scene, see `over`."""
-    scene = read_scene({"title": name} | SCENES[name])
+    scene = read_scene(HAND / f"{name}.toml")
     settings = settings_for(scene)
     deck = Deck(scene, settings)
     write_deck(scene, folder)

@@ -6,10 +6,7 @@ on damping and time step, so that two plain ways are timed: as a careful deck ha
 own time step and the damping that was found to be quickest for the scene.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from statistics import median
 from time import process_time
@@ -18,12 +15,11 @@ from typing import Any
 from contact1d import run
 from validation import doors
 from validation.doors import Contact, PullOff, Scene, UnderLoad, read_scene, settings_for, shipped
-from validation.paper.scenes import chain_model
+from validation.paper.scenes import MOVING, chain_model, changed
 from validation.references.pull_off import pull_off
 from validation.row import Row, at_most
 from validation.study import Bench, Findings, Study
 
-TIME_LIMIT = 3600.0
 REPEATS = 7
 STEP = 0.2
 """ω_max·Δt of the plain way, some thirty steps to the fastest period: what a careful deck has."""
@@ -43,10 +39,8 @@ WAYS = {
 
 def timed(scene: Scene, method: str, tolerance: float) -> Scene:
     """The scene by a method."""
-    tables = {"damping": {"coefficient": "auto"}, "plate": {"mass": "auto"}} if method == "dynamic" else {}
-    data = scene.model_dump(by_alias=True, exclude_none=True) | tables
-    data["experiment"]["method"] = method
-    return read_scene(data | {"accuracy": {"tolerance": tolerance}})
+    moving = MOVING if method == "dynamic" else ()
+    return changed(scene, f"experiment.method={method}", f"accuracy.tolerance={tolerance}", *moving)
 
 
 def held(contact: Contact, load: float, scale: float) -> bool:
@@ -70,14 +64,9 @@ def plain(scene: Scene, tolerance: float, folder: Path, tuned: bool) -> tuple[fl
     assert isinstance(own.experiment, PullOff)
     preload = own.experiment.preload
     settings = settings_for(own)
-    step = settings.motion.time_step * STEP / doors.still_step()
+    step = settings.motion.time_step * STEP / doors.CALIBRATION.still_step
     chosen: dict[str, Any] = {"damping": TUNED_DAMPING} if tuned else {"time_step": step}
-    motion = replace(settings.motion, **chosen)
-    deck = doors.Deck(own, replace(settings, motion=motion))
-    folder.mkdir(parents=True, exist_ok=True)
-    doors.write_system(deck, folder)
-    context = doors.RunContext(deck, folder, doors.Silent(), TIME_LIMIT)
-    guess = deck.settings.law.pull_off_force()
+    context, guess = doors.context_of(own, folder, **chosen), settings.law.pull_off_force()
     low, high, scale = 0.0, 2.0 * guess, max(preload, guess)
     while high - low > tolerance * high:
         tension = 0.5 * (low + high)

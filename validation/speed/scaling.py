@@ -6,8 +6,6 @@ both bodies and steps (time steps, or force evaluations at rest). Every size has
 run came first. The bodies are scaled so that the contact covers the same share of the chain.
 """
 
-from __future__ import annotations
-
 import json
 import re
 import statistics

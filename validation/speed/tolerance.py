@@ -3,26 +3,19 @@
 The spacing is left to the program, as all else that a scene may leave open.
 """
 
-from __future__ import annotations
-
 import statistics
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 import contact1d
 from validation.figures import Panel, Series, figure
-from validation.hard.cases import PAPER_LAW, PAPER_NUMBERS
-from validation.references.hertz import hertz_contact_radius, hertz_force
-from validation.references.indenters import Indenter, jkr
-from validation.references.interaction import PairInteraction
-from validation.references.mindlin import mindlin_loop_area
-from validation.references.model import ChainModel
+from validation.hard.cases import PAPER_BODIES, PAPER_LAW, PAPER_NUMBERS
+from validation.references import hertz, indenters, interaction, mindlin, model
 from validation.references.pull_off import pull_off
-from validation.row import Row, at_most
+from validation.row import at_most
 from validation.study import Bench, Findings, Study
 
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5)
@@ -37,8 +30,7 @@ FRICTION, DEPTH, SLIDING = 0.3, 1e-6, 0.5
 """μ, displacement of a ball [m], and the amplitude of a cycle over that from which on all slips."""
 
 
-@dataclass(frozen=True)
-class Contact:
+class Contact(NamedTuple):
     """A scene and the values of its results."""
 
     tables: Mapping[str, Any]
@@ -70,23 +62,18 @@ def ball(profile: Mapping[str, Any], experiment: Mapping[str, Any], **effects: A
 def contacts() -> dict[str, Contact]:
     """Five, each by another theory or solver."""
     sphere = {"kind": "parabola", "radius": f"{RADIUS!r} m"}
-    force = float(hertz_force(DEPTH, RADIUS, MODULUS))
-    adhesive = jkr(RADIUS, MODULUS, WORK)
-    blunt = Indenter(HEIGHT / WIDTH**4, 4.0, MODULUS)
+    force = float(hertz.hertz_force(DEPTH, RADIUS, MODULUS))
+    adhesive = indenters.jkr(RADIUS, MODULUS, WORK)
+    blunt = indenters.Indenter(HEIGHT / WIDTH**4, 4.0, MODULUS)
     amplitude = SLIDING * FRICTION * DEPTH
     cycles = {"amplitude": f"{amplitude!r} m", "number": 1, "points": 40}
-    law = PairInteraction.of(*PAPER_NUMBERS)
-    chains = {
-        "particles": 200, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 1000.0}, "bulk_stiffness": 0.83,
-        "reduction": "geike_popov",
-    }  # fmt: skip
-    marks = pull_off(ChainModel(200, 0.83, law, radius=1000.0, neighbour_stiffness=0.3), 1.0)
+    law = interaction.PairInteraction.of(*PAPER_NUMBERS)
+    marks = pull_off(model.ChainModel(200, 0.83, law, radius=1000.0, neighbour_stiffness=0.3), 1.0)
     preload = f"{adhesive.pull_off_force()!r} N"
-    sticky = {"work_of_adhesion": f"{WORK!r} J/m²"}
     return {
         "Hertz's ball": Contact(
             ball(sphere, {"kind": "load", "force": f"{force!r} N"}),
-            {"displacement": DEPTH, "contact_radius": float(hertz_contact_radius(DEPTH, RADIUS))},
+            {"displacement": DEPTH, "contact_radius": float(hertz.hertz_contact_radius(DEPTH, RADIUS))},
         ),
         "blunt body, z ∝ r⁴": Contact(
             ball({"kind": "power", "exponent": 4.0, "radius": f"{WIDTH!r} m", "height": f"{HEIGHT!r} m"},
@@ -94,17 +81,17 @@ def contacts() -> dict[str, Contact]:
             {"displacement": float(blunt.displacement(WIDTH)), "contact_radius": WIDTH},
         ),
         "JKR's ball": Contact(
-            ball(sphere, {"kind": "pull_off", "preload": preload}, adhesion=sticky),
+            ball(sphere, {"kind": "pull_off", "preload": preload}, adhesion={"work_of_adhesion": f"{WORK!r} J/m²"}),
             {"adhesion_force": adhesive.pull_off_force(), "zero_load_radius": adhesive.zero_load_radius()},
         ),
         "Mindlin's cycle": Contact(
             ball(sphere, {"kind": "tangential", "normal_displacement": f"{DEPTH!r} m", "cycles": cycles},
                  friction={"coefficient": FRICTION}),
-            {"dissipated_energy_per_cycle": mindlin_loop_area(amplitude, force, FRICTION, FRICTION * DEPTH)},
+            {"dissipated_energy_per_cycle": mindlin.mindlin_loop_area(amplitude, force, FRICTION, FRICTION * DEPTH)},
         ),
         "pull-off of two chains": Contact(
-            {"bodies": chains, "interaction": PAPER_LAW, "neighbours": {"stiffness": 0.3},
-             "experiment": {"kind": "pull_off", "preload": 1.0}},
+            {"bodies": PAPER_BODIES | {"reduction": "geike_popov"}, "interaction": PAPER_LAW,
+             "neighbours": {"stiffness": 0.3}, "experiment": {"kind": "pull_off", "preload": 1.0}},
             {"adhesion_force": marks.adhesion_force},
         ),
     }  # fmt: skip
@@ -112,7 +99,7 @@ def contacts() -> dict[str, Contact]:
 
 def measure(bench: Bench) -> Findings:
     """A row for each contact and tolerance, and error over time."""
-    rows: list[Row] = []
+    rows = []
     lines, defaults = [], []
     for name, contact in contacts().items():
         found = np.asarray([contact.run(bench, name, tolerance) for tolerance in TOLERANCES])

@@ -13,8 +13,6 @@ A result that the run itself says to be known less well than the tolerance is no
 is the schedule that decides how well the critical radius is known, now more and now less: there that is no trouble.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import os
@@ -38,6 +36,7 @@ from contact1d.workflow.runs.accuracy import main_results
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.runs.processors import pool
 from contact1d.workflow.scene import Scene, read_scene
+from validation.row import tables_beside
 
 ROOT = Path(__file__).parents[2]
 RECORD = ROOT / "validation" / "results" / "calibration.csv"
@@ -55,43 +54,7 @@ WORKERS = 2
 """Runs at a time; none is repeated, since a cost is the mean over all scenes and tolerances."""
 REFERENCES = (1e-7, 1e-6, 1e-5)
 """Tolerances of a reference, of which the first is taken that works."""
-LADDERS = {
-    "cutoff": (3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1),
-    "table": (0.01, 0.1, 0.3, 1.0, 3.0, 10.0),
-    "residual": (1e-4, 1e-3, 3e-3, 1e-2, 3e-2),
-    "chain": (0.01, 0.03, 0.1, 0.3, 1.0),
-    "smooth_increment": (0.125, 0.25, 0.375, 0.5, 0.75),
-    "loading_increment": (1 / 48, 1 / 24, 1 / 12, 1 / 6),
-    "still_step": (0.25, 0.5, 0.7, 1.0),
-}
-"""From fine to coarse. That of the residual ends at a third of what makes a state untrusted (`require_trust`), that of
-the time step at half of Verlet's limit."""
-WIDE = (
-    "interaction.repulsion={amplitude=0.3, range=0.5}",
-    "interaction.attraction={amplitude=0.15, range=1.0}",
-)
-SMALL = ("bodies.profile.radius=100", "experiment.preload=0.3")
-PUSHED = 'experiment={kind="load", force=20.0}'
-TIMED = ('damping={coefficient="auto"}', 'plate={damping="auto"}', "experiment.method=dynamic")
-SCENES: dict[str, tuple[str, tuple[str, ...], tuple[str, ...]]] = {
-    "pull_off": ("pull_off", (), ()),
-    "load": ("load", (), ()),
-    "paper": ("paper", (), ()),
-    "hertz_plane": ("hertz_plane", (), ()),
-    "path_hysteresis": ("path_hysteresis", (), ()),
-    "pull_off_dynamic": ("pull_off_dynamic", (), ()),
-    "pull_off, R = 100": ("pull_off", SMALL, ("neighbours", "horizontal")),
-    "pull_off, ranges of 0.5 and 1": ("pull_off", WIDE, ()),
-    "pull_off_dynamic, R = 100": ("pull_off_dynamic", SMALL, ("neighbours", "horizontal")),
-    "pull_off_dynamic, ranges of 0.5 and 1": ("pull_off_dynamic", WIDE, ()),
-    "load, in time": ("load", TIMED, ()),
-    "pull_off, cone": ("pull_off", ('bodies.profile={kind="cone", slope=0.03}',), ("horizontal",)),
-    "pull_off, snapping": ("path_hysteresis", ('experiment={kind="pull_off", preload=0.3}',), ()),
-    "load, rigid plane": ("hertz_plane", (PUSHED,), ()),
-    "load, rigid plane, neighbours": ("hertz_plane", (PUSHED, "neighbours={stiffness=0.3}"), ()),
-}
-"""Name: a shipped scene, keys that are set, effects that are left out. The one with noise is not among them: a change
-of any setting there gives another sample of the motion, which hides what the setting does."""
+LADDERS, SCENES = tables_beside(__file__).values()
 
 
 @dataclass(frozen=True)
@@ -164,9 +127,10 @@ def reference_of(scene: Scene, folder: Path) -> dict[str, Result]:
 
 def studied(name: str, shares: Mapping[str, Sequence[Calibration]]) -> list[Row]:
     """Run a scene of SCENES at every tolerance of TARGETS with these shares; the first of each list is the finest."""
-    file, keys, without = SCENES[name]
-    scene = read_scene(ROOT / "lammps_inputs" / "scenes" / f"{file}.toml", keys, without)
-    rows: list[Row] = []
+    given = SCENES[name]
+    file = ROOT / "lammps_inputs" / "scenes" / f"{given['file']}.toml"
+    scene = read_scene(file, given.get("keys", ()), given.get("without", ()))
+    rows = list[Row]()
     in_time = scene.method == "dynamic" and scene.experiment.kind == "pull_off"
     with tempfile.TemporaryDirectory() as place:
         reference = reference_of(scene, Path(place))

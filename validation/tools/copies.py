@@ -3,8 +3,6 @@
 Each run is a fork of a process that has loaded what the tests need and nothing of this program.
 """
 
-from __future__ import annotations
-
 import os
 import shutil
 import signal

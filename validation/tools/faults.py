@@ -3,16 +3,13 @@
 python -m validation.tools.faults [NAME ...]
 """
 
-from __future__ import annotations
-
 import json
 import sys
-import tomllib
 from pathlib import Path
 
+from validation.row import tables_beside
 from validation.tools.copies import copy_of_this, first_failure, load
 
-LIST = Path(__file__).parent / "faults.toml"
 RESULTS = Path(__file__).parents[1] / "results" / "faults.json"
 PATIENCE = 1800.0
 """[s]"""
@@ -20,8 +17,7 @@ PATIENCE = 1800.0
 
 def listed() -> list[dict[str, str]]:
     """The faults: name, file, old, new, tests."""
-    found: list[dict[str, str]] = tomllib.loads(LIST.read_text(encoding="utf-8"))["fault"]
-    return found
+    return list(tables_beside(__file__)["fault"])
 
 
 def killed_by(fault: dict[str, str], folder: Path) -> str:

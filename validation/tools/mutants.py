@@ -12,8 +12,6 @@ and colours, not what they show), `strict=` and `repr=`. Exit code 1 where fewer
 are noticed. Every processor has a share of the trace, and a fault at a time.
 """
 
-from __future__ import annotations
-
 import ast
 import json
 import math
@@ -26,17 +24,17 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
 from itertools import pairwise
 from multiprocessing import get_context
 from pathlib import Path
 from types import CodeType, FrameType
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 import typer
 
 from validation.age import today
+from validation.row import tables_beside
 from validation.tools.copies import BROKEN, HANGS, ROOT, copy_of_this, first_failure, load, run_tests
 
 RESULTS = Path(__file__).parents[1] / "results" / "mutants.json"
@@ -55,24 +53,10 @@ STARTING, SLOWNESS = 30.0, 4.0
 """Time limit of a test, and of a run: so much to start [s], and so many times what it took when traced."""
 ROUND_OFF = 1e-9
 """A number below it guards against round-off."""
-OPERATORS: dict[type[ast.AST], type[ast.AST]] = {
-    ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.FloorDiv: ast.Mult,
-    ast.Pow: ast.Mult, ast.Mod: ast.Mult, ast.And: ast.Or, ast.Or: ast.And, ast.Lt: ast.GtE, ast.GtE: ast.Lt,
-    ast.Gt: ast.LtE, ast.LtE: ast.Gt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq, ast.Is: ast.IsNot, ast.IsNot: ast.Is,
-    ast.In: ast.NotIn, ast.NotIn: ast.In,
-}  # fmt: skip
-SIGNS = {"+": "-", "-": "+", "*": "/", "/": "*", "<": ">=", ">=": "<", ">": "<=", "<=": ">", "==": "!=", "!=": "==",
-         "&&": "||", "||": "&&"}  # fmt: skip
-"""In formulas of LAMMPS."""
+OPERATORS, NAMES, SIGNS, LOOKS = tables_beside(__file__).values()
 FORMULA = re.compile(r'"[^"]*"|(?<=\bequal )[^"&\n]+|(?<=\batom )[^"&\n]+')
 SIGN = re.compile(r"(?<=[\w)\]} ])(?:&&|\|\||[<>=!]=|[<>]|[-+*/])(?=[\w( $])")
 NUMBER = re.compile(r"(?<![\w.$/{])\d+(?:\.\d*)?(?:e[-+]?\d+)?(?![\w./}])")
-NAMES = {"min": "max", "max": "min", "argmin": "argmax", "argmax": "argmin", "ceil": "floor", "floor": "ceil"}
-LOOKS: dict[str, tuple[int, tuple[str, ...]]] = {
-    "Series": (3, ("width", "opacity")), "Panel": (5, ("height",)), "apart": (2, ()), "digits_apart": (2, ()),
-    "dumps": (1, ("indent",)),
-}  # fmt: skip
-"""What is called for a drawing or a message: from which argument on, and by which names, its look is given."""
 SIZES = ("[inch]", "[1/inch]", "[pt]")
 """Units of a constant of drawings."""
 SKIPPED = (ast.Assert, ast.Raise, ast.JoinedStr, ast.Import, ast.ImportFrom)
@@ -84,8 +68,7 @@ CALLS = ".calls"
 Change = tuple[str, Callable[[], None]]
 
 
-@dataclass(frozen=True)
-class Mutant:
+class Mutant(NamedTuple):
     """One change: file, its number there, line, its text, what becomes what, the function it is in."""
 
     file: str
@@ -107,8 +90,7 @@ class Mutant:
         if self.place == DECKS:
             return list(of_fragment((ROOT / self.file).read_text(encoding="utf-8")))[self.number][2]
         tree = ast.parse((ROOT / self.file).read_text(encoding="utf-8"))
-        every = [do for node, _ in inner(tree) for _, do in changes(node)]
-        every[self.number]()
+        [do for node, _ in inner(tree) for _, do in changes(node)][self.number]()
         return ast.unparse(ast.fix_missing_locations(tree))
 
 
@@ -198,14 +180,13 @@ def changes(node: ast.AST) -> Iterator[Change]:
         return words, lambda: setattr(owner, field, new)
 
     match node:
-        case ast.BinOp(op=op) | ast.AugAssign(op=op) | ast.BoolOp(op=op) if type(op) in OPERATORS:
-            new = OPERATORS[type(op)]
-            yield swap(node, "op", new(), f"{type(op).__name__} → {new.__name__}")
+        case ast.BinOp(op=op) | ast.AugAssign(op=op) | ast.BoolOp(op=op) if new := OPERATORS.get(type(op).__name__):
+            yield swap(node, "op", getattr(ast, new)(), f"{type(op).__name__} → {new}")
         case ast.Compare(ops=ops):
             for i, old in enumerate(ops):
-                if after := OPERATORS.get(type(old)):
-                    words = f"{type(old).__name__} → {after.__name__}" + f", {i + 1} of a chain" * (len(ops) > 1)
-                    yield swap(node, "ops", [*ops[:i], after(), *ops[i + 1 :]], words)
+                if after := OPERATORS.get(type(old).__name__):
+                    words = f"{type(old).__name__} → {after}" + f", {i + 1} of a chain" * (len(ops) > 1)
+                    yield swap(node, "ops", [*ops[:i], getattr(ast, after)(), *ops[i + 1 :]], words)
         case ast.UnaryOp(op=ast.USub()):
             yield swap(node, "op", ast.UAdd(), "−x → x")
         case ast.UnaryOp(op=ast.Not(), operand=operand):
@@ -246,8 +227,7 @@ def looks(node: ast.AST) -> list[ast.AST]:
                     and isinstance(one, ast.Assign) and isinstance(after.value, ast.Constant)]  # fmt: skip
             return [one for one, words in told if any(unit in str(words) for unit in SIZES)]
         case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name), args=args, keywords=words) if name in LOOKS:
-            first, names = LOOKS[name]
-            return [*args[first:], *(one for one in words if one.arg in names)]
+            return [*args[LOOKS[name]["first"] :], *(one for one in words if one.arg in LOOKS[name]["names"])]
     return []
 
 
@@ -296,7 +276,7 @@ def tests_of(mutant: Mutant, called: Called) -> list[str]:
         }
         if those:
             break
-    chosen: list[str] = []
+    chosen = list[str]()
     for test in sorted(those, key=lambda test: those[test]):
         if chosen and sum(called[one][0] for one in [*chosen, test]) > LONGEST:
             break

@@ -1,9 +1,13 @@
-"""One particle on a rigid row, beside Prandtl and Tomlinson: over load, velocity and the cantilever's stiffness.
+"""One particle on a rigid row, beside Prandtl and Tomlinson: over load, velocity and the cantilever's stiffness; flats.
 
 U(x), the energy of the row under the load, is integrated on its own; k = 1/(1/k_c + 1/k_t), κ = max(−U″), η = κ/k.
-"""
 
-from __future__ import annotations
+Flat on flat: of one spacing, N particles; of spacings without a common measure, each particle alone at every phase.
+A commensurate chain has the friction of N particles. An incommensurate one is pinned below, and slides freely above,
+the stiffness k_t = max(−U″) of its particles' springs, U being that of a particle on springs at the common height.
+That height is constant without end; a plate of N particles gives way to each slip, and friction is lower: of 13 by
+0.8 % at k_t = 0.03 and 1.3 % at 0.06 FU/LU.
+"""
 
 import numpy as np
 
@@ -11,6 +15,8 @@ from validation.doors import Scene, Slide, law_of, settings_for
 from validation.figures import Panel, Series
 from validation.paper.fig9.reading import (
     CRITICAL,
+    FLATS,
+    LATTICES,
     PARTICLE,
     SLIDES,
     STIFFNESS,
@@ -24,6 +30,8 @@ from validation.paper.fig9.reading import (
     threshold,
 )
 from validation.paper.heat import DRAGGED, friction_row, values_and_errors
+from validation.references import incommensurate
+from validation.references.flat_chain import FlatChain
 from validation.references.prandtl_tomlinson import Corrugation, corrugation, moving_friction, slow_friction
 from validation.references.thermal_friction import free_corrugation, thermal_friction
 from validation.row import Reference, Row, absolute, claim, relative, solver
@@ -49,14 +57,26 @@ EITHER = {
 }
 MIDDLE = "the sweep was laid about the law: it is the middle of the step in which it lies"
 BY_CHANCE = "terms of the velocity beyond these cancel by chance"
-PRANDTL = "Prandtl and Tomlinson with the corrugation there is: the energy that a slip loses"
+SLOW = 0.05
+"""Of ⟨F⟩: the most that its limit may be uncertain by."""
+FLAT = EDGE | {
+    "tolerance": "a largest friction or a mean that is nearly none: only the mean beside the others is asked for",
+    "drag": "the plate is held to the drive's pace by the cantilever, and is to be",
+}
+PINNED = 2
+"""Of the stiffnesses, the softest, whose slow limit is held against the law."""
+CHAIN = "as many particles on one plate, at rest at every place: the energy that their slips lose"
+
+
+def load_of(scene: Scene) -> float:
+    """Load on a particle [FU]."""
+    assert isinstance(scene.experiment, Slide)
+    return scene.experiment.normal_force / (scene.bodies.upper_particles or 1)
 
 
 def wells_of(scene: Scene) -> Corrugation:
     """U(x) of a particle of the scene under its share of the load."""
-    assert isinstance(scene.experiment, Slide)
-    load = scene.experiment.normal_force / (scene.bodies.upper_particles or 1)
-    return corrugation(law_of(scene), scene.bodies.spacing, load)
+    return corrugation(law_of(scene), scene.bodies.spacing, load_of(scene))
 
 
 def series_stiffness(scene: Scene) -> float:
@@ -105,8 +125,7 @@ def velocity_checks(row: Rows) -> tuple[list[Row], Panel]:
     """⟨F⟩ of a sinusoid over the velocity, at η = 1, 2, 5."""
     points = slides(VELOCITY)
     checks, off = [], []
-    shown: list[Series] = []
-    limits: list[Series] = []
+    shown, limits = [], list[Series]()
     for (eta, expected), (stiffness, names) in zip(SINUSOID.items(), reversed(points.by(1).items()), strict=True):
         scene = points.scenes[min(names), stiffness]
         wells, mass_and_drag = wells_of(scene), mass_and_drag_of(scene)
@@ -149,13 +168,14 @@ def stiffness_checks(row: Rows) -> tuple[list[Row], tuple[Panel, Panel]]:
     over = [{v: mean(row.runs[name]) for v, name in of.items()} for of in names.values()]
     limits, powers = [slow_limit(one) for one in over], [exponent(one) for one in over]
     on = [list(of.values()) for of in names.values()]
-    where = threshold(share, powers)
     checks = [
         row(f"⟨F⟩ at k = {share[i]:.2g} max(−U″), slow limit", limits[i],
-            Reference(slow_friction(wells, share[i] * kappa), PRANDTL), relative(ASKED, LIMIT), on=on[i], despite=EDGE)
+            Reference(slow_friction(wells, share[i] * kappa),
+                      "Prandtl and Tomlinson with the corrugation there is: the energy that a slip loses"),
+            relative(ASKED, LIMIT), on=on[i], despite=EDGE)
         for i in (0, 1)
     ] + [
-        row("k at which stick-slip ends, over max(−U″): ⟨F⟩ falls as v^{4/5} there", where,
+        row("k at which stick-slip ends, over max(−U″): ⟨F⟩ falls as v^{4/5} there", threshold(share, powers),
             Reference(1.0, "Prandtl and Tomlinson: η = 1"), claim("steps of the stiffness", 0.1), on=points.every,
             despite=EDGE, wide=MIDDLE),
         row(f"d ln⟨F⟩/d ln v at k = {share[-1]:.3g} max(−U″)", powers[-1],
@@ -180,8 +200,7 @@ def stiffness_checks(row: Rows) -> tuple[list[Row], tuple[Panel, Panel]]:
 def smoluchowski(scene: Scene, temperature: float) -> float:
     """⟨F⟩ [FU] of the scene at another kT [FU·LU]."""
     assert scene.cantilever is not None
-    assert isinstance(scene.experiment, Slide)
-    wells = free_corrugation(law_of(scene), scene.bodies.spacing, scene.experiment.normal_force, temperature)
+    wells = free_corrugation(law_of(scene), scene.bodies.spacing, load_of(scene), temperature)
     mass, drag = mass_and_drag_of(scene)
     return thermal_friction(*wells, series_stiffness(scene), drag, temperature, scene.cantilever.velocity, mass)
 
@@ -206,4 +225,59 @@ def temperature_checks(row: Rows) -> tuple[list[Row], Panel]:
     none = Series("without heat, for v → 0", [0.0], [slow_friction(cold, series_stiffness(scene)) / top])
     theory = Series("Smoluchowski's equation", fine / barrier, line)
     panel = Panel("kT over the barrier between two hollows", r"$\langle F\rangle/F_{max}$", [shown], [theory, none])
+    return checks, panel
+
+
+def lattice_checks(row: Rows) -> tuple[list[Row], Panel]:
+    """The largest friction of a commensurate pair, and both traces."""
+    points = slides(LATTICES)
+    same, alike = next(iter(points.scenes.values())), points.every[0]
+    count, wells = same.bodies.upper_particles or 0, wells_of(same)
+    check = row(f"largest friction of a commensurate pair over that of its {count} particles",
+                static(row.runs[alike]) / count / wells.largest_force,
+                Reference(1.0, "a commensurate chain is so many particles"), relative(OF_LARGEST, BETWEEN),
+                on=alike)  # fmt: skip
+    traces = [
+        Series(words, row.runs[name].friction["drive"], row.runs[name].friction["friction"] / count)
+        for name, words in zip(points.every, ("spacings 1 : 1", "spacings 21 : 13"), strict=True)
+    ]
+    return [check], Panel(
+        "way of the drive (LU)", "friction of a particle (FU)", traces, [], lines=True, title="$k_t$ = 0.06 FU/LU"
+    )
+
+
+def flat_checks(row: Rows) -> tuple[list[Row], Panel]:
+    """The incommensurate pair over the stiffness of its springs along x."""
+    points = slides(FLATS)
+    names = points.by(0)
+    springs = list(names)
+    scene = next(iter(points.scenes.values()))
+    count, law, load, normal = scene.bodies.upper_particles or 0, law_of(scene), load_of(scene), scene.bulk_stiffness
+    over = {k: {v: mean(row.runs[name]) / count for v, name in of.items()} for k, of in names.items()}
+    limits = [slow_limit(each) for each in over.values()]
+    theory = [slow_friction(incommensurate.shared_corrugation(law, 1.0, load, normal, k), k) for k in springs]
+    below = scene.bodies.particles
+    assert isinstance(below, int)
+    checks = [
+        row(f"⟨F⟩ of a particle of an incommensurate pair, k_t = {k:g} FU/LU, slow limit", limit,
+            solver(FlatChain(law, 1.0, count, below, load, normal, k).friction(), CHAIN),
+            claim("the power of v that follows v^{2/3}", SLOW), on=list(names[k].values()), despite=FLAT)
+        for k, limit in zip(springs[:PINNED], limits, strict=False)
+    ]  # fmt: skip
+    where = threshold(springs, [exponent(each) for each in over.values()], "FU/LU")
+    kappa = incommensurate.threshold(law, 1.0, load, normal)
+    checks.append(
+        row("k_t at which an incommensurate pair is no longer pinned: ⟨F⟩ falls as v^{4/5} there", where,
+            Reference(kappa, "max(−U″) of a particle, all at one height"), claim("steps of the stiffness", 0.1),
+            on=points.every, despite=FLAT, wide=MIDDLE)
+    )  # fmt: skip
+    slowest = min(over[springs[0]])
+    shown = [
+        Series("v → 0", springs, [limit.value for limit in limits], [limit.uncertainty for limit in limits]),
+        Series(f"v = {slowest:g} LU/TU", springs, [each[slowest] for each in over.values()]),
+    ]
+    panel = Panel(
+        "stiffness $k_t$ of a particle's spring (FU/LU)", r"$\langle F\rangle$ of a particle (FU)", shown,
+        [Series("theory for v → 0", springs, theory)], mark=kappa, title="spacings 21 : 13",
+    )  # fmt: skip
     return checks, panel

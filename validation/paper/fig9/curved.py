@@ -1,17 +1,15 @@
 """The set-up of Fig. 9 itself, a curved body on a flat one, beside the independent integrator of the same slide."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from validation import slides as whole_slides
 from validation.doors import Scene, settings_for
 from validation.figures import Panel, Series
 from validation.paper.fig9.reading import LOAD, RADIUS, mean, slides, static
-from validation.references.slide import Integrator, Trace
+from validation.references.slide import Trace
 from validation.row import Reference, Row, relative, solver
-from validation.slides import slide_model
 from validation.study import Rows, found
 
 INTEGRATED = {LOAD: (-0.4, 0.0, 1.2), RADIUS: (10.0, 80.0)}
@@ -40,12 +38,9 @@ class Integrated:
 def integrated(scene: Scene) -> Integrated:
     """A slide of the scene by the integrator, measured where the program measures."""
     settings = settings_for(scene)
-    body = Integrator(slide_model(scene, settings))
-    body.settle(settings.motion.time_step, RESIDUAL, drag=settings.motion.settling_damping)
     (leg,) = settings.motion.drive
     period = scene.bodies.spacing / leg.velocity
-    rows = min(leg.rows, round(PERIODS * period / leg.row_time))
-    trace = body.run(rows * leg.steps, leg.time_step, leg.velocity, every=leg.steps)
+    trace = whole_slides.integrated(scene, settings, RESIDUAL, round(PERIODS * period / leg.row_time))
     impulse = np.interp(trace.time[-1] - LAST * period, trace.time, trace.impulse)
     before = trace.place < scene.bodies.spacing
     return Integrated(float(trace.impulse[-1] - impulse) / (LAST * period), float(trace.friction[before].max()), trace)
@@ -74,11 +69,11 @@ def curved_checks(row: Rows) -> tuple[list[Row], Panel, Panel]:
     ours, theirs = (static(row.runs[loaded]) - static(row.runs[unloaded])), load[high].static - load[0.0].static
     checks = [
         row(f"⟨F⟩ of a curved body, {where}", found(row.runs[name], "mean_friction"), solver(one.mean, SOURCE),
-            relative(MEAN, RUN_IN), on=[name], wide="the run-in is over sooner than the bound allows for")
+            relative(MEAN, RUN_IN), on=name, wide="the run-in is over sooner than the bound allows for")
         for where, (name, one) in zip(words, by_run.items(), strict=True)
     ] + [
         row("largest friction of a curved body without a load", found(row.runs[unloaded], "static_friction"),
-            solver(load[0.0].static, SOURCE), relative(LARGEST, BETWEEN), on=[unloaded], wide=SAME_ROWS),
+            solver(load[0.0].static, SOURCE), relative(LARGEST, BETWEEN), on=unloaded, wide=SAME_ROWS),
         row(f"what it rises by with the load, from 0 to {high:g} FU", ours / high, solver(theirs / high, SOURCE),
             relative(LARGEST, BETWEEN), on=[unloaded, loaded], wide=SAME_ROWS),
         row.at_most(

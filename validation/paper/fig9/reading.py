@@ -1,10 +1,8 @@
 """What runs of slides say together: the slow limit, how ⟨F⟩ falls with the velocity, where sticking ends."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,8 +17,7 @@ SWEEPS = (TEMPERATURE, VELOCITY, LOAD, RADIUS, FLATS, STIFFNESS, PARTICLE, LATTI
 Place = tuple[float, ...]
 
 
-@dataclass(frozen=True)
-class Slides:
+class Slides(NamedTuple):
     """The points of a sweep: names of their runs and scenes, by the values of the axes that have several."""
 
     names: dict[Place, str]
@@ -33,10 +30,9 @@ class Slides:
 
     def by(self, axis: int) -> dict[float, dict[float, str]]:
         """Names of the runs over two axes, by the values of one of them, rising, then by those of the other."""
-        values = sorted({place[axis] for place in self.names})
         return {
             value: {place[1 - axis]: name for place, name in sorted(self.names.items()) if place[axis] == value}
-            for value in values
+            for value in sorted({place[axis] for place in self.names})
         }
 
 
@@ -70,7 +66,7 @@ def slow_limit(friction: Mapping[float, float], power: float = STICKS) -> Quanti
     velocities = np.asarray(sorted(friction))
     values = np.asarray([friction[v] for v in velocities])
     terms = np.column_stack([np.ones(3), velocities**power, velocities])
-    limit, line = (float(np.linalg.solve(terms[:n, :n], values[:n])[0]) for n in (3, 2))
+    limit, line = (np.linalg.solve(terms[:n, :n], values[:n])[0] for n in (3, 2))
     return Quantity(limit, abs(limit - line), "FU")
 
 

@@ -1,12 +1,9 @@
 """The study `fig9`: all shipped sweeps of slides and both shipped scenes, their rows and figures."""
 
-from __future__ import annotations
-
 from validation.doors import Run, Scene, read_scene, shipped
 from validation.figures import Drawing
-from validation.paper.fig9.asperity import load_checks, stiffness_checks, temperature_checks, velocity_checks
+from validation.paper.fig9 import asperity
 from validation.paper.fig9.curved import curved_checks
-from validation.paper.fig9.flats import flat_checks, lattice_checks
 from validation.paper.fig9.reading import SWEEPS, slides
 from validation.row import Reference, Row
 from validation.study import Bench, Findings, Rows, Scenes, Study, found
@@ -35,12 +32,12 @@ def scenes(_: Scene) -> Scenes:
 def judge(bench: Bench) -> Findings:
     """One law after the other."""
     row = Rows(bench.runs)
-    particle, of_particle = load_checks(row)
-    velocity, over_velocity = velocity_checks(row)
-    warmth, over_temperature = temperature_checks(row)
-    stiffness, over_stiffness = stiffness_checks(row)
-    lattices, traces = lattice_checks(row)
-    flats, over_springs = flat_checks(row)
+    particle, of_particle = asperity.load_checks(row)
+    velocity, over_velocity = asperity.velocity_checks(row)
+    warmth, over_temperature = asperity.temperature_checks(row)
+    stiffness, over_stiffness = asperity.stiffness_checks(row)
+    lattices, traces = asperity.lattice_checks(row)
+    flats, over_springs = asperity.flat_checks(row)
     curved, over_load, over_radius = curved_checks(row)
     panels = (
         (of_particle, over_load),

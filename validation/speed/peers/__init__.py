@@ -1,7 +1,5 @@
 """The same Hertz and the same JKR contact with other people's solvers, at equal error (the extra `peers`)."""
 
-from __future__ import annotations
-
 import importlib
 import importlib.util
 import math
@@ -103,8 +101,7 @@ def _compared(words: str, mine: Sequence[Result], peers: Sequence[Result], key: 
     """Times at equal error: of the peer's best, where it does not come as near as ENOUGH."""
     most = ENOUGH
     if key == "theory_force":
-        least = min(abs(one["errors"][key]) for one in peers)
-        most = max(BESIDE_JKR, least)
+        most = max(BESIDE_JKR, min(abs(one["errors"][key]) for one in peers))
     theirs = quickest(peers, key, most)
     own = quickest(mine, key, most if theirs is None or key is None else max(ENOUGH, abs(theirs["errors"][key])))
     share = math.nan if own is None or theirs is None else own["seconds"] / theirs["seconds"]

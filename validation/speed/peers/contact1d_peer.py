@@ -1,9 +1,8 @@
 """This program: `experiment path` through the Python API without figures, reduction mdr; LAMMPS, its rows apart."""
 
-from __future__ import annotations
-
 import tempfile
 
+from validation.doors import on_plane
 from validation.speed.clock import spent
 from validation.speed.peers.contacts import (
     A_0,
@@ -42,11 +41,7 @@ def curve(contact: str, setting: Setting) -> Curve:
 
 def plane_tables(contact: str, setting: Setting) -> dict[str, object]:
     """The scene of a chain on a rigid plane, in nm and µN; with [adhesion] it is JKR itself."""
-    spacing = A_0 / setting.grid
-    bodies = {
-        "particles": "auto", "spacing": spacing, "profile": {"kind": "parabola", "radius": RADIUS}, "reduction": "mdr",
-        "bulk_stiffness": CONTACT_MODULUS * spacing, "lower": "rigid_plane",
-    }  # fmt: skip
+    tables = on_plane({"kind": "parabola", "radius": RADIUS}, A_0 / setting.grid, setting.tolerance)
+    tables["bodies"]["bulk_stiffness"] *= CONTACT_MODULUS
     adhesion = {"adhesion": {"work_of_adhesion": WORK_OF_ADHESION}} if contact == "jkr" else {}
-    accuracy = {"tolerance": setting.tolerance}
-    return {"title": "beside other solvers", "bodies": bodies, "accuracy": accuracy, **adhesion}
+    return {"title": "beside other solvers", **tables, **adhesion}

@@ -6,13 +6,11 @@ hard wall and V = -W exp(-gap/z_0) (`BoundedSmoothContactSystem`), L-BFGS-B of s
 gradients of NuMPI diverge from these starts, since the adhesive Hessian is not positive.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 
-from validation.speed.peers.axisymmetric import heights, timed
+from validation.row import tables_beside
 from validation.speed.peers.contacts import (
     A_0,
     CONTACT_MODULUS,
@@ -24,13 +22,13 @@ from validation.speed.peers.contacts import (
     closed_form,
     displacements,
     elements,
+    heights,
     law_range,
+    timed,
 )  # fmt: skip
 
 NAME = "ContactMechanics"
-SETTINGS = elements(
-    1e-3, (24, 1.0), (32, 1.0), (32, 2.0), (48, 2.0), (56, 2.0), (96, 3.0), (128, 5.0), (192, 5.0)
-)  # fmt: skip
+SETTINGS = elements(**tables_beside(__file__))
 SIDE = {"hertz": 2.3, "jkr": 3.2}
 """Side of the square over a_0: the largest contact is 2 a_0 wide (Hertz), 2.66 a_0 and what the law reaches (JKR)."""
 
@@ -86,7 +84,6 @@ def _jkr(space: Any, surface: Any, setting: Setting, places: Array) -> list[floa
     options = {"gtol": setting.tolerance * WORK_OF_ADHESION / z * pixel, "ftol": 0.0, "maxiter": 5000, "maxfun": 10**6}
     force = []
     for d in places:
-        found = system.minimize_proxy(offset=d, initial_displacements=moved, options=options)
-        moved = found.x
+        moved = system.minimize_proxy(offset=d, initial_displacements=moved, options=options).x
         force.append(float(system.compute_normal_force()))
     return force

@@ -7,13 +7,11 @@ the mean-free displacement by 3.9003 F/(pi E* L), 3.9003 its Madelung constant. 
 do to the curvature, 0.4 % of it under F_A.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 
-from validation.speed.peers.axisymmetric import heights, timed
+from validation.row import tables_beside
 from validation.speed.peers.contacts import (
     A_0,
     CONTACT_MODULUS,
@@ -24,13 +22,13 @@ from validation.speed.peers.contacts import (
     closed_form,
     displacements,
     elements,
+    heights,
     law_range,
+    timed,
 )  # fmt: skip
 
 NAME = "tamaas"
-SETTINGS = elements(
-    1e-4, (48, 1.0), (72, 2.0), (96, 2.0), (128, 2.0), (192, 3.0), (256, 4.0), (320, 5.0), (384, 5.0)
-)  # fmt: skip
+SETTINGS = elements(**tables_beside(__file__))
 SIDE = {"hertz": 2.3, "jkr": 5.0}
 """Side of the square over a_0."""
 MADELUNG = 3.900265
@@ -85,8 +83,7 @@ def _hertz(model: Any, solver: Any, surface: Array, side: float) -> tuple[Array,
         solver.solve(load / side**2)
         touching = model.traction > 0.0
         model.operators["dcfft"](model.traction, model.displacement)
-        depth = float((model.displacement - surface)[touching].mean())
-        points.append((depth, float(model.traction.sum()) * pixel))
+        points.append(((model.displacement - surface)[touching].mean(), model.traction.sum() * pixel))
     return tuple(np.array(points).T)
 
 
@@ -97,7 +94,7 @@ def _jkr(model: Any, solver: Any, surface: Array, side: float) -> tuple[Array, A
     force = closed_form("jkr", wanted)
     points = []
     for depth in np.linspace(wanted[0] - images * force[0], wanted[-1] - images * force[-1], len(wanted)):
-        solver.solve(float(-surface.mean() - depth))
-        load = float(model.traction.sum()) * pixel
+        solver.solve(-surface.mean() - depth)
+        load = model.traction.sum() * pixel
         points.append((depth + images * load, load))
     return tuple(np.array(points).T)
