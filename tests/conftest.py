@@ -12,7 +12,7 @@ from tests.approx import relative
 from tests.limits import LIMIT, SLOW_LIMIT, time_limit
 from tests.records import record_slow_tests
 from tests.run_numbers import NumbersOfRuns
-from tests.scenes import chains
+from tests.scenes import PLANE, chains
 
 settings.register_profile("repeatable", deadline=None, derandomize=True)
 settings.load_profile(
@@ -25,17 +25,6 @@ SMALL = chains(
     accuracy={"tolerance": 1e-2},
     experiment={"kind": "path", "displacements": [0.0, 0.05]},
 )
-
-PLANE: dict[str, Any] = {
-    "title": "plane",
-    "bodies": {
-        "particles": 21,
-        "spacing": 1.0,
-        "profile": {"kind": "parabola", "radius": 50.0},
-        "bulk_stiffness": 0.5,
-        "lower": "rigid_plane",
-    },
-}
 
 
 def pytest_configure(config: pytest.Config) -> None:

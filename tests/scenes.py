@@ -38,3 +38,13 @@ def chains(radius: float, stiffness: float = 0.83, law: Sequence[float] = LAW, *
     interaction = {"repulsion": near, "attraction": far}
     found = {"title": "chains", "interaction": interaction} | tables | {"bodies": bodies | tables.get("bodies", {})}
     return {name: table for name, table in found.items() if table is not None}
+
+
+def in_si(profile: dict[str, Any], modulus: str = "1 MPa", **tables: Any) -> dict[str, Any]:
+    """A scene in SI of a body on a rigid plane, particles and spacing left open; other tables as they come."""
+    bodies = {"particles": "auto", "spacing": "auto", "lower": "rigid_plane", "profile": profile}
+    return {"title": "in SI", "bodies": bodies, "material": {"contact_modulus": modulus}} | tables
+
+
+PLANE = chains(50.0, 0.5, title="plane", interaction=None, bodies={"particles": 21, "lower": "rigid_plane"})
+"""Some particles on a rigid plane, for an experiment: the quickest scene there is."""

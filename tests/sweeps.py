@@ -7,14 +7,12 @@ from concurrent.futures import Executor, Future
 from pathlib import Path
 from typing import Any
 
-PLANE: dict[str, Any] = {
-    "title": "on a plane",
-    "bodies": {
-        "particles": 41, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 100.0}, "bulk_stiffness": 1.0,
-        "lower": "rigid_plane",
-    },
-    "experiment": {"kind": "load", "force": 1.0},
-}  # fmt: skip
+from tests.scenes import chains
+
+PLANE = chains(
+    100.0, 1.0, title="on a plane", interaction=None, bodies={"particles": 41, "lower": "rigid_plane"},
+    experiment={"kind": "load", "force": 1.0},
+)  # fmt: skip
 RADIUS = "bodies.profile.radius"
 FORCE = "experiment.force"
 RADIUS_IN_WORDS = "radius of curvature R at the apex"

@@ -5,7 +5,7 @@ Numbers are in model units, with their dimension, so that a scene can be written
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import product
@@ -32,33 +32,14 @@ class Q:
         return replace(self, value=self.value * factor)
 
 
-def length(value: float) -> Q:
-    return Q(value, 1.0)
+def dimension(length: float = 0.0, force: float = 0.0, time: float = 0.0) -> Callable[[float], Q]:
+    """Makes numbers of a dimension."""
+    return lambda value: Q(value, length, force, time)
 
 
-def force(value: float) -> Q:
-    return Q(value, 0.0, 1.0)
-
-
-def stiffness(value: float) -> Q:
-    return Q(value, -1.0, 1.0)
-
-
-def duration(value: float) -> Q:
-    return Q(value, 0.0, 0.0, 1.0)
-
-
-def velocity(value: float) -> Q:
-    return Q(value, 1.0, 0.0, -1.0)
-
-
-def energy(value: float) -> Q:
-    return Q(value, 1.0, 1.0)
-
-
-def mass(value: float) -> Q:
-    return Q(value, -1.0, 1.0, 2.0)
-
+length, force, stiffness = dimension(1.0), dimension(0.0, 1.0), dimension(-1.0, 1.0)
+duration, velocity = dimension(time=1.0), dimension(1.0, time=-1.0)
+energy, mass = dimension(1.0, 1.0), dimension(-1.0, 1.0, 2.0)
 
 RADIUS, WORK, RANGE, SLOPE, PUNCH, MODULUS = 1000.0, 1e-3, 0.1, 0.03, 20.5, 1.0
 CURVE = [2.0 * i for i in range(101)]

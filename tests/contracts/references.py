@@ -43,9 +43,7 @@ SURFACES = {
     for kind in ("parabola", "circle", "ellipsoid", "cone", "power", "flat_punch")
 }
 SURFACES["table"] = SURFACES["parabola"]
-BODIES: dict[str, Body] = {
-    **{kind: one.body for kind, one in SURFACES.items()},
-}
+BODIES: dict[str, Body] = {kind: one.body for kind, one in SURFACES.items()}
 """Slopes and bends, of each profile."""
 POWERS: dict[str, Power] = {
     kind: one.power

@@ -142,7 +142,7 @@ def test_the_checks_are_there_and_hold(made: Runs, one: Combination) -> None:
         assert outcome.marked["critical"].force <= (1.0 - run.done.scene.accuracy.tolerance) * least
 
 
-@cases("units", lambda one: True, long=("rate",))
+@cases("units", lambda one: True, long=("rate", "attracting alike"))
 def test_units_change_nothing(made: Runs, one: Combination) -> None:
     here = finished(made(one)).numbers
     names = sorted(OTHERS)

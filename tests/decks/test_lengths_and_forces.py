@@ -13,9 +13,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize_scalar
 
-from contact1d import run
+from contact1d import SettingsError, run
 from contact1d.potentials import DoubleExponential, Exponential
-from contact1d.workflow.errors import SettingsError
 from tests.decks.written import ANCHORS, FAR, LOWER, UPPER, Written, written
 from tests.scenes import LAW, chains
 
@@ -160,26 +159,9 @@ def test_a_pair_at_the_cutoff_of_a_slide_bears_a_tenth_of_the_tolerance_of_what_
 def test_a_search_moves_by_a_twelfth_of_its_way_at_most(tables: dict[str, Any], force: float, longest: float) -> None:
     """And by a tenth of the spacing on a plane, by a quarter of the range where pairs snap."""
     load = {"neighbours": {"stiffness": 0.2}, "experiment": {"kind": "load", "force": force}}
-    done = run(chains(RADIUS, SPRING, **tables, **load), figures=False)
+    done = run(chains(RADIUS, SPRING, **tables, **load))
     way = SHARES["loading_increment"] * done.results["displacement"].value
     assert np.diff(done.curve.displacement).max() == pytest.approx(min(longest, way), rel=0.02)
-
-
-@pytest.mark.parametrize("neighbours", [None, {"stiffness": 1e-6}])
-def test_on_a_plane_each_particle_bears_what_its_spring_is_pressed_in_by(neighbours: dict[str, float] | None) -> None:
-    done = run(chains(RADIUS, SPRING, **ON_PLANE, neighbours=neighbours, experiment=path(0.5)), figures=False)
-    profile = done.profiles["deepest"]
-    wanted = SPRING * np.maximum(0.0, 0.5 - profile.x**2 / RADIUS)
-    assert profile.pressure == pytest.approx(wanted, abs=TOLERANCE)  # the spacing is 1
-    assert done.curve.force[-1] == pytest.approx(wanted.sum(), rel=TOLERANCE)
-
-
-@pytest.mark.parametrize("timed", [{}, TIMED])
-def test_on_a_plane_the_plane_alone_has_the_scenes_spring(timed: dict[str, Any]) -> None:
-    """In time, too: nothing acts on a particle apart from its body."""
-    found = deck(**ON_PLANE, **timed)
-    assert found.number("plane_half_stiffness") == 0.5 * SPRING
-    assert "bond_style" not in found.commands
 
 
 @pytest.mark.parametrize(("neighbours", "timed"), [(0.3, {}), (40.0, TIMED), (0.3, HEAT), (0.0, HEAT)])

@@ -6,7 +6,6 @@ forces of mean 0.
 """
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -87,14 +86,14 @@ def test_a_kicked_particle_swings_and_comes_to_rest_as_its_drag_says(tables: dic
     assert np.abs(found - exact).max() < INTEGRATION * KICK / omega
 
 
-def test_a_punch_on_springs_that_relax_rebounds_as_the_linear_equation_says(tmp_path: Path) -> None:
+def test_a_punch_on_springs_that_relax_rebounds_as_the_linear_equation_says() -> None:
     """M z″ = −F, F = N k ((1 − share) z + share s), s′ = z′ − s/τ, until F = 0."""
     count, stiffness, mass, velocity, share, decay = 4, 2.5, 10.0, 0.1, 0.4, 2.0
     body = {"profile": {"kind": "flat_punch", "radius": 0.5 * count}, "reduction": "mdr", "lower": "rigid_plane"}
     impact = {"plate": {"mass": mass}, "experiment": {"kind": "impact", "velocity": velocity}}
     arm = {"terms": [{"share": share, "time": decay}]}
     tables = chains(1.0, stiffness, interaction=None, viscoelasticity=arm, bodies=body, **impact)
-    results = run(tables, tmp_path, figures=False).results
+    results = run(tables).results
 
     def force(y: Any) -> Any:
         return count * stiffness * ((1.0 - share) * y[0] + share * y[2])

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from contact1d.workflow.errors import SettingsError
+from contact1d import SettingsError
 from tests.decks.test_lengths_and_forces import FREE, TENSION, path, slide
 from tests.decks.written import written
 from tests.scenes import chains

@@ -23,6 +23,7 @@ from contact1d.__main__ import app
 from contact1d.analysis.atoms import atoms
 from contact1d.analysis.curve import read_states
 from tests.decks.written import lmp
+from tests.scenes import chains
 
 Array = NDArray[np.float64]
 
@@ -70,25 +71,17 @@ SCENES: dict[str, dict[str, Any]] = {
         "experiment": {"kind": "path", "displacements": {"from": 0.0, "to": 5e-7, "steps": 5}},
     },
     "plane_adhesion": STUCK | {"experiment": PULL_OFF},
-    "slide": {
-        "bodies": BODY | {"particles": 60, "profile": {"kind": "parabola", "radius": 30.0}, "bulk_stiffness": 2.0},
-        "interaction": {
-            "repulsion": {"amplitude": 1.0, "range": 0.5},
-            "attraction": {"amplitude": 0.5, "range": 1.0},
-        },
-        "horizontal": {},
-        "damping": {"coefficient": "auto"},
-        "plate": {"free": ["x", "z"]},
-        "cantilever": {"stiffness": 20.0, "velocity": 0.05},
-        "experiment": {"kind": "slide", "normal_force": 1.0, "distance": 3.0},
-    }
-    | COARSE,
+    "slide": chains(
+        30.0, 2.0, (1.0, 0.5, 0.5, 1.0), title="slide", bodies={"particles": 60}, horizontal={},
+        damping={"coefficient": "auto"}, plate={"free": ["x", "z"]}, cantilever={"stiffness": 20.0, "velocity": 0.05},
+        experiment={"kind": "slide", "normal_force": 1.0, "distance": 3.0}, **COARSE,
+    ),
     "tangential": {
         "bodies": STUCK["bodies"] | {"particles": "auto"},
         "friction": {"coefficient": 0.3},
         "experiment": {"kind": "tangential", "normal_force": [4.0, 2.0, 3.0], "displacements": [0.1, 0.2, 0.0]},
     },
-}
+}  # fmt: skip
 """Every way to move, both methods, chains and plane, rows that are steps of one run and rows that are not."""
 FEW = 6
 USUAL = [(name, None) for name in ("load_thermal", "path", "pull_off", "slide")]

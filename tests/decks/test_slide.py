@@ -9,14 +9,15 @@ it is the sum of the lower body's forces on the upper particles.
 """
 
 import re
-from tempfile import TemporaryDirectory
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from contact1d import Run, RunError, read_scene, run
+from contact1d import Run, RunError, run
+from tests.scenes import chains
 
 PARTICLES, DRAG, PLATE_DRAG, MASS, PLATE_MASS = 30, 0.3, 20.0, 1.0, 30.0
 STIFFNESS, VELOCITY, DISTANCE = 20.0, 0.05, 6.0
@@ -32,30 +33,28 @@ ENERGY = 5e-3
 
 def sliding(**changes: Any) -> dict[str, Any]:
     """A sticky curved body on a flat one; `changes` replace whole tables."""
-    return {
-        "title": "slide",
-        "bodies": {"particles": 44, "upper_particles": PARTICLES, "spacing": 1.0, "mass": MASS, "bulk_stiffness": 2.0,
-                   "profile": {"kind": "parabola", "radius": 30.0}},
-        "interaction": {"repulsion": {"amplitude": 1.0, "range": 0.5}, "attraction": {"amplitude": 0.5, "range": 1.0}},
+    tables: dict[str, Any] = {
+        "bodies": {"particles": 44, "upper_particles": PARTICLES, "mass": MASS},
         "horizontal": {},
         "damping": {"coefficient": DRAG},
         "plate": {"free": ["x", "z"], "mass": PLATE_MASS, "damping": PLATE_DRAG},
         "cantilever": {"stiffness": STIFFNESS, "velocity": VELOCITY},
         "accuracy": {"tolerance": 1e-2},
         "experiment": {"kind": "slide", "normal_force": 1.0, "distance": DISTANCE},
-    } | changes  # fmt: skip
+    }
+    return chains(30.0, 2.0, (1.0, 0.5, 0.5, 1.0), title="slide", **tables | changes)
 
 
 @pytest.fixture(scope="module")
-def slid(tmp_path_factory: pytest.TempPathFactory) -> Run:
-    return run(read_scene(sliding()), tmp_path_factory.mktemp("slide") / "run", figures=False)
+def slid() -> Run:
+    return run(sliding())
 
 
 @pytest.fixture(scope="module")
-def back(tmp_path_factory: pytest.TempPathFactory) -> Run:
+def back() -> Run:
     """A way there and, twice as fast, further back."""
     path = {"kind": "slide", "normal_force": 1.0, "path": [[0.1, 2.5], [-0.2, 4.0]]}
-    return run(read_scene(sliding(experiment=path)), tmp_path_factory.mktemp("back") / "run", figures=False)
+    return run(sliding(experiment=path))
 
 
 def test_the_cantilever_pulls_as_much_as_friction_and_drag_hold_back(slid: Run) -> None:
@@ -100,14 +99,14 @@ def test_a_way_there_and_back_is_driven_leg_by_leg(back: Run) -> None:
     assert back.results["mean_friction"].value > 0.0  # against the way
 
 
-def failure(**changes: Any) -> str:
-    with TemporaryDirectory() as folder, pytest.raises(RunError) as caught:
-        run(read_scene(sliding(**changes)), folder, figures=False)
-    return str(caught.value)
-
-
-def test_a_plate_that_falls_behind_the_drive_does_not_slide_steadily() -> None:
+def test_a_plate_that_falls_behind_the_drive_does_not_slide_steadily(tmp_path: Path) -> None:
     """One that swings for longer than the way is named as why: 2π √((M + N m)/k)."""
+
+    def failure(**changes: Any) -> str:
+        with pytest.raises(RunError) as caught:
+            run(sliding(**changes), tmp_path / "run", figures=False)
+        return str(caught.value)
+
     said = failure(
         plate={"free": ["x", "z"], "mass": 60.0, "damping": 0.1}, damping={"coefficient": 0.02},
         cantilever={"stiffness": 0.25, "velocity": 0.2},
@@ -126,8 +125,7 @@ def test_a_drive_is_too_fast_above_the_velocity_that_is_told() -> None:
     limit = np.sqrt(1.2 / 1.5) / (2.0 * np.pi)
     for share, told in ((0.999, False), (1.001, True)):
         path = {"kind": "slide", "normal_force": 1.0, "path": [[share * limit, 1.0]]}
-        with TemporaryDirectory() as folder:
-            warnings = run(read_scene(sliding(experiment=path, bodies=bodies)), folder, figures=False).warnings
+        warnings = run(sliding(experiment=path, bodies=bodies)).warnings
         assert ("fast" in warnings) == told
     assert f"Use a velocity below {limit:.3g} LU/TU" in warnings["fast"]
 

@@ -12,12 +12,11 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from tests.decks.test_lengths_and_forces import SHARES, pair
+from tests.decks.test_lengths_and_forces import SHARES, SLIDING, pair, slide
 from tests.decks.written import UPPER, Written, written
 from tests.scenes import LAW, chains
 
 RADIUS, SPRING, SPACING, MASS, FORCE = 200.0, 0.7, 0.5, 3.0, 0.5
-SLIDING = (1.0, 0.5, 0.5, 1.0)
 LOAD = {"kind": "load", "method": "dynamic", "force": FORCE}
 PATH = {"kind": "path", "method": "dynamic", "displacements": [0.05]}
 AUTO: dict[str, Any] = {"damping": {"coefficient": "auto"}}
@@ -36,13 +35,12 @@ def deck(**tables: Any) -> Written:
 
 def sliding(tolerance: float = 1e-3, **changes: Any) -> dict[str, Any]:
     """Tables of a slide; keys of bodies are added, other tables are replaced."""
-    bodies = {"spacing": 1.0, "mass": MASS, "upper_offset": 0.5} | changes.pop("bodies", {})
-    tables: dict[str, Any] = {
-        "horizontal": {}, "damping": {"coefficient": 0.3}, "plate": {"free": ["x", "z"], "damping": 0.1},
-        "cantilever": {"stiffness": 0.5, "velocity": 0.1}, "accuracy": {"tolerance": tolerance},
-        "experiment": {"kind": "slide", "normal_force": 1.0, "distance": 7.0},
+    bodies = {"spacing": 1.0, "mass": MASS} | changes.pop("bodies", {})
+    own = {
+        "damping": {"coefficient": 0.3}, "plate": {"free": ["x", "z"], "damping": 0.1},
+        "accuracy": {"tolerance": tolerance},
     }  # fmt: skip
-    return chains(30.0, 2.0, law=SLIDING, bodies=bodies, **tables | changes)
+    return slide(7.0, **bodies) | own | changes
 
 
 def stiffest(spring: float, spacing: float, law: tuple[float, ...] = LAW) -> float:
@@ -112,7 +110,7 @@ def test_an_automatic_drag_is_critical_for_plate_and_particles_on_the_softened_c
     found = deck(**AUTO, plate={"mass": mass})
     count = len(found.atoms[UPPER])
     plate = count * MASS if mass == "auto" else mass
-    assert found.plate_mass == pytest.approx(plate)
+    assert (found.masses[UPPER], found.plate_mass) == (MASS, pytest.approx(plate))
     drag = found.number("damping_coefficient")
     moving = plate + count * MASS
     assert count * drag == pytest.approx(2.0 * math.sqrt(0.6 * contact * moving), rel=1e-6)
@@ -233,19 +231,3 @@ def test_rows_and_timesteps_make_the_drives_way_exactly(
         assert steps[0] == FEWEST_STEPS or time / len(steps) / (steps[0] - FEWEST_STEPS) > longest
         wanted = np.clip(time / distance / longest / 10.0, FEWEST_ROWS, MOST_ROWS)
         assert len(steps) / distance == pytest.approx(wanted, abs=1.0 + 1.0 / distance)
-
-
-def test_with_its_own_mass_a_drag_of_half_a_step_before_is_exact_to_second_order() -> None:
-    """Rows of LAMMPS's scheme, each with the right velocity at its start, beside the closed form exp(−γ t/m)."""
-    drag, rows, v = 2.0, 4, 1.0
-    found = written(sliding(damping={"coefficient": drag}))
-    step, count = found.number("cantilever_time_step"), round(found.numbers("row_steps")[-1])
-    for _ in range(rows):
-        a = -drag * v / found.masses[UPPER]
-        for _ in range(count):
-            half = v + 0.5 * step * a
-            a = -drag * half / found.masses[UPPER]
-            v = half + 0.5 * step * a
-    assert v == pytest.approx(math.exp(-drag * rows * count * step / MASS), abs=0.1 * (drag * step / MASS) ** 2)
-    still = deck(damping={"coefficient": 0.3}, plate={"mass": 7.0})
-    assert (still.masses[UPPER], still.plate_mass) == (MASS, pytest.approx(7.0))

@@ -9,25 +9,9 @@ import numpy as np
 import pytest
 
 from contact1d import Run, SceneError, read_scene, run
-from validation.references.spring_sliders import SpringSliders
+from tests.validation.test_tangential import EXACT, MU, RADIUS, exact, tables
 
-LOAD, RADIUS, MU = 40.0, 1000.0, 0.3
-EXACT = 1e-10
-"""Of μN: round-off of a history."""
-
-
-def scene(places: Any, coefficient: float = MU, bodies: dict[str, Any] | None = None, **load: Any) -> dict[str, Any]:
-    own = {
-        "particles": "auto", "spacing": 1.0, "reduction": "mdr", "lower": "rigid_plane",
-        "profile": {"kind": "parabola", "radius": RADIUS}, "bulk_stiffness": 1.0, "bulk_stiffness_tangential": 0.8,
-    }  # fmt: skip
-    experiment = {"kind": "tangential", "displacements": places} | (load or {"normal_force": LOAD})
-    friction = {"coefficient": coefficient}
-    return {"title": "hard", "bodies": own | (bodies or {}), "friction": friction, "experiment": experiment}
-
-
-def finished(tables: dict[str, Any]) -> Run:
-    return run(tables)
+LOAD = 40.0
 
 
 def value(run: Run, name: str) -> float:
@@ -36,7 +20,7 @@ def value(run: Run, name: str) -> float:
 
 def test_without_friction_nothing_resists_and_endless_friction_gives_all_back() -> None:
     places = [0.1, -0.3, 0.2]
-    none, endless = (finished(scene(places, coefficient=mu)) for mu in (0.0, 1e6))
+    none, endless = (run(tables(places, coefficient=mu)) for mu in (0.0, 1e6))
     assert none.friction["tangential_force"].tolist() == [0.0] * 3
     touching = int((endless.profiles["final"].pressure > 0.0).sum())
     assert endless.friction["tangential_force"] == pytest.approx(0.8 * touching * np.array(places), rel=EXACT)
@@ -46,7 +30,7 @@ def test_without_friction_nothing_resists_and_endless_friction_gives_all_back() 
 
 def test_a_load_that_is_taken_away_while_stuck_takes_all_force_with_it() -> None:
     """All that the springs held is dissipated, little by little from the edge inwards; then the contact begins anew."""
-    done = finished(scene([0.1, 0.1, 0.15, 0.15], normal_force=[LOAD, 0.0, 0.0, LOAD]))
+    done = run(tables([0.1, 0.1, 0.15, 0.15], normal_force=[LOAD, 0.0, 0.0, LOAD]))
     forces, columns = done.friction["tangential_force"], done.friction
     assert forces[0] > 0.0
     assert forces[1:] == pytest.approx([0.0] * 3, abs=EXACT * MU * LOAD)
@@ -59,7 +43,7 @@ def test_a_load_that_is_taken_away_while_stuck_takes_all_force_with_it() -> None
 
 def test_a_contact_that_grows_while_it_is_drawn_sticks_within_the_cone_of_friction() -> None:
     """On one straight way from the first touch F_x/F_N = k_t u/k_n d: below μ nothing slips, beyond it all does."""
-    within, beyond = (finished(scene([0.0, way], normal_displacement=[0.0, 0.9])) for way in (0.27, 0.5))
+    within, beyond = (run(tables([0.0, way], normal_displacement=[0.0, 0.9])) for way in (0.27, 0.5))
     assert value(within, "tangential_force") == pytest.approx(0.8 * 0.3 * value(within, "normal_force"), rel=1e-9)
     assert value(within, "dissipated_energy") == pytest.approx(0.0, abs=1e-12)
     assert value(within, "stick_radius") == pytest.approx(value(within, "contact_radius"), rel=1e-3)
@@ -82,15 +66,9 @@ WAYS = {
 @pytest.mark.parametrize("name", WAYS)
 def test_on_a_hard_way_every_row_is_the_sum_over_springs_with_sliders(name: str) -> None:
     depths, places = map(list, zip(*WAYS[name], strict=True))
-    done = finished(scene(places, normal_displacement=depths))
-    chain = SpringSliders((done.profiles["final"].x ** 2 / RADIUS).tolist(), 1.0, 0.8, MU)
-    chain.move(depths[0], 0.0)
-    expected = []
-    for stop in WAYS[name]:
-        chain.move(*stop)
-        expected.append((chain.tangential_force, chain.dissipated))
+    done = run(tables(places, normal_displacement=depths))
+    forces, lost = exact(done)
     unit = EXACT * max(MU * max(done.friction["normal_force"]), 1e-9)
-    forces, lost = np.transpose(expected)
     assert done.friction["tangential_force"] == pytest.approx(forces, abs=unit)
     assert done.friction["dissipated_energy"] == pytest.approx(lost, abs=unit)
 
@@ -100,22 +78,17 @@ def test_a_particle_on_the_edge_of_the_contact_or_of_its_stick_zone(nudge: float
     """d = h(10.5), where a particle just touches, and then k_t u = μ k_n (d − h(5.5)), where one just slips."""
     depth = 10.5**2 / RADIUS + nudge
     place = MU / 0.8 * (10.5**2 - 5.5**2) / RADIUS + nudge
-    done = finished(scene([place, 0.5 * place, place], normal_displacement=depth))
-    profile = done.profiles["final"]
-    chain = SpringSliders((profile.x**2 / RADIUS).tolist(), 1.0, 0.8, MU)
-    expected = []
-    for stop in (0.0, place, 0.5 * place, place):
-        chain.move(depth, stop)
-        expected.append(chain.tangential_force)
-    assert done.friction["tangential_force"] == pytest.approx(expected[1:], abs=EXACT * expected[1])
+    done = run(tables([place, 0.5 * place, place], normal_displacement=depth))
+    forces, _ = exact(done)
+    assert done.friction["tangential_force"] == pytest.approx(forces, abs=EXACT * forces[0])
     assert value(done, "contact_radius") == pytest.approx(10.5, abs=1e-3)
     assert done.friction["stick_radius"][0] == pytest.approx(5.5, abs=1e-3)
 
 
 def test_a_flat_punch_sticks_and_then_slips_as_a_whole() -> None:
     body = {"profile": {"kind": "flat_punch", "radius": 10.0}}
-    tables = scene([0.1, 0.74, 0.76, 0.5], normal_force=40.0, bodies=body)
-    done = finished(tables)
+    punch = tables([0.1, 0.74, 0.76, 0.5], normal_force=LOAD, bodies=body)
+    done = run(punch)
     # 20 particles: each carries 2 FU and gives 0.8 u up to 0.6 FU.
     expected = [1.6, 11.84, 12.0, 12.0 - 20.0 * 0.8 * 0.26]
     assert done.friction["tangential_force"] == pytest.approx(expected, rel=EXACT)
@@ -126,10 +99,9 @@ def test_a_flat_punch_sticks_and_then_slips_as_a_whole() -> None:
 def test_so_small_a_load_that_two_particles_carry_it() -> None:
     """Each carries its share and gives as its spring and slider say."""
     load = 1e-6
-    done = run(scene([0.1 * load, 2.0 * load, 1.5 * load], normal_force=load))
+    done = run(tables([0.1 * load, 2.0 * load, 1.5 * load], normal_force=load))
     assert int((done.profiles["final"].pressure > 0.0).sum()) == 2
-    expected = np.array([0.08 * 2, MU, max(MU - 0.4 * 2, -MU)]) * load
-    assert done.friction["tangential_force"] == pytest.approx(expected, abs=1e-6 * load)
+    assert done.friction["tangential_force"] == pytest.approx(exact(done)[0], abs=1e-6 * load)
 
 
 @pytest.mark.parametrize(
@@ -143,5 +115,5 @@ def test_so_small_a_load_that_two_particles_carry_it() -> None:
 )
 def test_a_load_that_is_none_or_two_or_too_many_is_refused(load: dict[str, Any], words: str) -> None:
     with pytest.raises(SceneError, match=words) as caught:
-        read_scene(scene([0.1, 0.2], **load))
+        read_scene(tables([0.1, 0.2], **load))
     assert len(caught.value.problems) == 1

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import Run, RunError, run
-from contact1d.workflow.errors import SettingsError
+from contact1d import Run, RunError, SettingsError, run
+from tests.scenes import LAW, chains
+from validation.references.interaction import PairInteraction
 
-LAW = {"repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26}}
-SHORT = {"repulsion": {"amplitude": 0.02, "range": 0.03}, "attraction": {"amplitude": 0.01, "range": 0.06}}
+SHORT = (0.02, 0.03, 0.01, 0.06)
 """So short that a particle feels its opposite alone: exp(−1/0.06) is 6e-8."""
 STIFFNESS = 0.83
 FORCE = 1e-6
@@ -33,16 +33,16 @@ WIDE: dict[str, dict[str, Any]] = {
 def done(
     profile: dict[str, Any],
     experiment: dict[str, Any],
-    law: dict[str, Any] | None = None,
+    law: tuple[float, ...] | None = None,
     figures: bool = False,
     folder: Path | None = None,
     **bodies: Any,
 ) -> Run:
     """On a rigid plane without a law, on particles with one."""
-    lower = "rigid_plane" if law is None else "particles"
-    own = {"particles": "auto", "spacing": 1.0, "profile": profile, "bulk_stiffness": STIFFNESS, "lower": lower}
-    tables = {"title": "hard profile", "bodies": own | bodies, "experiment": experiment}
-    return run(tables | ({"interaction": law} if law else {}), folder, figures)
+    alone: dict[str, Any] = {} if law else {"interaction": None}
+    body = {"profile": profile, "lower": "particles" if law else "rigid_plane"} | bodies
+    tables = chains(1.0, STIFFNESS, law or LAW, title="hard profile", bodies=body, experiment=experiment, **alone)
+    return run(tables, folder, figures)
 
 
 def path(*displacements: float) -> dict[str, Any]:
@@ -77,12 +77,10 @@ def test_profile_whose_reduction_falls_is_refused_with_the_place() -> None:
         done(WIDE["flat rim"], path(0.2), reduction="mdr", particles=20)
 
 
-def largest_tension(law: dict[str, Any]) -> float:
-    """Of one pair [FU]: f′ = 0 at r = ln(A b²/(B a²)) ab/(b − a)."""
-    A, a = law["repulsion"]["amplitude"], law["repulsion"]["range"]
-    B, b = law["attraction"]["amplitude"], law["attraction"]["range"]
-    r = math.log(A * b**2 / (B * a**2)) * a * b / (b - a)
-    return B / b * math.exp(-r / b) - A / a * math.exp(-r / a)
+def largest_tension(numbers: tuple[float, ...]) -> float:
+    """Of one pair [FU]."""
+    law = PairInteraction.of(*numbers)
+    return -float(law.force(np.array(law.extremum_distance(1))))
 
 
 @pytest.mark.parametrize(("radius", "reduction"), [(1.5, "mdr"), (10.0, "geike_popov")])

@@ -19,9 +19,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contact1d import RunError, load_run, read_scene, run
-from contact1d.workflow.errors import Contact1dError
-from tests.scenes import chains
+from contact1d import Contact1dError, RunError, load_run, read_scene, run
+from tests.scenes import PLANE, chains
 from tests.slurm import slurm
 
 ROOT = Path(__file__).parents[2]
@@ -30,14 +29,7 @@ LONG = chains(
     100.0, bodies={"particles": 4000}, accuracy={"tolerance": 1e-6}, **TIMED,
     experiment={"kind": "load", "force": 0.3, "method": "dynamic"},
 )  # fmt: skip
-SHORT: dict[str, Any] = {
-    "title": "short",
-    "bodies": {
-        "particles": 21, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 50.0}, "bulk_stiffness": 0.5,
-        "lower": "rigid_plane",
-    },
-    "experiment": {"kind": "load", "force": 0.5},
-}  # fmt: skip
+SHORT = PLANE | {"experiment": {"kind": "load", "force": 0.5}}
 SAME = 1e-10
 """Relative: sums in another order, and what a minimiser makes of that. Found: 1e-11."""
 

@@ -29,7 +29,7 @@ SHARP, BESIDE = 1e-4, 0.01
 """The tolerance, and bound, where snaps are looked at, and how near rows are to them over the range."""
 
 
-@pytest.mark.parametrize(("ratio", "wide"), [(1.5, 1.0), (6.0, 3.0), (30.0, 1.0)])
+@pytest.mark.parametrize(("ratio", "wide"), [(1.5, 1.0), (6.0, 3.0), pytest.param(30.0, 1.0, marks=pytest.mark.slow)])
 def test_every_row_is_on_its_branch(ratio: float, wide: float) -> None:
     stiffness = 2.0 * float(LAW.force_slope(LAW.extremum_distance(2))) / ratio
     places = np.arange(COUNT) - 0.5 * (COUNT - 1)

@@ -1,7 +1,6 @@
 """Plates that are hard for `fix rigid` and for the search: of three particles, nearly a line, with momentum."""
 
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -14,7 +13,6 @@ from validation.references.pull_off import pull_off
 
 LITTLE_DRAG = 0.09626
 """A tenth of the automatic one [FU·TU/LU]."""
-TIMED: dict[str, Any] = {"damping": {"coefficient": "auto"}, "plate": {}}
 
 
 def test_a_plate_with_momentum_does_not_break_the_contact_too_early() -> None:

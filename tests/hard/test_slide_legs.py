@@ -41,7 +41,9 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] * name.endswith("one by one")) for name in CASES]
+)
 def test_a_hard_slide_is_the_motion_of_the_integrator(name: str) -> None:
     shipped, changes = CASES[name]
     scene = read_scene(SCENES / f"{shipped}.toml").with_(changes)

@@ -11,28 +11,15 @@ from typing import Any
 
 import pytest
 
-from contact1d import sweep
-from contact1d.workflow.errors import Contact1dError
+from contact1d import Contact1dError, sweep
 from tests.slurm import slurm
+from tests.sweeps import FORCE, plane
 
 pytestmark = pytest.mark.cluster
 POINTS, MANY = 12, 105
 """Of one job, and of two: the second has five."""
 TABLE = "results.csv"
-SWEEP: dict[str, Any] = {
-    "title": "a sweep",
-    "base": {
-        "title": "on a plane",
-        "bodies": {
-            "particles": 41, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 100.0}, "bulk_stiffness": 1.0,
-            "lower": "rigid_plane",
-        },
-        "experiment": {"kind": "load", "force": 1.0},
-    },
-    "axes": [{"key": "experiment.force", "from": 0.1, "to": 900.0, "steps": POINTS - 1}],
-}  # fmt: skip
-
-
+SWEEP = plane({"key": FORCE, "from": 0.1, "to": 900.0, "steps": POINTS - 1})
 FINE: dict[str, Any] = {"particles": "auto", "spacing": 0.005}
 """Bodies of runs that take long enough for a job to be cancelled between two."""
 PATIENCE = 120.0

@@ -13,6 +13,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from contact1d import run
+from tests.scenes import chains
 
 RADIUS, SPACING, FORCE = 1000.0, 0.5, 40.0
 PARTICLES, MASS, DRAG = 200, 1e-3, 1e-4
@@ -22,7 +23,7 @@ SLACK = 2.0 * PARTICLES * MASS / PLATE
 """Relative: what particles take along when they touch, and swing with."""
 
 
-@pytest.mark.parametrize("time", [1.0, 2.0, 5.0, 8.0, 20.0, 60.0])
+@pytest.mark.parametrize("time", [1.0, 5.0, 8.0, 60.0])
 def test_a_force_that_is_held_has_its_motion_at_every_time(time: float) -> None:
     def change(_: float, state: Any) -> list[float]:
         d, v = max(state[0], 0.0), state[1]
@@ -36,14 +37,12 @@ def test_a_force_that_is_held_has_its_motion_at_every_time(time: float) -> None:
         "force": 4.0 / 3.0 * math.sqrt(RADIUS) * d**1.5,
         "contact_radius": math.sqrt(RADIUS * d),
     }
-    bodies = {
-        "particles": PARTICLES, "spacing": SPACING, "bulk_stiffness": SPACING, "mass": MASS, "reduction": "mdr",
-        "lower": "rigid_plane", "profile": {"kind": "parabola", "radius": RADIUS},
-    }  # fmt: skip
-    found = run({
-        "title": "held", "bodies": bodies, "damping": {"coefficient": DRAG}, "accuracy": {"tolerance": 1e-2},
-        "plate": {"mass": PLATE, "damping": DAMPING}, "experiment": {"kind": "hold", "force": FORCE, "duration": time},
-    })  # fmt: skip
+    bodies = {"particles": PARTICLES, "spacing": SPACING, "mass": MASS, "reduction": "mdr", "lower": "rigid_plane"}
+    found = run(chains(
+        RADIUS, SPACING, title="held", interaction=None, bodies=bodies, damping={"coefficient": DRAG},
+        accuracy={"tolerance": 1e-2}, plate={"mass": PLATE, "damping": DAMPING},
+        experiment={"kind": "hold", "force": FORCE, "duration": time},
+    ))  # fmt: skip
     for name, value in exact.items():
         if name in found.results:
             one = found.results[name]

@@ -2,7 +2,6 @@
 
 import gc
 import inspect
-import pydoc
 import subprocess
 import sys
 from collections.abc import Callable
@@ -41,12 +40,6 @@ print([name for name in ("numpy", "pint") if name in sys.modules])
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["[]", "[]"]
-
-
-def test_help_names_everything() -> None:
-    text = pydoc.render_doc(contact1d, renderer=pydoc.plaintext)
-    for name in contact1d.__all__:
-        assert f"class {name}" in text or f"{name}(" in text, name
 
 
 def test_a_scene_comes_from_a_path_text_tables_or_a_scene(plane: MakeScene, tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -194,36 +195,19 @@ def test_environment_of_a_worker(environ: dict[str, str], transports: str | None
     assert not [key for key in environment if key.startswith("PMI")]
 
 
-class Ears:
-    """Remembers the progress that is reported to it."""
-
-    def __init__(self) -> None:
-        self.phases: list[tuple[str, int | None]] = []
-        self.advances: list[int] = []
-
-    def phase(self, name: str, expected_steps: int | None = None, counted: str = "step") -> None:
-        self.phases.append((name, expected_steps))
-
-    def advance(self, steps: int) -> None:
-        self.advances.append(steps)
-
-    def note(self, text: str) -> None: ...
-
-    def close(self) -> None: ...
-
-
 def test_a_long_run_is_heard_of_while_it_lasts(tmp_path: Path) -> None:
     """Steps arrive in several parts, none negative, and add up to the steps of the session."""
-    ears = Ears()
-    with Engine.session(tmp_path, progress=ears) as session:
+    progress = Mock()
+    with Engine.session(tmp_path, progress=progress) as session:
         open_oscillator(session)
         session.execute(f"run {LONG}", phase="running", expected_steps=LONG)
         session.execute("reset_timestep 0\nrun 10")
         assert session.steps == LONG + 10
-    assert ears.phases == [("preparing", None), ("running", LONG)]
-    assert len(ears.advances) >= 3
-    assert min(ears.advances) > 0
-    assert sum(ears.advances) == LONG + 10
+    assert [told.args for told in progress.phase.mock_calls] == [("preparing", None), ("running", LONG)]
+    advances = [told.args[0] for told in progress.advance.mock_calls]
+    assert len(advances) >= 3
+    assert min(advances) > 0
+    assert sum(advances) == LONG + 10
 
 
 def test_a_pipe_gets_lines_and_what_is_left_of_a_phase_takes_as_long_as_what_is_done(

@@ -12,6 +12,7 @@ import pytest
 
 import contact1d
 from contact1d import Contact1dError, FolderError, Quantity, Run, RunError, Scene, load_run, read_scene, run, write_deck
+from tests.scenes import chains
 from tests.sweeps import BROKEN
 
 MakeScene = Callable[..., Scene]
@@ -26,18 +27,11 @@ SHORT = 1300
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory: pytest.TempPathFactory) -> Run:
     """A pull-off with a title that HTML would trip over, and with SI units."""
-    scene = {
-        "title": "a <b> & c",
-        "bodies": {
-            "particles": 40, "spacing": 1.0, "profile": {"kind": "parabola", "radius": 50.0}, "bulk_stiffness": 0.83,
-        },
-        "interaction": {
-            "repulsion": {"amplitude": 0.18, "range": 0.13}, "attraction": {"amplitude": 0.09, "range": 0.26},
-        },
-        "material": {"upper": STEEL, "lower": STEEL, "length_unit": 2e-9},
-        "accuracy": {"tolerance": 1e-2},
-        "experiment": {"kind": "pull_off", "preload": 0.2},
-    }  # fmt: skip
+    scene = chains(
+        50.0, title="a <b> & c", bodies={"particles": 40}, accuracy={"tolerance": 1e-2},
+        material={"upper": STEEL, "lower": STEEL, "length_unit": 2e-9},
+        experiment={"kind": "pull_off", "preload": 0.2},
+    )  # fmt: skip
     return run(scene, tmp_path_factory.mktemp("run") / "small")
 
 

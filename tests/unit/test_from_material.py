@@ -222,7 +222,7 @@ def test_what_the_law_implies_is_its_work_to_part_a_row_at_the_edge(
         200.0, law=(0.4, 0.25, 0.2, 0.5), bodies={"spacing": spacing, "reduction": reduction},
         accuracy={"tolerance": TOLERANCE}, experiment={"kind": "pull_off", "preload": 0.5},
     )  # fmt: skip
-    done = run(scene, figures=False)
+    done = run(scene)
     energy, work = done.results["separation_energy"], done.results["work_of_adhesion"]
     assert (energy.unit, work.unit) == ("FU", "FU/LU")
     assert energy.value == pytest.approx(row_work(done) / spacing, rel=TRAPEZOID)

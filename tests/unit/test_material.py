@@ -27,8 +27,8 @@ SCENES = {
 
 
 @pytest.fixture(scope="module")
-def finished(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Run]:
-    return {name: run(data, tmp_path_factory.mktemp(name), figures=False) for name, data in SCENES.items()}
+def finished() -> dict[str, Run]:
+    return {name: run(data) for name, data in SCENES.items()}
 
 
 @pytest.mark.parametrize(
@@ -58,7 +58,7 @@ def test_springs_and_units_of_the_material_make_its_layer(lower: str, reduction:
     scene = read_scene(tables(E_STAR | UNITS, PATH, bulk_stiffness="auto", **how))
     chains = 2 if lower == "particles" else 1
     assert scene.bulk_stiffness * 1e-6 / 1e-9 / chains == pytest.approx(share * LAYER, rel=ROUND_OFF)
-    done = run(tables(E_STAR | {"length_unit": 1e-9}, PATH, **how) | {"accuracy": {"tolerance": 1e-2}}, figures=False)
+    done = run(tables(E_STAR | {"length_unit": 1e-9}, PATH, **how) | {"accuracy": {"tolerance": 1e-2}})
     units = done.document["units"]
     assert units["LU"] == {"value": 1e-9, "uncertainty": 0.0, "unit": "m"}
     assert 0.83 * units["FU"]["value"] / 1e-9 / chains == pytest.approx(share * LAYER, rel=ROUND_OFF)
@@ -122,7 +122,7 @@ def test_a_run_without_both_results_has_no_units_by_jkr() -> None:
     """The radius of so sharp a parabola may be 0; a path need not find F_A."""
     sharp = tables(JKR, {"kind": "pull_off", "preload": 0.01}, profile={"kind": "parabola", "radius": 0.05})
     for data, missing in ((sharp, "zero_load_radius above 0"), (tables(JKR, PATH), "adhesion_force")):
-        done = run(data | {"accuracy": {"tolerance": 1e-2}}, figures=False)
+        done = run(data | {"accuracy": {"tolerance": 1e-2}})
         assert done.warnings["no_units"].startswith(f"the run found no {missing}")
         assert "units" not in done.document
 

@@ -1,17 +1,14 @@
-"""Cattaneo and Mindlin's closed forms along any way, and against springs with sliders."""
+"""Cattaneo and Mindlin's closed forms along any way."""
 
 import math
 
 import numpy as np
 import pytest
 
-from contact1d.analysis.theory.mindlin import mindlin_path, mindlin_stick_path, sliding_displacement
-from validation.references.mindlin import mindlin_loop_area, raised_load_force
-from validation.references.spring_sliders import SpringSliders
+from contact1d.analysis.theory.mindlin import mindlin_path, mindlin_stick_path
+from validation.references.mindlin import mindlin_loop_area
 
 N, MU, SLIDING = 40.0, 0.3, 0.36
-EDGES = 1e-6
-"""Relative: 4000 springs in the contact, whose two kinks leave (h/a)² and less."""
 
 
 def test_the_stick_radius_on_a_way_is_that_of_half_the_way_since_the_turn() -> None:
@@ -39,19 +36,3 @@ def test_beyond_sliding_the_force_stays_and_a_way_back_of_twice_that_turns_it_ro
     assert forces[0] == MU * N
     assert forces[1] == pytest.approx(MU * N * (1.0 - 2.0 * (1.0 - 0.5**1.5)), rel=1e-13)
     assert forces[2:] == pytest.approx([-MU * N] * 2, rel=1e-13)
-
-
-def test_many_springs_are_mindlin_and_deresiewicz_under_a_raised_load() -> None:
-    """The paraboloid x²/R of the method of dimensionality reduction, in springs of one stiffness per length."""
-    R, ratio, depths, count = 1000.0, 0.8, (0.6, 0.9), 2000
-    slidings = tuple(sliding_displacement(MU, ratio, depth) for depth in depths)
-    loads = tuple(4.0 / 3.0 * math.sqrt(R) * depth**1.5 for depth in depths)
-    turn, spacing = 0.5 * slidings[0], 80.0 / count
-    x = spacing * (np.arange(count) + 0.5) - 40.0
-    for beyond in (0.3, 0.9, 1.5):
-        chain = SpringSliders((x**2 / R).tolist(), spacing, ratio * spacing, MU)
-        place = turn + beyond * (slidings[1] - slidings[0])
-        for stop in ((depths[0], 0.0), (depths[0], turn), (depths[1], turn), (depths[1], place)):
-            chain.move(*stop)
-        expected = raised_load_force(place, turn, (loads[0], loads[1]), (slidings[0], slidings[1]), MU)
-        assert chain.tangential_force == pytest.approx(expected, abs=20.0 * EDGES * MU * loads[1])

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from contact1d import Run, read_scene, run
+from contact1d import Run, run
 from contact1d.__main__ import app
 from contact1d.analysis import figures, plots
 from contact1d.analysis.chart import Axis, Chart, Panel, Series
 from contact1d.workflow.units import Scales, scale_of
 from tests.pages import figures_on
-from tests.scenes import chains
+from tests.scenes import STEEL_ON_GLASS, chains
 
 ROUND_OFF = 1e-12  # relative; closed forms of a few operations
 GRID = 2e-3  # of F_A; the theory is drawn with 400 points
@@ -38,10 +38,10 @@ def lines(axis: Any) -> dict[str, np.ndarray]:
 
 
 @pytest.fixture(scope="module")
-def pulled(tmp_path_factory: pytest.TempPathFactory) -> Run:
+def pulled() -> Run:
     pull = {"kind": "pull_off", "preload": 0.2}
     tables = chains(50.0, bodies={"particles": 40}, accuracy={"tolerance": 1e-2}, experiment=pull)
-    return run(read_scene(tables), tmp_path_factory.mktemp("pulled"), figures=False)
+    return run(tables)
 
 
 def test_the_line_load_is_a_step_for_each_particle_with_the_contact_radius_marked(pulled: Run) -> None:
@@ -75,12 +75,11 @@ def test_jkr_over_displacement_obeys_its_own_equations(pulled: Run) -> None:
 
 
 @pytest.mark.parametrize("reduction", ["mdr", "geike_popov"])
-def test_hertz_is_the_integral_of_the_springs_under_the_parabola(reduction: str, tmp_path: Path) -> None:
+def test_hertz_is_the_integral_of_the_springs_under_the_parabola(reduction: str) -> None:
     """∫ c (d − x²/2R₁) dx over |x| < √(2R₁d), with c = k/s; x²/R by the MDR and x²/2R as drawn."""
     bodies = {"lower": "rigid_plane", "spacing": 0.5, "reduction": reduction}
     path = {"kind": "path", "displacements": [0.0, 0.5, 1.0, 2.0]}
-    done = run(read_scene(chains(100.0, 0.8, interaction=None, bodies=bodies, experiment=path)), tmp_path / "run",
-               figures=False)  # fmt: skip
+    done = run(chains(100.0, 0.8, interaction=None, bodies=bodies, experiment=path))
     half = 50.0 if reduction == "mdr" else 100.0
     d, force = lines(done.plot("force_displacement").axes[0])["Hertz"].T
     expected = 0.8 / 0.5 * 4.0 / 3.0 * np.sqrt(2.0 * half) * d**1.5
@@ -105,12 +104,10 @@ def test_force_over_radius_is_normalised_and_leaves_out_what_has_no_radius(pulle
     assert jkr[:, 1].min() == pytest.approx(-1.0, abs=GRID)
 
 
-HELD = {
-    "title": "held",
-    "bodies": {"particles": 41, "spacing": 1.0, "lower": "rigid_plane", "bulk_stiffness": 1.0, "mass": 1.0,
-               "profile": {"kind": "parabola", "radius": 200.0}},
-    "damping": {"coefficient": 0.3},
-}  # fmt: skip
+HELD = chains(
+    200.0, 1.0, title="held", interaction=None, damping={"coefficient": 0.3},
+    bodies={"particles": 41, "lower": "rigid_plane", "mass": 1.0},
+)  # fmt: skip
 
 
 @pytest.mark.parametrize("kind", ["force", "displacement"])
@@ -118,7 +115,7 @@ def test_a_hold_is_drawn_over_time(kind: str, tmp_path: Path) -> None:
     """What is free over the time of its states; in a whole file and on the page."""
     held = {"force": {"displacement": 0.5}, "displacement": {"force": 4.0}}[kind] | {"kind": "hold", "duration": 5.0}
     plate = {"plate": {"mass": 20.0}} if kind == "displacement" else {}
-    done = run(read_scene(HELD | plate | {"experiment": held}), tmp_path / "run")
+    done = run(HELD | plate | {"experiment": held}, tmp_path / "run")
     (axis,) = done.plot().axes
     assert axis.get_xlabel() == "time (TU)"
     assert axis.get_ylabel().startswith(kind)
@@ -143,12 +140,12 @@ def test_the_pull_off_force_is_drawn_across_with_its_uncertainty(pulled: Run) ->
     assert [ends.min(), ends.max()] == pytest.approx([-tension.value - spread, -tension.value + spread], rel=1e-9)
 
 
-def test_particles_within_the_stick_radius_stick_and_the_others_slip(tmp_path: Path) -> None:
+def test_particles_within_the_stick_radius_stick_and_the_others_slip() -> None:
     """Of a loop: at its end c < a. No shear exceeds μp."""
     bodies = {"lower": "rigid_plane", "reduction": "mdr", "bulk_stiffness_tangential": 0.4}
     move = {"kind": "tangential", "normal_force": 40.0, "displacements": [0.0, 0.2, 0.4, 0.2, 0.1]}
     scene = chains(1000.0, 0.5, interaction=None, bodies=bodies, friction={"coefficient": 0.3}, experiment=move)
-    done = run(read_scene(scene), tmp_path / "run", figures=False)
+    done = run(scene)
     radii = {"farthest": done.curve.stick_radius[2], "final": done.results.stick_radius.value}
     assert 0.0 < radii["final"] < done.results.contact_radius.value
     for axis, (state, radius) in zip(done.plot("stick_slip").axes, radii.items(), strict=True):
@@ -193,15 +190,8 @@ def test_a_pressure_without_bound_does_not_hide_the_rest() -> None:
 
 def test_figures_come_in_the_format_that_is_asked_for(tmp_path: Path) -> None:
     """A new run in the same folder takes those of another format away; a body's pressure is in SI."""
-    scene = read_scene({
-        "title": "Steel on glass",
-        "bodies": {"particles": "auto", "spacing": 2.0, "profile": {"kind": "parabola", "radius": 10000.0},
-                   "bulk_stiffness": "auto", "lower": "rigid_plane"},
-        "material": {"contact_modulus": 55e9, "length_unit": 1e-6, "force_unit": 1.0},
-        "experiment": {"kind": "load", "force": 1.0},
-    })  # fmt: skip
     for form in ("pdf", "svg"):
-        done = run(scene, tmp_path / "run", figures=form)
+        done = run(STEEL_ON_GLASS, tmp_path / "run", figures=form)
         found = {path for path in done.folder.iterdir() if path.suffix[1:] in BEGINS}
         names = ("force_displacement", "force_radius", "pressure", "pressure_3d")
         assert {path.name for path in found} == {f"{name}.{form}" for name in names}

@@ -12,12 +12,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.integrate import quad
 
 from contact1d import SceneError, read_scene
 
-Array = NDArray[np.float64]
 Function = Callable[[Any], Any]
 
 ROUND_OFF = 1e-13

@@ -13,6 +13,7 @@ import pytest
 from contact1d.analysis.extremum import position_of_minimum
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import compressive_radius, held_radius, moved_centre, tensile_radius
+from validation.references.interaction import PairInteraction
 
 BODY_RADIUS = 1000.0  # LU
 CASES = 200
@@ -33,30 +34,20 @@ def profile(x: np.ndarray, pressure: np.ndarray) -> Profile:
 
 @dataclass(frozen=True)
 class Pair:
-    """Two exponentials with two springs in series: G = r - 2 f(r)/k, f = A/a exp(-r/a) - B/b exp(-r/b), B = 1."""
+    """Two exponentials with two springs in series: G = r - 2 f(r)/k."""
 
-    repulsion: float
-    short: float
-    long: float
+    law: PairInteraction
     stiffness: float
 
-    def force(self, r: np.ndarray | float) -> np.ndarray | float:
-        return self.repulsion / self.short * np.exp(-r / self.short) - np.exp(-r / self.long) / self.long
-
-    def where(self, order: int) -> float:
-        """Distance at which the first (largest tension) or second derivative (steepest) of the force is zero."""
-        ratio = self.repulsion * (self.long / self.short) ** (1 + order)
-        return math.log(ratio) * self.short * self.long / (self.long - self.short)
-
     def undeformed(self, r: np.ndarray | float) -> np.ndarray | float:
-        return r - 2.0 * self.force(r) / self.stiffness
+        return r - 2.0 * self.law.force(r) / self.stiffness
 
     def tension(self, gap: np.ndarray) -> np.ndarray:
         """Force at each undeformed gap, when unloading: a particle that can snap stays in contact until it must."""
-        fold = self.where(2)
-        stays = np.linspace(-6.0 * self.long, fold, 4000)
+        fold = self.law.extremum_distance(2)
+        stays = np.linspace(-6.0 * self.law.longest_range, fold, 4000)
         stays = stays[: int(np.argmax(self.undeformed(stays))) + 1]
-        leaves = np.linspace(fold, 40.0 * self.long, 8000)
+        leaves = np.linspace(fold, 40.0 * self.law.longest_range, 8000)
         leaves = leaves[int(np.argmin(self.undeformed(leaves))) :]
         inside = gap <= self.undeformed(stays[-1])
         low = np.where(inside, stays[0], leaves[0])
@@ -65,23 +56,22 @@ class Pair:
             middle = 0.5 * (low + high)
             above = self.undeformed(middle) > gap
             low, high = np.where(above, low, middle), np.where(above, middle, high)
-        return np.asarray(self.force(0.5 * (low + high)))
+        return np.asarray(self.law.force(0.5 * (low + high)))
 
 
 def random_pair(rng: np.random.Generator, snaps: bool) -> Pair:
     long = float(np.exp(rng.uniform(math.log(0.2), math.log(2.0))))
-    pair = Pair(rng.uniform(1.0, 3.0), long / rng.uniform(1.5, 4.0), long, 1.0)
-    r = pair.where(2)
-    steepest = -pair.repulsion / pair.short**2 * math.exp(-r / pair.short) + math.exp(-r / long) / long**2
+    law = PairInteraction.of(rng.uniform(1.0, 3.0), long / rng.uniform(1.5, 4.0), 1.0, long)
+    steepest = float(law.force_slope(np.array(law.extremum_distance(2))))
     share = rng.uniform(1.02, 3.0) if snaps else rng.uniform(0.05, 0.98)
-    return Pair(pair.repulsion, pair.short, long, 2.0 * steepest / share)
+    return Pair(law, 2.0 * steepest / share)
 
 
 def random_case(rng: np.random.Generator, snaps: bool) -> tuple[np.ndarray, np.ndarray, float]:
     """Places, pressures and true radius of a contact whose lattice lies anywhere."""
     pair = random_pair(rng, snaps)
     radius = rng.uniform(5.0 if snaps else 0.0, 80.0)
-    apex = float(pair.undeformed(pair.where(1))) - radius**2 / (2.0 * BODY_RADIUS)
+    apex = float(pair.undeformed(pair.law.extremum_distance(1))) - radius**2 / (2.0 * BODY_RADIUS)
     x = np.arange(-130.0, 131.0) + rng.uniform(-0.5, 0.5)
     return x, pair.tension(apex + x**2 / (2.0 * BODY_RADIUS)), radius
 
@@ -159,7 +149,7 @@ def test_a_radius_of_a_few_spacings_is_not_known_to_a_thousandth_of_one() -> Non
     found = []
     for _ in range(SMALL_CASES):
         pair, body, exact = random_pair(rng, snaps=False), 10.0 ** rng.uniform(0.3, 2.0), rng.uniform(0.0, 2.5)
-        nearest = float(pair.undeformed(pair.where(1))) - 0.5 * exact**2 / body
+        nearest = float(pair.undeformed(pair.law.extremum_distance(1))) - 0.5 * exact**2 / body
         x = np.arange(-60, 61) + rng.choice([0.0, 0.5])
         radius = tensile_radius(profile(x, pair.tension(nearest + 0.5 * x**2 / body)))
         found.append((radius.value, abs(radius.value - exact) <= radius.uncertainty))

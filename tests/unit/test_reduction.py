@@ -79,7 +79,7 @@ def test_factors_are_those_of_the_two_closed_forms(exponent: float) -> None:
 def pressed(profile: dict[str, Any]) -> Run:
     """On given springs."""
     loaded = {"kind": "load", "force": 1.0}
-    return run(scene(profile, True, bodies={"reduction": "geike_popov"}).with_({"experiment": loaded}), figures=False)
+    return run(scene(profile, True, bodies={"reduction": "geike_popov"}).with_({"experiment": loaded}))
 
 
 def test_lengths_of_the_image_have_a_name_of_their_own() -> None:
@@ -88,6 +88,7 @@ def test_lengths_of_the_image_have_a_name_of_their_own() -> None:
     image, own, pressure = (ball.results[name] for name in ("image_contact_radius", "contact_radius", "mean_pressure"))
     assert (own.value, own.uncertainty) == (0.5 * image.value, 0.5 * image.uncertainty)
     assert pressure.value == pytest.approx(1.0 / (math.pi * own.value**2), rel=1e-12)
+    assert ball.results["peak_pressure"].value == pytest.approx(1.5 * pressure.value, rel=5e-3)  # Hertz
     doubt = ball.warnings["reduction"]
     assert f"{4 ** (1 / 3):.4g} times its contact radius and {4 ** (-2 / 3):.4g} of its mean pressure" in doubt
     assert {"contact_radius", "mean_pressure"}.isdisjoint(cone.results)
@@ -102,6 +103,6 @@ def test_where_both_reductions_say_the_same_nothing_is_doubted() -> None:
         100.0, material=units, experiment={"kind": "pull_off", "preload": 0.3}, bodies={"reduction": "geike_popov"},
         accuracy={"tolerance": 1e-2},
     )  # fmt: skip
-    for done in (pressed(PUNCH), run(by_run, figures=False)):
+    for done in (pressed(PUNCH), run(by_run)):
         assert "reduction" not in done.warnings
         assert not [name for name in done.results if name.startswith("image")]

@@ -10,7 +10,6 @@ import pytest
 
 from validation.references.detachment import detachment, detachment_in_time, garg
 from validation.references.flat_chain import FlatChain
-from validation.references.incommensurate import shared_corrugation
 from validation.references.langevin_ensemble import PulledParticle, ensemble_friction
 from validation.references.prandtl_tomlinson import Corrugation, corrugation, slow_friction
 from validation.references.thermal_friction import free_corrugation, textbook_friction, thermal_friction
@@ -22,13 +21,9 @@ SPRING, DRAG = 0.5 * WELLS.steepest, 1.0
 FLAT = Corrugation(1.0, np.zeros(1))
 
 
-def chain(count: int, below: int, stiffness: float) -> FlatChain:
-    return FlatChain(LAW, 1.0, count, below, LOAD, 1.0, stiffness)
-
-
 def test_one_particle_is_that_of_prandtl_and_tomlinson() -> None:
     """A particle: places at which its slip is looked for."""
-    assert chain(1, 1, 0.06).friction() == pytest.approx(slow_friction(WELLS, 0.06), rel=1e-3)
+    assert FlatChain(LAW, 1.0, 1, 1, LOAD, 1.0, 0.06).friction() == pytest.approx(slow_friction(WELLS, 0.06), rel=1e-3)
 
 
 def test_a_sinusoid_has_the_friction_of_its_ratio() -> None:
@@ -36,14 +31,6 @@ def test_a_sinusoid_has_the_friction_of_its_ratio() -> None:
     wave = Corrugation(1.0, np.asarray([0.1]))
     found = [slow_friction(wave, wave.steepest / eta) / wave.largest_force for eta in (1.0, 2.0, 5.0)]
     assert found == pytest.approx([0.0, 0.2015, 0.5710], abs=1e-4)
-
-
-@pytest.mark.slow
-def test_what_the_plate_gives_way_to_each_slip_falls_as_the_number_of_particles() -> None:
-    few, more = (chain(*pair, 0.03).friction() for pair in ((5, 8), (8, 13)))
-    expected = slow_friction(shared_corrugation(LAW, 1.0, LOAD, 1.0, 0.03), 0.03)
-    assert few < more < expected
-    assert (8.0 * more - 5.0 * few) / 3.0 == pytest.approx(expected, rel=2e-3)  # what follows 1/N in five and eight
 
 
 @pytest.mark.parametrize("velocity", [0.5, 8.0])
@@ -67,6 +54,7 @@ def test_without_heat_the_free_energy_is_the_corrugation() -> None:
     assert top - hollow == pytest.approx(2.0 * WELLS.heights[1], rel=5e-2)
 
 
+@pytest.mark.slow
 def test_the_ensemble_agrees_with_smoluchowski_where_both_hold() -> None:
     """At half the temperature friction would be twelve standard errors larger."""
     temperature, velocity, mass = 0.4 * BARRIER, 1e-2, 0.2

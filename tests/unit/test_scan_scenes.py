@@ -55,15 +55,15 @@ def test_more_noise_is_a_larger_part_of_the_uncertainty(tmp_path: Path) -> None:
     widths, noise = [], Z - X**2 / (2.0 * R) - 0.001 * X - 40.0
     for size in (30.0, 300.0):
         (tmp_path / "scan.csv").write_text(text(z=X**2 / (2.0 * R) + size * noise), encoding="utf-8")
-        done = run(scene(tmp_path / "scan.csv", FIT, "bodies.spacing=1 µm"), figures=False)
+        done = run(scene(tmp_path / "scan.csv", FIT, "bodies.spacing=1 µm"))
         widths.append(done.results.displacement.uncertainty)
     assert widths[1] / widths[0] == pytest.approx(10.0, rel=0.1)
 
 
 def test_a_scan_that_is_not_the_fitted_shape_is_a_warning(file: Path, tmp_path: Path) -> None:
     (tmp_path / "worn.csv").write_text(text(z=np.maximum(Z, 40.0 + 0.001 * X + 0.5)), encoding="utf-8")
-    assert "is no parabola" in run(scene(tmp_path / "worn.csv"), figures=False).warnings["scan_fit"]
-    assert "scan_fit" not in run(scene(file), figures=False).warnings
+    assert "is no parabola" in run(scene(tmp_path / "worn.csv")).warnings["scan_fit"]
+    assert "scan_fit" not in run(scene(file)).warnings
 
 
 def points(found: Scene) -> Any:

@@ -4,10 +4,7 @@ import json
 import os
 import resource
 import shutil
-import signal
-import subprocess
 import sys
-import time
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -22,7 +19,6 @@ from contact1d.__main__ import app
 from tests.pages import figures_on
 from tests.sweeps import BROKEN, FORCE, PLANE, RADIUS, RADIUS_IN_WORDS, Here, Lost, Stated, axis, plane, rows
 
-PATIENCE = 120.0
 SCENE = Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "steel_on_glass.toml"
 MODULUS = 1.0 / ((1.0 - 0.3**2) / 210e9 + (1.0 - 0.22**2) / 70e9)
 TWO = plane(axis(FORCE, 0.5, 1.0))
@@ -196,24 +192,6 @@ def test_a_point_that_kills_its_process_is_a_row_and_takes_no_other_along(
     assert [row["status"] for row in rows(tmp_path / "s")] == ["done", "failed", "done"]
     assert "killed twice" in rows(tmp_path / "s")[1]["reason"]
     assert done.counts == {"done": 2, "failed": 1}
-
-
-def test_a_sweep_that_is_killed_goes_on(tmp_path: Path) -> None:
-    """SIGKILL; then the table is that of a sweep nobody killed, and nothing was run twice."""
-    source = plane({"key": FORCE, "from": 0.1, "to": 1.0, "steps": 5})
-    script = f"import contact1d\ncontact1d.sweep({source!r}, {str(tmp_path / 's')!r}, workers=1, figures=False)\n"
-    begun = subprocess.Popen([sys.executable, "-c", script])
-    until = time.monotonic() + PATIENCE
-    while len(list(tmp_path.glob("s/runs/*/results.json"))) < 2 and begun.poll() is None:
-        assert time.monotonic() < until
-        time.sleep(0.01)
-    begun.send_signal(signal.SIGKILL)
-    begun.wait()
-    stamps = {path: path.stat().st_mtime_ns for path in tmp_path.glob("s/runs/*/results.json")}
-    sweep(source, tmp_path / "s", Here(), figures=False)
-    sweep(source, tmp_path / "whole", Here(), figures=False)
-    assert (tmp_path / "s" / "results.csv").read_text() == (tmp_path / "whole" / "results.csv").read_text()
-    assert all(path.stat().st_mtime_ns == stamp for path, stamp in stamps.items())
 
 
 def test_an_executor_that_is_not_there_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,26 +12,25 @@ import pytest
 
 import contact1d
 from contact1d import Run, SceneError, read_scene
+from tests.scenes import in_si
 
 E_STAR, R = 1e9, 10e-3
-PLANE = {"particles": "auto", "spacing": "auto", "lower": "rigid_plane"}
 PATH = {"kind": "path", "displacements": {"from": "0 nm", "to": "1 µm", "steps": 10}}
 PULL_OFF = {"kind": "pull_off", "preload": "1 mN"}
 CUP = {"kind": "parabola", "radius": "10 mm", "counter_radius": "-12 mm"}
 
 
 def tables(profile: dict[str, Any], experiment: dict[str, Any] = PATH, **more: Any) -> dict[str, Any]:
-    bodies, material = PLANE | {"profile": profile}, {"contact_modulus": E_STAR}
-    return {"title": "x", "bodies": bodies, "material": material, "experiment": experiment} | more
+    material = {"contact_modulus": E_STAR}
+    return in_si(profile, title="x", material=material, experiment=experiment, **more)
 
 
 def run(*scene: Any, **more: Any) -> Run:
-    return contact1d.run(read_scene(tables(*scene, **more)), figures=False)
+    return contact1d.run(read_scene(tables(*scene, **more)))
 
 
 def si(done: Run, name: str) -> tuple[float, float]:
-    found = done.results[name].si
-    assert found is not None
+    found = done.results[name]
     return found.value, found.uncertainty
 
 

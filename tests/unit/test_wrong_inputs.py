@@ -118,18 +118,19 @@ def test_a_wrong_value_gets_its_sentence_and_the_remedy_works(case: Odd) -> None
 @pytest.mark.parametrize("case", DOUBTFUL, ids=lambda case: case.sentence[:70])
 def test_a_doubtful_value_is_told_and_the_remedy_is_not(case: Odd) -> None:
     for scene, told in ((case.set, True), (case.remedy, False)):
-        done = run(read_scene(case.scene, ["experiment.force=0.1 mN", "bodies.spacing=auto", *scene]), figures=False)
+        done = run(read_scene(case.scene, ["experiment.force=0.1 mN", "bodies.spacing=auto", *scene]))
         doubts = [text for name, text in done.warnings.items() if name.startswith("implausible")]
         assert [case.sentence in text for text in doubts] == [True] * told
 
 
 def test_particles_and_temperatures_that_look_wrong_are_told() -> None:
     small = chains(
-        100.0, bodies={"particles": 20}, material={"length_unit": 1e-12, "force_unit": 1e-3},
+        100.0, bodies={"particles": 20}, accuracy={"tolerance": 0.1},
+        material={"length_unit": 1e-12, "force_unit": 1e-3},
         noise={"temperature": "3e5 K", "seed": 1}, damping={"coefficient": "auto"},
         experiment={"kind": "path", "displacements": [0.0, 0.05]},
     )  # fmt: skip
-    warnings = run(small, figures=False).warnings
+    warnings = run(small).warnings
     assert "radius is 1e-10 m, less than the width of two atoms: check its unit" in warnings["implausible_size"]
     assert "repulsion.range is 1.3e-13 m, a tenth of an atom's radius: check its" in warnings["implausible_size"]
     assert "3e+05 K, above any melting point: check its unit" in warnings["implausible_temperature"]

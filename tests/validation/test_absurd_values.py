@@ -9,19 +9,14 @@ from typing import Any
 import pytest
 
 import contact1d
+from tests.scenes import in_si
 
 SOLID = {"terms": [{"share": 0.5, "time": "1 s"}]}
 
 
 def scene(experiment: dict[str, Any], modulus: str = "1 MPa", radius: str = "2 mm", **more: Any) -> dict[str, Any]:
     profile = {"kind": "parabola", "radius": radius}
-    bodies = {"particles": "auto", "spacing": "auto", "lower": "rigid_plane", "profile": profile}
-    return {
-        "title": "absurd",
-        "bodies": bodies,
-        "material": {"contact_modulus": modulus},
-        "experiment": experiment,
-    } | more
+    return in_si(profile, modulus, title="absurd", experiment=experiment, **more)
 
 
 def impact(velocity: str = "0.2 m/s", **law: Any) -> dict[str, Any]:
@@ -49,7 +44,7 @@ SLOW = {"velocity": "1e25 m/s", "exponent": 0.4}
 )
 def test_what_is_out_of_all_proportion_is_one_sentence(tables: dict[str, Any], words: str) -> None:
     with pytest.raises(contact1d.SettingsError, match=words):
-        contact1d.run(tables, figures=False)
+        contact1d.run(tables)
 
 
 @pytest.mark.parametrize(
@@ -74,7 +69,7 @@ def test_what_goes_together_in_time_is_one_sentence(tables: dict[str, Any], word
 def test_a_range_that_is_just_long_enough_is_jkrs() -> None:
     """The limit that the message names, and the force of adhesion there."""
     with pytest.raises(contact1d.SettingsError, match="too short to be resolved") as caught:
-        contact1d.run(scene(PULL, adhesion=ADHESION | {"range": "1e-15 m"}), figures=False)
+        contact1d.run(scene(PULL, adhesion=ADHESION | {"range": "1e-15 m"}))
     least = float(str(caught.value).split("at least ")[1].split(" pm")[0])
     done = contact1d.run(scene(PULL, adhesion=ADHESION | {"range": f"{1.01 * least} pm"}))
     assert done.results.adhesion_force.value == pytest.approx(1.5 * math.pi * 0.03 * 2e-3, rel=1e-6)

@@ -9,22 +9,20 @@ radius goes with √(F_A − F), so a bracket of 1e-3 leaves 3 % of the way from
 what is left of the motion when it counts as rest, a tenth of the tolerance.
 """
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from contact1d import Run
+from contact1d import run
 from tests.scenes import chains
-from validation.references.interaction import Exponential, PairInteraction
+from tests.validation.test_pull_off import STENCIL, radius
+from validation.references.interaction import PairInteraction
 from validation.references.model import ChainModel
 from validation.references.pull_off import pull_off
-from validation.references.solver import ChainSolver, State, trace
-from validation.references.tension_radius import tension_radius
+from validation.references.solver import ChainSolver, trace
 
-RunTables = Callable[[dict[str, Any]], Run]
 Law = tuple[float, float, float, float]
 
 FORCE = 1e-3
@@ -43,7 +41,6 @@ NEARLY_SNAPPING = 0.9
 """Steepest attraction of a pair over the stiffness of its springs in series; it snaps at 1."""
 CHAIN = 160
 """Particles that are enough, whatever the program takes."""
-STENCIL = 9
 STIFFNESS = 0.83
 SHORT: Law = (0.18, 0.13, 0.09, 0.26)
 LONG: Law = (0.4, 0.25, 0.2, 0.5)
@@ -75,13 +72,8 @@ def model_of(
     law: Law, neighbours: float = 0.0, horizontal: bool = False, stiffness: float = STIFFNESS, count: int = CHAIN,
 ) -> ChainModel:  # fmt: skip
     """The same chains for the reference."""
-    terms = PairInteraction(Exponential(*law[:2]), Exponential(*law[2:]))
+    terms = PairInteraction.of(*law)
     return ChainModel(count, stiffness, terms, radius=RADII[law], neighbour_stiffness=neighbours, horizontal=horizontal)
-
-
-def radius(model: ChainModel, state: State) -> float:
-    """Radius of the largest tension over the places where the upper particles are [LU]."""
-    return tension_radius(model.places() + state.upper[:, 0], state.pair_force[:, 1] / model.spacing, STENCIL)
 
 
 @pytest.mark.parametrize(
@@ -89,9 +81,9 @@ def radius(model: ChainModel, state: State) -> float:
     [(LONG, 0.3, True), (LONG, 1.0, False)],
     ids=["neighbours, horizontal", "stiff neighbours"],
 )
-def test_pull_off(run_tables: RunTables, law: Law, neighbours: float, horizontal: bool) -> None:
+def test_pull_off(law: Law, neighbours: float, horizontal: bool) -> None:
     """Stiff neighbours: independent pairs, from which the first tensions follow, are off, and the bracket makes F_A."""
-    finished = run_tables(tables(law, {"kind": "pull_off", "preload": 0.5}, neighbours, horizontal))
+    finished = run(tables(law, {"kind": "pull_off", "preload": 0.5}, neighbours, horizontal))
     found = finished.results
     model = model_of(law, neighbours, horizontal, count=finished.profiles["zero_load"].x.size)
     exact = pull_off(model, 0.5, step=0.25 * law[1])
@@ -102,9 +94,9 @@ def test_pull_off(run_tables: RunTables, law: Law, neighbours: float, horizontal
     assert found.adhesion_force.uncertainty < 1e-3 * exact.adhesion_force
 
 
-def test_load(run_tables: RunTables) -> None:
+def test_load() -> None:
     """These contacts do not snap, so there is one state under a force."""
-    finished = run_tables(tables(LONG, {"kind": "load", "force": -0.5}, 0.3, horizontal=True))
+    finished = run(tables(LONG, {"kind": "load", "force": -0.5}, 0.3, horizontal=True))
     found, model = finished.results, model_of(LONG, 0.3, horizontal=True, count=finished.profiles["final"].x.size)
     start, solver = trace(model, np.arange(-1.0, 0.3, 0.05))[-1], ChainSolver(model)
     place = brentq(lambda d: solver.equilibrium(d, start).force + 0.5, 0.1, 0.65, xtol=1e-10)
@@ -116,7 +108,7 @@ def test_load(run_tables: RunTables) -> None:
 
 
 @pytest.mark.parametrize("share", [1e-2, 3e-4])
-def test_a_tension_just_below_the_largest_is_within_what_is_claimed(run_tables: RunTables, share: float) -> None:
+def test_a_tension_just_below_the_largest_is_within_what_is_claimed(share: float) -> None:
     """There the stiffness falls to zero, so that a force that is a little off moves displacement and radius far."""
     model = model_of(SHORT, 0.3)
     top, solver = pull_off(model, 0.5, step=0.25 * SHORT[1], stencil=STENCIL), ChainSolver(model)
@@ -126,13 +118,13 @@ def test_a_tension_just_below_the_largest_is_within_what_is_claimed(run_tables: 
     exact = solver.equilibrium(brentq(lambda d: solver.equilibrium(d, start).force - force, *ends, xtol=1e-11), start)
     scene = tables(SHORT, {"kind": "load", "force": force}, 0.3)
     for one in (scene, at_rest(scene)):
-        found = run_tables(one).results
+        found = run(one).results
         assert abs(found.displacement.value - exact.displacement) <= found.displacement.uncertainty
         assert abs(found.contact_radius.value - radius(model, exact)) <= found.contact_radius.uncertainty
         assert found.contact_radius.uncertainty < NEAR_PULL_OFF * found.contact_radius.value
 
 
-def test_a_path_in_time_waits_for_equilibrium_where_pairs_nearly_snap(run_tables: RunTables) -> None:
+def test_a_path_in_time_waits_for_equilibrium_where_pairs_nearly_snap() -> None:
     """At this displacement one pair is all but as steep as its springs are stiff, so that it comes to rest slowly."""
     law, displacement = model_of(SHORT).interaction, -0.1
     assert law is not None
@@ -140,6 +132,6 @@ def test_a_path_in_time_waits_for_equilibrium_where_pairs_nearly_snap(run_tables
     scene = tables(SHORT, {"kind": "path", "displacements": [displacement]})
     scene["bodies"]["bulk_stiffness"] = stiffness = 2.0 * steepest / NEARLY_SNAPPING
     del scene["plate"]
-    found = run_tables(scene).curve.force[-1]
+    found = run(scene).curve.force[-1]
     down = np.append(np.arange(-1.0, displacement, 0.05), displacement)
     assert found == pytest.approx(trace(model_of(SHORT, stiffness=stiffness), down)[-1].force, rel=FORCE)

@@ -55,13 +55,10 @@ def test_the_energy_of_a_cycle_is_the_area_of_the_loop(amplitude: float) -> None
     assert energy == pytest.approx(area, rel=QUADRATURE)
 
 
-def test_the_first_cycle_is_the_steady_state_and_cycles_are_their_displacements(tmp_path: Path) -> None:
+def test_the_first_cycle_is_the_steady_state_and_cycles_are_their_displacements() -> None:
     """Every cycle dissipates the same, the area of the loop; the initial loading belongs to none."""
     amplitude = 0.4 * SLIDING
-    one, three = (
-        run(fretting(amplitude=f"{amplitude!r} m", number=number), tmp_path / str(number), figures=False)
-        for number in (1, 3)
-    )
+    one, three = (run(fretting(amplitude=f"{amplitude!r} m", number=number)) for number in (1, 3))
     cycle, results = one.results.dissipated_energy_per_cycle.value, three.results
     assert results.dissipated_energy_per_cycle.value == pytest.approx(cycle, rel=STEADY)
     assert results.dissipated_energy.value - one.results.dissipated_energy.value == pytest.approx(
@@ -77,7 +74,7 @@ def test_the_first_cycle_is_the_steady_state_and_cycles_are_their_displacements(
     places = amplitude * np.concatenate([quarter, *[turn] * 3, [1.0]])
     experiment = {key: value for key, value in FRETTING["experiment"].items() if key != "cycles"}
     experiment["displacements"] = [f"{place!r} m" for place in places.tolist()]
-    listed = run(FRETTING | {"experiment": experiment}, tmp_path / "run", figures=False)
+    listed = run(FRETTING | {"experiment": experiment})
     assert u == pytest.approx(places, rel=SAME, abs=SAME * amplitude)
     for name in three.curve.units:
         column = three.curve[name]

@@ -18,20 +18,16 @@ With neighbour springs the plane is a penalty, 1/tolerance stiffer than the chai
 solution of `validation.references.rigid_plane`.
 """
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from contact1d import Run
+from contact1d import run
 from tests.scenes import chains
 from validation.references.hertz import hertz_contact_radius, hertz_force
 from validation.references.model import ChainModel
 from validation.references.solver import trace
 
-RunTables = Callable[[dict[str, Any]], Run]
 Array = NDArray[np.float64]
 
 CLOSED_FORM = 1e-9
@@ -47,7 +43,6 @@ STIFFNESS = 0.5
 
 
 def on_plane(
-    run_tables: RunTables,
     radius: float,
     spacing: float,
     stiffness: float,
@@ -60,11 +55,11 @@ def on_plane(
     scene = chains(radius, stiffness, bodies=bodies, interaction=None, experiment=path)
     if neighbours:
         scene["neighbours"] = {"stiffness": neighbours}
-    run = run_tables(scene)
-    return run.curve.force, run.profiles["final"].x, run.profiles["final"].pressure
+    done = run(scene)
+    return done.curve.force, done.profiles["final"].x, done.profiles["final"].pressure
 
 
-def test_convergence_towards_the_closed_form(run_tables: RunTables) -> None:
+def test_convergence_towards_the_closed_form() -> None:
     """c_n and R fixed; at each spacing the displacements move the edge through one spacing."""
     radius, layer, edge = 1000.0, 0.5, 64.0
     spacings = np.array([4.0, 2.0, 1.0, 0.5])
@@ -72,7 +67,7 @@ def test_convergence_towards_the_closed_form(run_tables: RunTables) -> None:
     for spacing in spacings:
         edges = edge + spacing * ((np.arange(OFFSETS) + 0.5) / OFFSETS - 0.5)
         displacements = edges**2 / (2.0 * radius)
-        forces, places, _ = on_plane(run_tables, radius, float(spacing), layer * float(spacing), displacements)
+        forces, places, _ = on_plane(radius, float(spacing), layer * float(spacing), displacements)
         closed = hertz_force(displacements, 0.5 * radius, 2.0 * layer)
         error = forces / closed - 1.0
         half_width = 2.0 * hertz_contact_radius(displacements, 0.5 * radius)
@@ -93,10 +88,10 @@ def bernoulli_error(ratio: Array, offset: float) -> Array:
     return -1.5 * (t**2 - t + 1.0 / 6.0) / ratio**2 + 0.5 * (t**3 - 1.5 * t**2 + 0.5 * t) / ratio**3
 
 
-def test_neighbour_springs(run_tables: RunTables) -> None:
+def test_neighbour_springs() -> None:
     """Down, deeper, and back: the contact has no memory, in the program as in the reference."""
     displacements, neighbours = np.array([0.1, 0.5, 2.0, 0.3]), 3.0
-    forces, places, pressure = on_plane(run_tables, 1000.0, 1.0, STIFFNESS, displacements, neighbours)
+    forces, places, pressure = on_plane(1000.0, 1.0, STIFFNESS, displacements, neighbours)
     model = ChainModel(places.size, STIFFNESS, radius=1000.0, neighbour_stiffness=neighbours, rigid_plane=True)
     exact = trace(model, displacements)
     assert forces == pytest.approx([state.force for state in exact], rel=PENALTY)

@@ -8,19 +8,15 @@ What limits the tolerance: for stiff springs the residual force at which a minim
 a sum of trapezia over rows between which particles jump; a jump is missed by half an increment on average.
 """
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from contact1d import Run
+from contact1d import Run, run
 from tests.scenes import chains
 from validation.references.folded_pairs import FoldedPairs
-from validation.references.interaction import Exponential, PairInteraction
+from validation.references.interaction import PairInteraction
 
-RunTables = Callable[[dict[str, Any]], Run]
 Array = NDArray[np.float64]
 
 COINCIDE = 1e-5
@@ -37,7 +33,7 @@ RADIUS, DEEPEST = 500.0, 0.1
 
 
 def pairs(stiffness: float, places: Array) -> FoldedPairs:
-    law = PairInteraction(Exponential(*LAW[:2]), Exponential(*LAW[2:]))
+    law = PairInteraction.of(*LAW)
     return FoldedPairs(law, stiffness, places**2 / (2.0 * RADIUS))
 
 
@@ -45,29 +41,29 @@ CRITICAL_STIFFNESS = pairs(1.0, np.zeros(1)).ratio
 """Bulk stiffness below which a pair folds [FU/LU]."""
 
 
-def round_trip(run_tables: RunTables, stiffness: float, lowest: float, steps: int) -> tuple[Run, Array, Array, Array]:
+def round_trip(stiffness: float, lowest: float, steps: int) -> tuple[Run, Array, Array, Array]:
     """A closed path: displacements, rising, and the forces at these in loading and unloading."""
     displacements = {"from": lowest, "to": DEEPEST, "steps": steps, "return": True}
     path = {"kind": "path", "method": "quasistatic", "displacements": displacements}
-    run = run_tables(chains(RADIUS, stiffness, LAW, experiment=path))
-    there, back = (run.curve.branch == name for name in ("loading", "unloading"))
-    d, force = run.curve.displacement, run.curve.force
+    done = run(chains(RADIUS, stiffness, LAW, experiment=path))
+    there, back = (done.curve.branch == name for name in ("loading", "unloading"))
+    d, force = done.curve.displacement, done.curve.force
     assert d[there][:-1] == pytest.approx(d[back][::-1], abs=1e-12)
-    return run, d[there], force[there], np.append(force[back][::-1], force[there][-1])
+    return done, d[there], force[there], np.append(force[back][::-1], force[there][-1])
 
 
-def test_stiff_springs_have_one_curve(run_tables: RunTables) -> None:
-    run, d, there, back = round_trip(run_tables, 1.2 * CRITICAL_STIFFNESS, -0.15, 10)
-    energy = run.results.dissipated_energy
+def test_stiff_springs_have_one_curve() -> None:
+    done, d, there, back = round_trip(1.2 * CRITICAL_STIFFNESS, -0.15, 10)
+    energy = done.results.dissipated_energy
     assert np.abs(there - back).max() < COINCIDE * -back.min()
     assert abs(energy.value) <= energy.uncertainty < NOTHING * np.trapezoid(np.abs(there), d)
 
 
-def test_soft_springs_have_two(run_tables: RunTables) -> None:
+def test_soft_springs_have_two() -> None:
     """And the energy between the curves is that of the particles that snapped on and off again."""
     stiffness = 0.25 * CRITICAL_STIFFNESS
-    run, d, there, back = round_trip(run_tables, stiffness, -0.4, 160)
-    lost, energy = pairs(stiffness, run.profiles["deepest"].x).loop_area(DEEPEST), run.results.dissipated_energy
+    done, d, there, back = round_trip(stiffness, -0.4, 100)
+    lost, energy = pairs(stiffness, done.profiles["deepest"].x).loop_area(DEEPEST), done.results.dissipated_energy
     assert np.all(there - back > -COINCIDE * -back.min())
     assert (there - back).max() > DIFFER * -back.min()
     assert np.trapezoid(there - back, d) == pytest.approx(lost, rel=AREA)

@@ -7,19 +7,17 @@ within a cell by a parabola. With a range the equations are solved, and no latti
 """
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from contact1d import Run
+from contact1d import run
 from contact1d.analysis.theory.indenters import PowerLaw
 from validation.references.maugis import LAMBDA_OVER_TABOR, Reduced
 from validation.references.rigid_plane import rigid_plane_sum
 
-RunTables = Callable[[dict[str, Any]], Run]
 Array = NDArray[np.float64]
 
 R, E, W = 100.0, 1.0, 0.005
@@ -67,9 +65,9 @@ def jkr_at(displacements: Array) -> tuple[Array, Array]:
     return np.where(held, jkr_force(radius), 0.0), radius
 
 
-def test_curve_is_jkrs_from_three_times_the_pull_off_force_to_fixed_grips(run_tables: RunTables) -> None:
+def test_curve_is_jkrs_from_three_times_the_pull_off_force_to_fixed_grips() -> None:
     """Down, bodies jump in at touch; where they are held both times loading and unloading are the same."""
-    done = run_tables(tables(PATH))
+    done = run(tables(PATH))
     curve = done.curve
     force, radius = jkr_at(curve.displacement)
     back = (curve.branch == "unloading") & (force < 3.0 * F_A)
@@ -95,10 +93,10 @@ def test_curve_is_jkrs_from_three_times_the_pull_off_force_to_fixed_grips(run_ta
     assert curve.force[again] == pytest.approx(there, abs=1e-6 * F_A)
 
 
-def test_a_contact_that_is_not_let_go_of_comes_back_the_same_way(run_tables: RunTables) -> None:
+def test_a_contact_that_is_not_let_go_of_comes_back_the_same_way() -> None:
     """Before fixed grips lose the contact, loading again is the unloading path; after, not before the next touch."""
     places = [0.2, -0.1, -0.2, -0.1, 0.2, -0.25, -0.1, 0.0, 0.2]
-    force = run_tables(tables({"kind": "path", "displacements": places})).curve.force
+    force = run(tables({"kind": "path", "displacements": places})).curve.force
     assert force[3] == force[1]
     assert force[4] == force[0]
     assert force[5] == force[6] == 0.0
@@ -106,7 +104,7 @@ def test_a_contact_that_is_not_let_go_of_comes_back_the_same_way(run_tables: Run
     assert force[8] == force[0]
 
 
-def test_convergence_towards_jkr(run_tables: RunTables) -> None:
+def test_convergence_towards_jkr() -> None:
     """rms of F over 3 F_A to fixed grips, edges everywhere between two particles; exponent of the spacing."""
     spacings = A_0 / np.asarray([10.0, 20.0, 40.0, 80.0])
     a = np.linspace(0.32, 1.18, 97) * A_0
@@ -114,28 +112,28 @@ def test_convergence_towards_jkr(run_tables: RunTables) -> None:
     off = []
     for spacing in spacings:
         path = {"kind": "path", "displacements": [1.1 * JKR.displacement(a[-1]), *jkr_displacement(a[::-1])]}
-        force = run_tables(tables(path, float(spacing))).curve.force[1:]
+        force = run(tables(path, float(spacing))).curve.force[1:]
         off.append(float(np.sqrt(np.mean((force[::-1] - wanted) ** 2))) / F_A)
     assert float(np.polyfit(np.log(spacings), np.log(off), 1)[0]) >= RATE
     assert off[0] < RMS  # with 10 particles in a₀
 
 
-def test_rows_of_a_punch_bracket_where_it_lets_go(run_tables: RunTables) -> None:
+def test_rows_of_a_punch_bracket_where_it_lets_go() -> None:
     """Between two rows all of F_A = √(8πE*Wa³) goes: it and its place are known to half a row; F = 0 is a contact."""
     radius = 10.0
     path = {"kind": "path", "displacements": {"from": 0.5, "to": -1.0, "steps": 60, "return": False}}
     profile = {"kind": "flat_punch", "radius": radius}
-    known = run_tables(tables(path, 1.0, profile=profile, bulk_stiffness=E)).results
+    known = run(tables(path, 1.0, profile=profile, bulk_stiffness=E)).results
     assert known.zero_load_radius.value == known.critical_radius.value == radius
     kendall = math.sqrt(8.0 * math.pi * E * W * radius**3)
     for name, value in (("adhesion_force", kendall), ("fixed_grips_displacement", -kendall / (2.0 * E * radius))):
         assert abs(known[name].value - value) <= known[name].uncertainty <= 0.05 * abs(value), name
 
 
-def test_no_energy_is_hertz_to_round_off(run_tables: RunTables) -> None:
+def test_no_energy_is_hertz_to_round_off() -> None:
     scene = tables({"kind": "path", "displacements": [-0.1, 0.0, 0.1, 0.37, 0.2, -0.1]}, work=0.0)
     elastic = {name: table for name, table in scene.items() if name != "adhesion"}
-    ours, other = run_tables(scene), run_tables(elastic)
+    ours, other = run(scene), run(elastic)
     x = ours.profiles["final"].x
     exact = [rigid_plane_sum(d, x, 0.5 * R, E * SPACING) if d > 0.0 else 0.0 for d in ours.curve.displacement]
     assert ours.curve.force == pytest.approx(exact, rel=ROUND_OFF)
@@ -144,10 +142,10 @@ def test_no_energy_is_hertz_to_round_off(run_tables: RunTables) -> None:
 
 
 @pytest.mark.parametrize("steps", [10, 60])
-def test_coarse_steps_of_a_path_are_in_the_uncertainty(run_tables: RunTables, steps: int) -> None:
+def test_coarse_steps_of_a_path_are_in_the_uncertainty(steps: int) -> None:
     """They miss much of the largest tension; each uncertainty ÷ 3 would leave some of these errors out."""
     path = {"kind": "path", "displacements": {"from": 0.3, "to": -0.2, "steps": steps, "return": False}}
-    results = run_tables(tables(path, 0.1)).results
+    results = run(tables(path, 0.1)).results
     for name, value in (("adhesion_force", F_A), ("zero_load_radius", A_0)):
         if name in results:  # ten steps pass F = 0 between a contact and none
             assert abs(results[name].value - value) <= results[name].uncertainty, name
@@ -160,27 +158,27 @@ def maugis(tabor: float, experiment: dict[str, Any]) -> tuple[dict[str, Any], fl
 
 
 @pytest.mark.parametrize("tabor", [0.01, 1.0])
-def test_pull_off_with_a_range_is_maugis_s(tabor: float, run_tables: RunTables) -> None:
-    run = run_tables(maugis(tabor, {"kind": "pull_off", "preload": 2.0})[0])
-    exact, results = Reduced(LAMBDA_OVER_TABOR * tabor), run.results
+def test_pull_off_with_a_range_is_maugis_s(tabor: float) -> None:
+    done = run(maugis(tabor, {"kind": "pull_off", "preload": 2.0})[0])
+    exact, results = Reduced(LAMBDA_OVER_TABOR * tabor), done.results
     load, length = math.pi * W * R, (0.75 * math.pi * W * R**2 / E) ** (1.0 / 3.0)
     assert results.adhesion_force.value == pytest.approx(-load * exact.critical.load, rel=CLOSE)
     assert results.zero_load_radius.value == pytest.approx(length * exact.free.a, rel=CLOSE)
     assert results.cohesive_radius.value == pytest.approx(length * exact.free.c, rel=CLOSE)
     assert results.tabor_parameter.value == pytest.approx(tabor, rel=1e-12)
-    for a, c, force in zip(*(run.curve[name] for name in ("contact_radius", "cohesive_radius", "force")), strict=True):
+    for a, c, force in zip(*(done.curve[name] for name in ("contact_radius", "cohesive_radius", "force")), strict=True):
         if a > 0.0:
             state = exact.of_radius(a / length)
             assert force == pytest.approx(load * state.load, abs=ROUND_OFF * load)
             assert c == pytest.approx(length * state.c, rel=ROUND_OFF)
 
 
-def test_a_stiff_contact_has_no_limit_point_but_that_of_the_attraction(run_tables: RunTables) -> None:
+def test_a_stiff_contact_has_no_limit_point_but_that_of_the_attraction() -> None:
     """Snap-in at d = −h₀, and attracted states with a = 0 in retraction; a soft one is lost at once."""
     for tabor, gradual in ((0.1, True), (5.0, False)):
         scene, reach = maugis(tabor, {"kind": "path"})
-        scene["experiment"] |= {"displacements": {"from": -1.5 * reach - 0.3, "to": 0.2, "steps": 200}}
-        curve = run_tables(scene).curve
+        scene["experiment"] |= {"displacements": {"from": -1.5 * reach - 0.3, "to": 0.2, "steps": 80}}
+        curve = run(scene).curve
         into = curve.branch == "loading"
         first = curve.displacement[into][curve.force[into] != 0.0][0]
         step = float(np.diff(curve.displacement[into])[0])

@@ -7,7 +7,6 @@ What limits the tolerance: 30 particles in a₀. The pressure is that of a line 
 bound at the edge.
 """
 
-import json
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,11 +14,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 from contact1d import Run, from_material
-from contact1d.__main__ import app
-from validation.references.maugis import LAMBDA_OVER_TABOR, marks
 
 ONE_PERCENT = 1e-2
 """Asked for; measured 3e-4 of F_A, 1e-4 of a₀, 8e-4 of a_cr."""
@@ -85,8 +81,7 @@ def test_radii_force_and_pressure_at_zero_load_are_jkrs(name: str, tmp_path: Pat
         "critical_radius": a_0 * 0.25 ** (1.0 / 3.0),
     }
     for key, value in wanted.items():
-        own = found.results[key].si
-        assert own is not None
+        own = found.results[key]
         assert own.value == pytest.approx(value, rel=ONE_PERCENT), key
         assert abs(own.value - value) <= 2.0 * own.uncertainty, key
     scales, pressure = found.scales, found.body_pressures["zero_load"]
@@ -112,10 +107,7 @@ def test_two_chains_have_the_force_and_radius_that_were_searched_for_and_nearly_
     asked = {key: value for key, value in material.asked.items() if key != "load"}
     made = from_material(asked | {"model": "particles", "tolerance": tolerance}, tmp_path / "run")
     found: Run = made.run
-    force, radius, work = (found.results[key].si for key in ("adhesion_force", "zero_load_radius", "work_of_adhesion"))
-    assert force is not None
-    assert radius is not None
-    assert work is not None
+    force, radius, work = (found.results[key] for key in ("adhesion_force", "zero_load_radius", "work_of_adhesion"))
     assert (force.unit, radius.unit) == ("N", "m")
     assert force.value == pytest.approx(material.adhesion_force(), rel=STOP * tolerance)
     assert radius.value == pytest.approx(material.zero_load_radius(), rel=STOP * tolerance)
@@ -126,22 +118,3 @@ def test_two_chains_have_the_force_and_radius_that_were_searched_for_and_nearly_
     assert scene.bodies.profile.curvature_radius == pytest.approx(material.radius / length, rel=ROUND_OFF)
     layer = 0.5 * scene.bulk_stiffness / scene.bodies.spacing * unit / length**2
     assert layer == pytest.approx(material.modulus, rel=ROUND_OFF)
-
-
-def test_one_command_prints_the_run_beside_the_theories(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "silica.toml").write_text(
-        'radius = "5 um"\nsurface_energy = "0.05 J/m²"\nrange = "0.3 nm"\n'
-        'upper = { youngs_modulus = "72 GPa", poisson_ratio = 0.17 }\n'
-        'lower = { youngs_modulus = "72 GPa", poisson_ratio = 0.17 }\n',
-        encoding="utf-8",
-    )
-    done = CliRunner().invoke(app, ["identify", "silica.toml"])
-    assert done.exit_code == 0, done.stderr
-    assert "Tabor parameter μ = 1.1, Maugis-Dugdale" in done.stdout
-    (force,) = (line for line in done.stdout.splitlines() if "2.356 µN" in line and "3.142 µN" in line)
-    assert "2.472 µN" in force
-    assert "warning tabor:" not in done.stderr
-    results = json.loads((tmp_path / "runs" / "silica" / "results.json").read_text(encoding="utf-8"))
-    expected = marks(LAMBDA_OVER_TABOR * results["tabor_parameter"]["value"])[1] * math.pi * 0.1 * 5e-6
-    assert results["adhesion_force"]["si"]["value"] == pytest.approx(expected, rel=1e-5)

@@ -11,7 +11,7 @@ from tests.scenes import chains
 
 def test_a_run_that_contradicts_the_first_is_as_uncertain_as_that() -> None:
     """Each errs by at most what it states, unless the two differ by more than both: then by that share more."""
-    fine = run(chains(200.0, experiment={"kind": "load", "force": 3.0}), figures=False).outcome
+    fine = run(chains(200.0, experiment={"kind": "load", "force": 3.0})).outcome
     one = fine.results["displacement"]
     given = 10.0 * one.uncertainty  # by a number with ±, which is the same in both
     open_ = replace(one, errors={**one.errors, "input": given}, given=given)

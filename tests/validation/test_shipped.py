@@ -72,9 +72,9 @@ def test_every_shipped_scene_and_sweep_of_slides_is_pinned() -> None:
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_a_shipped_scene_gives_its_number(name: str, tmp_path: Path) -> None:
+def test_a_shipped_scene_gives_its_number(name: str) -> None:
     quantity, value, tolerance = SCENES[name]
-    done = run(SHIPPED / "scenes" / f"{name}.toml", tmp_path / name, figures=False)
+    done = run(SHIPPED / "scenes" / f"{name}.toml")
     found = done.document[quantity]
     assert done.warnings.keys() == LIMITED.get(name, set())
     assert found["value"] == pytest.approx(value, abs=tolerance)
@@ -83,14 +83,14 @@ def test_a_shipped_scene_gives_its_number(name: str, tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["load", "pull_off", "paper", "path_hysteresis"])
-def test_a_pinned_contact_is_that_of_the_reference_solver(name: str, tmp_path: Path) -> None:
+def test_a_pinned_contact_is_that_of_the_reference_solver(name: str) -> None:
     """A path that turns deeper unloads along the same branch as a pull-off."""
     scene = read_scene(SHIPPED / "scenes" / f"{name}.toml")
     assert scene.interaction is not None
     terms = [
         Exponential(one.amplitude, one.range) for one in (scene.interaction.repulsion, scene.interaction.attraction)
     ]
-    profiles = run(scene, tmp_path / name, figures=False).profiles
+    profiles = run(scene).profiles
     experiment: Any = scene.experiment
     model = ChainModel(
         next(iter(profiles.values())).x.size,
@@ -118,10 +118,10 @@ def test_a_pinned_slide_is_that_of_the_integrator(name: str) -> None:
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.slow) if name in LONG else name for name in SLIDES]
 )
-def test_a_point_of_a_shipped_sweep_gives_its_number(name: str, tmp_path: Path) -> None:
+def test_a_point_of_a_shipped_sweep_gives_its_number(name: str) -> None:
     place, quantity, value = SLIDES[name]
     scene = slides(name).scenes[place]
     scene = scene.with_({"experiment.distance": SHORTER.get(name, scene.experiment.excursion)})
-    found = run(scene, tmp_path / name, figures=False).results[quantity]
+    found = run(scene).results[quantity]
     chance = 0.0 if scene.noise is None else CHANCE * found.uncertainty
     assert found.value == pytest.approx(value, rel=LEFT, abs=chance)

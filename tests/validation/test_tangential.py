@@ -11,18 +11,16 @@ rate is 2.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import pytest
 
-from contact1d import Run
+from contact1d import Run, run
 from contact1d.analysis.theory.mindlin import mindlin_path, mindlin_stick_path, sliding_displacement
 from validation.references.mindlin import mindlin_stick_radius
 from validation.references.spring_sliders import SpringSliders, displacement_under
-
-RunTables = Callable[[dict[str, Any]], Run]
 
 EXACT = 1e-10
 """Of μN; asked for 1e-4. Measured 3e-14 after a loop, 5e-13 after fifty: a history is a sum over rows."""
@@ -45,19 +43,19 @@ def tables(
     }  # fmt: skip
     kept = {key: value for key, value in (own | (bodies or {})).items() if value is not None}
     experiment = {"kind": "tangential", "displacements": places} | (load or {"normal_force": 40.0})
-    return {"bodies": kept, "friction": {"coefficient": coefficient}, "experiment": experiment}
+    return {"title": "friction", "bodies": kept, "friction": {"coefficient": coefficient}, "experiment": experiment}
 
 
-def chain_of(run: Run, coefficient: float = MU) -> SpringSliders:
+def chain_of(done: Run, coefficient: float = MU) -> SpringSliders:
     """The reference's chain for a run: of particles at its places."""
-    heights = run.profiles["final"].x ** 2 / RADIUS
-    return SpringSliders(heights.tolist(), run.scene.bulk_stiffness, run.scene.tangential_stiffness, coefficient)
+    heights = done.profiles["final"].x ** 2 / RADIUS
+    return SpringSliders(heights.tolist(), done.scene.bulk_stiffness, done.scene.tangential_stiffness, coefficient)
 
 
-def exact(run: Run, coefficient: float = MU) -> tuple[list[float], list[float]]:
+def exact(done: Run, coefficient: float = MU) -> tuple[list[float], list[float]]:
     """(F_x, dissipated energy) of every row by the reference."""
-    experiment: Any = run.scene.experiment
-    chain = chain_of(run, coefficient)
+    experiment: Any = done.scene.experiment
+    chain = chain_of(done, coefficient)
     depths = experiment.places() or [
         displacement_under(force, chain.heights, chain.normal) for force in experiment.normal_forces()
     ]
@@ -78,14 +76,14 @@ UNEQUAL = {
 
 
 @pytest.mark.parametrize("material", [None, UNEQUAL], ids=["given", "unequal"])
-def test_every_row_is_the_sum_over_springs_with_sliders(run_tables: RunTables, material: dict[str, Any] | None) -> None:
+def test_every_row_is_the_sum_over_springs_with_sliders(material: dict[str, Any] | None) -> None:
     """F_x on a way with reversals and sliding, and what it dissipates."""
     stiffness = {"bulk_stiffness": "auto", "bulk_stiffness_tangential": None} if material else {}
-    run = run_tables(tables(LOOPS, stiffness) | ({"material": material} if material else {})).model
-    forces, dissipated = exact(run)
-    assert run.friction["tangential_force"] == pytest.approx(forces, abs=EXACT * MU * 40.0)
-    assert run.friction["dissipated_energy"] == pytest.approx(dissipated, abs=AREA * dissipated[-1])
-    assert run.friction["normal_force"] == pytest.approx([40.0] * len(LOOPS), rel=EXACT)
+    done = run(tables(LOOPS, stiffness) | ({"material": material} if material else {})).model
+    forces, dissipated = exact(done)
+    assert done.friction["tangential_force"] == pytest.approx(forces, abs=EXACT * MU * 40.0)
+    assert done.friction["dissipated_energy"] == pytest.approx(dissipated, abs=AREA * dissipated[-1])
+    assert done.friction["normal_force"] == pytest.approx([40.0] * len(LOOPS), rel=EXACT)
 
 
 def at_spacing(spacing: float) -> dict[str, Any]:
@@ -97,18 +95,18 @@ SLIDING = sliding_displacement(MU, 0.8, DEPTH)
 EDGE = math.sqrt(RADIUS * DEPTH)
 
 
-def test_convergence_towards_mindlin_is_of_second_order(run_tables: RunTables) -> None:
+def test_convergence_towards_mindlin_is_of_second_order() -> None:
     """Root mean square over a way out and back, of F_x over μN and c over a."""
     shares = [*np.linspace(0.03, 0.9, 30).tolist(), *np.linspace(0.85, -0.9, 36).tolist()]
     places = [SLIDING * share for share in shares]
     counts = np.array([20, 40, 80, 160])
     errors = []
     for count in counts:
-        run = run_tables(tables(places, at_spacing(2.0 * EDGE / count)))
-        force = (run.friction["tangential_force"] - mindlin_path(places, 40.0, MU, SLIDING)) / (MU * 40.0)
-        stick = run.friction["stick_radius"][:30] - mindlin_stick_radius(np.array(places[:30]), EDGE, SLIDING)
+        done = run(tables(places, at_spacing(2.0 * EDGE / count)))
+        force = (done.friction["tangential_force"] - mindlin_path(places, 40.0, MU, SLIDING)) / (MU * 40.0)
+        stick = done.friction["stick_radius"][:30] - mindlin_stick_radius(np.array(places[:30]), EDGE, SLIDING)
         errors.append([np.sqrt(np.mean(force**2)), np.sqrt(np.mean((stick / EDGE) ** 2))])
-        claimed = run.results["tangential_force"]
+        claimed = done.results["tangential_force"]
         last = mindlin_path(places, 40.0, MU, SLIDING)[-1]
         assert abs(claimed.value - last) <= claimed.uncertainty
     rates = -np.polyfit(np.log(counts), np.log(np.array(errors)), 1)[0]
@@ -116,7 +114,7 @@ def test_convergence_towards_mindlin_is_of_second_order(run_tables: RunTables) -
     assert errors[0][0] < CLOSED_FORM
 
 
-def test_what_a_run_claims_covers_cattaneo_and_mindlin_wherever_the_edges_lie(run_tables: RunTables) -> None:
+def test_what_a_run_claims_covers_cattaneo_and_mindlin_wherever_the_edges_lie() -> None:
     """Contacts and ways by chance: loads over two decades, 5 to 100 particles, turns, partial slip and sliding.
 
     Measured for 200: errors of up to 0.8 of the claim, on average 0.4.
@@ -128,7 +126,7 @@ def test_what_a_run_claims_covers_cattaneo_and_mindlin_wherever_the_edges_lie(ru
         edge, sliding = math.sqrt(RADIUS * depth), sliding_displacement(coefficient, ratio, depth)
         places = (sliding * rng.uniform(-1.1, 1.1, rng.integers(1, 6))).tolist()
         bodies = {"bulk_stiffness_tangential": ratio}
-        results = run_tables(tables(places, bodies, coefficient, normal_force=load)).results
+        results = run(tables(places, bodies, coefficient, normal_force=load)).results
         expected = {
             "tangential_force": mindlin_path(places, load, coefficient, sliding)[-1],
             "contact_radius": edge,
@@ -138,12 +136,12 @@ def test_what_a_run_claims_covers_cattaneo_and_mindlin_wherever_the_edges_lie(ru
             assert abs(results[name].value - value) <= results[name].uncertainty + EXACT * abs(value)
 
 
-def test_a_load_that_varies_with_the_way_is_exact_with_what_it_dissipates(run_tables: RunTables) -> None:
+def test_a_load_that_varies_with_the_way_is_exact_with_what_it_dissipates() -> None:
     """Particles come into contact and leave it between two load steps."""
     phase = np.linspace(0.0, 6.0 * np.pi, 60)
     loads = (25.0 + 15.0 * np.cos(1.3 * phase)).tolist()
-    run = run_tables(tables((0.3 * np.sin(phase)).tolist(), normal_force=loads))
-    forces, dissipated = exact(run)
-    assert run.friction["tangential_force"] == pytest.approx(forces, abs=EXACT * MU * 40.0)
-    assert run.friction["dissipated_energy"] == pytest.approx(dissipated, abs=AREA * dissipated[-1])
-    assert run.friction["normal_force"] == pytest.approx(loads, rel=EXACT)
+    done = run(tables((0.3 * np.sin(phase)).tolist(), normal_force=loads))
+    forces, dissipated = exact(done)
+    assert done.friction["tangential_force"] == pytest.approx(forces, abs=EXACT * MU * 40.0)
+    assert done.friction["dissipated_energy"] == pytest.approx(dissipated, abs=AREA * dissipated[-1])
+    assert done.friction["normal_force"] == pytest.approx(loads, rel=EXACT)

@@ -22,7 +22,7 @@ from contact1d.analysis.curve_marks import largest_tension
 from tests.scenes import LAW
 from validation.paper import detachment
 from validation.references.detachment import detachment_in_time, drag_of_pairs
-from validation.references.interaction import Exponential, PairInteraction
+from validation.references.interaction import PairInteraction
 from validation.references.model import ChainModel
 from validation.references.thermal_chain import displacement_under
 
@@ -35,7 +35,7 @@ TELLS = 5.0
 """What heat changes over the standard error: a run that could not tell it from none is no test. 8 measured."""
 TELLS_SWING = 4.0
 """The same of the variance in time, whose error is a fifth of itself with the few samples of the shipped scene."""
-HERE = PairInteraction(Exponential(*LAW[:2]), Exponential(*LAW[2:]))
+HERE = PairInteraction.of(*LAW)
 SHIPPED = 0.259088
 """Mean displacement of the shipped scene [LU], by `thermal_chain`."""
 HOT = 5e-3
@@ -53,9 +53,9 @@ def swings(finished: Run, deviation: float) -> None:
     assert deviation**2 > TELLS_SWING * error
 
 
-def test_the_shipped_scene_has_the_mean_and_the_swing_of_its_temperature(tmp_path: Path) -> None:
+def test_the_shipped_scene_has_the_mean_and_the_swing_of_its_temperature() -> None:
     scene = read_scene(SCENES / "thermal_load.toml")
-    finished = run(scene, tmp_path / "run", figures=False)
+    finished = run(scene)
     assert scene.noise is not None
     assert scene.neighbours is not None
     model = ChainModel(
@@ -94,14 +94,14 @@ def test_a_path_has_at_each_place_the_mean_of_boltzmanns_weight(tmp_path: Path) 
     fine = np.linspace(max(PLACES), min(PLACES), 2000)
     for tension in (-boltzmann(fine).min(), detachment.largest()[0]):
         assert found.value == pytest.approx(tension, abs=2.0 * found.uncertainty)
-    still = run(scene.with_(without="noise"), tmp_path / "still", figures=False)
+    still = run(scene.with_(without="noise"))
     resting = largest_tension(still.curve.displacement.tolist(), still.curve.force.tolist()).smooth
     assert resting - found.value > TELLS / 2.0 * found.uncertainty
 
 
 @pytest.mark.parametrize(("rate", "pulls"), [pytest.param(3e-4, REPEATS, marks=pytest.mark.slow), (1e-2, 10)])
-def test_the_detachment_force_is_that_of_smoluchowskis_equation(rate: float, pulls: int, tmp_path: Path) -> None:
-    found = run(detachment.scene(rate, pulls), tmp_path / "run", figures=False)
+def test_the_detachment_force_is_that_of_smoluchowskis_equation(rate: float, pulls: int) -> None:
+    found = run(detachment.scene(rate, pulls))
     mean, spread = detachment.expected(rate)
     results, forces = found.results, found.detachments["force"]
     assert results.detachment_force.value == pytest.approx(mean, abs=SIGMAS * spread / np.sqrt(pulls))
@@ -115,10 +115,10 @@ def test_the_detachment_force_is_that_of_smoluchowskis_equation(rate: float, pul
 
 
 @pytest.mark.slow
-def test_a_spring_drawn_off_at_a_velocity_lets_go_as_smoluchowskis_equation_says(tmp_path: Path) -> None:
+def test_a_spring_drawn_off_at_a_velocity_lets_go_as_smoluchowskis_equation_says() -> None:
     """The density of the plate under the spring's force, whose far end begins where it is slack, F = 0 before."""
     drawn = {"kind": "pull_off", "preload": 0.1, "velocity": 2e-3, "stiffness": 0.5, "repeats": REPEATS}
-    found = run(detachment.scene(1e-3, REPEATS).with_({"experiment": drawn}), tmp_path / "run", figures=False).results
+    found = run(detachment.scene(1e-3, REPEATS).with_({"experiment": drawn})).results
     d, energy = detachment.free_energy()
     drag = drag_of_pairs(d, energy, detachment.PAIRS, detachment.STIFFNESS, detachment.DRAG)
     cold, resting = detachment.free_energy(detachment.COLD)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from contact1d import Quantity, Run, SceneError, load_run, read_scene, run, sphere
+from tests.scenes import in_si
 
 HERTZ = Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "hertz_plane.toml"
 SHARES = {"bodies.profile.radius": 0.01, "material.contact_modulus": 0.03, "adhesion.work_of_adhesion": 0.02}
@@ -71,7 +72,7 @@ def test_each_result_has_the_exponents_of_jkr_beside_its_own_uncertainty() -> No
 def test_a_number_with_an_uncertainty_hides_no_error_of_the_run() -> None:
     """Of the largest force: the tolerance is asked of what the program adds."""
     exact = read_scene(HERTZ).with_({"accuracy.tolerance": 2e-5})
-    known, found = (run(one, figures=False) for one in (exact, exact.with_({"bodies.profile.radius": "1000 ± 100"})))
+    known, found = (run(one) for one in (exact, exact.with_({"bodies.profile.radius": "1000 ± 100"})))
     assert "largest_force" in known.warnings["lattice"]
     assert found.warnings == known.warnings
 
@@ -153,19 +154,17 @@ def test_units_that_follow_from_a_material_have_its_uncertainty() -> None:
     energy, modulus = (1.0, 0.05), (1.0, 0.1)
     jkr_units = (ends(lambda w, e: w**2 / e, energy, modulus), ends(lambda w, e: w / e, energy, modulus), 0.1)
     for unit, exact in (({"surface_energy": "20 ± 1 mJ/m²"}, jkr_units), ({"length_unit": 1e-6}, (0.1, 0.0, 0.1))):
-        results = run(tables | {"material": elastic | unit}, figures=False).results
+        results = run(tables | {"material": elastic | unit}).results
         own = [share(results[name]) for name in ("adhesion_force", "zero_load_radius", "central_pressure")]
         assert own == pytest.approx(exact, rel=NONLINEAR, abs=1e-3)
 
 
 def relaxing(term: object, time: object, **points: Any) -> dict[str, Any]:
-    profile = {"kind": "parabola", "radius": "2 mm"}
-    bodies = {"particles": "auto", "spacing": "auto", "lower": "rigid_plane", "profile": profile}
-    return {
-        "title": "relaxes", "bodies": bodies, "material": {"contact_modulus": "3 MPa"},
-        "viscoelasticity": {"terms": [{"share": term, "time": time}, {"share": 0.1, "time": "20 s"}]},
-        "experiment": {"kind": "history"} | points,
-    }  # fmt: skip
+    terms = [{"share": term, "time": time}, {"share": 0.1, "time": "20 s"}]
+    return in_si(
+        {"kind": "parabola", "radius": "2 mm"}, "3 MPa", title="relaxes", viscoelasticity={"terms": terms},
+        experiment={"kind": "history"} | points,
+    )  # fmt: skip
 
 
 def lee_and_radok(term: float, time: float, depth: float, end: float = 3.0) -> float:
@@ -178,15 +177,15 @@ def lee_and_radok(term: float, time: float, depth: float, end: float = 3.0) -> f
 
 def test_terms_and_points_of_a_list_have_uncertainties() -> None:
     points, deeper = ([["0 s", "0 µm"], ["0.5 s", d], ["3 s", "8 µm"]] for d in ("8 µm", "8 ± 0.4 µm"))
-    exact = run(relaxing(0.5, "1.5 s", displacement=points), figures=False).results.force
+    exact = run(relaxing(0.5, "1.5 s", displacement=points)).results.force
     assert exact.value == pytest.approx(3e6 * math.sqrt(2e-3) * lee_and_radok(0.5, 1.5, 8e-6), rel=1e-3)
-    terms = run(relaxing("0.5 ± 0.05", "1.5 ± 0.3 s", displacement=points), figures=False)
+    terms = run(relaxing("0.5 ± 0.05", "1.5 ± 0.3 s", displacement=points))
     found = terms.results.force
     assert found.value == exact.value
     change = ends(lambda term, time: lee_and_radok(term, time, 1.0), (0.5, 0.05), (1.5, 0.3))
     assert share(found) - share(exact) == pytest.approx(change, rel=NONLINEAR)
     assert read_scene(str(terms.scene)).shares == pytest.approx(dict(terms.scene.shares))
-    pressed = run(relaxing(0.5, "1.5 s", displacement=deeper), figures=False).results
+    pressed = run(relaxing(0.5, "1.5 s", displacement=deeper)).results
     assert share(pressed.peak_force) == pytest.approx(1.05**1.5 - 1.0, rel=NONLINEAR)
     assert pressed.peak_displacement.uncertainty == pytest.approx(0.4e-6)
 
@@ -195,7 +194,7 @@ def test_a_pressure_goes_with_the_terms_of_a_body_that_relaxes() -> None:
     def pressures(time: str) -> list[tuple[float, float]]:
         """p(0) and ± of each state."""
         scene = relaxing(0.5, time, force=[["0 s", "0 N"], ["1 s", "20 mN"]])
-        table = run(scene, figures=False).tables["pressure_3d"]
+        table = run(scene).tables["pressure_3d"]
         rows = zip(table["r"], table["pressure"], table["pressure_uncertainty"], strict=True)
         return [(p, uncertainty) for r, p, uncertainty in rows if r == 0.0]
 

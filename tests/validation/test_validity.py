@@ -8,7 +8,6 @@ R (15 M v²/(16 E* √R))^{2/5}.
 import math
 import os
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -16,6 +15,7 @@ import pytest
 
 from contact1d import Run, run
 from tests.pages import ROOT, require_shown
+from tests.scenes import in_si
 from validation.references.maugis import LAMBDA_OVER_TABOR, marks
 from validation.references.mdr import ReducedContact
 
@@ -37,11 +37,7 @@ def ball(r: float) -> float:
 
 def contact(kind: str, experiment: Mapping[str, Any], **more: Any) -> dict[str, Any]:
     """E* = 1 Pa, R = 1 m, particles by the tolerance."""
-    bodies = {
-        "particles": "auto", "spacing": "auto", "lower": "rigid_plane", "profile": {"kind": kind, "radius": "1 m"},
-    }  # fmt: skip
-    material = {"contact_modulus": "1 Pa"}
-    return {"title": kind, "bodies": bodies, "material": material, "experiment": experiment} | more
+    return in_si({"kind": kind, "radius": "1 m"}, "1 Pa", title=kind, experiment=experiment, **more)
 
 
 def checks(found: Run) -> dict[str, Any]:
@@ -49,15 +45,12 @@ def checks(found: Run) -> dict[str, Any]:
     return {one["name"]: one for one in found.document["validity"]}
 
 
-def test_the_error_of_a_paraboloid_over_its_radius_is_on_the_page(tmp_path: Path) -> None:
+def test_the_error_of_a_paraboloid_over_its_radius_is_on_the_page() -> None:
     sphere, paraboloid = ReducedContact(ball, 1.0), ReducedContact(lambda r: r / RADIUS, 1.0)
     rows, errors = [], dict[str, list[float]]((name, []) for name in NUMBERS)
     for ratio in RATIOS:
         force = sphere.force(ratio)
-        runs = [
-            run(contact(kind, {"kind": "load", "force": f"{force!r} N"}), tmp_path / f"{kind}{ratio}", figures=False)
-            for kind in ("parabola", "circle")
-        ]
+        runs = [run(contact(kind, {"kind": "load", "force": f"{force!r} N"})) for kind in ("parabola", "circle")]
         for name in NUMBERS:
             flat, whole = (found.results[name].value for found in runs)
             errors[name].append(flat / whole - 1.0)
@@ -97,14 +90,14 @@ def draw(errors: Mapping[str, list[float]]) -> None:
 
 
 @pytest.mark.parametrize(("work", "reach"), [(0.2, None), (0.08, 0.1e-9)])
-def test_jkr_is_held_against_maugis_and_dugdale(work: float, reach: float | None, tmp_path: Path) -> None:
+def test_jkr_is_held_against_maugis_and_dugdale(work: float, reach: float | None) -> None:
     """A sphere of 1 µm and E* = 50 GPa; without a range 0.3 nm are assumed, and said; with one F_A is Maugis's own."""
     tables = contact("parabola", {"kind": "pull_off", "preload": "1 pN"})
     tables["bodies"]["profile"]["radius"] = "1 µm"
     tables |= {"material": {"contact_modulus": "50 GPa"}, "adhesion": {"work_of_adhesion": f"{work} J/m²"}}
     if reach:
         tables["adhesion"] |= {"range": f"{reach} m"}
-    found = run(tables, tmp_path / "run", figures=False)
+    found = run(tables)
     tabor = (1e-6 * work**2 / (50e9**2 * (reach or 0.3e-9) ** 3)) ** (1.0 / 3.0)
     assert checks(found)["tabor"]["value"] == pytest.approx(tabor, rel=1e-9)
     force = marks(LAMBDA_OVER_TABOR * tabor)[1]
@@ -125,7 +118,7 @@ def test_jkr_is_held_against_maugis_and_dugdale(work: float, reach: float | None
         ("cone", 1e-2, True),
     ],
 )
-def test_the_softer_body_yields_at_1_6_y(kind: str, force: float, yields: bool, tmp_path: Path) -> None:
+def test_the_softer_body_yields_at_1_6_y(kind: str, force: float, yields: bool) -> None:
     """F at first yield by Hertz: p(0)³ = 6 F E*²/π³R² with p(0) = 1.6 Y."""
     upper = {"youngs_modulus": "200 GPa", "poisson_ratio": 0.3, "yield_strength": "900 MPa"}
     lower = {"youngs_modulus": "100 GPa", "poisson_ratio": 0.3, "yield_strength": "300 MPa"}
@@ -134,7 +127,7 @@ def test_the_softer_body_yields_at_1_6_y(kind: str, force: float, yields: bool, 
     tables = contact(kind, {"kind": "load", "force": f"{first * force!r} N"})
     profile = {"kind": "cone", "slope": 0.05} if kind == "cone" else {"kind": kind, "radius": "10 mm"}
     tables["bodies"] |= {"profile": profile}
-    found = run(tables | {"material": {"upper": upper, "lower": lower}}, tmp_path / "run", figures=False)
+    found = run(tables | {"material": {"upper": upper, "lower": lower}})
     assert ("yield" in found.warnings) == yields
     assert not yields or "480 MPa" in found.warnings["yield"]
 
