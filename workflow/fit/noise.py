@@ -26,7 +26,7 @@ from scipy.special import softmax, stdtr
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
-UNDETERMINED = 100.0
+UNDETERMINED = 1e6
 """Standard deviation of the unknowns of the least squares where the data say nothing of them."""
 EXCLUDED = 6.9
 """Natural logarithm of the likelihood below the largest one from which on a noise is excluded: 99.9 % of the χ²
