@@ -356,7 +356,7 @@ def new(
     profile: Annotated[Profile | None, typer.Option(help="Shape of the upper body.", show_default="parabola")] = None,
     material: Annotated[
         str | None,
-        typer.Option(metavar="UPPER/LOWER", help="Of `contact1d materials`.", show_default="steel/glass"),
+        typer.Option(metavar="UPPER/LOWER", help="Of `contact1d materials`, or `rigid`.", show_default="steel/glass"),
     ] = None,
 ) -> None:
     """Write a scene file in SI to start from: it runs as it is, with every key explained and its allowed values.
