@@ -14,6 +14,7 @@ from pydantic import ConfigDict, PrivateAttr, ValidationError
 
 from contact1d.files import UnreadableError, read_text
 from contact1d.workflow.scene.check import mend_words, report_faults
+from contact1d.workflow.scene.columns import put_terms
 from contact1d.workflow.scene.conversion import UNIT_KEYS, convert
 from contact1d.workflow.scene.draft import Draft
 from contact1d.workflow.scene.problems import BARE, Problem, SceneError, keys_in, shown, suggestion, tables_as_toml
@@ -210,7 +211,7 @@ def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -
     """
     tables = Place(plain, WHOLE)
     mend_words(tables)
-    points = take_points(tables, folder)
+    points, lines = take_points(tables, folder), put_terms(tables, folder)
     shares = take_shares(tables)
     has_texts = convert(tables)
     put_points(tables, points)
@@ -229,6 +230,7 @@ def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -
         if not tables.problems:
             tables.problems += _at_ends(scene)
     problems += sorted(_in_si(tables, has_texts), key=_rank)
+    problems = [replace(problem, path=lines.get(problem.path, problem.path)) for problem in problems]
     if problems or scene is None:
         raise SceneError(problems)
     return scene
