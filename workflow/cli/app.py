@@ -380,6 +380,22 @@ def materials() -> None:
         typer.echo(f"{name:<16}{material['youngs_modulus']:>9}  ν = {material['poisson_ratio']:<6}{material['source']}")
 
 
+def terms(
+    table: Annotated[Path, typer.Argument(metavar="TABLE", help="E over t, or E' and E'' over f (CSV with units).")],
+    out: Annotated[Path, typer.Option(help="New file for the terms.")] = Path("terms.csv"),
+) -> None:
+    """Find the terms of a Prony series in a table of a relaxation, for `viscoelasticity.terms = { file = … }`.
+
+    The table has the columns t [s] and E [MPa], or f [Hz] (or ω [rad/s]), E' [MPa] and E'' [MPa]. Prints the
+    instantaneous modulus and the largest deviation from the table; an existing file is not overwritten (exit code 2).
+    """
+    series = api.prony_terms(table)
+    lines = (f"{term['share']},{term['time'].removesuffix(' s')}\n" for term in series.terms)
+    _write(out, "share,time [s]\n" + "".join(lines), "choose another name")
+    words = f"instantaneous modulus: {series.modulus}\nlargest deviation from the table: {series.deviation:.2%}"
+    print_lines([words], series.warnings, out)
+
+
 def schema(
     out: Annotated[Path | None, typer.Option(help="Write it to this new file.", show_default="printed")] = None,
 ) -> None:
@@ -424,7 +440,7 @@ def _write(path: Path, text: str, instead: str) -> None:
         raise
 
 
-for function in (new, run, sweep, fit, report, animate, deck, cost, identify, materials, schema, doctor):
+for function in (new, run, sweep, fit, report, animate, deck, cost, identify, materials, terms, schema, doctor):
     app.command()(function)
 
 

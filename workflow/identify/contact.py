@@ -200,10 +200,10 @@ def _as_scene(data: Mapping[str, Any]) -> dict[str, Any]:
     """Return the tables of a chain on a rigid plane with the described values, and DEFAULTS for all others, unchecked.
 
     A surface energy or work of adhesion of the number 0 counts as absent. Without materials E* is 1 Pa; a missing
-    one of two bodies is rigid.
+    one of two bodies is of steel.
     """
     given = {SCENE_KEYS[key]: v for key, v in data.items() if key in SCENE_KEYS and (v or key not in NONE_AT_ZERO)}
-    unknown: dict[str, Any] = dict.fromkeys(("material.upper", "material.lower"), "rigid")
+    unknown: dict[str, Any] = dict.fromkeys(("material.upper", "material.lower"), "steel")
     if not unknown.keys() & given.keys():
         unknown = {"material.contact_modulus": 1.0}
     if "range" in data and not _adheres(data):
