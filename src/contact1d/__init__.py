@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from contact1d.workflow.fit.fit import fit
     from contact1d.workflow.fit.many import fit_many
     from contact1d.workflow.identify.choice import from_material
+    from contact1d.workflow.identify.prony import prony_terms
     from contact1d.workflow.identify.shortcuts import Contact, cone, profile, punch, sphere
     from contact1d.workflow.runs.advised import run
     from contact1d.workflow.runs.campaign import write_deck
@@ -61,6 +62,7 @@ __all__ = [
     "from_material",
     "load_run",
     "profile",
+    "prony_terms",
     "punch",
     "read_scene",
     "run",
@@ -77,6 +79,7 @@ _HOMES = {
     "workflow.fit.fit": ("fit",),
     "workflow.fit.many": ("fit_many",),
     "workflow.identify.choice": ("from_material",),
+    "workflow.identify.prony": ("prony_terms",),
     "workflow.identify.shortcuts": ("Contact", "cone", "profile", "punch", "sphere"),
     "workflow.runs.advised": ("run",),
     "workflow.runs.campaign": ("write_deck",),

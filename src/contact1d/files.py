@@ -39,11 +39,11 @@ class UnreadableError(ValueError):
         return ": ".join(self.args)
 
 
-def read_text(path: Path, largest: int = 8_000_000) -> str:
+def read_text(path: Path, largest: int = 8_000_000, fallback: str = "") -> str:
     """Return the text of a regular file of at most `largest` bytes, in UTF-8, without a byte-order mark.
 
     Line ends stay as they are. By default a file may be twice as large as a scene with a measured profile of 1e5
-    points. A pipe or a device is not opened, since it may have no end.
+    points. A pipe or a device is not opened, since it may have no end. `fallback`: encoding if it is not UTF-8.
 
     Raises:
         UnreadableError: there is no such file, it is too large, no regular file or no text, or it cannot be read.
@@ -60,6 +60,8 @@ def read_text(path: Path, largest: int = 8_000_000) -> str:
     except FileNotFoundError:
         reason = "no such file"
     except UnicodeDecodeError as error:
+        if fallback:
+            return error.object.decode(fallback)
         reason = f"line {len(error.object[: error.start + 1].splitlines())} is not UTF-8 text; save the file as UTF-8"
     except (OSError, ValueError) as error:
         reason = f"cannot be read: {getattr(error, 'strerror', None) or error}"

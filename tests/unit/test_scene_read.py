@@ -137,7 +137,7 @@ def test_overrides_are_applied_in_order_and_leave_the_data_alone() -> None:
     [
         ("bodies.spacing= ", "no value; write table.key=value"),
         ("bodies..spacing=3", "not a path of keys; write table.key=value"),
-        ("bodies.spacing.x.y=3", "bodies.spacing is not a table; set it as a whole"),
+        ("bodies.spacing.x.y=3", "there is no such key in 1.0; set it as a whole"),
     ],
 )
 def test_an_override_that_sets_nothing_is_refused_as_it_stands(override: str, words: str) -> None:

@@ -41,6 +41,8 @@ def table_of(heading: str) -> Node:
     for key in path.partition(",")[0].split("."):
         keys = [table["properties"][key] for table in found if key in table["properties"]]
         found = [table for one in keys for table in tables(one)]
+    if path.endswith(("each", "table")):  # a list of tables comes before a table in place of it
+        found = [found[0 if path.endswith("each") else -1]]
     table, *others = (one for one in found if not kind or one["properties"]["kind"]["enum"] == [kind])
     assert all(other == table for other in others)
     return table

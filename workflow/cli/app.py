@@ -358,7 +358,7 @@ def new(
     profile: Annotated[Profile | None, typer.Option(help="Shape of the upper body.", show_default="parabola")] = None,
     material: Annotated[
         str | None,
-        typer.Option(metavar="UPPER/LOWER", help="Of `contact1d materials`.", show_default="steel/glass"),
+        typer.Option(metavar="UPPER/LOWER", help="Of `contact1d materials`, or `rigid`.", show_default="steel/glass"),
     ] = None,
 ) -> None:
     """Write a scene file in SI to start from: it runs as it is, with every key explained and its allowed values.
@@ -380,6 +380,22 @@ def materials() -> None:
 
     for name, material in MATERIALS.items():
         typer.echo(f"{name:<16}{material['youngs_modulus']:>9}  ν = {material['poisson_ratio']:<6}{material['source']}")
+
+
+def terms(
+    table: Annotated[Path, typer.Argument(metavar="TABLE", help="E over t, or E' and E'' over f (CSV with units).")],
+    out: Annotated[Path, typer.Option(help="New file for the terms.")] = Path("terms.csv"),
+) -> None:
+    """Find the terms of a Prony series in a table of a relaxation, for `viscoelasticity.terms = { file = … }`.
+
+    The table has the columns t [s] and E [MPa], or f [Hz] (or ω [rad/s]), E' [MPa] and E'' [MPa]. Prints the
+    instantaneous modulus and the largest deviation from the table; an existing file is not overwritten (exit code 2).
+    """
+    series = api.prony_terms(table)
+    lines = (f"{term['share']},{term['time'].removesuffix(' s')}\n" for term in series.terms)
+    _write(out, "share,time [s]\n" + "".join(lines), "choose another name")
+    words = f"instantaneous modulus: {series.modulus}\nlargest deviation from the table: {series.deviation:.2%}"
+    print_lines([words], series.warnings, out)
 
 
 def schema(
@@ -426,7 +442,7 @@ def _write(path: Path, text: str, instead: str) -> None:
         raise
 
 
-for function in (new, run, sweep, fit, report, animate, deck, cost, identify, materials, schema, doctor):
+for function in (new, run, sweep, fit, report, animate, deck, cost, identify, materials, terms, schema, doctor):
     app.command()(function)
 
 

@@ -25,7 +25,6 @@ AnyContact = str | PathLike[str] | Mapping[str, Any]
 """A material file, by its path, or its tables."""
 Model = Literal["plane", "particles"]
 MODELS: tuple[Model, ...] = ("plane", "particles")
-RIGID = "rigid"
 SCENE_KEYS = {
     "radius": "bodies.profile.radius",
     "profile": "bodies.profile",
@@ -140,7 +139,7 @@ def read_contact(source: AnyContact, complete: bool = True) -> AskedContact:
         scene = read_scene(_as_scene({key: v for key, v in data.items() if key not in reported}), folder=folder)
     except SceneError as error:
         of_scene = [_as_given(problem, data) for problem in error.problems]
-        keys = {key for key, value in data.items() if value != RIGID} - reported
+        keys = data.keys() - reported
         problems += [problem for problem in of_scene if problem.path.partition(".")[0] in keys]
     roughness = _length(data, "roughness", problems)
     if problems or scene is None:
@@ -157,9 +156,9 @@ def _adheres(data: Mapping[str, Any]) -> bool:
 
 
 def _mistakes(data: Mapping[str, Any], complete: bool) -> Iterator[Problem]:
-    """Yield the problems of a description that its scene would not have: unknown, missing and exclusive keys.
+    """Yield the problems of a description that its scene would not have: unknown and missing keys.
 
-    Also two rigid bodies, an unknown model and a negative load.
+    Also an unknown model and a negative load.
 
     `complete`: whether a load or an adhesion is required.
     """
@@ -170,20 +169,11 @@ def _mistakes(data: Mapping[str, Any], complete: bool) -> Iterator[Problem]:
     if ("profile" in data) == ("radius" in data):
         hint = 'radius = "5 um" for a sphere, or profile = { kind = "cone", slope = 0.1 } as in a scene'
         yield Problem("radius", "give either a radius or a profile", hint=hint)
-    given = [data[name] for name in ("upper", "lower") if name in data]
-    if "contact_modulus" in data and given:
-        hint = "give E*, or E and ν of both bodies"
-        yield Problem("contact_modulus", "not together with upper or lower", hint=hint)
-    elif "contact_modulus" not in data and len(given) < 2:
+    if "contact_modulus" not in data and not {"upper", "lower"} <= data.keys():
         hint = (
             'write { youngs_modulus = "210 GPa", poisson_ratio = 0.3 }, "steel" or "rigid", or give contact_modulus, E*'
         )
         yield Problem("lower" if "upper" in data else "upper", "missing", hint=hint)
-    if given == [RIGID, RIGID]:
-        yield Problem("upper", "one of the two bodies must be elastic")
-    if {"surface_energy", "work_of_adhesion"} <= data.keys():
-        hint = "γ of one side is half of W, the work of adhesion: give one of the two"
-        yield Problem("surface_energy", "not together with work_of_adhesion", hint=hint)
     if data.get("model", "plane") not in MODELS:
         yield Problem("model", 'must be "plane" or "particles"', shown(data["model"]))
     if complete and "load" not in data and not _adheres(data):
@@ -210,10 +200,10 @@ def _as_scene(data: Mapping[str, Any]) -> dict[str, Any]:
     """Return the tables of a chain on a rigid plane with the described values, and DEFAULTS for all others, unchecked.
 
     A surface energy or work of adhesion of the number 0 counts as absent. Without materials E* is 1 Pa; a missing
-    one of two bodies is rigid.
+    one of two bodies is of steel.
     """
     given = {SCENE_KEYS[key]: v for key, v in data.items() if key in SCENE_KEYS and (v or key not in NONE_AT_ZERO)}
-    unknown: dict[str, Any] = dict.fromkeys(("material.upper", "material.lower"), RIGID)
+    unknown: dict[str, Any] = dict.fromkeys(("material.upper", "material.lower"), "steel")
     if not unknown.keys() & given.keys():
         unknown = {"material.contact_modulus": 1.0}
     if "range" in data and not _adheres(data):

@@ -88,7 +88,7 @@ class Memory:
 
         `cells`: of the particles.
         """
-        terms = law.terms or ()
+        terms = law.terms
         self._lasting, self._retarded, self._cells = law.lasting, law.retardation_time or 0.0, cells
         self._share, self._time = (np.asarray([getattr(term, key) for term in terms]) for key in ("share", "time"))
         self.arms = np.zeros((len(terms), cells.heights.size))

@@ -60,7 +60,7 @@ class Relaxing(Independent):
 
         Empty of a body with dashpots.
         """
-        return tuple((term.share, term.time) for term in scene.the(Viscoelasticity).terms or ())
+        return tuple((term.share, term.time) for term in scene.the(Viscoelasticity).terms)
 
     @classmethod
     def shortest_time(cls, scene: Scene) -> float:
@@ -292,7 +292,7 @@ class RelaxingSprings(Particles):
         """
         stiffness, spacing = self.law.stiffness, self.law.spacing
         grown = np.maximum(np.diff(edge, prepend=0.0), 0.0) / spent / spacing
-        arms = (term.share * term.time * np.exp(-term.time * grown) for term in self.law.material.terms or ())
+        arms = (term.share * term.time * np.exp(-term.time * grown) for term in self.law.material.terms)
         return np.asarray(stiffness / spacing * np.maximum(velocity, 0.0) * sum(arms) * (grown > 0.0))
 
     @cached_property

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from typing import Annotated, ClassVar, Literal
 
 from annotated_types import Le
-from pydantic import AfterValidator
+from pydantic import AfterValidator, Field
 from pydantic_core import PydanticCustomError
 
 from contact1d.workflow.scene.quantities import (
@@ -200,6 +200,13 @@ class Term(Table):
     """relaxation time τ"""
 
 
+class TermsFile(Table):
+    """The file of a Prony series."""
+
+    file: str
+    """file with a term in each line, in the columns share and time [s], also share_uncertainty and time_uncertainty"""
+
+
 class Viscoelasticity(Effect):
     """Effect: a body that relaxes, on a rigid plane: E(t) = E (1 − Σ share (1 − exp(−t/time))), or Kelvin and Voigt's.
 
@@ -219,7 +226,7 @@ class Viscoelasticity(Effect):
         "damping": "the springs have the damping of the material",
     }
 
-    terms: Listed[Term] | None = None
+    given_terms: Listed[Term] | TermsFile | None = Field(default=None, alias="terms")
     """Prony series of the instantaneous modulus, which [material] or bulk_stiffness gives"""
     retardation_time: Duration | None = None
     """in place of terms, for a Kelvin-Voigt body: retardation time T of a dashpot parallel to each spring, whose force
@@ -227,9 +234,14 @@ class Viscoelasticity(Effect):
     """
 
     @property
+    def terms(self) -> tuple[Term, ...]:
+        """The terms of the Prony series, in the order of the scene; () of a Kelvin-Voigt body."""
+        return self.given_terms if isinstance(self.given_terms, tuple) else ()
+
+    @property
     def lasting(self) -> float:
         """Share of the instantaneous modulus that does not relax, 0 … 1: 1 − Σ share; 1 of a Kelvin-Voigt body."""
-        return max(0.0, 1.0 - math.fsum(term.share for term in self.terms or ()))
+        return max(0.0, 1.0 - math.fsum(term.share for term in self.terms))
 
     @property
     def resists_jumps(self) -> bool:
@@ -239,7 +251,7 @@ class Viscoelasticity(Effect):
     @property
     def shortest_time(self) -> float:
         """The retardation time [TU], or without one the shortest relaxation time [TU] of the Prony series."""
-        return self.retardation_time or min(term.time for term in self.terms or ())
+        return self.retardation_time or min(term.time for term in self.terms)
 
 
 class Damping(Effect):

@@ -101,13 +101,13 @@ def _unit_and_ratio(units: object) -> tuple[str, float]:
 def _are_equal(first: tuple[str, float], second: tuple[str, float]) -> bool:
     """Return whether two pairs are equal: (unit of positions, "1 µm"; ratio of the unit of heights to it).
 
-    Units are equal if their sizes in metres are, ratios within 1e-12 (relative).
+    Units are equal if their sizes in metres are, ratios within 1e-9 (relative).
 
     Raises:
         UnitTextError: a unit is no length.
     """
     sizes = {si_value(unit, MODEL)[0] for unit, _ in (first, second)}
-    return len(sizes) == 1 and math.isclose(first[1], second[1], rel_tol=1e-12)
+    return len(sizes) == 1 and math.isclose(first[1], second[1])
 
 
 def put_points(scene: Place, lists: dict[str, list[float]]) -> None:

@@ -18,7 +18,7 @@ from typing import Annotated, Any, ClassVar, Literal, TypeVar, Union, get_args, 
 from annotated_types import Ge, Gt, Le, MinLen
 from pydantic import BaseModel, ConfigDict, Field
 
-from contact1d.workflow.scene.problems import Problem, path_of, shown
+from contact1d.workflow.scene.problems import Problem, keys_in, path_of, shown
 from contact1d.workflow.scene.si_text import NUMBER
 from contact1d.workflow.units import SI
 
@@ -328,10 +328,10 @@ class Place:
     def find(self, path: str) -> Place | None:
         """Return the place at a dotted path of keys below this one, also of an absent key; None if no such key exists.
 
-        Items of lists are not found: an index in a path is no key.
+        An item of a list is found by its index, "viscoelasticity.terms[0].share".
         """
         place: Place | None = self
-        for key in path.split("."):
+        for key in keys_in(path):
             place = place.inside.get(key) if place else None
         return place
 

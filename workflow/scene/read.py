@@ -14,6 +14,7 @@ from pydantic import ConfigDict, PrivateAttr, ValidationError
 
 from contact1d.files import UnreadableError, read_text
 from contact1d.workflow.scene.check import mend_words, report_faults
+from contact1d.workflow.scene.columns import put_terms
 from contact1d.workflow.scene.conversion import UNIT_KEYS, convert
 from contact1d.workflow.scene.draft import Draft
 from contact1d.workflow.scene.problems import BARE, Problem, SceneError, keys_in, shown, suggestion, tables_as_toml
@@ -210,7 +211,7 @@ def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -
     """
     tables = Place(plain, WHOLE)
     mend_words(tables)
-    points = take_points(tables, folder)
+    points, lines = take_points(tables, folder), put_terms(tables, folder)
     shares = take_shares(tables)
     has_texts = convert(tables)
     put_points(tables, points)
@@ -229,6 +230,7 @@ def _checked(plain: dict[str, Any], problems: list[Problem], folder: FilePath) -
         if not tables.problems:
             tables.problems += _at_ends(scene)
     problems += sorted(_in_si(tables, has_texts), key=_rank)
+    problems = [replace(problem, path=lines.get(problem.path, problem.path)) for problem in problems]
     if problems or scene is None:
         raise SceneError(problems)
     return scene
@@ -292,28 +294,29 @@ def set_values(
 ) -> list[Problem]:
     """Set the value of each dotted key in `data`, in place, and return the problems of keys that cannot be set.
 
-    Such keys are no path of names, or lead through a value that is no table. None is set as well, and such a key counts
-    as absent. Absent tables are added.
+    Such keys are no path of names, or lead through a value that is no table, or to an item that a list does not have.
+    None is set as well, and such a key counts as absent. Absent tables are added.
 
     Args:
         data: tables by name.
-        values: by dotted key.
+        values: by dotted key, items of lists by index: "viscoelasticity.terms[0].share".
         where: origin of the values in messages; "": the key.
         form: the suggested fix for a path that is not a path of keys.
     """
     problems = []
     for path, value in values.items():
-        table, origin, keys = data, where or f"set {path}", [key.strip() for key in str(path).split(".")]
-        if len(keys) > DEEPEST or not all(map(BARE.fullmatch, keys)):
+        part: Any = data
+        origin, keys = where or f"set {path}", keys_in("".join(str(path).split()))
+        if len(keys) > DEEPEST or not all(BARE.fullmatch(str(key)) for key in keys):
             problems.append(Problem(origin, "not a path of keys", hint=form))
             continue
-        for depth, key in enumerate(keys[:-1], start=1):
-            table = table.setdefault(key, {})
-            if not isinstance(table, dict):
-                problems.append(Problem(origin, f"{'.'.join(keys[:depth])} is not a table", hint="set it as a whole"))
-                break
-        else:
-            table[keys[-1]] = value
+        *above, last = keys
+        try:
+            for key in above:
+                part = part.setdefault(str(key), {}) if isinstance(part, dict) else part[key]
+            part[str(last) if isinstance(part, dict) else last] = value
+        except (LookupError, TypeError):
+            problems.append(Problem(origin, f"there is no such key in {shown(part)}", hint="set it as a whole"))
     return problems
 
 

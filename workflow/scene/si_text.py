@@ -38,6 +38,7 @@ DIMENSIONS = {
     "kg/m³": "a density",
     "W": "a power",
     "Hz": "a frequency",
+    "rad/s": "an angular frequency",
     "Pa·s": "a viscosity",
     "V": "a voltage",
     "A": "a current",
@@ -60,6 +61,8 @@ EXAMPLES = {
     "m/s": "1 µm/s",
     "N·s/m": "1 mN·s/m",
     "N/s": "1 mN/s",
+    "Hz": "10 Hz",
+    "rad/s": "10 rad/s",
     "1": "0.3",
     "rad": "80°",
 }
@@ -124,7 +127,7 @@ class Unit:
         Raises:
             UnitTextError: `unit` is none.
         """
-        return self.dimension == _dimension(unit) and self.angular == (unit == "rad")
+        return self.dimension == _dimension(unit) and self.angular == unit.startswith("rad")
 
 
 BASES = {

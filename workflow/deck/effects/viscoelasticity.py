@@ -26,11 +26,11 @@ def viscoelasticity(scene: Scene, settings: Settings) -> Contribution:
         return Contribution("viscoelasticity", Stage.CONTACT, (*fragments, "retardation", "relaxed"), variables)
     variables["viscoelasticity_part"] = number(effect.lasting)
     fragments.append("viscoelasticity")
-    for arm, term in enumerate(effect.terms or (), 1):
+    for arm, term in enumerate(effect.terms, 1):
         variables |= {f"viscoelasticity_share_{arm}": number(term.share)}
         variables |= {f"viscoelasticity_time_{arm}": number(term.time)}
         fragments += [f"decay_{'rows' if rows else 'steps'}:{arm}", f"viscoelasticity_arm:{arm}"]
-    arms = range(1, len(effect.terms or ()) + 1)
+    arms = range(1, len(effect.terms) + 1)
     fragments += [f"decayed:{len(arms)}"] * rows + [f"relaxing:{len(arms)}"]
     fragments += [*(f"relaxed_arm:{arm}" for arm in arms), "relaxed"]
     return Contribution("viscoelasticity", Stage.CONTACT, tuple(fragments), variables)
