@@ -14,6 +14,7 @@ from validation.hard import (
     random_scenes,
     relaxing,
     scans,
+    segments,
     settling,
     thermal,
 )
@@ -22,5 +23,5 @@ from validation.study import Study
 STUDIES: tuple[Study, ...] = (
     *pairs.CLASSES, random_scenes.RANDOM, settling.SETTLING, *thermal.CLASSES, extremes.EXTREMES, faults.FAULTS,
     fuzz.FUZZ, random_plane.RANDOM_PLANE, *kinks.CLASSES, scans.SCANS, coarse_paths.COARSE_PATHS, cohesive.COHESIVE,
-    fits.FITS, relaxing.RELAXING, impacts.IMPACTS,
+    fits.FITS, segments.SEGMENTS, relaxing.RELAXING, impacts.IMPACTS,
 )  # fmt: skip

@@ -125,12 +125,14 @@ def covered(table: Path, group: Group) -> Iterator[tuple[str, bool]]:
 
 def measure(bench: Bench) -> Findings:
     """Coverage, choice of the model, and time."""
-    rows, all_of = [], dict[str, list[bool]]()
+    rows, named, all_of = [], list[bool](), dict[str, list[bool]]()
     for i, group in enumerate(GROUPS):
         folder = bench.folder / f"group_{i}"
         count = FULL_CURVES if bench.full else CURVES
         curves = write_map(group, range(1000 * i, 1000 * i + count), folder)
         done = fit_many(group.plan(curves), folder / "fits", workers=cores())
+        with (done.folder / "fits.csv").open(encoding="utf-8", newline="") as file:
+            named += [bool(row.get("hysteresis")) for row in csv.DictReader(file)]
         for name, inside in covered(done.folder / "fits.csv", group):
             all_of.setdefault(name, []).append(inside)
     for name, found in all_of.items():
@@ -138,6 +140,8 @@ def measure(bench: Bench) -> Findings:
         rows.append(at_least(words, share, LEAST, SOURCE))
         if bench.full:
             rows.append(at_most(words, share, MOST, SOURCE))
+    words = f"share of {len(named)} curves without hysteresis in which one is named"
+    rows.append(at_most(words, float(np.mean(named)), 0.03, SOURCE))
     rows += _choices(bench)
     count = FULL_MAP if bench.full else MAP
     folder = bench.folder / "map"

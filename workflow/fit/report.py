@@ -20,7 +20,7 @@ from contact1d.workflow.body.cases import ASSUMED_RANGE
 from contact1d.workflow.fit import curve as curves
 from contact1d.workflow.fit import search
 from contact1d.workflow.fit.fit import FitResult
-from contact1d.workflow.fit.segments import BOTH, CurveFit
+from contact1d.workflow.fit.comparison import BOTH, CurveFit
 from contact1d.workflow.fit.solution import SOFTEST, UNITS, Fitted
 from contact1d.workflow.fit.subject import POINT, modulus_of
 from contact1d.workflow.laws import law_of
