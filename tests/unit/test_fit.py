@@ -213,8 +213,8 @@ def test_a_cone_has_no_radius_for_dmt(tmp_path: Path) -> None:
 
 
 def test_a_map_has_a_line_for_each_curve(tmp_path: Path) -> None:
-    """One of an approach alone, and one whose jumps are hardly seen beside the noise."""
-    parts = [curve(points=100), curve()[:200], curve(share=0.3, memory=0.0)]
+    """One of too few points, and one whose jumps are hardly seen beside the noise."""
+    parts = [curve(points=100), curve()[:30], curve(share=0.3, memory=0.0)]
     rows = [np.column_stack([np.full((len(part), 3), [i, 10.0 * i, 5.0]), part]) for i, part in enumerate(parts)]
     path = written(tmp_path / "map.csv", np.vstack(rows), "curve,x [µm],y [µm],z [nm],F [nN]")
     done = fit_many(plan(path), tmp_path / "fits", workers=1)
@@ -223,7 +223,7 @@ def test_a_map_has_a_line_for_each_curve(tmp_path: Path) -> None:
         table = list(csv.DictReader(file))
     assert [row["status"] for row in table] == ["done", "refused", "done"]
     assert [(float(row["x"]), float(row["y"])) for row in table] == [(0.0, 5.0), (10.0, 5.0), (20.0, 5.0)]
-    assert "one segment" in table[1]["reason"]
+    assert "has 30 points" in table[1]["reason"]
     assert float(table[0][f"{E}_low [Pa]"]) < MODULUS < float(table[0][f"{E}_high [Pa]"])
     low, high = (float(table[2][f"{W}_{end} [J/m²]"]) for end in ("low", "high"))
     assert low < WORK < high < 2.0 * low
@@ -257,7 +257,7 @@ def test_what_a_curve_does_not_tell_is_refused(
     ("text", "words"),
     [
         ("", "is empty"),
-        ("z,F\n" + "1,2\n" * 60, "z and F without a unit"),
+        ("z,F\n" + "1,2\n" * 60, "without a unit"),
         ("z [nm],F [nN]\n" + "-250,0,19,1383\n" * 60, "line 2: has 4 numbers under 2 names"),
         ("z [nm],F [mV]\n" + "1,2\n" * 60, "column F is in volts"),
         ("z [nm],F [nN]\n" + "1,2\n" * 5 + "1,\n" + "1,2\n" * 9 + "1,x\n", "line 7: F is empty or no number; leave"),
