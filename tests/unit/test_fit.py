@@ -257,7 +257,7 @@ def test_what_a_curve_does_not_tell_is_refused(
     ("text", "words"),
     [
         ("", "is empty"),
-        ("z,F\n" + "1,2\n" * 60, "z and F without a unit"),
+        ("z,F\n" + "1,2\n" * 60, "without a unit"),
         ("z [nm],F [nN]\n" + "-250,0,19,1383\n" * 60, "line 2: has 4 numbers under 2 names"),
         ("z [nm],F [mV]\n" + "1,2\n" * 60, "column F is in volts"),
         ("z [nm],F [nN]\n" + "1,2\n" * 5 + "1,\n" + "1,2\n" * 9 + "1,x\n", "line 7: F is empty or no number; leave"),

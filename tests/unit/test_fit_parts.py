@@ -50,44 +50,15 @@ def rows(count: int = 60) -> Array:
     return np.column_stack([z, np.round(np.maximum(z, 0.0) ** 1.5 / 10.0 + 0.01 * np.cos(37.0 * np.arange(count)), 4)])
 
 
-def text(numbers: Array, names: str = "z [nm],F [nN]", separator: str = ",") -> str:
-    return names + "\n" + "".join(separator.join(f"{x:.4f}" for x in row) + "\n" for row in numbers)
+def text(numbers: Array, names: str = "z [nm],F [nN]") -> str:
+    return names + "\n" + "".join(",".join(f"{x:.4f}" for x in row) + "\n" for row in numbers)
 
 
-@pytest.mark.parametrize(
-    ("content", "size", "first"),
-    [
-        (text(rows(), "z,F\n\n[µm],[µN]"), 1e3, 4),
-        (text(rows(), "z [nm];F [nN]", ";").replace(".", ","), 1.0, 2),
-        (text(rows(), "height force\nnm nN", " "), 1.0, 3),
-        ("\ufeff# an instrument\n\n" + text(rows()).replace("nN]\n", "nN]\n# a remark\n", 1), 1.0, 5),
-        (text(np.column_stack([rows()[:, 0], rows()]), "time,z [nm],F [nN]"), 1.0, 2),
-    ],
-    ids=["units below", "decimal commas", "spaces", "remarks", "another column"],
-)
-def test_any_form_of_a_file_has_its_numbers_in_si_with_their_lines(
-    content: str, size: float, first: int, tmp_path: Path
-) -> None:
-    curve = curve_in(tmp_path / "curve.csv", content)
-    assert curve.positions == pytest.approx(size * 1e-9 * rows()[:, 0], rel=1e-12, abs=1e-20)
-    assert curve.forces == pytest.approx(size * 1e-9 * rows()[:, 1], rel=1e-12, abs=1e-20)
-    assert curve.lines.tolist() == list(range(first, first + 60))
-    assert curve.of("approach").size == 30
-
-
-def test_signs_segments_and_indentations_are_as_they_are_said_to_be(tmp_path: Path) -> None:
+def test_an_indentation_with_opposite_signs_becomes_the_position_of_the_piezo(tmp_path: Path) -> None:
     """z = d + F/k."""
-    file = tmp_path / "curve.csv"
-    given = curve_in(file, text(-rows(), "d [nm],F [nN]"), reverse=["d", "F"])
+    given = curve_in(tmp_path / "curve.csv", text(-rows(), "d [nm],F [nN]"), reverse=["d", "F"])
     assert given.forces == pytest.approx(1e-9 * rows()[:, 1], rel=1e-12, abs=1e-20)
     assert given.positions == pytest.approx(1e-9 * (rows()[:, 0] + rows()[:, 1] / 0.5), rel=1e-12, abs=1e-20)
-    lines = text(rows()).splitlines()
-    words = ["segment", *["Approach"] * 27, *["retract"] * 33]
-    assert curve_in(file, "\n".join(map(",".join, zip(lines, words, strict=True)))).of("approach").size == 27
-    for word, said in (("up", "the word 'up'"), ("retract", "the approach must come before")):
-        words[3] = word
-        with pytest.raises(DataError, match=said):
-            curve_in(file, "\n".join(map(",".join, zip(lines, words, strict=True))))
 
 
 def cut(rank: int) -> Array:

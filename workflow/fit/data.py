@@ -1,61 +1,39 @@
-"""Measured force curves in CSV files: their columns, units and signs, read or refused with the remedy."""
+"""Measured force curves in files: text of any layout and encoding, and files of instruments, read or refused."""
 
 from __future__ import annotations
 
+import codecs
 import math
+import re
 from collections.abc import Iterator
+from functools import partial
 from glob import glob
+from io import StringIO
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from contact1d.workflow.errors import Contact1dError
-from contact1d.workflow.fit.curve import APPROACH, HOLD, RETRACT, SEGMENTS, ForceCurve
-from contact1d.workflow.fit.plan import FitPlan
-from contact1d.workflow.scene.profile_file import NAME, require_names, rows_in, units_of
-from contact1d.workflow.scene.si_text import UnitTextError, si_value
+from contact1d.workflow.fit.curve import APPROACH, RETRACT, ForceCurve
+from contact1d.workflow.fit.headings import FORM, UNITS, Column, chosen_columns, dimension, known_columns
+from contact1d.workflow.fit.headings import DataError as DataError
+from contact1d.workflow.fit.instrument_curves import ENDINGS, NamedTable, instrument_curves
+from contact1d.workflow.fit.plan import STIFFNESS, FitPlan
+from contact1d.workflow.fit.points import averaged, in_time, require_signs, require_whole, told_kinds
+from contact1d.workflow.scene.profile_file import require_names, rows_in
+from contact1d.workflow.scene.si_text import si_value
 
 if TYPE_CHECKING:
-    from pandas import DataFrame, Series
+    from pandas import DataFrame
 
-Array = NDArray[np.float64]
-COLUMNS = {
-    "z": ("z", "piezo", "zpiezo", "z_piezo", "height", "position", "hub", "höhe", "hauteur"),
-    "d": ("d", "indentation", "displacement", "depth", "eindringtiefe", "weg", "déplacement"),
-    "F": ("f", "force", "load", "kraft", "last", "deflection_force"),
-    "segment": ("segment", "richtung", "direction"),
-    "t": ("t", "time", "zeit", "temps"),
-    "curve": ("curve", "index", "kurve", "courbe"),
-    "x": ("x",),
-    "y": ("y",),
-}
-"""Allowed headings of each column, in lower case."""
-COLUMN_OF = {heading: name for name, headings in COLUMNS.items() for heading in headings}
-TEXT_COLUMNS, MAP_COLUMNS = ("segment", "curve"), ("x", "y")
-"""Columns of text, and those of the position of a curve in a map."""
-UNITS = {"z": "m", "d": "m", "F": "N", "t": "s"}
 PATTERN = "*.csv"
 """Names of the files of curves in a folder."""
-FORM = "name the columns with their units, z [nm] (or d [nm]) and F [nN]"
-WORDS = {
-    APPROACH: ("approach", "trace", "extend", "loading", "annähern", "anfahren", "0"),
-    HOLD: ("hold", "pause", "dwell"),
-    RETRACT: ("retract", "retrace", "withdraw", "unloading", "rückzug", "1"),
-}
-"""Words in the column `segment` for each segment of a curve, in lower case."""
-LARGEST = 400_000_000
-"""Largest size of a file [bytes]: a map of 1000 curves has a tenth of it."""
-FEWEST_POINTS, MOST_POINTS = 40, 20_000
-"""Least and largest number of points of a curve: a fit of the largest takes seconds, and has a point every few
-nanometres in any experiment."""
-
-
-class DataError(Contact1dError, ValueError):
-    """Data that are no force curve; the message says where, why and what to do."""
-
+NUMBER = re.compile(r'"?[-+]?[\d.,]*\d(e[-+]?\d+)?"?|nan', re.IGNORECASE)
+REMARK = re.compile(r"\s*[#%]+\s*(?:\w+:\s+)?")
+"""Beginning of a line of remarks, maybe with a label, "# columns: "."""
+FEWEST_POINTS = 40
+"""Least number of points of a curve; a segment has a quarter of it."""
 
 NamedCurve = tuple[str, tuple[float, float] | None, ForceCurve | DataError]
 """Name of a curve, its position (x, y) in a map or None, and the curve, or the error of reading it."""
@@ -78,7 +56,8 @@ def files_of(plan: FitPlan) -> list[Path]:
         files = [path]
     if not files or not all(map(Path.is_file, files)):
         raise DataError(
-            f"{path}: no such file, and no folder with {PATTERN}; data is relative to the fit file's folder"
+            f"{path}: no such file, and no folder with {PATTERN}; data is relative to the fit file's folder, and may "
+            f'be a pattern, such as "{plan.fit.data}/*.txt"'
         )
     return files
 
@@ -111,222 +90,217 @@ def is_series(plan: FitPlan) -> bool:
 def curves(path: Path, plan: FitPlan) -> Iterator[NamedCurve]:
     """Yield (name, position (x, y) in a map or None, curve or the error of reading it) of each curve of a file.
 
-    A curve is a sequence of lines with one entry in the column `curve`, whose name it is, in lower case; without that
-    column it is the whole file, with the file's name without suffix. The position has the numbers of its first line as
-    they are, maybe NaN.
+    A curve of a text file is a sequence of lines with one entry in the column `curve`, whose name it is, in lower case;
+    without that column it is the whole file, with the file's name without suffix. The position has the numbers of its
+    first line as they are, maybe NaN.
 
     Raises:
         DataError: at the first item; the file cannot be read, lacks a column or unit, or has z without a stiffness.
     """
-    head = _head(path)
     try:
-        table, units = _table(path, head)
-        along = "z" if "z" in table else "d"
-        if not {along, "F"} <= {*table}:
-            raise DataError(f"lacks a column z or d, or F; {FORM}")
-        if along == "z" and not math.isfinite(plan.stiffness):
-            raise DataError(
-                "z is the position of the piezo, to which the instrument's deflection contributes: give [instrument] "
-                "stiffness, or a column d, the indentation"
-            )
-        if unitless := [name for name in (along, "F") if not units.get(name)]:
-            raise DataError(f"{' and '.join(unitless)} without a unit; {FORM}")
-    except ValueError as error:
-        raise DataError(f"{path}: {error}") from None
-    groups = table.groupby((table["curve"] != table["curve"].shift()).cumsum()) if "curve" in table else [(1, table)]
-    is_map = {*MAP_COLUMNS} <= {*table}
-    for _, rows in groups:
-        name = rows["curve"].iloc[0] if "curve" in rows else path.stem
-        position = next(rows[[*MAP_COLUMNS]].itertuples(index=False, name=None), None) if is_map else None
-        try:
-            yield name, position, _curve(rows, along, units, plan)
-        except DataError as error:
-            yield name, position, DataError(f"{path}: {error}")
+        tables = instrument_curves(path, plan) if path.name.lower().endswith(ENDINGS) else _text_curves(path, plan)
+        for name, position, table in tables:
+            try:
+                yield name, position, _curve(table(), plan)
+            except DataError as error:
+                yield name, position, DataError(f"{path}: {error}")
+    except (ValueError, OSError) as error:
+        raise DataError(f"{path}: {getattr(error, 'strerror', None) or error}") from None
 
 
-def _head(path: Path, count: int = 200) -> list[str]:
-    """Return the first `count` lines of a file, or all if there are fewer, without line ends and byte-order mark.
+def _lines(path: Path, largest: int = 400_000_000) -> list[str]:
+    """Return the lines of a text file in UTF-16 or UTF-8, or else Windows' code page 1252, without line ends.
+
+    Args:
+        path: the file.
+        largest: most bytes that it may have: a map of 1000 curves has a tenth of it.
 
     Raises:
-        DataError: the file cannot be read, has more than 400 MB, or is no UTF-8 text.
+        DataError: it has more bytes, or is no text.
+        OSError: it cannot be read.
     """
+    if path.stat().st_size > largest:
+        raise DataError(f"has more than {largest} bytes: split the map into several files")
+    content = path.read_bytes()
+    is_wide = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+    if b"\0" in content and not is_wide:
+        raise DataError(
+            f"is no text, nor a file of an instrument that is known ({', '.join(ENDINGS)}): unpack an archive, or "
+            "export the curve as CSV"
+        )
     try:
-        size = path.stat().st_size
-        if size > LARGEST:
-            raise DataError(
-                f"{path} must have at most {LARGEST} bytes; it has {size}: average neighbouring points, or split the "
-                "map into several files"
-            )
-        with path.open(encoding="utf-8-sig") as file:
-            return [line.rstrip("\r\n") for line in islice(file, count)]
+        return content.decode("utf-16" if is_wide else "utf-8-sig").splitlines()
     except UnicodeDecodeError:
-        raise DataError(f"{path} is not UTF-8 text; export the curve as CSV") from None
-    except OSError as error:
-        raise DataError(f"{path} cannot be read: {error.strerror}") from None
+        return content.decode("cp1252", "replace").splitlines()
 
 
-def _table(path: Path, head: list[str]) -> tuple[DataFrame, dict[str, str]]:
-    """Return (known columns of a file by their standard names, unit of each by name, "" for none).
-
-    Names are z, d, F, segment, curve, x and y, in the order of the file. Rows are indexed by the line in the file, from
-    1; empty ones are left out. Numbers are in the units of the file, not finite only in x and y; `segment` and `curve`
-    are text in lower case.
-
-    Args:
-        path: the file.
-        head: its first lines.
+def _text_curves(path: Path, plan: FitPlan) -> Iterator[NamedTable]:
+    """Yield (name, position in a map or None, function that reads the columns in SI) of each curve of a text file.
 
     Raises:
-        ValueError: no line names F and another column, no line is below it, or a cell is empty or no finite number; the
-            message lacks the file's name.
+        ValueError: the file cannot be read as a whole; the message lacks its name.
+        OSError: it cannot be opened.
     """
-    from pandas import to_numeric
+    from pandas import Series
 
-    rows = rows_in(head)
-    columns = [_indices(cells) for _, cells in rows]
-    start = next((i for i, indices in enumerate(columns) if "F" in indices and len(indices) > 1), None)
-    if start is None:
-        raise DataError(f"{'is empty' if not rows else 'no line has names of columns that are allowed'}; {FORM}")
-    (line, names), (next_line, below), indices = rows[start], (*rows[start + 1 :], (0, []))[0], columns[start]
-    require_names(next_line, below, names)
-    units, are_below = units_of(names, below, [*indices.values()])
-    table = _rows(path, head, line, next_line if are_below else line, [*indices.values()])
-    table = table.set_axis([*indices], axis="columns").dropna(how="all")
-    for name in indices:
-        if name in TEXT_COLUMNS:
-            table[name] = table[name].astype(str).str.strip().str.lower()
-            continue
-        table[name] = to_numeric(table[name], errors="coerce")
-        bad = table.index[~np.isfinite(table[name])]
-        if bad.size and name not in MAP_COLUMNS:
-            raise DataError(f"line {bad[0]}: {name} is empty or no number; leave such lines out ({bad.size} in all)")
-    return table, dict(zip(indices, units, strict=True))
+    lines = _lines(path)
+    first, headings, units = _header(lines)
+    columns = chosen_columns(headings, known_columns(headings, units), not math.isfinite(plan.stiffness))
+    rows, shared = _rows(lines, first, columns), next(iter(columns.values()))
+    names = Series(path.stem, rows.index)
+    if "curve" in shared:
+        cells = rows[shared["curve"].index].astype(str).str.strip().str.lower()
+        names = names if cells.is_unique else cells  # unique ones count the points
+    for _, part in names.groupby((names != names.shift()).cumsum()):
+        line = rows.loc[part.index[0]]
+        x, y = (float(line[shared[axis].index]) if axis in shared else math.nan for axis in "xy")
+        yield part.iloc[0], (x, y) if "y" in shared else None, partial(_columns, rows.loc[part.index], columns)
 
 
-def _rows(path: Path, head: list[str], names: int, skip: int, columns: list[int]) -> DataFrame:
-    """Return the cells of some columns below a line, in their order, indexed by the line in the file, from 1.
+def _header(lines: list[str], most: int = 2000) -> tuple[int, list[str], list[str]]:
+    """Return (index of the first line of numbers, headings of the columns, their units in a line of their own or []).
 
-    Comment lines (#) are left out; empty lines are rows of NaN, as are missing cells. Further cells of a line are
-    ignored. Cells of a column that has no numbers alone are texts.
+    Numbers begin in the first of three lines with two numbers or more. The headings are in the line above, maybe one of
+    remarks, that names positions and forces; the nearest one, if there are several.
 
-    Args:
-        path: the file.
-        head: its first lines.
-        names: the line with the names of the columns, from 1.
-        skip: the last line above the cells, from 1.
-        columns: the indices of the columns, from 0.
+    `most`: number of lines in which the numbers begin.
 
     Raises:
-        DataError: there is no line, or the first one has fewer cells than the names.
+        ValueError: there is no such line.
+    """
+    rows = rows_in(lines[:most])
+    numeric = [sum(bool(NUMBER.fullmatch(cell)) for cell in cells) > 1 for _, cells in rows]
+    start = next((i for i in range(len(rows)) if all(numeric[i : i + 3])), None)
+    if start is None:
+        raise DataError(f"{'has no lines with two numbers or more' if rows else 'is empty'}; {FORM}")
+    first, cells = rows[start]
+    above = [*map(_cells, lines[: first - 1])] or [[]]
+    line = max(range(len(above)), key=lambda i: (len(known_columns(above[i])), i))
+    require_names(first, cells, above[line] or cells)
+    below = ([cell.strip("[]()") for cell in cells] for cells in above[line + 1 :])
+    units = next((units for units in below if sum(map(bool, map(dimension, units))) > 1), [])
+    return first - 1, above[line], units
+
+
+def _cells(line: str) -> list[str]:
+    """Return the cells of a line of headings, without a sign of remarks and a label before them.
+
+    They are separated by semicolon, tab or comma, else in quotes, else by two blanks or one; units remain behind names.
+    """
+    text = REMARK.sub("", line, count=1) if REMARK.match(line) else line
+    separator = next((sign for sign in ";\t," if sign in text), None)
+    if separator is None and '"' in text:
+        return re.findall(r'"([^"]*)"', text)
+    blanks = r"\s{2,}" if "  " in text.strip() else r"(?<!/)\s+(?![\[(/])"
+    return [cell.strip('" ') for cell in (text.split(separator) if separator else re.split(blanks, text.strip()))]
+
+
+def _rows(lines: list[str], first: int, columns: dict[str, dict[str, Column]]) -> DataFrame:
+    """Return the cells of columns below the headings by their index, indexed by the line in the file, from 1.
+
+    Remarks (#) and empty lines are left out; missing cells are NaN. Cells of a column that has no numbers alone are
+    texts.
+
+    Args:
+        lines: of the file.
+        first: index of the first line of cells.
+        columns: by segment and by name.
+
+    Raises:
+        DataError: the lines have fewer cells than the headings, or more than the first line.
     """
     from pandas import read_csv
 
-    while skip < len(head) and not head[skip].strip():  # the first line says how many columns there are
-        skip += 1
-    separator = next((sign for sign in ";\t," if sign in head[names - 1]), r"\s+")
-    first = head[skip : skip + 5]
-    decimal = "," if separator != "," and any("," in line and "." not in line for line in first) else "."
+    count = len(rows_in([lines[first]])[0][1])
+    separator = next(sign for sign in (";", "\t", ",", r"\s+") if len(re.split(sign, lines[first].strip())) == count)
+    is_comma = separator != "," and any("," in line and "." not in line for line in lines[first : first + 5])
+    full = [i for i in range(first, len(lines)) if lines[i].strip() and not lines[i].startswith("#")]
     try:
         rows = read_csv(
-            path, sep=separator, decimal=decimal, skiprows=skip, header=None, usecols=columns, comment="#",
-            skip_blank_lines=False, encoding="utf-8-sig", low_memory=False,
+            StringIO("\n".join(lines[i] for i in full)), sep=separator, decimal="," if is_comma else ".", header=None,
+            usecols=sorted({column.index for known in columns.values() for column in known.values()}), low_memory=False,
         )  # fmt: skip
-    except ValueError:  # of pandas: no line at all, or lines of several lengths
+    except ValueError:  # of pandas: lines of several lengths
         raise DataError(f"the lines below the names have not as many cells as these; {FORM}") from None
-    with path.open(encoding="utf-8-sig") as file:
-        lines = np.fromiter((i for i, line in enumerate(file, 1) if i > skip and not line.startswith("#")), int)
-    return rows[columns].set_axis(lines[: len(rows)], axis="index")
+    return rows.set_axis(np.array(full) + 1, axis="index")
 
 
-def _indices(cells: list[str]) -> dict[str, int]:
-    """Return the index, from 0, of each known column among the cells of a line by its standard name.
+def _columns(rows: DataFrame, columns: dict[str, dict[str, Column]]) -> DataFrame:
+    """Return the columns of a curve by name, in SI, segment after segment, indexed by the line in the file.
 
-    Standard names are z, d, F, segment, curve, x and y; of several cells with one name the first counts. {} where no
-    cell is an allowed heading.
+    Segments that are side by side in the file have the same lines.
+
+    Args:
+        rows: cells by the index of their column.
+        columns: by segment ("" for none) and by name.
+
+    Raises:
+        DataError: a cell is empty or no finite number.
     """
-    indices: dict[str, int] = {}
-    for i, cell in enumerate(cells):
-        match = NAME.match(cell.strip('" '))
-        name = COLUMN_OF.get(match[1].lower()) if match else None
-        if name is not None:
-            indices.setdefault(name, i)
-    return indices
+    from pandas import concat, to_numeric
+
+    shared = set.intersection(*({*known.values()} for known in columns.values()))
+    sides = []
+    for side, known in columns.items():
+        part = rows[[column.index for column in known.values()]].set_axis([*known], axis="columns")
+        unshared = [name for name, column in known.items() if column not in shared]
+        part = part.dropna(how="all", subset=unshared or [*known])
+        for name in filter(UNITS.get, known):
+            numbers = to_numeric(part[name], errors="coerce")
+            bad = part.index[~np.isfinite(numbers)]
+            if bad.size:
+                raise DataError(
+                    f"line {bad[0]}: {name} is empty or no number; leave such lines out ({bad.size} in all)"
+                )
+            part[name] = float(si_value(f"1 {known[name].unit}", UNITS[name])[0]) * numbers
+        sides.append(part.assign(segment=side) if side else part)
+    return concat(sides)
 
 
-def _curve(table: DataFrame, along: str, units: dict[str, str], plan: FitPlan) -> ForceCurve:
+def _curve(table: DataFrame, plan: FitPlan) -> ForceCurve:
     """Return the curve in a table of columns, in SI: positions z of the piezo [m] and forces [N], compression positive.
 
     Columns named by `reverse` in the plan change their sign. An indentation d becomes z = d + F/k_c, or z = d for a
-    rigid instrument. Of a curve of which the plan fits one segment, that segment alone.
+    rigid instrument; a deflection becomes the force k_c times it. Of a curve of which the plan fits one segment, that
+    segment alone; of one of more than 20 000 points means of neighbours.
 
     Args:
-        table: the columns of one curve, in `units`, indexed by the line in the file.
-        along: column of the positions, "z" or "d".
-        units: of the columns.
+        table: the columns of one curve, in SI, indexed by the line in the file.
         plan: with the instrument.
 
     Raises:
-        DataError: a unit of another dimension, fewer than 40 or more than 20 000 points, a missing segment, a wrong
-            sign, no contact, a saturated force, or a gap in the positions.
+        DataError: fewer than 40 points, a missing segment, a wrong sign, no contact, a saturated force, or a gap in the
+            positions; or a deflection whose stiffness has a ±, in which all forces would change together.
     """
-    reverse = plan.fit.reverse or ()
-    columns = {}
-    for name in (along, "F", *(["t"] if units.get("t") else [])):
-        try:
-            factor = float(si_value(f"1 {units[name]}", UNITS[name])[0])
-        except UnitTextError as error:
-            volts = units[name].endswith("V")
-            fault = "is in volts: multiply it by sensitivity and stiffness of the cantilever" if volts else f"{error}"
-            raise DataError(f"column {name} {fault}") from None
-        sign = -1.0 if name in reverse else 1.0
-        columns[name] = sign * factor * np.asarray(table[name], dtype=float)
-    z, F = columns[along], columns["F"]
-    if z.size < FEWEST_POINTS:
+    along, kinds = "z" if "z" in table else "d", told_kinds(table["segment"]) if "segment" in table else None
+    if kinds is not None:
+        table, kinds = table[kinds >= 0], kinds[kinds >= 0]
+    if len(table) < FEWEST_POINTS:
         raise DataError(
-            f"has {z.size} points, and at least {FEWEST_POINTS} are needed: approach and retraction at full rate"
+            f"has {len(table)} points, and at least {FEWEST_POINTS} are needed: approach and retraction at full rate"
         )
-    if z.size > MOST_POINTS:
-        raise DataError(f"has {z.size} points, and at most {MOST_POINTS} are compared: average neighbouring points")
-    kinds = _kinds(z, F, table.get("segment"))
+    if "deflection" in table:
+        if plan.known.get(STIFFNESS):
+            raise DataError(
+                "F is a deflection times the stiffness, which has a ±: write the stiffness without it; its relative ± "
+                "adds to those of moduli and works of adhesion, which are proportional to it"
+            )
+        table = table.assign(F=plan.stiffness * table["deflection"])
+    reverse = {str(name) for name in plan.fit.reverse or ()} & {along, "F"}
+    z, F = (table[name].to_numpy(dtype=float) for name in (along, "F"))
+    require_signs(along, z, F, reverse)
+    z, F = (-x if name in reverse else x for name, x in ((along, z), ("F", F)))
+    order, kinds = in_time(along, z, F, kinds, "t" not in table and not table.index.is_unique)
+    z, F, lines = z[order], F[order], table.index.to_numpy(dtype=int)[order]
     if math.isfinite(plan.stiffness) and along == "d":
         z = z + F / plan.stiffness
-    curve = ForceCurve(z, F, kinds, np.asarray(table.index, dtype=int), columns.get("t"))
+    t = table["t"].to_numpy(dtype=float) if "t" in table and table["t"].is_monotonic_increasing else None
+    curve = averaged(ForceCurve(z, F, kinds, lines, t))
     if plan.fit.segment in (APPROACH, RETRACT):
         curve = curve.only(plan.fit.segment)
     _require_segments(curve, plan)
-    _require_signs(curve)
-    _require_whole(curve, along)
+    require_whole(curve, along)
     return curve
-
-
-def _kinds(z: Array, F: Array, segment: Series | None) -> NDArray[np.int_]:
-    """Return the index in `SEGMENTS` of each point of a curve, (n,): by the column `segment`, else by its largest z.
-
-    Without that column the points up to the largest z are the approach, the others the retraction. A curve whose
-    largest z is within five points of its first or last one has one segment alone.
-
-    Args:
-        z, F: positions, rising towards the sample, and forces, (n,).
-        segment: words of the points in lower case, such as "approach", "hold" and "retract"; None: no such column.
-
-    Raises:
-        DataError: the words are unknown, segments are in another order, or z is reversed.
-    """
-    if segment is not None:
-        index = {word: SEGMENTS.index(name) for name, words in WORDS.items() for word in words}
-        kinds = segment.map(index)
-        if kinds.isna().any():
-            raise DataError(f"column segment has the word {segment[kinds.isna()].iloc[0]!r}; allowed are {[*index]}")
-        found = np.asarray(kinds, dtype=int)
-        if (np.diff(found) < 0).any():
-            raise DataError("column segment: the approach must come before the retraction")
-        return found
-    turn, low = (int(extreme(z)) + 1 for extreme in (np.argmax, np.argmin))
-    if FEWEST_POINTS // 4 <= low <= z.size - FEWEST_POINTS // 4:
-        raise DataError('z is reversed, since the approach lowers it: write reverse = ["z"]')
-    least = 5
-    turn = z.size if turn > z.size - least else 0 if turn <= least else turn
-    return np.where(np.arange(z.size) < turn, 0, 2)
 
 
 def _require_segments(curve: ForceCurve, plan: FitPlan) -> None:
@@ -335,63 +309,11 @@ def _require_segments(curve: ForceCurve, plan: FitPlan) -> None:
     Raises:
         DataError: a segment is missing, or shorter.
     """
-    counts = {name: curve.of(name).size for name in (APPROACH, RETRACT)}
+    counts, fewest = {name: curve.of(name).size for name in (APPROACH, RETRACT)}, FEWEST_POINTS // 4
     wanted = [*counts] if plan.fit.segment == "both" else [plan.fit.segment]
     for name, count in counts.items():
-        if count < FEWEST_POINTS // 4 and (count or name in wanted):
+        if count < fewest and (count or name in wanted):
             raise DataError(
-                f"segment {name} has {count} points, and at least {FEWEST_POINTS // 4} are needed; of a curve of one "
+                f"segment {name} has {count} points, and at least {fewest} are needed; of a curve of one "
                 'segment write segment = "approach" or "retract"'
-            )
-
-
-def _require_signs(curve: ForceCurve) -> None:
-    """Check that a curve has a contact, and that positions and forces rise towards the sample; nothing is returned.
-
-    Raises:
-        DataError: a column has the opposite sign, with the key that reverses it; or the force does not exceed its
-            noise.
-    """
-    z, F = curve.positions, curve.forces
-    first = curve.segments[0].points
-    tenth = first.size // 10 + 1
-    inwards = F[first][np.argsort(z[first])]
-    if inwards[-tenth:].mean() - inwards[:tenth].mean() < -0.2 * float(np.ptp(F)):
-        raise DataError('the force falls towards the sample: tension is positive here; write reverse = ["F"]')
-    if (z[first[-1]] > z[first[0]]) != (curve.segments[0].name == APPROACH):
-        raise DataError('z falls on the approach: it must grow towards the sample; write reverse = ["z"]')
-    means = [float(block.mean()) for block in np.array_split(F, 20)]
-    if np.ptp(means) < 2.0 * float(np.std(np.diff(F))):  # a contact changes the mean by more than the noise
-        raise DataError("the force does not exceed its noise: the curve has no contact, or z and F are swapped")
-
-
-def _require_whole(curve: ForceCurve, along: str, saturated: int = 6, gap: float = 8.0) -> None:
-    """Check that a force is not cut at an end of its range, and that positions have no gaps; nothing is returned.
-
-    Args:
-        curve: as it was read.
-        along: the column of its positions, for the message.
-        saturated: number of points of equal force, within 1e-4 of the range, at an end of it that are no measurement,
-            unless that end is the baseline.
-        gap: distance of neighbouring positions over its median that is a gap, where it also exceeds a tenth of the
-            range of positions.
-
-    Raises:
-        DataError: with the number of points, or the line before the gap.
-    """
-    F, span = curve.forces, float(np.ptp(curve.forces))
-    for end, name in ((float(F.max()), "largest"), (float(F.min()), "least")):
-        flat = int((np.abs(F - end) <= 1e-4 * span).sum())
-        if flat >= saturated and abs(end - curve.baseline) > 0.05 * span:  # bodies apart may have equal forces
-            raise DataError(
-                f"the force is saturated: {flat} points have its {name} value; lower the trigger force or the gain, or "
-                "leave these lines out"
-            )
-    for points in (segment.points for segment in curve.segments):
-        steps = np.abs(np.diff(curve.positions[points]))
-        widest = int(np.argmax(steps))
-        if steps[widest] > max(gap * float(np.median(steps)), 0.1 * curve.depth):
-            line = curve.lines[points][widest]
-            raise DataError(
-                f"has a gap in {along} after line {line}: give the points between, or the curve up to there"
             )

@@ -17,12 +17,12 @@ import numpy as np
 from contact1d.files import AnyPath
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import Contact1dError, FolderError
+from contact1d.workflow.fit.comparison import BAD, CurveFit, fit_curve
 from contact1d.workflow.fit.curve import NOUNS, RETRACT, ForceCurve
 from contact1d.workflow.fit.data import DataError, curves_of, files_of
 from contact1d.workflow.fit.forward import LAWS
 from contact1d.workflow.fit.plan import STIFFNESS, AnyFit, FitPlan, read_fit
 from contact1d.workflow.fit.relaxing import relaxed
-from contact1d.workflow.fit.comparison import BAD, CurveFit, fit_curve
 from contact1d.workflow.fit.solution import Fitted, compared, model_of
 from contact1d.workflow.fit.subject import POINT
 from contact1d.workflow.runs.advised import run

@@ -16,10 +16,11 @@ from contact1d.analysis import plots
 from contact1d.files import AnyPath, whole
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import Contact1dError
-from contact1d.workflow.fit.data import DataError, NamedCurve, curves_of
-from contact1d.workflow.fit.fit import fit_folder
-from contact1d.workflow.fit.plan import AnyFit, FitPlan, read_fit
 from contact1d.workflow.fit.comparison import fit_curve
+from contact1d.workflow.fit.data import NamedCurve, curves_of
+from contact1d.workflow.fit.fit import fit_folder
+from contact1d.workflow.fit.headings import DataError
+from contact1d.workflow.fit.plan import AnyFit, FitPlan, read_fit
 from contact1d.workflow.fit.solution import model_of
 from contact1d.workflow.runs.processors import cores, pool
 from contact1d.workflow.units import scale_of

@@ -15,6 +15,7 @@ from pydantic import Field, ValidationError
 from contact1d.workflow.scene import Problem, Scene, SceneError, read_scene, read_tables
 from contact1d.workflow.scene.check import mend_words, report_faults
 from contact1d.workflow.scene.conversion import convert
+from contact1d.workflow.scene.file_kinds import require_kind
 from contact1d.workflow.scene.problems import shown
 from contact1d.workflow.scene.quantities import POSITIVE, Listed, Place, Table, Unit, allowed_by
 from contact1d.workflow.scene.read import plain_data
@@ -122,6 +123,7 @@ def read_fit(source: AnyFit, **changes: Any) -> FitPlan:
         SceneError: with every problem of the file and of its base scene, or that the file cannot be read.
     """
     tables = dict(plain_data(source) if isinstance(source, Mapping) else read_tables(source)) | changes
+    require_kind(tables, "fit file", source)
     folder = Path.cwd() if isinstance(source, Mapping) else Path(source).parent
     base = tables.pop("base", None)
     whole = Place(tables, allowed_by(Fit))

@@ -19,8 +19,8 @@ from contact1d.files import write_whole
 from contact1d.workflow.body.cases import ASSUMED_RANGE
 from contact1d.workflow.fit import curve as curves
 from contact1d.workflow.fit import search
-from contact1d.workflow.fit.fit import FitResult
 from contact1d.workflow.fit.comparison import BOTH, CurveFit
+from contact1d.workflow.fit.fit import FitResult
 from contact1d.workflow.fit.solution import SOFTEST, UNITS, Fitted
 from contact1d.workflow.fit.subject import POINT, modulus_of
 from contact1d.workflow.laws import law_of

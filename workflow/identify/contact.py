@@ -13,6 +13,7 @@ from typing import Any, Literal
 from contact1d.workflow.body.cases import ASSUMED_RANGE
 from contact1d.workflow.laws import law_of
 from contact1d.workflow.scene import Problem, Scene, SceneError, read_scene, read_tables
+from contact1d.workflow.scene.file_kinds import require_kind
 from contact1d.workflow.scene.measured import is_scan
 from contact1d.workflow.scene.problems import nearest, shown
 from contact1d.workflow.scene.profile_file import read_profile
@@ -130,8 +131,7 @@ def read_contact(source: AnyContact, complete: bool = True) -> AskedContact:
     """
     folder = Path() if isinstance(source, Mapping) else Path(fspath(source)).parent
     data = dict(source) if isinstance(source, Mapping) else read_tables(source)
-    if {"bodies", "experiment"} <= data.keys():
-        raise SceneError([Problem("bodies", "this is a scene, not a material file", hint="run it with contact1d run")])
+    require_kind(data, "material file", source)
     problems = [*_mistakes(data, complete), *_without_unit(data, folder)]
     reported = {problem.path for problem in problems}
     scene = None

@@ -17,6 +17,7 @@ from contact1d.workflow.scene.check import mend_words, report_faults
 from contact1d.workflow.scene.columns import put_terms
 from contact1d.workflow.scene.conversion import UNIT_KEYS, convert
 from contact1d.workflow.scene.draft import Draft
+from contact1d.workflow.scene.file_kinds import require_kind, require_tables
 from contact1d.workflow.scene.problems import BARE, Problem, SceneError, keys_in, shown, suggestion, tables_as_toml
 from contact1d.workflow.scene.profile_file import put_points, take_points
 from contact1d.workflow.scene.quantities import Place, Table, keys_of
@@ -161,8 +162,8 @@ def read_scene(
             file, or the current one. The points are read into the scene, which does not need the file afterwards.
 
     Raises:
-        SceneError: with every problem at once, also for a file that is missing, unreadable, not UTF-8 or not TOML, and
-            for an effect to remove that is absent.
+        SceneError: with every problem at once, also for a file that is missing, unreadable, not UTF-8, not TOML or that
+            of another command, and for an effect to remove that is absent.
     """
     if isinstance(source, Scene):
         plain: Any = source.given
@@ -171,6 +172,7 @@ def read_scene(
     else:
         plain = read_tables(source)
         folder = folder or (None if _is_text(source) else FilePath(source).parent)
+    require_kind(plain, "scene", source)
     problems = apply_overrides(plain, _listed(overrides)) + remove_effects(plain, _listed(without))
     return _checked(plain, problems, FilePath(folder or "."))
 
@@ -179,8 +181,8 @@ def read_tables(source: str | PathLike[str]) -> dict[str, Any]:
     """Return the tables of a TOML file, by its path, or of TOML text (a `str` with a line break or "="), unchecked.
 
     Raises:
-        SceneError: with one problem: no such file, one that is unreadable or not UTF-8, no TOML, too deep, or `source`
-            is neither path nor text.
+        SceneError: with one problem: no such file, one that is unreadable or not UTF-8, no TOML, too deep, data or a
+            folder of results, or `source` is neither path nor text.
     """
     if not isinstance(source, str | PathLike):
         given = type(source).__name__
@@ -189,8 +191,9 @@ def read_tables(source: str | PathLike[str]) -> dict[str, Any]:
         return _tables(str(source), "scene")
     try:
         return _tables(read_text(FilePath(source)), fspath(source))
-    except UnreadableError as error:
-        raise SceneError([Problem(*error.args)]) from error
+    except (UnreadableError, SceneError) as error:
+        require_tables(FilePath(source))
+        raise SceneError(getattr(error, "problems", None) or [Problem(*error.args)]) from error
 
 
 def _is_text(source: object) -> bool:

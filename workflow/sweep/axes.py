@@ -21,6 +21,7 @@ import numpy as np
 
 from contact1d.digits import cleaned
 from contact1d.workflow.scene import Problem, Scene, SceneError, read_scene, read_tables
+from contact1d.workflow.scene.file_kinds import require_kind
 from contact1d.workflow.scene.problems import as_toml, shown, suggestion
 from contact1d.workflow.scene.read import plain_data, set_values
 from contact1d.workflow.scene.si_text import UnitTextError, si_base
@@ -145,6 +146,7 @@ def read_sweep(source: AnySweep) -> SweepPlan:
         SceneError: all problems of the sweep file; or those of the base scene's file, if it can't be read.
     """
     tables = plain_data(source) if isinstance(source, Mapping) else read_tables(source)
+    require_kind(tables, "sweep file", source)
     folder = Path.cwd() if isinstance(source, Mapping) else Path(source).parent
     problems = _broken(_of_file(tables))
     given: Any = tables.get("axes") if _is_list(tables.get("axes")) else ()
