@@ -25,7 +25,7 @@ from contact1d.workflow.fit.data import DataError
 from contact1d.workflow.fit.forward import ContactModel
 from contact1d.workflow.fit.plan import FitPlan
 from contact1d.workflow.fit.search import LEVEL
-from contact1d.workflow.fit.solution import SURE, Fitted, checked, fitted, solution_of
+from contact1d.workflow.fit.solution import SURE, Fitted, UndeterminedError, checked, fitted, solution_of
 from contact1d.workflow.fit.subject import POINT
 
 Array = NDArray[np.float64]
@@ -94,8 +94,8 @@ def fit_curve(plan: FitPlan, curve: ForceCurve, model: ContactModel) -> CurveFit
     """Fit a contact model to the segments of a curve, and return the fits.
 
     A curve with approach and retraction is fitted as a whole and by each segment alone. Where these differ by more than
-    chance, there is no fit of the whole. Of bodies that relax there is that of the whole only, with the hold, which is
-    left out otherwise.
+    chance, and where the model describes one of them alone, there is no fit of the whole. Of bodies that relax there is
+    that of the whole only, with the hold, which is left out otherwise.
 
     Raises:
         DataError: the bodies relax, and the curve has no times.
@@ -108,13 +108,18 @@ def fit_curve(plan: FitPlan, curve: ForceCurve, model: ContactModel) -> CurveFit
     if relaxes or len(curve.segments) == 1:
         whole = BOTH if len(curve.segments) > 1 else curve.segments[0].name
         return CurveFit(curve, {whole: fitted(plan, curve, model)})
-    together = solution_of(plan, curve, model)
+    together, reason = None, None
+    try:
+        together = solution_of(plan, curve, model)
+    except UndeterminedError as error:  # of a model that describes each segment, but not both
+        reason = error
+    is_good = together is not None and together.misfit <= BAD
     alone, refused = dict[str, Fitted](), dict[str, str]()
     for segment in curve.segments:
-        part = curve.only(segment.name)
+        part, approach = curve.only(segment.name), alone.get(APPROACH)
         try:
-            fit = solution_of(plan, part, model, together, alone.get(APPROACH))
-            fit = solution_of(plan, part, model, None, alone.get(APPROACH)) if fit.misfit > BAD else fit
+            fit = solution_of(plan, part, model, together if is_good else None, approach)
+            fit = solution_of(plan, part, model, None, approach) if is_good and fit.misfit > BAD else fit
             alone[segment.name] = checked(fit, by_profile=False)
         except (Contact1dError, ArithmeticError, np.linalg.LinAlgError) as error:
             refused[segment.name] = str(error)
@@ -122,6 +127,12 @@ def fit_curve(plan: FitPlan, curve: ForceCurve, model: ContactModel) -> CurveFit
         alone = {name: checked(fit) for name, fit in alone.items()}
         if names := differing(alone[APPROACH], alone[RETRACT]):
             return CurveFit(curve, alone, names)
+    good = {name: checked(fit) for name, fit in alone.items() if not is_good and fit.misfit <= BAD}
+    if len(good) == 1:
+        return CurveFit(curve, good, (), refused)
+    if together is None:
+        assert reason is not None
+        raise reason
     return CurveFit(curve, {BOTH: checked(together), **alone}, (), refused)
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from contact1d.files import AnyPath
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import Contact1dError, FolderError
-from contact1d.workflow.fit.comparison import BAD, CurveFit, fit_curve
+from contact1d.workflow.fit.comparison import BAD, BOTH, CurveFit, fit_curve
 from contact1d.workflow.fit.curve import NOUNS, RETRACT, ForceCurve
 from contact1d.workflow.fit.data import DataError, curves_of, files_of
 from contact1d.workflow.fit.forward import LAWS
@@ -186,6 +186,12 @@ def _warn_of_fit(result: FitResult) -> None:
     base_fit, fits, curve = result.fit, result.segments, result.segments.curve
     if fits.differing:
         result.warnings["hysteresis"] = differences(fits)
+    elif fits.refused and len(curve.segments) > 1 and BOTH not in fits.fits:
+        (name,) = fits.fits
+        other, why = next(iter(fits.refused.items()))
+        result.warnings["hysteresis"] = (
+            f"{base_fit.model} describes the {NOUNS[name]} alone, whose numbers these are; of the {NOUNS[other]}: {why}"
+        )
     snap, (low, high) = float(base_fit.jumps_at(base_fit.solution.values)[1]), result.bracket
     if math.isfinite(low) and not 2.0 * low - high <= snap <= 2.0 * high - low:
         result.warnings["snap_out"] = (
