@@ -77,17 +77,17 @@ class CurveFit:
         squares of the inverse intervals, and its interval the mean of their intervals: they share the calibrations.
         """
         shown = self.shown
-        found: dict[str, Estimated | None] = {}
+        estimates: dict[str, Estimated | None] = {}
         for name in shown[0].intervals:
             if name in self.differing:
-                found[name] = None
+                estimates[name] = None
                 continue
             rows = np.array([(fit.values[name], *fit.intervals[name]) for fit in shown])
             widths = rows[:, 2] - rows[:, 1]
             weights = 1.0 / widths**2 if np.isfinite(widths).all() else np.ones(len(rows))
             value, low, high = (weights @ rows / weights.sum()).tolist()
-            found[name] = value, (low, high)
-        return found
+            estimates[name] = value, (low, high)
+        return estimates
 
 
 def fit_curve(plan: FitPlan, curve: ForceCurve, model: ContactModel) -> CurveFit:
@@ -147,16 +147,17 @@ def differing(approach: Fitted, retraction: Fitted) -> tuple[str, ...]:
     shared = [unknown.name for unknown in approach.subject.unknowns if unknown.known and unknown.name != POINT]
     estimates = [_conditional(fit, names, shared) for fit in fits]
     calibration = [unknown for unknown in approach.subject.unknowns if unknown.name in shared]
-    exact = np.array([math.log(one.known[0] / one.scale) for one in calibration if one.known])
-    precision = np.diag([(one.known[0] / one.known[1]) ** 2 for one in calibration if one.known])
+    exact = np.array([math.log(unknown.known[0] / unknown.scale) for unknown in calibration if unknown.known])
+    precision = np.diag([(unknown.known[0] / unknown.known[1]) ** 2 for unknown in calibration if unknown.known])
     total = sum((estimate.precision for estimate in estimates), -precision)
-    at = np.linalg.solve(total, sum((one.precision @ one.shared for one in estimates), -precision @ exact))
-    first, second = (one.values + one.slopes @ (at - one.shared) for one in estimates)
+    weighted = (estimate.precision @ estimate.shared for estimate in estimates)
+    calibrated = np.linalg.solve(total, sum(weighted, -precision @ exact))
+    first, second = (estimate.values + estimate.slopes @ (calibrated - estimate.shared) for estimate in estimates)
     slopes = estimates[0].slopes - estimates[1].slopes
     sides = np.where(first > second, 0, 1)
     variance = ndtri(0.5 + 0.5 * SURE) ** 2 * np.diag(slopes @ np.linalg.solve(total, slopes.T))
-    for one, side in zip(estimates, (sides, 1 - sides), strict=True):
-        variance += one.tails[side, np.arange(len(names))] ** 2 * np.diag(one.covariance)
+    for estimate, side in zip(estimates, (sides, 1 - sides), strict=True):
+        variance += estimate.tails[side, np.arange(len(names))] ** 2 * np.diag(estimate.covariance)
     apart = np.abs(first - second) > np.sqrt(variance)
     return tuple(name for name, is_apart in zip(names, apart, strict=True) if is_apart)
 
@@ -192,13 +193,13 @@ def _conditional(fit: Fitted, names: list[str], shared: list[str]) -> _Condition
         shared: names of the calibrated numbers.
     """
     unknowns = fit.subject.unknowns
-    size = np.array([1.0 if one.positive else one.scale for one in unknowns])
+    size = np.array([1.0 if unknown.positive else unknown.scale for unknown in unknowns])
     index = [fit.subject.names.index(name) for name in (*names, *shared)]
     average = fit.solution.average
-    weights = np.array([one.weight for one in average.estimates])
-    steps = np.array([one.step for one in average.estimates])
+    weights = np.array([estimate.weight for estimate in average.estimates])
+    steps = np.array([estimate.step for estimate in average.estimates])
     off = steps - weights @ steps
-    covariance = np.einsum("k,kij->ij", weights, [one.covariance for one in average.estimates])
+    covariance = np.einsum("k,kij->ij", weights, [estimate.covariance for estimate in average.estimates])
     covariance = (covariance + off.T @ (weights[:, None] * off)) * np.outer(size, size)
     C, u, n = covariance[np.ix_(index, index)], (fit.solution.u * size)[index], len(names)
     precision = np.linalg.inv(C[n:, n:])

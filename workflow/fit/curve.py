@@ -126,14 +126,14 @@ class ForceCurve:
         The jump of the approach is a snap-in, at which the force falls; that of the retraction is a snap-out, at which
         it rises. A hold has none.
         """
-        found = []
+        segments = []
         for name, sign in ((APPROACH, -1.0), (HOLD, 0.0), (RETRACT, 1.0)):
             if (points := self.of(name)).size:
                 change = self.changes.get(name)
                 if name == RETRACT and self._is_held(points):
                     change = points.size - 1, points.size
-                found.append(Segment(name, points, self._jump(points, sign) if sign else None, change))
-        return tuple(found)
+                segments.append(Segment(name, points, self._jump(points, sign) if sign else None, change))
+        return tuple(segments)
 
     def _is_held(self, points: Indices) -> bool:
         """Return whether the last point of a retraction is certainly in contact; `points`: its indices in the curve.

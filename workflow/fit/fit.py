@@ -188,9 +188,9 @@ def _warn_of_fit(result: FitResult) -> None:
         result.warnings["hysteresis"] = differences(fits)
     elif fits.refused and len(curve.segments) > 1 and BOTH not in fits.fits:
         (name,) = fits.fits
-        other, why = next(iter(fits.refused.items()))
+        missing, why = next(iter(fits.refused.items()))
         result.warnings["hysteresis"] = (
-            f"{base_fit.model} describes the {NOUNS[name]} alone, whose numbers these are; of the {NOUNS[other]}: {why}"
+            f"{base_fit.model} describes the {NOUNS[name]} alone, and has these numbers; of the {NOUNS[missing]}: {why}"
         )
     snap, (low, high) = float(base_fit.jumps_at(base_fit.solution.values)[1]), result.bracket
     if math.isfinite(low) and not 2.0 * low - high <= snap <= 2.0 * high - low:
@@ -308,11 +308,11 @@ def _difference_in_time(fit: Fitted, load_steps: int) -> float:
     times, d = curve.times[corners] - curve.times[first], np.append(min(0.0, d[first]), d[corners[1:]])
     history = {"kind": "history", "displacement": np.column_stack([times, d]).tolist()}
     with TemporaryDirectory(prefix="contact1d-fit-") as folder:
-        found = run(fit.scene.with_({"experiment": history}), Path(folder) / "run", figures=False).curve
-    t = np.asarray(found["time"])
+        table = run(fit.scene.with_({"experiment": history}), Path(folder) / "run", figures=False).curve
+    t = np.asarray(table["time"])
     fine = np.union1d(np.linspace(0.0, times[-1], 4000), t)
     predicted, _ = relaxed(branch, fit.subject.terms(values), fine, np.interp(fine, times, d))
-    return float(np.abs(np.asarray(found["force"]) - np.interp(t, fine, predicted)).max())
+    return float(np.abs(np.asarray(table["force"]) - np.interp(t, fine, predicted)).max())
 
 
 def fit_folder(folder: Path) -> Path:

@@ -26,11 +26,6 @@ from scipy.special import softmax, stdtr
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
-UNDETERMINED = 1e6
-"""Standard deviation of the unknowns of the least squares where the data say nothing of them."""
-EXCLUDED = 6.9
-"""Natural logarithm of the likelihood below the largest one from which on a noise is excluded: 99.9 % of the χ²
-distribution with two degrees of freedom, those of s and τ."""
 
 
 @dataclass(frozen=True)
@@ -110,12 +105,14 @@ class Estimate:
     weight: float
 
 
-def _estimates(grid: Sequence[Noise], residuals: Array, slopes: Array, prior: Array) -> tuple[list[Estimate], Array]:
+def _estimates(
+    grid: Sequence[Noise], residuals: Array, slopes: Array, prior: Array, widest: float = 1e6
+) -> tuple[list[Estimate], Array]:
     """Return (the estimate under each of m noises, with weight 0; natural logarithms of their likelihoods, (m,)).
 
     The likelihoods are restricted ones, but for a common constant. The residuals (n,) change by −slopes·step, slopes
     (n, p); `prior` (q, p + 1) has a row for each calibration of the parameters, its last column the misfit, in standard
-    deviations.
+    deviations. `widest`: standard deviation of a parameter of which neither says anything.
     """
     columns = np.column_stack([slopes, residuals])
     # R of J = QR has the precision that JᵀJ loses; its last column is Qᵀr, and the norm of the residual of the fit.
@@ -124,7 +121,7 @@ def _estimates(grid: Sequence[Noise], residuals: Array, slopes: Array, prior: Ar
     P, misfit = (np.broadcast_to(part, (len(grid), *part.shape)) for part in (prior[:, :-1], prior[:, -1:]))
     freedom = max(1.0, residuals.size - float(J.shape[2] - prior.shape[0]))
     deviation = np.sqrt((np.sum(r**2, axis=(1, 2)) + rest**2) / freedom)
-    weak = np.broadcast_to(np.eye(J.shape[2]) / UNDETERMINED, (len(grid), *[J.shape[2]] * 2))
+    weak = np.broadcast_to(np.eye(J.shape[2]) / widest, (len(grid), *[J.shape[2]] * 2))
     rest_of_step = np.zeros((len(grid), J.shape[2], 1))
     for _ in range(3):  # σ weighs the data against the calibrations
         scale = deviation[:, None, None]
@@ -202,7 +199,13 @@ class Resting:
 
 
 def averaged(
-    runs: Sequence[Indices], residuals: Array, slopes: Array, prior: Array, looks: int, resting: Resting | None = None
+    runs: Sequence[Indices],
+    residuals: Array,
+    slopes: Array,
+    prior: Array,
+    looks: int,
+    resting: Resting | None = None,
+    excluded: float = 6.9,
 ) -> AveragedEstimate:
     """Return the estimates under all noises of a grid over s and τ, with weights by likelihood whose sum is 1.
 
@@ -218,6 +221,8 @@ def averaged(
             deviations.
         looks: number of grids, at least 1, which is enough for the most likely noise.
         resting: forces of bodies apart; None: there are too few.
+        excluded: natural logarithm of the likelihood of the resting forces below the largest one from which on a noise
+            is excluded: 99.9 % of the χ² distribution with two degrees of freedom, those of s and τ.
     """
     shares: Array = np.array([0.0, 0.05, 0.15, 0.35, 0.6, 0.8, 0.93, 1.0])
     # A memory shorter than 0.7 points is white noise; the variance of one longer than a quarter of a run is unknown.
@@ -229,7 +234,7 @@ def averaged(
         if resting is not None:
             shown = resting.likelihoods(pairs)
             highest = max(highest, float(shown.max()))
-            logs = np.where(shown >= min(highest - EXCLUDED, shown.max()), logs, -math.inf)
+            logs = np.where(shown >= min(highest - excluded, shown.max()), logs, -math.inf)
         # White noise stands once for all memories.
         weights = softmax(logs + np.log([1.0 if s > 0.0 else memories.size for s, _ in pairs]))
         likely = [pair for pair, weight in zip(pairs, weights, strict=True) if weight > 1e-5 * weights.max()]

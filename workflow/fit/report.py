@@ -131,10 +131,10 @@ def agreed(fits: CurveFit, keys: Iterable[str]) -> dict[str, Any]:
 
     `keys`: names of parameters, or of the contact point; others are left out.
     """
-    found = {key: fits.estimates[key] for key in keys if key in fits.estimates}
+    estimates = {key: fits.estimates[key] for key in keys if key in fits.estimates}
     return {
         key: estimate and {"value": estimate[0], "unit": fits.main.unit(key), "interval": list(estimate[1])}
-        for key, estimate in found.items()
+        for key, estimate in estimates.items()
     }
 
 
@@ -255,13 +255,13 @@ def in_words(record: Mapping[str, Any]) -> dict[str, str]:
 
     `record`: content of fit.json.
     """
-    found = {}
+    words = {}
     for key, estimate in record["parameters"].items():
         parts = {"": estimate} if estimate else {name: part["parameters"][key] for name, part in _alone(record)}
-        found[key] = ", ".join(
+        words[key] = ", ".join(
             f"{written(part)} {curves.NOUNS.get(name, name)}".strip() for name, part in parts.items()
         )
-    return found
+    return words
 
 
 def written(entry: Mapping[str, Any]) -> str:

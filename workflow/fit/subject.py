@@ -29,8 +29,6 @@ OFFSETS = {APPROACH: "force_offset", HOLD: "force_offset", RETRACT: "force_offse
 """Names of the offset of the force by segment."""
 MEASURED = (POINT, SLOPE, STIFFNESS, *OFFSETS.values())
 """Names of the unknowns of the measurement, which no scene has."""
-FEWEST_RESTING = 30
-"""Least number of points of bodies apart that show a noise."""
 Factors = tuple[tuple[str, float], ...]
 """Keys of a scene, and the factors of their numbers."""
 
@@ -163,17 +161,17 @@ class Subject:
         first force above the first one. Segments of which it is not known count 0. `values`: of all unknowns.
         """
         branch, stiffness, point = self.parts(values)
-        found = []
+        lengths = []
         for segment in self.curve.segments:
             held = segment.held
             if segment.name == RETRACT and held.size:
-                found.append(point + branch.snap_out(stiffness)[0] - self.curve.positions[held[-1]])
+                lengths.append(point + branch.snap_out(stiffness)[0] - self.curve.positions[held[-1]])
             elif segment.name == APPROACH and held.size:
-                found.append(point + branch.displacements[0] - self.curve.positions[held[0]])
-        return np.asarray(np.maximum(0.0, np.array(found)) / self.pitch)
+                lengths.append(point + branch.displacements[0] - self.curve.positions[held[0]])
+        return np.asarray(np.maximum(0.0, np.array(lengths)) / self.pitch)
 
-    def resting(self, values: Sequence[float], compared: Sequence[Indices]) -> Resting | None:
-        """Return the measured forces of bodies apart in compared runs; None where these are fewer than 30 points.
+    def resting(self, values: Sequence[float], compared: Sequence[Indices], fewest: int = 30) -> Resting | None:
+        """Return the measured forces of bodies apart in compared runs; None where these are too few points.
 
         Their line has a level for each run, and a slope in forces over the range of positions, which is the last
         column.
@@ -181,11 +179,12 @@ class Subject:
         Args:
             values: of all unknowns.
             compared: indices of the points of each run.
+            fewest: number of points that show a noise.
         """
         apart = self.apart_at(values)
         runs = [run[apart[run]] for run in compared if apart[run].sum() > 3]
         points = np.concatenate([np.zeros(0, dtype=np.intp), *runs])
-        if points.size < FEWEST_RESTING:
+        if points.size < fewest:
             return None
         levels = np.repeat(np.eye(len(runs)), [run.size for run in runs], axis=0)
         z = (self.curve.positions[points] - self.curve.positions[points].mean())[:, None]

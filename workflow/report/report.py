@@ -159,13 +159,13 @@ def _of_fit(folder: Path) -> str:
     from pandas import read_csv
 
     record = json.loads((folder / FIT).read_text(encoding="utf-8"))
-    both = record["parameters"] | {POINT: record[POINT]}
-    columns = {"both segments": both} if len(record["segments"]) != 1 else {}
+    agreed = record["parameters"] | {POINT: record[POINT]}
+    columns = {"both segments": agreed} if len(record["segments"]) != 1 else {}
     for name, part in record["segments"].items():
         columns[NOUNS[name]] = {} if "refused" in part else part["parameters"] | {POINT: part[POINT]}
     rows = {
         key: {name: written(entries[key]) if entries.get(key) else "—" for name, entries in columns.items()}
-        for key in both
+        for key in agreed
     }
     if record["pull_off_force"]:
         measured = Quantity.of(record["pull_off_force"])
