@@ -28,6 +28,7 @@ class Curves:
         knots: radii, from 0, (m + 1,), those that curves have, fewer where they are rare.
         slopes: of n curves at the knots but 0, (n, m), dimensionless.
         nuisance: their other parameters, (n, p).
+        mean: of slopes and other parameters without further noise, (m + p,), which bounds bias less.
         counts: numbers of knots of each, (n,).
         shares: share of the curves that have each knot, (m + 1,).
         convex: whether the slope of no curve falls.
@@ -37,6 +38,7 @@ class Curves:
     knots: Array
     slopes: Array
     nuisance: Array
+    mean: Array
     counts: NDArray[np.int_]
     shares: Array
     convex: bool
@@ -111,12 +113,14 @@ class Candidates:
         residual = nnls(design, self.columns[self.count :, -1])[1]
         return float(-0.5 * residual**2 / self.power + math.log(odds) * design.shape[1] * (1 + 2 * (not convex)))
 
-    def draw(self, chosen: Mask, convex: bool, rng: np.random.Generator) -> tuple[Array, Array]:
-        """Return (slopes at all knots but 0, (m,), other parameters, (p,)) of a curve fitted with further noise."""
+    def fitted(self, chosen: Mask, convex: bool, heights: Array) -> tuple[Array, Array]:
+        """Return (slopes at all knots but 0, (m,), other parameters, (p,)) of the best curve with chosen knots.
+
+        `heights`: after the transformation, (q,).
+        """
         from scipy.optimize import nnls
 
         design, count = self.design(chosen, convex), self.count
-        heights = self.columns[:, -1] + math.sqrt(self.power) * rng.standard_normal(len(self.columns))
         theta = nnls(design[count:], heights[count:])[0]
         slopes = np.append(0.0, np.cumsum(theta) if convex else theta)
         nuisance = np.linalg.lstsq(self.columns[:count, :count], (heights - design @ theta)[:count])[0]
@@ -135,7 +139,7 @@ class Candidates:
         """
         rng, chosen, convex, rising = np.random.default_rng(seed), start, True, True
         likelihood = self.likelihood(chosen, convex, odds)
-        curves, masks = list[tuple[Array, Array]](), list[Mask]()
+        curves, best, masks = list[tuple[Array, Array]](), list[tuple[Array, Array]](), list[Mask]()
         for step in range(-2 * draws, 2 * draws):
             trial, rises = _proposed(chosen, convex, rng)
             if trial.sum() <= max(most, chosen.sum()):
@@ -143,14 +147,20 @@ class Candidates:
                 if math.log(1.0 - rng.random()) < level - likelihood:
                     chosen, convex, likelihood = trial, rises, level
             if step >= 0 and step % 2 == 0:
-                curves.append(self.draw(chosen, convex, rng))
+                heights = self.columns[:, -1]
+                noise = math.sqrt(self.power) * rng.standard_normal(len(heights))
+                curves.append(self.fitted(chosen, convex, heights + noise))
+                best.append(self.fitted(chosen, convex, heights))
                 masks.append(chosen)
                 rising &= convex
         slopes, nuisance = (np.stack(parts) for parts in zip(*curves, strict=True))
         shares, counts = np.mean(masks, axis=0), np.sum(masks, axis=1)
         kept = np.diff(np.floor(most * np.cumsum(shares) / shares.sum()), prepend=-1.0) > 0.0
-        last = self.knots[chosen]
-        return Curves(self.knots[kept], slopes[:, kept[1:]], nuisance, counts, shares[kept], rising, last)
+        mean = [np.mean(parts, axis=0) for parts in zip(*best, strict=True)]
+        mean[0], slopes = mean[0][kept[1:]], slopes[:, kept[1:]]
+        return Curves(
+            self.knots[kept], slopes, nuisance, np.concatenate(mean), counts, shares[kept], rising, self.knots[chosen]
+        )
 
 
 def _proposed(chosen: Mask, convex: bool, rng: np.random.Generator) -> tuple[Mask, bool]:

@@ -389,9 +389,9 @@ class _Fit:
 
     def mean_of(self, curves: Curves, centre: float) -> _Solved:
         """Return the mean of curves as a fit; `centre`: position of the apex over the width, where it is given."""
-        form, slopes = smooth(curves.knots, curves.convex), curves.slopes.mean(axis=0)
+        form, slopes = smooth(curves.knots, curves.convex), curves.mean[: len(curves.knots) - 1]
         parameters = np.append(np.diff(slopes, prepend=0.0) if form.convex else slopes, [0.0, centre, 0.0])
-        parameters[np.flatnonzero(self.fitted(form))[len(slopes) :]] = curves.nuisance.mean(axis=0)
+        parameters[np.flatnonzero(self.fitted(form))[len(slopes) :]] = curves.mean[len(slopes) :]
         if self.moves:
             parameters[-2] = min(max(parameters[-2], float(self.x[0])), float(self.x[-1]))
         curve, columns = self.design(form, parameters)
