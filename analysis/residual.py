@@ -56,9 +56,9 @@ def autocovariance(residual: Array) -> Array:
 
 
 def noise_in(residual: Array) -> Noise:
-    """Return the noise of a residual, (n,): its deviation is the root mean square, without subtraction of the mean.
+    """Return the noise of a residual, (n,): its deviation is the root mean square; the mean is not subtracted.
 
-    τ = 1 + 2 Σ of its autocorrelations up to the first one below 2/√n. Deviation 0 and τ = 1 where all of it is 0.
+    τ = 1 + 2 Σ of its autocorrelations, by those up to the first one below 2/√n. Deviation 0 and τ = 1 where it is 0.
     """
     return noise_by(autocovariance(residual), len(residual))
 
@@ -66,7 +66,8 @@ def noise_in(residual: Array) -> Noise:
 def noise_by(covariance: Array, points: int) -> Noise:
     """Return the noise by its autocovariance: τ = 1 + 2 Σ of correlations up to the first one below chance, 2/√n.
 
-    That one is not included; all are where none is below. The deviation is the root of the first value, in the unit of
+    That one is not included; all are where none is below. The sum is divided by 1 − 2/√n, at least 0.5, the share of an
+    exponential correlation that is above chance. The deviation is the root of the first value, in the unit of
     the residual. It has deviation 0 and τ = 1 where the variance is 0 or negative.
 
     Args:
@@ -76,8 +77,9 @@ def noise_by(covariance: Array, points: int) -> Noise:
     if covariance[0] <= 0.0:
         return Noise(0.0, 1.0)
     rho = covariance[1:] / covariance[0]
-    end = int(np.argmax(np.append(rho, -1.0) < 2.0 / math.sqrt(points)))
-    return Noise(math.sqrt(covariance[0]), 1.0 + 2.0 * float(rho[:end].sum()))
+    chance = 2.0 / math.sqrt(points)
+    end = int(np.argmax(np.append(rho, -1.0) < chance))
+    return Noise(math.sqrt(covariance[0]), 1.0 + 2.0 * float(rho[:end].sum()) / (1.0 - min(0.5, chance)))
 
 
 def bounded(columns: Array, target: Array, least: Array) -> Array:

@@ -5,10 +5,9 @@
 with the apex at c, the tilt t and the offset z₀. The shape f has f(0) = 0 and rises. Its parameters θ are those of a
 named shape, or of a smooth curve the slopes f′ ≥ 0 at knots, linear between them and 0 on the axis. All are fitted
 together by least squares, so that both sides of a scan determine f, and their covariance is known. The noise may be
-correlated: n points are worth n/τ independent ones, τ = 1 + 2 Σ ρ_k of the residual's autocorrelation ρ. The knots of
-a smooth curve are added one by one, each that lowers the residual most by halving an interval, and removed again where
-they have become needless, by the extended Bayesian information criterion (J. Chen, Z. Chen, Biometrika 95 (2008)
-759) under a noise from the difference of both sides, which does not depend on the shape.
+correlated: n points are worth n/τ independent ones, τ = 1 + 2 Σ ρ_k of the residual's autocorrelation ρ. Of a smooth
+curve without given knots these are drawn (`analysis.knots`): it is the mean of many curves, with knots and corners at
+many radii, each as often as it is likely under the noise, and their scatter is its uncertainty.
 
 Lengths have any one unit.
 """
@@ -23,7 +22,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.form import Array, Form, ShapeName, named, smooth
-from contact1d.analysis.residual import Noise, autocovariance, bounded, drawn, independent, noise_by, noise_in
+from contact1d.analysis.knots import Candidates, Curves
+from contact1d.analysis.residual import Noise, autocovariance, bounded, drawn, independent, noise_in
 
 FEWEST = 8
 """Points that a scan needs."""
@@ -33,6 +33,10 @@ FIRST_KNOTS = 24
 """Intervals of the curve whose residual is the first estimate of the noise: more than any shape needs off its kinks."""
 ASPERITY = 2.0
 """Standard deviations of the noise above the lowest point up to which patches are counted."""
+
+
+FLAT = 'shows no curvature beyond the noise: give a wider scan, or write kind = "flat_punch"'
+"""The message of a scan whose noise conceals its shape."""
 
 
 class ScanError(ValueError):
@@ -47,6 +51,8 @@ class Taken:
         shape: "smooth", or the name of the fitted shape.
         parameters: θ, (k,): 1/R; h and n of h (r/w)ⁿ, w the width of the scan; or the slopes at the knots but 0.
         knots: of a smooth curve, (k + 1,), from 0; of a named shape empty.
+        counts: smallest and largest number of knots of the curves whose mean a smooth curve is; twice the number of
+            given knots; 0 of a named shape.
         deviations: pairs of θ, (m, 2, k): half of the difference of a result between the two of a pair is its
             uncertainty at 95 %, independent of the other pairs.
         centre, tilt, offset: position of the apex, slope and height there; each with its uncertainty at 95 %, 0 where
@@ -63,6 +69,7 @@ class Taken:
     shape: str
     parameters: Array
     knots: Array
+    counts: tuple[int, int]
     deviations: Array
     centre: tuple[float, float]
     tilt: tuple[float, float]
@@ -91,15 +98,17 @@ class Taken:
         """Return radii and heights of the points without tilt, (m,) each, in the unit of the scan, with z(0) = 0.
 
         The radii are evenly spaced from 0 by about the median distance of points. With points on both sides of the apex
-        they end at the nearer end and heights are averaged; else they end at the last position, and a scan to the left
-        only gives the radius 0 alone. Heights between points are interpolated.
+        they end at the nearer end and heights are averaged; else they end at the farthest point. Heights between points
+        are interpolated.
         """
-        from scipy.interpolate import PchipInterpolator  # which takes longer to import than a small run
+        from scipy.interpolate import Akima1DInterpolator  # which takes longer to import than a small run
 
-        sides = [PchipInterpolator(*_rising(sign * self.x, self.heights)) for sign in (1.0, -1.0)]
-        end = float(min(self.x[-1], -self.x[0])) if self.both_sides else float(self.x[-1])
+        # It meets a parabola exactly, also across the axis, and does not overshoot beside a corner.
+        curve = Akima1DInterpolator(*_rising(self.x, self.heights), extrapolate=True)
+        right = float(np.sign(self.x[-1] + self.x[0])) or 1.0
+        end = float(min(self.x[-1], -self.x[0]) if self.both_sides else np.abs(self.x).max())
         r = np.linspace(0.0, end, 1 + round(end / self.pitch))
-        z = np.mean([side(r) for side in sides[: 1 + self.both_sides]], axis=0)
+        z = np.mean([curve(side * r) for side in (right, -right)[: 1 + self.both_sides]], axis=0)
         return r, z - z[0]
 
 
@@ -139,6 +148,22 @@ def one_pass(x: Array, z: Array) -> tuple[Array, Array]:
     return positions, np.mean([np.interp(positions, along, heights) for along, heights in passes], axis=0)
 
 
+def require_rising(x: Array, z: Array) -> None:
+    """Raise ScanError where heights z, (n,), decrease outwards over the positions x, (n,), both in any units.
+
+    That is a parabola through all of them that opens downwards and halves the squared residual of a straight line, with
+    most of the points in the upper half.
+    """
+    along = (x - x[0]) / np.ptp(x)
+    (square, *_), squares = np.polyfit(along, z, 2, full=True)[:2]
+    straight = np.polyfit(along, z, 1, full=True)[1]
+    if square <= 0.0 and 2.0 * squares.sum() < straight.sum() and float(np.median(z)) > 0.5 * float(z.max() + z.min()):
+        raise ScanError(
+            "its heights decrease from the apex outwards, as those of a bump seen from above; heights are measured "
+            "from the plane and grow outwards: change the sign of z"
+        )
+
+
 def take(
     x: Array,
     z: Array,
@@ -151,8 +176,7 @@ def take(
 
     Args:
         x, z: positions and heights, (n,), growing away from the plane; a scan may go forth and back.
-        centre: position of the apex, the nearest point of the scan instead where it is outside of that; None: it is
-            fitted.
+        centre: position of the apex; None: it is fitted.
         level: whether a tilt is fitted and removed.
         length: distance of the knots of a smooth curve; None: by the noise. Not used with a named shape.
         shape: the named shape that is fitted; None: a smooth curve.
@@ -167,6 +191,13 @@ def take(
     wide, base = float(np.ptp(x)), float(z.min())
     if float(z.max()) == base:
         raise ScanError('is flat: write kind = "flat_punch"')
+    require_rising(x, z)
+    nearest, most = 0.0 if centre is None else float(np.abs(x - centre).min()), FEWEST * float(np.median(np.diff(x)))
+    if shape is None and nearest > most:
+        raise ScanError(
+            f"has no points within {nearest:.4g} LU of its apex, where at most {most:.4g} LU are allowed: give its "
+            'centre, or "auto", or a fit'
+        )
     origin = float(x[0]) if centre is None else centre
     fit = _Fit((x - origin) / wide, (z - base) / wide, centre is None, level, wide, origin, base)
     return fit.of(shape, length and length / wide)
@@ -203,29 +234,40 @@ class _Fit:
         """
         square, linear, _ = np.polyfit(self.x, self.z, 2)
         start = -0.5 * linear / square if self.moves else 0.0
-        if square <= 0.0 and float(np.median(self.z)) > 0.5 * float(self.z.max()):
-            raise ScanError(
-                "its heights decrease from the apex outwards, as those of a bump seen from above; heights are "
-                'measured from the plane and grow outwards: change the sign of z, or of its unit: units = ["mm", "-µm"]'
-            )
-        start = min(max(start, float(self.x[0])), float(self.x[-1]))
+        if self.moves:
+            start = min(max(start, float(self.x[0])), float(self.x[-1]))
         reach = float(np.abs(self.x - start).max())
         if self.moves and self.tilts:
             self.require_flat_part(reach, start)
         free = self.smoothed(reach, start, None if shape else length)
+        self.require_curvature(free)
         if shape:
             solved = self.solve(named(shape, max(2.0 * float(square), 1e-6)), start)
             return self.judged(solved, self.excess(solved, free))
         return self.judged(free, 0.0)
+
+    def require_curvature(self, solved: _Solved, deviations: float = 6.0) -> None:
+        """Raise ScanError where a fitted curve is no better than a straight line, by the noise of the scan.
+
+        The line is level unless apex or tilt are fitted.
+
+        Args:
+            solved: the fitted curve.
+            deviations: by how many standard deviations the curvature must differ from 0.
+        """
+        straight = np.polynomial.polynomial.polyfit(self.x, self.z, int(self.moves or self.tilts))
+        residual = self.z - np.polynomial.polynomial.polyval(self.x, straight)
+        if float(np.sum(residual**2)) - solved.squares < deviations**2 * self.noise_of(solved).power:
+            raise ScanError(FLAT)
 
     def excess(self, shape: _Solved, smooth_curve: _Solved) -> float:
         """Return the RMS residual of a named shape beyond that of a smooth curve, over the width of the scan.
 
         It is the root of the difference of their mean squares, 0 where that may be chance.
         """
-        more, knots = shape.squares - smooth_curve.squares, len(smooth_curve.form.start)
-        price = self.noise_of(smooth_curve).price(len(self.x), knots)
-        return math.sqrt(more / len(self.x)) if more > price * knots else 0.0
+        more, count = shape.squares - smooth_curve.squares, smooth_curve.count
+        price = self.noise_of(smooth_curve).price(len(self.x), count)
+        return math.sqrt(more / len(self.x)) if more > price * count else 0.0
 
     def require_flat_part(self, reach: float, start: float) -> None:
         """Raise ScanError where a tilt and a moved apex have the same effect on heights: a correlation above 0.9999.
@@ -249,15 +291,11 @@ class _Fit:
             start: position of the apex to begin with, over the width.
             length: distance of the knots over the width; None: by the noise.
         """
-
-        def curve(convex: bool) -> _Solved:
-            """Return the smooth curve fitted with a slope that only rises if `convex`, else with any slope ≥ 0."""
-            if length is None:
-                return self.adapted(reach, start, convex)
-            return self.solve(smooth(np.linspace(0.0, reach, 1 + max(1, round(reach / length))), convex), start)
-
-        convex, free = curve(True), curve(False)
-        price = self.noise_of(free).price(len(self.x), len(free.form.start))
+        if length is None:
+            return self.averaged(reach, start)
+        knots = np.linspace(0.0, reach, 1 + max(1, round(reach / length)))
+        convex, free = (self.solve(smooth(knots, rises), start) for rises in (True, False))
+        price = self.noise_of(free).price(len(self.x), free.count)
         return free if convex.squares - free.squares > price else convex
 
     def fitted(self, form: Form) -> NDArray[np.bool_]:
@@ -304,81 +342,75 @@ class _Fit:
             step = bounded(columns, self.z - curve + columns @ parameters[free], form.least) - parameters[free]
             step[count + 1 :] = np.clip(step[count + 1 :], -largest_step, largest_step)
             parameters[free] += step
-            parameters[count + 1] = min(max(parameters[count + 1], float(self.x[0])), float(self.x[-1]))
+            if self.moves:
+                parameters[count + 1] = min(max(parameters[count + 1], float(self.x[0])), float(self.x[-1]))
         curve, columns = self.design(form, parameters)
         return _Solved(form, parameters, columns[:, self.fitted(form)], self.z - curve)
 
-    def adapted(self, reach: float, centre: float, convex: bool) -> _Solved:
-        """Return the fitted smooth curve with as many knots as the noise allows.
+    def averaged(self, reach: float, centre: float, passes: int = 3) -> _Solved:
+        """Return the mean of the curves with drawn knots.
+
+        Candidates are dense at the apex, and after each pass denser around knots that half of the curves have.
 
         Args:
             reach: largest distance of a point from the apex, over the width of the scan.
             centre: position of the apex to begin with, over the width.
-            convex: whether its slope may only rise.
+            passes: how often curves are drawn, each time with the noise, apex and candidates of the last time.
         """
         pitch = float(np.median(np.diff(self.x)))
         first = min(FIRST_KNOTS, max(2, round(reach / pitch / PER_KNOT)))
-        solved = self.solve(smooth(np.linspace(0.0, reach, first + 1), convex), centre)
-        noise = self.noise_of(solved)
-        for _ in range(3):
-            solved = self.solve(smooth(self.selected(solved, noise), convex), solved.centre)
-            if is_two_sided(self.x - solved.centre):
-                noise = self.noise_of(solved)
+        solved = self.solve(smooth(np.linspace(0.0, reach, first + 1), False), centre)
+        knots = np.linspace(0.0, 1.0, PER_KNOT * FIRST_KNOTS + 1) ** 2
+        knots = knots[(knots == 0.0) | (knots > min(0.5, PER_KNOT * pitch / reach))]
+        start = knots[::-PER_KNOT]
+        for number in range(passes):
+            reach = float(np.abs(self.x - solved.centre).max())
+            chosen = np.isin(knots, start)
+            chosen[0] = True
+            curves = self.candidates(solved, knots * reach).drawn(chosen, number)
+            start, sure = (
+                (radii / reach).astype(np.float32) for radii in (curves.last, curves.knots[curves.shares > 0.5][1:-1])
+            )
+            near = np.searchsorted(knots, sure).clip(1, len(knots) - 2)
+            finer = [np.linspace(knots[i - 1], knots[i + 1], 2 * PER_KNOT + 1) for i in near]
+            knots = np.unique(np.concatenate([knots, *finer]).astype(np.float32)).astype(np.float64)
+            solved = self.mean_of(curves, solved.centre)
         return solved
 
-    def noise_of(self, solved: _Solved) -> Noise:
-        """Return the noise, over the width, by the difference of both sides; for one side by the residual in blocks.
+    def candidates(self, solved: _Solved, knots: Array) -> Candidates:
+        """Return the least squares of curves with any of the radii over the width as knots.
 
-        These are twelve: a kink in one of them does not change the median of their autocovariances.
+        `solved`: a fit with the position of the apex and the noise.
         """
-        x, residual = self.x - solved.centre, solved.residual
+        nuisance, round_off = solved.columns[:, len(solved.form.start) :], (1e-10 * float(self.z.max())) ** 2
+        heights = self.z + nuisance[:, 1:2].sum(axis=1) * solved.centre * self.moves
+        power = max(round_off, self.noise_of(solved).power)
+        return Candidates.of(knots, np.abs(self.x - solved.centre), heights, nuisance, power)
+
+    def mean_of(self, curves: Curves, centre: float) -> _Solved:
+        """Return the mean of curves as a fit; `centre`: position of the apex over the width, where it is given."""
+        form, slopes = smooth(curves.knots, curves.convex), curves.mean[: len(curves.knots) - 1]
+        parameters = np.append(np.diff(slopes, prepend=0.0) if form.convex else slopes, [0.0, centre, 0.0])
+        parameters[np.flatnonzero(self.fitted(form))[len(slopes) :]] = curves.mean[len(slopes) :]
+        if self.moves:
+            parameters[-2] = min(max(parameters[-2], float(self.x[0])), float(self.x[-1]))
+        curve, columns = self.design(form, parameters)
+        return _Solved(form, parameters, columns[:, self.fitted(form)], self.z - curve, curves)
+
+    def noise_of(self, solved: _Solved) -> Noise:
+        """Return the noise, over the width, by the difference of both sides; for one side by the residual.
+
+        The difference does not depend on the shape; what parameters have taken of the noise is added.
+        """
+        x, residual, count = self.x - solved.centre, solved.residual, solved.count
         if is_two_sided(x):
             right = x > 0.0
             left = np.interp(x[right], -x[::-1], residual[::-1], right=math.nan)
-            odd = (residual[right] - left) / math.sqrt(2.0)
-            return noise_in(odd[np.isfinite(odd)])
-        size = max(FEWEST, len(x) // 12)
-        blocks = [residual[i : i + size] for i in range(0, len(x) - size + 1, size)]
-        spectrum = np.median([autocovariance(block) for block in blocks], axis=0)
-        return noise_by(spectrum, len(x))
-
-    def selected(self, solved: _Solved, noise: Noise, most_points: int = 4000, most_knots: int = 40) -> Array:
-        """Return the knots over the width, (k + 1,), from 0: intervals are halved, first the one that gains most.
-
-        It ends by the extended Bayesian information criterion; knots that have become needless are removed again. Of
-        more than most_points the knots are selected on means of neighbours. A scan without noise has most_knots.
-
-        Args:
-            solved: a fit with the position of the apex.
-            noise: of the residual, over the width.
-            most_points: from which on neighbours are averaged.
-            most_knots: number of knots at most.
-        """
-        away = np.abs(self.x - solved.centre)
-        reach, group = float(away.max()), -(-len(away) // most_points)
-        order = np.argsort(away)[: len(away) // group * group].reshape(-1, group)
-        columns = solved.columns[:, len(solved.form.start) :]
-        r, rest, z = away[order].mean(axis=1), columns[order].mean(axis=1), self.z[order].mean(axis=1)
-        knots, convex = np.asarray([0.0, reach]), solved.form.convex
-
-        def columns_of(knots: Array) -> Array:
-            """Return the derivatives of heights by the slopes at the knots and by the other parameters, (n, p)."""
-            return np.hstack([smooth(knots, False).gradient(r, knots), rest])
-
-        while len(knots) < most_knots:
-            q, _ = np.linalg.qr(columns_of(knots))
-            halved = np.sort(np.append(knots, 0.5 * (knots[1:] + knots[:-1])))
-            new = smooth(halved, False).gradient(r, halved)[:, ::2]
-            new -= q @ (q.T @ new)
-            gain = (new.T @ z / np.linalg.norm(new, axis=0)) ** 2
-            gain[np.diff(np.searchsorted(r, knots)) * group < 2 * PER_KNOT] = 0.0
-            best = int(gain.argmax())
-            if gain[best] <= noise.price(len(away), len(knots)) / group:
-                break
-            knots = np.insert(knots, best + 1, halved[2 * best + 1])
-        # Of 1, 2, 3 and 4 σ²τ for all removed knots, 3 leaves the fewest rows beyond their bounds for the worn balls of
-        # the study `scans`, on the same seeds.
-        return _needed(knots, np.column_stack([columns_of(knots), z]), convex, 3.0 * noise.power / group)
+            residual, count = (residual[right] - left) / math.sqrt(2.0), self.moves + self.tilts
+            residual = residual[np.isfinite(residual)]
+        noise = noise_in(residual)
+        share = min(0.5, count * noise.together / len(residual))
+        return replace(noise, deviation=noise.deviation / math.sqrt(1.0 - share))
 
     def errors(self, solved: _Solved, noise: Noise) -> tuple[Array, float]:
         """Return drawn errors of the fitted parameters, (draws, k), and the factor from a standard deviation to 95 %.
@@ -387,6 +419,9 @@ class _Fit:
         """
         from scipy.special import stdtrit
 
+        if solved.curves:
+            sample = np.hstack([solved.curves.slopes, solved.curves.nuisance])
+            return sample - sample.mean(axis=0), float(stdtrit(math.inf, 0.975))
         points = len(self.x) / noise.together
         free = max(1.0, points - solved.columns.shape[1])
         deviation = math.sqrt(noise.power * max(1.0, points / free))
@@ -410,21 +445,32 @@ class _Fit:
                 'its apex would be at the edge of the scan or outside: centre = "auto" needs points on both sides '
                 "of it; give centre as a length, or a wider scan"
             )
-        noise, reach, spread = noise_in(solved.residual), float(np.abs(x).max()), np.zeros(3)
+        noise = self.noise_of(solved) if solved.curves else noise_in(solved.residual)
+        reach = float(np.abs(x).max())
         off, factor = self.errors(solved, noise)
+        spread = np.zeros(3)
         spread[self.fitted(form)[count:]] = factor * np.sqrt(np.mean(off[:, count:] ** 2, axis=0))
         theta, (offset, centre, tilt) = parameters[:count], parameters[count:].tolist()
         heights = self.z - offset - tilt * x
         touching = heights < heights.min() + ASPERITY * noise.deviation
         grid = np.linspace(0.0, reach, 200)  # radii whose heights decide which deviations count
-        # Bounds bias the mean of a sample: a deviation, too, from 0 to twice the bias.
-        bias = np.stack([np.zeros(count), 2.0 * off[:, :count].mean(axis=0)])
-        changes = np.concatenate([[bias], factor * independent(off[:, :count], form.gradient(grid, theta))])
+        if solved.curves and form.knots is not None:
+            deviations = solved.curves.deviations(smooth(form.knots, False).gradient(grid, theta))
+        else:
+            # Bounds bias the mean of a sample: a deviation, too, from 0 to twice the bias.
+            bias = np.stack([np.zeros(count), 2.0 * off[:, :count].mean(axis=0)])
+            changes = np.concatenate([[bias], factor * independent(off[:, :count], form.gradient(grid, theta))])
+            deviations = form.shown(theta + changes)
+        if not deviations[..., 0 if form.knots is None else -1].all():
+            raise ScanError(FLAT)
+        knots = np.zeros(0) if form.knots is None else size * form.knots
+        numbers = solved.curves.counts if solved.curves else np.asarray([len(knots)])
         return Taken(
             shape=form.name,
             parameters=form.shown(theta) * size**form.powers,
-            knots=np.zeros(0) if form.knots is None else size * form.knots,
-            deviations=form.shown(theta + changes) * size**form.powers,
+            knots=knots,
+            counts=(int(numbers.min()), int(numbers.max())),
+            deviations=deviations * size**form.powers,
             centre=(self.origin + size * centre, size * spread[1]),
             tilt=(tilt, spread[2]),
             offset=(self.base + size * offset, size * spread[0]),
@@ -440,35 +486,6 @@ class _Fit:
         )
 
 
-def _needed(knots: Array, columns: Array, convex: bool, increase: float) -> Array:
-    """Return the knots without needless ones, which are removed one by one; the first and the last one stay.
-
-    Args:
-        knots: from 0, (k + 1,).
-        columns: derivatives of the heights by the slopes at all knots and by other parameters, and the heights, (n, m).
-        convex: whether the slope may only rise.
-        increase: of the squared residual by all removed knots together, at most.
-    """
-    _, upper = np.linalg.qr(columns)
-
-    def squares_of(fewer: Array) -> float:
-        """Return the squared residual of a rising curve with fewer knots, which all knots represent exactly."""
-        form = smooth(fewer, convex)
-        by_theta = form.slope(knots[1:], np.eye(len(form.start)))
-        design = np.hstack([upper[:, : len(knots) - 1] @ by_theta, upper[:, len(knots) - 1 : -1]])
-        return float(np.sum((upper[:, -1] - design @ bounded(design, upper[:, -1], form.least)) ** 2))
-
-    allowed, kept = squares_of(knots) + increase, knots
-    while len(kept) > 2:
-        fewer = [np.delete(kept, i) for i in range(1, len(kept) - 1)]
-        squares = [squares_of(candidate) for candidate in fewer]
-        best = int(np.argmin(squares))
-        if squares[best] > allowed:
-            break
-        kept = fewer[best]
-    return kept
-
-
 @dataclass(frozen=True)
 class _Solved:
     """A fitted form; lengths over the width of the scan.
@@ -478,12 +495,19 @@ class _Solved:
         parameters: θ, z₀, c and t, (k + 3,).
         columns: derivatives of the curve by those that are fitted, (n, m).
         residual: heights less the curve, (n,).
+        curves: whose mean it is; None of a single curve.
     """
 
     form: Form
     parameters: Array
     columns: Array
     residual: Array
+    curves: Curves | None = None
+
+    @property
+    def count(self) -> int:
+        """The number of parameters of the shape; of a mean of curves the mean number of their knots but 0."""
+        return round(float(self.curves.counts.mean())) - 1 if self.curves else len(self.form.start)
 
     @property
     def centre(self) -> float:

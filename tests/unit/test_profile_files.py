@@ -194,6 +194,13 @@ def test_a_file_and_a_scene_have_units_both_or_neither(file: Path) -> None:
     assert lines(tables(file="p.csv", scale="1 nm"), file.parent)[0].startswith('bodies.profile.scale = "1 nm": ')
 
 
+@pytest.mark.parametrize("power", [1, 2])
+def test_an_even_number_of_points_has_its_apex_between_two(power: int, file: Path) -> None:
+    file.write_text("x,z\n" + "".join(f"{i + 0.5},{abs(i + 0.5) ** power}\n" for i in range(-5, 5)))
+    r = (0.0, 0.5, 1.5, 2.5, 3.5, 4.5)
+    assert points(tables(file=str(file))) == (r, pytest.approx([x**power for x in r], abs=1e-12))
+
+
 def test_both_sides_are_averaged(file: Path) -> None:
     file.write_text("x,z\n-2,4.1\n-1.5,2.3\n-1,1\n-0.5,0.3\n1e-9,0\n0.5,0.2\n1,1\n1.5,2.2\n2,3.9\n")
     assert points(tables(file="p.csv"), file.parent) == (tuple(RADII), pytest.approx(HEIGHTS, rel=1e-15))

@@ -175,6 +175,14 @@ def test_a_table_is_as_sure_as_without_every_second_point(count: int) -> None:
     assert set.intersection(*fewer) == {0.0, 40.0}
 
 
+def test_a_corner_at_a_point_is_found_where_no_slope_keeps_both_cubics_convex() -> None:
+    """A jump of the slope of 3.6 times its rise from point to point; the transform of a convex body rises."""
+    r = np.arange(36.0)
+    body = table(r, 0.01 * r**2 + 0.072 * np.maximum(r - 11.0, 0.0))
+    assert body.kinks == (11.0,)
+    assert np.diff(body.transformed(np.linspace(0.0, 35.0, 2001))).min() > 0.0
+
+
 def test_points_without_a_smooth_curve_lie_on_chords_or_in_corners_of_neighbouring_chords() -> None:
     """A body whose slope only rises is below its chords, and above the two that go on from both sides."""
     draw = np.random.default_rng(1)

@@ -4,6 +4,7 @@ Statistics are those of the generator: a share of seeds has the binomial bounds 
 """
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -76,13 +77,43 @@ def test_a_radius_and_an_apex_are_within_their_uncertainties() -> None:
     assert taken.offset[1] < NOISE
 
 
-def test_noise_and_its_correlation_length_are_those_of_the_generator_and_no_shape() -> None:
-    """The criterion adds no knots for the noise: the curve of two knots is a parabola."""
+def test_noise_and_its_correlation_length_are_those_of_the_generator() -> None:
     found = [take(WIDE, worn(WIDE, 0.0) + correlated(seed, WIDE, 5.0), centre=None) for seed in range(10)]
-    # Of 1201 points, 10 times: the correlation is cut off at 2/√n, 6 % of it, and fitted parameters take some.
+    # Of 600 differences of both sides, 10 times.
     assert np.mean([one.noise for one in found]) == pytest.approx(NOISE, rel=0.1)
     assert np.mean([one.correlation for one in found]) == pytest.approx(5.0, rel=0.3)
-    assert sorted(one.knots.size for one in found)[7] == 2
+
+
+@pytest.mark.parametrize("depth", [3.0, 15.0])
+@pytest.mark.parametrize("x", [WIDE, SIDE])
+def test_a_shallow_land_is_within_the_deviations(depth: float, x: Array) -> None:
+    """The height of the flank over the land, which the noise hides in part; of ten scans two or fewer are outside."""
+    land = math.sqrt(2.0 * R * depth * NOISE)
+    outside = 0
+    for seed in range(10):
+        taken = take(x, worn(x, land) + correlated(seed, x, 3.0), centre=0.0)
+        fits = [replace(taken, parameters=theta) for pair in taken.deviations for theta in pair]
+        off, *ends = (float(curve(fit, np.asarray([2.0 * land]))[0]) for fit in (taken, *fits))
+        spread = math.sqrt(sum((0.5 * (more - less)) ** 2 for more, less in zip(ends[::2], ends[1::2], strict=True)))
+        outside += abs(off - float(worn(np.asarray([2.0 * land]), land)[0])) > spread
+    assert outside <= 2
+
+
+@pytest.mark.parametrize("shape", [None, "parabola", "circle", "power"])
+def test_noise_alone_is_no_profile(shape: Any) -> None:
+    for seed in range(5):
+        with pytest.raises(ScanError, match="shows no curvature beyond the noise"):
+            take(WIDE, white(seed, WIDE), centre=None, shape=shape)
+
+
+def test_an_apex_outside_of_the_points_stays_where_it_was_given() -> None:
+    x = np.arange(5.0, 60.0)
+    for side in (1.0, -1.0):
+        taken = take((side * x)[:: int(side)], (x**2)[:: int(side)] / 20.0, shape="parabola")
+        assert taken.parameters == pytest.approx([0.1])
+        assert taken.folded()[1] == pytest.approx(taken.folded()[0] ** 2 / 20.0, abs=1e-9)
+    with pytest.raises(ScanError, match="has no points within 5 LU of its apex"):
+        take(0.1 * x + 4.5, x**2)
 
 
 def test_a_smooth_curve_has_the_land_and_the_flank() -> None:
@@ -155,7 +186,7 @@ def tilted(x: Array, apex: float = 13.37) -> Array:
     return 40.0 + worn(x - apex) + 2e-3 * x + white(5, x)
 
 
-@pytest.mark.parametrize("how", [{"level": True}, {"shape": "power"}])
+@pytest.mark.parametrize("how", [{"level": True, "shape": "circle"}, {"shape": "power"}])
 def test_a_scan_in_another_unit_and_from_another_origin_is_the_same_body(how: dict[str, Any]) -> None:
     size, right, up = 1e-3, -70.0, 5.0
     own = take(WIDE, tilted(WIDE), None, **how)
@@ -167,7 +198,7 @@ def test_a_scan_in_another_unit_and_from_another_origin_is_the_same_body(how: di
     for name in ("centre", "offset"):
         assert getattr(other, name)[1] == pytest.approx(size * getattr(own, name)[1], rel=1e-3)
     assert other.tilt == pytest.approx(own.tilt, rel=1e-3)
-    powers = [1.0, 0.0] if own.shape == "power" else [0.0]
+    powers = [1.0, 0.0] if own.shape == "power" else [-1.0]
     assert other.parameters == pytest.approx(own.parameters * size ** np.array(powers), rel=1e-4, abs=1e-9)
 
 
@@ -175,7 +206,7 @@ def test_correlations_count_up_to_the_first_that_is_chance() -> None:
     """σ² 0.8ᵏ of 400 points: 0.8¹⁰ = 0.107 counts and 0.8¹¹ = 0.086 does not, since 2/√400 = 0.1."""
     noise = noise_by(9.0 * 0.8 ** np.arange(40.0), 400)
     assert noise.deviation == pytest.approx(3.0)
-    assert noise.together == pytest.approx(1.0 + 2.0 * sum(0.8**k for k in range(1, 11)))
+    assert noise.together == pytest.approx(1.0 + 2.0 * sum(0.8**k for k in range(1, 11)) / 0.9)
     assert noise.power == pytest.approx(9.0 * noise.together)
     n = 400.0 / noise.together
     assert noise.price(400, 7) == pytest.approx(noise.power * (math.log(n) + 2.0 * math.log(7.0)))

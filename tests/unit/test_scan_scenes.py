@@ -77,8 +77,10 @@ def test_units_of_columns_without_names_and_of_a_ball_measured_from_above(file: 
         other.write_text(text(names, z=z), encoding="utf-8")
         up, down = ("nm", "-nm") if z is Z else ("-nm", "nm")
         assert points(scene(other, f"{FIT}, units = ['µm', '{up}']")) == wanted
-        with pytest.raises(SceneError, match="as those of a bump seen from above"):
+        with pytest.raises(SceneError, match="as those of a bump seen from above") as caught:
             scene(other, f"{FIT}, units = ['µm', '{down}']")
+        advised = str(caught.value).split("or of its unit: ")[1].splitlines()[0]
+        assert points(scene(other, f"{FIT}, {advised}")) == wanted
     other.write_text(text(""), encoding="utf-8")
     with pytest.raises(SceneError, match="nothing says what LU stands for"):
         scene(other)

@@ -152,7 +152,7 @@ def test_a_page_of_a_broken_table_says_to_start_the_sweep_again(finished: Path, 
         assert (page.exit_code, page.output.count("\n")) == (2, 1)
         assert page.output.endswith("start the run or the sweep again\n")
     both = CliRunner().invoke(app, ["report", str(finished), str(folder), "--out", str(tmp_path / "page.html")])
-    assert "a page shows one sweep, or runs" in both.output
+    assert "a page shows one of them, or runs" in both.output
     assert not (tmp_path / "page.html").exists()
 
 

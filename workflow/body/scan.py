@@ -84,7 +84,9 @@ def in_words(taken: Taken) -> str:
     if taken.tilt[1] > 0.0:
         angle, spread = (math.degrees(math.atan(slope)) for slope in taken.tilt)
         removed.append(f"tilt {angle:.3g} ± {spread:.1g}°")
-    curve = f"a smooth curve with {taken.knots.size} knots" if taken.shape == "smooth" else f"a {taken.shape}"
+    fewest, most = taken.counts
+    knots = f"{fewest}" if fewest == most else f"{fewest} to {most}"
+    curve = f"a smooth curve with {knots} knots" if taken.shape == "smooth" else f"a {taken.shape}"
     if taken.shape in CURVED:
         curve += f", R = {_length_text(*_radius(taken))}"
     correlated = taken.correlation > 0.5 * taken.pitch  # else the noise is white

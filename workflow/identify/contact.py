@@ -191,7 +191,7 @@ def _without_unit(data: Mapping[str, Any], folder: Path) -> Iterator[Problem]:
     profile = data.get("profile")
     if isinstance(profile, Mapping) and isinstance(profile.get("file"), str) and not {"scale", "units"} & {*profile}:
         with suppress(ValueError):
-            if read_profile(folder / profile["file"], is_scan(profile))[1] is None:
+            if not read_profile(folder / profile["file"], is_scan(profile))[1]:
                 hint = 'write scale = "1 um", the length of one of its units, or name the columns r [µm] and z [nm]'
                 yield Problem("profile.scale", "missing: the file has no unit", hint=hint)
 

@@ -16,7 +16,7 @@ class ProfileFileError(ValueError):
 
 
 def read_line(path: Path) -> tuple[list[float], list[float], str]:
-    """Return (positions, heights, their unit, such as "1 µm") of the line along x through the highest point of a scan.
+    """Return (positions, heights, their unit, such as "µm") of the line along x through the highest point of a scan.
 
     Of a line scan it is the whole; positions are as in the file. An instrument's heights grow out of the sample, those
     of a profile away from the plane: their sign is changed.
@@ -48,4 +48,4 @@ def read_line(path: Path) -> tuple[list[float], list[float], str]:
         x, heights = x[:, row], heights[:, row]
     if not np.isfinite(heights).all():
         raise ProfileFileError("has gaps in the line through its highest point; fill them, or export another line")
-    return x.tolist(), (-heights).tolist(), f"1 {scan.unit}"
+    return x.tolist(), (-heights).tolist(), str(scan.unit)

@@ -164,14 +164,15 @@ def _chord_slopes(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Ar
 
 @lru_cache(maxsize=8)
 def _with_corners(
-    r: tuple[float, ...], z: tuple[float, ...], sharpness: float = Points.sharp
+    r: tuple[float, ...], z: tuple[float, ...], sharpness: float = Points.sharp, smooth: bool = True
 ) -> tuple[Array, Array, Any]:
     """Return (radii, heights) [LU] of the points, with one at each jump of the slope, and the indices of the jumps.
 
     Radii rise, heights are above the apex. Cached: the arrays must not be changed. The slope jumps between two points
     whose curvatures are in sum more than `sharpness` times each of their neighbours': where the parabolas through the
     points of either side meet, or at a point where these do not meet between two and its curvature alone is as large.
-    Jumps in the round-off error do not count.
+    Jumps in the round-off error do not count. It also jumps at points of a `smooth` body at which no slope keeps the
+    cubics of both sides convex.
     """
     flank = 3  # points that determine the parabola of one side
     margin = 1e-3  # share of a cell at its ends, where a jump would have shown at the next points
@@ -190,11 +191,30 @@ def _with_corners(
             used |= {i, i + 1}
             corners[float(x[i] + step * meetings[0])] = float(np.polyval(parabolas[0], meetings[0]))
     single = curvature[1:-1] > sharpness * np.maximum(curvature[:-2], curvature[2:])
+    single[1:] |= smooth & _bends_too_much(x, slope)
     for i in {*(np.flatnonzero(single) + 1)} - used:
         corners[float(x[i])] = float(y[i])
     heights = dict(zip(x.tolist(), y.tolist(), strict=True)) | corners
     radii = sorted(heights)
     return np.asarray(radii), np.asarray([heights[radius] for radius in radii]), np.searchsorted(radii, sorted(corners))
+
+
+def _bends_too_much(x: Array, slope: Array) -> NDArray[np.bool_]:
+    """Return whether no slope at a point keeps the cubics of both sides convex, (n − 4,), from the third point on.
+
+    The cubic over a chord of slope S₁ from the slope d₀ to d is convex for d ≤ 3 S₁ − 2 d₀, the one over S₂ to d₃ for
+    d ≥ 3 S₂ − 2 d₃. False where the chords around the point are not convex themselves, or within the round-off error.
+
+    Args:
+        x: radii of the points [LU], (n,).
+        slope: of the chords, the first from the point on the other side of the axis, (n,).
+    """
+    step, bend = np.diff(x, prepend=-x[1]), np.diff(slope)
+    inner = (step[1:] * slope[:-1] + step[:-1] * slope[1:]) / (step[1:] + step[:-1])  # at the points but the last
+    before, jump, after = (part[1:] for part in (bend[:-2], bend[1:-1], bend[2:]))
+    excess = 3.0 * jump - 2.0 * (inner[2:] - inner[:-2])[1:]
+    convex = np.minimum(before, after) >= 0.0
+    return np.asarray(convex & (excess > 0.0) & (jump > LEAST_JUMP * np.abs(slope).max()))
 
 
 def _with_chord_corners(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Array]:
@@ -209,7 +229,7 @@ def _with_chord_corners(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Arr
         meet = (y[end] - y[start] + before * x[start] - after * x[end]) / (before - after)
         level = y[start] + before * (meet - x[start])
     # Beside a point that is a corner itself there is no other.
-    radii, _, corners = _with_corners(r, z)
+    radii, _, corners = _with_corners(r, z, smooth=False)
     is_corner = np.isin(x, radii[corners])
     inside = (meet > x[start]) & (meet < x[end]) & ~is_corner[start] & ~is_corner[end]
     radii = np.append(x, meet[inside])
@@ -331,13 +351,15 @@ class Smoothed(Piecewise):
     def kinks(self) -> tuple[float, ...]:
         """Middles [LU], rising, of the intervals between knots in which the slope jumps; empty without any.
 
-        There it rises at more than eight times its mean rate, which is the largest slope over the radius of the last
-        knot. In the first interval, at the apex, the slope may rise by any amount: it is never among them.
+        There it rises faster than in both neighbours, and at more than eight times its mean rate, which is the largest
+        slope over the radius of the last knot. In the first interval, at the apex, the slope may rise by any amount: it
+        is never among them.
         """
-        cells = zip(pairwise(self.knots), pairwise(self.slopes), strict=True)
-        steep = Points.sharp * max(self.slopes) / self.reach
-        middles = [0.5 * (start + end) for (start, end), (low, high) in cells if high - low > steep * (end - start)]
-        return tuple(middle for middle in middles if middle > self.knots[1])
+        knots, steep = np.asarray(self.knots), Points.sharp * max(self.slopes) / self.reach
+        rates = np.diff(self.slopes) / np.diff(knots)
+        steepest = (rates >= np.append(0.0, rates[:-1])) & (rates > np.append(rates[1:], 0.0))
+        middles = 0.5 * (knots[1:] + knots[:-1])[(rates > steep) & steepest]
+        return tuple(middle for middle in middles.tolist() if middle > self.knots[1])
 
     def _curve(self) -> Any:
         """Return the height [LU] over r [LU], a `PPoly`: parabolas between knots; 0 on the axis, NaN beyond the end."""

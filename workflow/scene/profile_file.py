@@ -48,38 +48,59 @@ def take_points(scene: Place, folder: Path) -> dict[str, list[float]]:
     has lists of its own beside it, and where the file, its units or the scale are wrong, which is reported. Of a
     profile with such an error only its kind remains in the scene.
     """
-    profile, file, scale, units = (scene.find(f"bodies.profile{key}") for key in ("", ".file", ".scale", ".units"))
-    if not profile or not file or not scale or not units or not isinstance(file.value, str):
+    profile, file, scale, given = (scene.find(f"bodies.profile{key}") for key in ("", ".file", ".scale", ".units"))
+    if not profile or not file or not scale or not given or not isinstance(file.value, str):
         return {}
     if not {"r", "x", "z"}.isdisjoint(profile.value):
         file.doubt()  # a rule reports it
         return {}
     wrong = file
     try:
-        lists, unit, ratio = read_profile(folder / file.value, is_scan(profile.value))
-        wrong = scale
-        if not units.absent:
-            wrong = units
+        lists, units = read_profile(folder / file.value, is_scan(profile.value))
+        wrong, in_names = scale, _unit_and_ratio(units) if units else None
+        if not given.absent:
+            wrong = given
             if not scale.absent:
                 raise ValueError("not together with scale; remove it")
-            given, given_ratio = _unit_and_ratio(units.value)
-            if unit and not _are_equal((unit, ratio), (given, abs(given_ratio))):
+            unit, ratio = _unit_and_ratio(given.value)
+            if in_names and not _are_equal(in_names, (unit, abs(ratio))):
                 raise ValueError("not together with other units in the file's names; remove it")
-            unit, ratio = given, given_ratio
+            units, in_names = given.value, (unit, ratio)
         if scale.absent:
-            scale.put(unit or 1.0)
+            scale.put(in_names[0] if in_names else 1.0)
             scale.source = file
-        elif unit:
+        elif in_names:
             raise ValueError("not together with units in the file's names; remove it")
         elif isinstance(scale.value, str):
             si_value(scale.value, MODEL)
         elif not is_positive(scale):
             raise ValueError(f"must be {described(scale.allowed)}")
+        lists["z"] = [(in_names[1] if in_names else 1.0) * value for value in lists["z"]]
+        wrong = file
+        if units and is_scan(profile.value):
+            _require_rising(lists, units)
     except ValueError as error:
         wrong.fault(str(error))
         profile.put({"kind": profile.value["kind"]})
         return {}
-    return lists | {"z": [ratio * value for value in lists["z"]]}
+    return lists
+
+
+def _require_rising(lists: dict[str, list[float]], units: Sequence[str]) -> None:
+    """Raise ValueError where the heights of a scan decrease outwards, with the key `units` that changes their sign.
+
+    `lists`: "x" and "z"; `units`: of positions and heights, which may have a minus.
+    """
+    import numpy as np  # which other scenes can do without
+
+    from contact1d.analysis.scan import ScanError, require_rising
+
+    along, up = units
+    opposite = up.lstrip("-−") if up[0] in "-−" else f"-{up}"
+    try:
+        require_rising(np.asarray(lists["x"]), np.asarray(lists["z"]))
+    except ScanError as error:
+        raise ValueError(f'{error}, or of its unit: units = ["{along}", "{opposite}"]') from None
 
 
 def _unit_and_ratio(units: object) -> tuple[str, float]:
@@ -131,14 +152,14 @@ def put_points(scene: Place, lists: dict[str, list[float]]) -> None:
         scale.fault("is too large for the numbers of the file")
 
 
-def read_profile(path: Path, scan: bool) -> tuple[dict[str, list[float]], str | None, float]:
-    """Return (lists of a measured profile by name, unit of positions, ratio of the unit of heights to it).
+def read_profile(path: Path, scan: bool) -> tuple[dict[str, list[float]], Sequence[str]]:
+    """Return (lists of a measured profile by name, units of positions and heights, such as ["µm", "nm"]).
 
     The lists are "r" and "z", rising from the axis out, where points may begin at the edge, and those from −x to x are
     folded into the mean of both sides. Of a `scan`, and of an instrument's file, they are "x" and "z", all points in
-    their order. Numbers are as in the file, heights in their own unit. The unit is a text, "1 µm"; without units it is
-    None, which stands for LU, and the ratio 1. Messages name lines and never quote them. Lines that begin with #, empty
-    lines and lines before the table are skipped, columns of other names ignored.
+    their order. Numbers are as in the file, heights in their own unit. Without units, which stands for LU, the second
+    is empty. Messages name lines and never quote them. Lines that begin with #, empty lines and lines before the table
+    are skipped, columns of other names ignored.
 
     Raises:
         UnreadableError: there is no such file, or it is no text, or has more than 8 MB.
@@ -148,14 +169,14 @@ def read_profile(path: Path, scan: bool) -> tuple[dict[str, list[float]], str | 
     """
     if path.suffix.lower() in ENDINGS:
         x, z, unit = read_line(path)
-        return {"x": x, "z": z}, unit, 1.0
+        return {"x": x, "z": z}, (unit, unit)
     rows = rows_in(read_text(path).splitlines())
-    columns, of_numbers, ratio = _header(rows)
+    columns, units = _header(rows)
     points = [_radius_and_height(f"line {line}", cells, columns) for line, cells in rows]
     if not points:
         raise ProfileFileError("has no points")
     x, z = ([*column] for column in zip(*points, strict=True))
-    return {"x": x, "z": z} if scan else _from_the_axis(x, z), of_numbers, ratio
+    return {"x": x, "z": z} if scan else _from_the_axis(x, z), units
 
 
 def _from_the_axis(r: list[float], z: list[float]) -> dict[str, list[float]]:
@@ -238,11 +259,11 @@ def _words(names: list[str]) -> list[str]:
     return [match[1].lower() if match else "" for match in matches]
 
 
-def _header(rows: list[Row]) -> tuple[Sequence[int], str | None, float]:
-    """Return ((column of radii or positions, column of heights), unit of the former, "1 µm", unit of heights over it).
+def _header(rows: list[Row]) -> tuple[Sequence[int], Sequence[str]]:
+    """Return ((column of radii or positions, column of heights), their units, such as ["µm", "nm"]).
 
-    Columns are indices, (0, 1) without names. Without units, or with LU, the second is None and the third 1. The lines
-    of names and units, and all lines before them, are removed from `rows`, in place.
+    Columns are indices, (0, 1) without names. Without units, or with LU, the second is empty. The lines of names and
+    units, and all lines before them, are removed from `rows`, in place.
 
     Raises:
         ProfileFileError: names or units are not known, only one of the two columns has a unit, there are more than two
@@ -254,7 +275,7 @@ def _header(rows: list[Row]) -> tuple[Sequence[int], str | None, float]:
         count = sum(bool(cell) for cell in names)
         if count > 2:
             raise ProfileFileError(f"has {count} columns without names; {FORM}")
-        return (0, 1), None, 1.0
+        return (0, 1), ()
     del rows[0]
     if rows:
         require_names(*rows[0], names)
@@ -263,18 +284,17 @@ def _header(rows: list[Row]) -> tuple[Sequence[int], str | None, float]:
     columns = [_column_of(line, words, allowed) for allowed in (sides, HEIGHTS)]
     units, are_below = units_of(names, rows[0][1] if rows else [], columns)
     del rows[:are_below]
-    sizes = []
-    for unit in units:
-        if unit not in ("", MODEL):
-            try:
-                sizes.append(si_value(f"1 {unit}", MODEL)[0])
-            except UnitTextError:
-                problem = "the unit in the names is not a known length, such as µm"
-                raise ProfileFileError(f"line {line}: {problem}; {FORM}; convert volts to lengths first") from None
-    if len(sizes) == 1:
+    known = [unit for unit in units if unit not in ("", MODEL)]
+    for unit in known:
+        try:
+            si_value(f"1 {unit}", MODEL)
+        except UnitTextError:
+            problem = "the unit in the names is not a known length, such as µm"
+            raise ProfileFileError(f"line {line}: {problem}; {FORM}; convert volts to lengths first") from None
+    if len(known) == 1:
         problem = "only one of radius and height has a unit"
         raise ProfileFileError(f"line {line}: {problem}; give both the same way, r [µm], z [µm]")
-    return columns, *((f"1 {units[0]}", float(sizes[1] / sizes[0])) if sizes else (None, 1.0))
+    return columns, known
 
 
 def units_of(names: list[str], below: list[str], columns: Sequence[int]) -> tuple[list[str], bool]:
@@ -340,8 +360,9 @@ def _rising(values: list[float]) -> bool:
 def _folded(x: list[float], z: list[float]) -> tuple[list[float], list[float]]:
     """Return (radii, heights): the mean of both sides of a profile with rising positions x from −x to x.
 
-    Radii rise from the middle on: from 0 for an odd number of points, from half a step for an even one. At least two
-    points are needed, else ZeroDivisionError.
+    Radii rise from 0, also of an even number of points, without one on the axis: the height there is that of the
+    parabola through the three nearest radii, whose slope there may differ from 0, as a cone's. At least two points are
+    needed, else ZeroDivisionError.
 
     Raises:
         ProfileFileError: the two sides differ: positions by more than 0.001 of a mean step, or heights by more than 5 %
@@ -359,7 +380,12 @@ def _folded(x: list[float], z: list[float]) -> tuple[list[float], list[float]]:
             f"has both sides of 0, and {problem}; shift it so that the apex is at 0, or give one side, r from 0 on; of "
             'a scan, write centre = "auto" with smooth = "auto" or a fit, and level = true where it is tilted'
         )
-    return [0.5 * (right - left) for right, left in positions], [0.5 * (right + left) for right, left in heights]
+    r, z = [0.5 * (right - left) for right, left in positions], [0.5 * (right + left) for right, left in heights]
+    if len(x) % 2 == 0 and len(r) >= FEWEST_POINTS:
+        slopes = [(z[i] - z[0]) / (r[i] - r[0]) for i in (1, 2)]
+        bend = (slopes[1] - slopes[0]) / (r[2] - r[1])
+        r, z = [0.0, *r], [z[0] - r[0] * (slopes[0] - bend * r[1]), *z]
+    return r, z
 
 
 def _radius_and_height(line: str, cells: list[str], columns: Sequence[int]) -> list[float]:
