@@ -244,8 +244,8 @@ def chart(record: Mapping[str, Any], table: DataFrame) -> Chart:
     notes = [f"{key.rpartition('.')[2].replace('_', ' ')} = {words}" for key, words in in_words(record).items()]
     note = "\n".join(fill(note, 76) for note in notes)
     panels = [
-        Panel(Axis("force", "N", zero=True), above + models, note=note, height=2.7),
-        Panel(Axis("residual", "N", zero=True), below, height=1.2),
+        Panel(Axis("force", "N", zero=True), above + models, note=note, height=2.5),
+        Panel(Axis("residual", "N", zero=True), below, height=1.1),
     ]
     return Chart(Axis("position of the piezo from the contact point", "m"), panels, fill(record["title"], 70))
 
