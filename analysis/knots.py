@@ -126,15 +126,15 @@ class Candidates:
         nuisance = np.linalg.lstsq(self.columns[:count, :count], (heights - design @ theta)[:count])[0]
         return np.interp(self.knots[1:], self.knots[chosen], slopes), nuisance
 
-    def drawn(self, start: Mask, seed: int, odds: float = 0.03, draws: int = 800, most: int = 40) -> Curves:
+    def drawn(self, start: Mask, seed: int, draws: int, odds: float = 0.03, most: int = 40) -> Curves:
         """Return curves along a Metropolis chain, from half of its steps on; each call has the same random numbers.
 
         Args:
             start: knots to begin with.
             seed: of the random numbers.
+            draws: number of curves, half of that of the steps.
             odds: ω. Of 0.0005, 0.003, 0.01, 0.03 and 0.2, measured on shallow lands and parabolas, smaller ones miss
                 lands that the noise conceals, larger ones widen the uncertainties.
-            draws: number of curves, half of that of the steps.
             most: number of knots of a curve at most, and of those of all curves that are kept.
         """
         rng, chosen, convex, rising = np.random.default_rng(seed), start, True, True

@@ -15,6 +15,7 @@ Lengths have any one unit.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -239,7 +240,8 @@ class _Fit:
         reach = float(np.abs(self.x - start).max())
         if self.moves and self.tilts:
             self.require_flat_part(reach, start)
-        free = self.smoothed(reach, start, None if shape else length)
+        # Only the residual of a smooth curve counts beside a named shape.
+        free = self.smoothed(reach, start, None if shape else length, (200,) if shape else (200, 200, 800))
         self.require_curvature(free)
         if shape:
             solved = self.solve(named(shape, max(2.0 * float(square), 1e-6)), start)
@@ -283,16 +285,17 @@ class _Fit:
                 "apex; remove level = true"
             )
 
-    def smoothed(self, reach: float, start: float, length: float | None) -> _Solved:
+    def smoothed(self, reach: float, start: float, length: float | None, draws: Sequence[int]) -> _Solved:
         """Return the fitted smooth curve: its slope rises from the apex on, unless the scan shows a fall of the slope.
 
         Args:
             reach: largest distance of a point from the apex, over the width of the scan.
             start: position of the apex to begin with, over the width.
             length: distance of the knots over the width; None: by the noise.
+            draws: number of curves by the noise, in each pass.
         """
         if length is None:
-            return self.averaged(reach, start)
+            return self.averaged(reach, start, draws)
         knots = np.linspace(0.0, reach, 1 + max(1, round(reach / length)))
         convex, free = (self.solve(smooth(knots, rises), start) for rises in (True, False))
         price = self.noise_of(free).price(len(self.x), free.count)
@@ -347,7 +350,7 @@ class _Fit:
         curve, columns = self.design(form, parameters)
         return _Solved(form, parameters, columns[:, self.fitted(form)], self.z - curve)
 
-    def averaged(self, reach: float, centre: float, passes: int = 3) -> _Solved:
+    def averaged(self, reach: float, centre: float, draws: Sequence[int]) -> _Solved:
         """Return the mean of the curves with drawn knots.
 
         Candidates are dense at the apex, and after each pass denser around knots that half of the curves have.
@@ -355,7 +358,7 @@ class _Fit:
         Args:
             reach: largest distance of a point from the apex, over the width of the scan.
             centre: position of the apex to begin with, over the width.
-            passes: how often curves are drawn, each time with the noise, apex and candidates of the last time.
+            draws: number of curves in each pass, with the noise, apex and candidates of the one before.
         """
         pitch = float(np.median(np.diff(self.x)))
         first = min(FIRST_KNOTS, max(2, round(reach / pitch / PER_KNOT)))
@@ -363,11 +366,11 @@ class _Fit:
         knots = np.linspace(0.0, 1.0, PER_KNOT * FIRST_KNOTS + 1) ** 2
         knots = knots[(knots == 0.0) | (knots > min(0.5, PER_KNOT * pitch / reach))]
         start = knots[::-PER_KNOT]
-        for number in range(passes):
+        for seed, count in enumerate(draws):
             reach = float(np.abs(self.x - solved.centre).max())
             chosen = np.isin(knots, start)
             chosen[0] = True
-            curves = self.candidates(solved, knots * reach).drawn(chosen, number)
+            curves = self.candidates(solved, knots * reach).drawn(chosen, seed, count)
             start, sure = (
                 (radii / reach).astype(np.float32) for radii in (curves.last, curves.knots[curves.shares > 0.5][1:-1])
             )
