@@ -16,10 +16,11 @@ ROOT = Path(__file__).parents[1]
 NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 
 
-def require_shown(page: str, name: str, text: str, exactly: bool = False) -> None:
+def require_shown(page: str, name: str, text: str, exactly: bool = False, share: float = 0.0) -> None:
     """The page shows `text` under that name, word for word.
 
     Unless `exactly`, which is for records, the last decimal of a number may be off by one: round-off of a processor.
+    It may be off by a `share` of it where random numbers decide.
     """
     path = ROOT / page
     if os.environ.get("WRITE_DOCS"):
@@ -32,7 +33,8 @@ def require_shown(page: str, name: str, text: str, exactly: bool = False) -> Non
     assert NUMBER.sub("#", shown).split() == NUMBER.sub("#", text).split()
     for there, here in zip(NUMBER.findall(shown), NUMBER.findall(text), strict=True):
         last = Decimal((0, (1,), int(Decimal(there).as_tuple().exponent))) if "." in there else 0
-        assert abs(Decimal(there) - Decimal(here)) <= last, f"{page}: {there}"
+        off = abs(Decimal(there) - Decimal(here))
+        assert off <= max(last, Decimal(share) * abs(Decimal(there))), f"{page}: {there}"
 
 
 def figures_on(page: Path) -> dict[str, Any]:

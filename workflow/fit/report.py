@@ -306,7 +306,8 @@ def lines(result: FitResult) -> list[str]:
     memory = f"memory {best.noise.memory:.0f} points" if best.noise.share else "white"
     noise = f"{best.deviation * factor:.3g} {unit}, {memory}"
     least = next(iter(result.models.values())).criterion
-    ranked = ", ".join(f"{name} +{model_fit.criterion - least:.0f}" for name, model_fit in result.models.items())
+    above = {name: float(f"{model_fit.criterion - least:.2g}") for name, model_fit in result.models.items()}
+    ranked = ", ".join(f"{name} +{difference:.0f}" for name, difference in above.items())
     return [
         *shown,
         f"  {modulus_words(fit)}",
