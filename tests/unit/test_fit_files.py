@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 import tarfile
+import time
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -13,6 +14,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from contact1d import fit
 from contact1d.__main__ import app
 from contact1d.workflow.fit.curve import ForceCurve
 from contact1d.workflow.fit.data import DataError, curves
@@ -262,23 +264,55 @@ def test_the_file_of_an_instrument_becomes_curves(tmp_path: Path, monkeypatch: p
     assert accepted.forces == pytest.approx(F)
 
 
+def sources(package: str, folder: Path) -> Path:
+    """The unpacked source archive of a package, which is not in this repository."""
+    command = [sys.executable, "-m", "pip", "download", "-q", "--no-binary", ":all:", "--no-deps", package]
+    if subprocess.run([*command, "-d", str(folder)], capture_output=True).returncode:
+        pytest.skip(f"the package index has no source archive of {package}")
+    (archive,) = folder.glob(f"{package}*.tar.gz")
+    with tarfile.open(archive) as files:
+        files.extractall(folder, filter="data")
+    return archive.with_suffix("").with_suffix("")
+
+
 @pytest.mark.slow
 def test_real_files_of_instruments_get_in(tmp_path: Path) -> None:
-    """One of each kind in the source archive of afmformats, which is not in this repository."""
+    """One of each kind in the source archive of afmformats."""
     pytest.importorskip("afmformats", reason="the extra curves is not there")
-    command = [sys.executable, "-m", "pip", "download", "-q", "--no-binary", ":all:", "--no-deps", "afmformats"]
-    if subprocess.run([*command, "-d", str(tmp_path)], capture_output=True).returncode:
-        pytest.skip("the package index has no source archive")
-    (archive,) = tmp_path.glob("*.tar.gz")
-    with tarfile.open(archive) as files:
-        files.extractall(tmp_path, filter="data")
+    folder = sources("afmformats", tmp_path) / "tests" / "data"
     kinds = ("*igor*SiN*.ibw", "*hdf5*.h5", "*spot3*.jpk-force", "*map2x2*.jpk-force-map", "*.jpk-qi-data", "*.tab")
     for kind in (*kinds, "*sr_cell*.jpk-force", "*2021-10*.csv"):
-        file = next(tmp_path.glob(f"*/tests/data/{kind}"))
+        file = next(folder.glob(kind))
         for curve in read(file, file.read_bytes()):
             assert isinstance(curve, ForceCurve), str(curve)
             assert {0, 2} <= {*curve.kinds.tolist()}
             assert curve.positions[curve.of("approach")[-1]] > curve.positions[[0, -1]].max()
+
+
+@pytest.mark.slow
+def test_real_approaches_have_the_modulus_that_nanite_finds(tmp_path: Path) -> None:
+    """Hertz's contact on its example and two curves of afmformats: within 3 %; times are printed."""
+    nanite = pytest.importorskip("nanite", reason="the extra peers is not there")
+    example = sources("nanite", tmp_path) / "examples" / "data" / "zebrafish-head-section-gray-matter.jpk-force"
+    others = sources("afmformats", tmp_path)
+    more = [next(others.glob(f"*/**/{name}.jpk-force")) for name in ("*spot3-0192", "force-save-example")]
+    parameter = "material.lower.youngs_modulus"
+    lower = {"youngs_modulus": "1 kPa", "poisson_ratio": 0.5}
+    base = {"bodies": {"profile": {"kind": "parabola", "radius": "18.64 µm"}}}
+    for file in (example, *more):
+        begin = time.perf_counter()
+        curve = nanite.load_group(file)[0]
+        curve.apply_preprocessing(["compute_tip_position", "correct_force_offset", "correct_tip_offset"])
+        first = curve.get_initial_fit_parameters(model_key="hertz_para")
+        first["R"].value, first["nu"].value = 18.64e-6, 0.5
+        curve.fit_model(model_key="hertz_para", params_initial=first, segment="approach", weight_cp=False)
+        modulus, middle = curve.fit_properties["params_fitted"]["E"].value, time.perf_counter()
+        stiffness = f"{curve.metadata['spring constant']} N/m"
+        material = {"upper": "rigid", "lower": lower}
+        result = fit(file, base | {"material": material}, parameters=[parameter], segment="approach",
+                     instrument={"stiffness": stiffness})  # fmt: skip
+        print(f"{file.name}: nanite {middle - begin:.2f} s, contact1d {time.perf_counter() - middle:.2f} s")
+        assert result.fit.values[parameter] == pytest.approx(modulus, rel=0.03)
 
 
 SCENE = '[bodies]\nprofile = { kind = "parabola", radius = 1.0 }\n[experiment]\nkind = "load"\n'
