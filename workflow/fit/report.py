@@ -21,11 +21,12 @@ from contact1d.workflow.fit import curve as curves
 from contact1d.workflow.fit import search
 from contact1d.workflow.fit.comparison import BOTH, CurveFit
 from contact1d.workflow.fit.fit import FitResult
+from contact1d.workflow.fit.plan import STIFFNESS
 from contact1d.workflow.fit.solution import SOFTEST, UNITS, Fitted
 from contact1d.workflow.fit.subject import POINT, modulus_of
 from contact1d.workflow.laws import law_of
 from contact1d.workflow.scene.problems import tables_as_toml
-from contact1d.workflow.units import Quantity, scale_of
+from contact1d.workflow.units import NUMBER, Quantity, scale_of
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -242,12 +243,13 @@ def chart(record: Mapping[str, Any], table: DataFrame) -> Chart:
         left_out = np.asarray(rows["line"].isin(far))
         models += [Series(z[left_out], measured[left_out], "outlier", "#CC79A7", "x")] * bool(left_out.any())
     notes = [f"{key.rpartition('.')[2].replace('_', ' ')} = {words}" for key, words in in_words(record).items()]
-    note = "\n".join(fill(note, 76) for note in notes)
+    note = ";\n".join(fill(note, 76) for note in notes)
     panels = [
         Panel(Axis("force", "N", zero=True), above + models, note=note, height=2.5),
         Panel(Axis("residual", "N", zero=True), below, height=1.1),
     ]
-    return Chart(Axis("position of the piezo from the contact point", "m"), panels, fill(record["title"], 70))
+    along = "position of the piezo" if STIFFNESS in record else "displacement"
+    return Chart(Axis(f"{along} from the contact point", "m"), panels, fill(record["title"], 70))
 
 
 def in_words(record: Mapping[str, Any]) -> dict[str, str]:
@@ -297,7 +299,8 @@ def lines(result: FitResult) -> list[str]:
             share = abs(high - low) / max(abs(value * factor), 1e-300)
             digits = max(4, 2 - math.floor(math.log10(share))) if 0.0 < share < math.inf else 4
             name = f"{key}{words}"
-            text = f"{value * factor:.{digits}g} {unit}, 95 %: {low:.{digits}g} to {high:.{digits}g} {unit}"
+            behind = "" if unit == NUMBER else f" {unit}"
+            text = f"{value * factor:.{digits}g}{behind}, 95 %: {low:.{digits}g} to {high:.{digits}g}{behind}"
             shown.append(f"  {name:<44}{text}")
     measured = pull_off(result)
     if measured:
