@@ -65,6 +65,12 @@ class CurveFit:
         return self.fits[RETRACT if adheres else APPROACH]
 
     @property
+    def only_described(self) -> str:
+        """The name of the one segment of two that the model describes; "" if it describes both, or there is one."""
+        alone = BOTH not in self.fits and len(self.fits) < len(self.curve.segments)
+        return next(iter(self.fits)) if alone else ""
+
+    @property
     def shown(self) -> list[Fitted]:
         """The fits that describe the points of the curve, each point once: of both segments, or of each alone."""
         return [self.fits[BOTH]] if BOTH in self.fits else [*self.fits.values()]

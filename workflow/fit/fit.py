@@ -17,8 +17,8 @@ import numpy as np
 from contact1d.files import AnyPath
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.errors import Contact1dError, FolderError
-from contact1d.workflow.fit.comparison import BAD, BOTH, CurveFit, fit_curve
-from contact1d.workflow.fit.curve import NOUNS, RETRACT, ForceCurve
+from contact1d.workflow.fit.comparison import BAD, CurveFit, fit_curve
+from contact1d.workflow.fit.curve import APPROACH, NOUNS, RETRACT, ForceCurve
 from contact1d.workflow.fit.data import DataError, curves_of, files_of
 from contact1d.workflow.fit.forward import LAWS
 from contact1d.workflow.fit.plan import STIFFNESS, AnyFit, FitPlan, read_fit
@@ -186,9 +186,10 @@ def _warn_of_fit(result: FitResult) -> None:
     base_fit, fits, curve = result.fit, result.segments, result.segments.curve
     if fits.differing:
         result.warnings["hysteresis"] = differences(fits)
-    elif fits.refused and len(curve.segments) > 1 and BOTH not in fits.fits:
-        (name,) = fits.fits
-        missing, why = next(iter(fits.refused.items()))
+    elif name := fits.only_described:
+        missing, why = next(
+            iter(fits.refused.items()), (RETRACT if name == APPROACH else APPROACH, "its misfit is large")
+        )
         result.warnings["hysteresis"] = (
             f"{base_fit.model} describes the {NOUNS[name]} alone, and has these numbers; of the {NOUNS[missing]}: {why}"
         )

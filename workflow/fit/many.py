@@ -100,7 +100,7 @@ def attempt(plan: FitPlan, job: NamedCurve) -> dict[str, Any]:
             value, ends = estimate or (math.nan, (math.nan, math.nan))
             for suffix, number in zip(("", "_low", "_high"), (value, *ends), strict=True):
                 row[f"{key}{segment}{suffix} [{fits.main.unit(key)}]"] = number
-        row["hysteresis"] = " ".join(fits.differing)
+        row["hysteresis"] = " ".join(fits.differing) or (fits.only_described and f"only {fits.only_described}")
         row["outliers"], row["reduced_chi_squared"] = fits.main.solution.outliers.size, fits.main.misfit
     except (Contact1dError, ArithmeticError, np.linalg.LinAlgError) as error:
         row |= {"status": "refused", "reason": str(error)}
