@@ -44,7 +44,7 @@ def read_one(path: Path, content: bytes | str, **changes: Any) -> ForceCurve:
 
 
 def contact(half: int = HALF, noise: float = 0.02) -> Array:
-    """z [nm] up and down again, and F [nN], which is lower on the way back, (2 half, 2)."""
+    """z [nm] up and down again, and F [nN], which is lower on the retraction, (2 half, 2)."""
     z = np.linspace(-100.0, 100.0, half)
     z = np.append(z, z[::-1])
     F = np.maximum(z, 0.0) ** 1.5 / 10.0 - 20.0 * (np.abs(z + 15.0) < 15.0) * (np.arange(2 * half) >= half)

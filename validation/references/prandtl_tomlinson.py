@@ -106,6 +106,7 @@ def corrugation(
         if above.size == 0:
             raise ArithmeticError(f"the row does not hold {normal_force:g} FU")
         ends = grid[above[0] : above[0] + 2].tolist()
+        # mypy cannot infer the type of a lambda with a default.
         z[i] = root(lambda height, x=x: slope(x, np.array([height]))[0], *ends)  # type: ignore[misc]
     energy = pair.energy(np.hypot(places - row, z)).sum(axis=0) + normal_force * z + 0.5 * stiffness * (z - place) ** 2
     waves, heights = (np.real(np.fft.hfft(values, POINTS)[:half]) / POINTS * 2.0 for values in (energy, z))

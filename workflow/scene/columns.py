@@ -27,7 +27,7 @@ COLUMNS = {
 NAMES = {heading: name for name, headings in COLUMNS.items() for heading in headings.split(", ")}
 UNIT = re.compile(r"\s*/?\s*[\[(/]\s*([^\[\]()]*?)\s*[\])]?$")
 """The unit at the end of a heading: storage modulus [MPa], E'/MPa, ω (rad/s)."""
-END_OF_NUMBER = re.compile(r"(?<=[\d.])(?=\s*(±|\+|$))")
+END_OF_NUMBER = re.compile(r"(?<=[\d.])(?=\s*(?:±|\+|$))")
 """Where the unit of a column belongs: at the end of a cell, and before its ±."""
 FORM = (
     "has no lines below headings that are known: share and time [s], also share_uncertainty and time_uncertainty [s]; "
@@ -53,7 +53,7 @@ def lines_in(text: str) -> list[tuple[int, defaultdict[str, str]]]:
     lines = []
     for line, cells in rows:
         pairs = zip(columns, cells, strict=False)
-        texts = ((name, END_OF_NUMBER.sub(lambda _: unit, cell)) for (name, unit), cell in pairs)  # noqa: B023
+        texts = ((name, unit.join(END_OF_NUMBER.split(cell))) for (name, unit), cell in pairs)
         lines.append((line, defaultdict(str, texts)))
     if not lines:
         raise ProfileFileError(FORM)
