@@ -169,7 +169,7 @@ def test_a_jump_that_is_small_beside_the_force_in_contact(tmp_path: Path) -> Non
     rows = curve(sphere=Sphere(MODULUS, 0.1 * WORK, RADIUS))
     result = fit(plan(written(tmp_path / "curve.csv", rows)))
     low, high = result.bracket
-    assert low < result.fit.jumps_at(result.fit.solution.values)[1] < high
+    assert low < result.fit.subject.jumps_at(result.fit.solution.values)[1] < high
 
 
 def test_adhesion_that_may_be_none(tmp_path: Path) -> None:

@@ -171,10 +171,12 @@ def test_a_line_in_white_noise_has_the_interval_of_student() -> None:
     assert found.freedom == 10.0
     weights = np.array([estimate.weight for estimate in found.estimates])
     assert weights.sum() == pytest.approx(1.0)
-    for level in (0.025, 0.5, 0.9, 0.975):
-        quantile = found.quantile(1, level) + found.best.step[1]
-        offs = [(quantile - each.step[1]) / math.sqrt(each.covariance[1, 1]) for each in found.estimates]
-        assert weights @ student.cdf(offs, 10.0) == pytest.approx(level, abs=1e-5)
+    for coverage in (0.1, 0.8, 0.95):
+        for end, level in zip(found.ends(1, coverage), (0.5 - 0.5 * coverage, 0.5 + 0.5 * coverage), strict=True):
+            distances = [
+                (end + found.best.step[1] - each.step[1]) / math.sqrt(each.covariance[1, 1]) for each in found.estimates
+            ]
+            assert weights @ student.cdf(distances, 10.0) == pytest.approx(level, abs=1e-5)
 
 
 def test_what_is_known_counts_as_a_further_point() -> None:

@@ -1,16 +1,14 @@
 """Approach and retraction of a curve, fitted together and each alone, and the parameters in which they differ.
 
-Two fits have estimates k₁, k₂ of the parameters and s₁, s₂ of the calibrated numbers, which are the same for both. With
-the covariances C of each and the precision Λ₀ of the calibration, which both fits use, the calibrated numbers are
+Two fits have estimates k₁, k₂ of a parameter, whose difference has the variance
 
-    s = Λ⁻¹ (Λ₁ s₁ + Λ₂ s₂ − Λ₀ s₀),    Λ = Λ₁ + Λ₂ − Λ₀,    Λᵢ = (Cᵢ)ₛₛ⁻¹
+    var(k₁) + var(k₂) − 2 cov(k₁, k₂),    cov(k₁, k₂) = cov(k₁, s) Λ cov(s, k₂)
 
-and the parameters at that s are kᵢ + Gᵢ (s − sᵢ), G = Cₖₛ Cₛₛ⁻¹, with the covariance Cₖₖ − G Cₛₖ.
+where s are the calibrated numbers, which both fits share, and Λ is the precision of their calibration.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -22,10 +20,12 @@ from scipy.special import ndtri
 from contact1d.workflow.errors import Contact1dError
 from contact1d.workflow.fit.curve import APPROACH, RETRACT, ForceCurve
 from contact1d.workflow.fit.data import DataError
+from contact1d.workflow.fit.determined import UndeterminedError, checked
+from contact1d.workflow.fit.fitted import Fitted
 from contact1d.workflow.fit.forward import ContactModel
 from contact1d.workflow.fit.plan import FitPlan
 from contact1d.workflow.fit.search import LEVEL
-from contact1d.workflow.fit.solution import SURE, Fitted, UndeterminedError, checked, fitted, solution_of
+from contact1d.workflow.fit.solution import SURE, fitted, solution_of
 from contact1d.workflow.fit.subject import POINT
 
 Array = NDArray[np.float64]
@@ -95,6 +95,13 @@ class CurveFit:
             estimates[name] = value, (low, high)
         return estimates
 
+    def by_segment(self, name: str) -> dict[str, Estimated]:
+        """Return the estimate of a number under "", or those of the segments by their names where these differ."""
+        estimate = self.estimates[name]
+        if estimate is not None:
+            return {"": estimate}
+        return {segment: (fit.values[name], fit.intervals[name]) for segment, fit in self.fits.items()}
+
 
 def fit_curve(plan: FitPlan, curve: ForceCurve, model: ContactModel) -> CurveFit:
     """Fit a contact model to the segments of a curve, and return the fits.
@@ -145,79 +152,40 @@ def fit_curve(plan: FitPlan, curve: ForceCurve, model: ContactModel) -> CurveFit
 def differing(approach: Fitted, retraction: Fitted) -> tuple[str, ...]:
     """Return the names of the parameters, and of the contact point, that differ between two fits by more than chance.
 
-    The probability of a larger difference is below 0.1 % for each, if it is only due to noise. Calibrated numbers, such
-    as the stiffness of the cantilever, are the same for both.
+    The probability of a larger difference is below 0.1 % for each, if it is only due to noise. The calibrated numbers,
+    such as the stiffness of the cantilever, are the same for both.
     """
-    fits = (approach, retraction)
     names = [name for name in approach.intervals if name in retraction.intervals]
-    shared = [unknown.name for unknown in approach.subject.unknowns if unknown.known and unknown.name != POINT]
-    estimates = [_conditional(fit, names, shared) for fit in fits]
-    calibration = [unknown for unknown in approach.subject.unknowns if unknown.name in shared]
-    exact = np.array([math.log(unknown.known[0] / unknown.scale) for unknown in calibration if unknown.known])
-    precision = np.diag([(unknown.known[0] / unknown.known[1]) ** 2 for unknown in calibration if unknown.known])
-    total = sum((estimate.precision for estimate in estimates), -precision)
-    weighted = (estimate.precision @ estimate.shared for estimate in estimates)
-    calibrated = np.linalg.solve(total, sum(weighted, -precision @ exact))
-    first, second = (estimate.values + estimate.slopes @ (calibrated - estimate.shared) for estimate in estimates)
-    slopes = estimates[0].slopes - estimates[1].slopes
-    sides = np.where(first > second, 0, 1)
-    variance = ndtri(0.5 + 0.5 * SURE) ** 2 * np.diag(slopes @ np.linalg.solve(total, slopes.T))
-    for estimate, side in zip(estimates, (sides, 1 - sides), strict=True):
-        variance += estimate.tails[side, np.arange(len(names))] ** 2 * np.diag(estimate.covariance)
-    apart = np.abs(first - second) > np.sqrt(variance)
+    calibrations = {unknown.name: unknown.known for unknown in approach.subject.unknowns if unknown.name != POINT}
+    exactness = {name: (known[0] / known[1]) ** 2 for name, known in calibrations.items() if known}
+    (first, first_tails, first_shared), (second, second_tails, second_shared) = (
+        _uncertain(fit, names, list(exactness)) for fit in (approach, retraction)
+    )
+    (lower, upper), (second_lower, second_upper) = first_tails**2, second_tails**2
+    variance = np.where(first > second, lower + second_upper, upper + second_lower)
+    common = np.einsum("is,s,is->i", first_shared, np.array([*exactness.values()]), second_shared)
+    apart = (first - second) ** 2 > variance - 2.0 * ndtri(0.5 + 0.5 * SURE) ** 2 * common
     return tuple(name for name, is_apart in zip(names, apart, strict=True) if is_apart)
 
 
-@dataclass(frozen=True)
-class _Conditional:
-    """Estimates of n parameters of a fit as functions of m calibrated numbers.
+def _uncertain(fit: Fitted, names: list[str], shared: list[str]) -> tuple[Array, Array, Array]:
+    """Return the values of n parameters of a fit, their uncertainties, and their covariances with m calibrated numbers.
 
-    Attributes:
-        values: of the parameters, logarithms over their first guess, and the contact point [m], (n,).
-        shared: of the calibrated numbers, logarithms over their first guess, (m,).
-        slopes: derivatives of the former by the latter, (n, m).
-        covariance: of the parameters at given calibrated numbers, (n, n).
-        precision: inverse covariance of the calibrated numbers, (m, m).
-        tails: lower and upper half-widths of the intervals of the parameters at 99.9 % over their standard deviations,
-            (2, n).
-    """
-
-    values: Array
-    shared: Array
-    slopes: Array
-    covariance: Array
-    precision: Array
-    tails: Array
-
-
-def _conditional(fit: Fitted, names: list[str], shared: list[str]) -> _Conditional:
-    """Return the estimates of parameters of a fit by calibrated numbers, averaged over all noises.
+    These are (n,), (2, n) and (n, m): of logarithms over the first guess, and of the contact point in m. The
+    uncertainties are the half-widths of the intervals of 99.9 % below and above. Student's distributions over noises of
+    unknown memory have longer tails than the normal one; the profile likelihood may be skewed.
 
     Args:
-        fit: the fit.
+        fit: with intervals.
         names: of the parameters, or the contact point.
         shared: names of the calibrated numbers.
     """
-    unknowns = fit.subject.unknowns
-    size = np.array([1.0 if unknown.positive else unknown.scale for unknown in unknowns])
-    index = [fit.subject.names.index(name) for name in (*names, *shared)]
-    average = fit.solution.average
-    weights = np.array([estimate.weight for estimate in average.estimates])
-    steps = np.array([estimate.step for estimate in average.estimates])
-    off = steps - weights @ steps
-    covariance = np.einsum("k,kij->ij", weights, [estimate.covariance for estimate in average.estimates])
-    covariance = (covariance + off.T @ (weights[:, None] * off)) * np.outer(size, size)
-    C, u, n = covariance[np.ix_(index, index)], (fit.solution.u * size)[index], len(names)
-    precision = np.linalg.inv(C[n:, n:])
-    slopes = C[:n, n:] @ precision
-    spread = np.sqrt(np.diag(C)[:n])
-    tails = np.empty((2, n))
-    for side, sign in enumerate((-1.0, 1.0)):
-        for i, name in enumerate(names):
-            # Student's distributions over noises of unknown memory have longer tails than the normal one; the profile
-            # likelihood has its own half-width, and may be skewed.
-            quantiles = [abs(average.quantile(index[i], 0.5 * (1.0 + sign * level))) for level in (SURE, LEVEL)]
-            end = unknowns[index[i]].inverse(fit.intervals[name][side])
-            reach = max(quantiles[1], abs(end - fit.solution.u[index[i]]))
-            tails[side, i] = quantiles[0] / quantiles[1] * reach * size[index[i]] / spread[i]
-    return _Conditional(u[:n], u[n:], slopes, C[:n, :n] - slopes @ C[n:, :n], precision, tails)
+    subject, average, u = fit.subject, fit.solution.average, fit.solution.u
+    index, calibrated = ([subject.names.index(name) for name in keys] for keys in (names, shared))
+    size = np.array([1.0 if subject.unknowns[i].positive else subject.unknowns[i].scale for i in index])
+    tails = np.empty((2, len(names)))
+    for column, i in enumerate(index):
+        sure, usual = (np.abs(average.ends(i, coverage)) for coverage in (SURE, LEVEL))
+        ends = np.array([subject.unknowns[i].inverse(end) for end in fit.intervals[names[column]]])
+        tails[:, column] = sure / usual * np.maximum(usual, np.abs(ends - u[i]))
+    return u[index] * size, tails * size, average.covariance[np.ix_(index, calibrated)] * size[:, None]

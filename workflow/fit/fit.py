@@ -20,10 +20,11 @@ from contact1d.workflow.errors import Contact1dError, FolderError
 from contact1d.workflow.fit.comparison import BAD, CurveFit, fit_curve
 from contact1d.workflow.fit.curve import APPROACH, NOUNS, RETRACT, ForceCurve
 from contact1d.workflow.fit.data import DataError, curves_of, files_of
+from contact1d.workflow.fit.fitted import Fitted
 from contact1d.workflow.fit.forward import LAWS
 from contact1d.workflow.fit.plan import STIFFNESS, AnyFit, FitPlan, read_fit
 from contact1d.workflow.fit.relaxing import relaxed
-from contact1d.workflow.fit.solution import Fitted, compared, model_of
+from contact1d.workflow.fit.solution import compared, model_of
 from contact1d.workflow.fit.subject import POINT
 from contact1d.workflow.runs.advised import run
 from contact1d.workflow.scene import AnyScene, Scene
@@ -193,7 +194,7 @@ def _warn_of_fit(result: FitResult) -> None:
         result.warnings["hysteresis"] = (
             f"{base_fit.model} describes the {NOUNS[name]} alone, and has these numbers; of the {NOUNS[missing]}: {why}"
         )
-    snap, (low, high) = float(base_fit.jumps_at(base_fit.solution.values)[1]), result.bracket
+    snap, (low, high) = float(base_fit.subject.jumps_at(base_fit.solution.values)[1]), result.bracket
     if math.isfinite(low) and not 2.0 * low - high <= snap <= 2.0 * high - low:
         result.warnings["snap_out"] = (
             f"the contact is lost between z = {low:.4g} and {high:.4g} m, and {base_fit.model} loses it at "
@@ -223,10 +224,10 @@ def differences(fits: CurveFit) -> str:
     """Return a sentence with the parameters in which the segments of a curve differ, and what that means."""
     fit, parts = fits.main, []
     for name in fits.differing:
-        texts = []
-        for segment, part in fits.fits.items():
-            low, high = part.intervals[name]
-            texts.append(f"{Quantity(part.values[name], 0.5 * (high - low), fit.unit(name))} on {NOUNS[segment]}")
+        texts = (
+            f"{Quantity(value, 0.5 * (high - low), fit.unit(name))} on {NOUNS[segment]}"
+            for segment, (value, (low, high)) in fits.by_segment(name).items()
+        )
         parts.append(f"{name} is {', '.join(texts)}")
     cause = (
         "bodies that adhere more while they separate, or relax, do so"

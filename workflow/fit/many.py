@@ -93,13 +93,12 @@ def attempt(plan: FitPlan, job: NamedCurve) -> dict[str, Any]:
         if isinstance(curve, DataError):
             raise curve
         fits = fit_curve(plan, curve, model_of(plan))
-        estimates = {(key, ""): estimate for key, estimate in fits.estimates.items()}
-        for key in fits.differing:
-            estimates |= {(key, f"_{name}"): (fit.values[key], fit.intervals[key]) for name, fit in fits.fits.items()}
-        for (key, segment), estimate in estimates.items():
-            value, ends = estimate or (math.nan, (math.nan, math.nan))
-            for suffix, number in zip(("", "_low", "_high"), (value, *ends), strict=True):
-                row[f"{key}{segment}{suffix} [{fits.main.unit(key)}]"] = number
+        for key in fits.estimates:
+            none = {"": (math.nan, (math.nan, math.nan))}  # the column of both segments is in every table
+            for segment, (value, ends) in (none | fits.by_segment(key)).items():
+                name = f"{key}_{segment}" if segment else key
+                for suffix, number in zip(("", "_low", "_high"), (value, *ends), strict=True):
+                    row[f"{name}{suffix} [{fits.main.unit(key)}]"] = number
         row["hysteresis"] = " ".join(fits.differing) or (fits.only_described and f"only {fits.only_described}")
         row["outliers"], row["reduced_chi_squared"] = fits.main.solution.outliers.size, fits.main.misfit
     except (Contact1dError, ArithmeticError, np.linalg.LinAlgError) as error:

@@ -153,22 +153,36 @@ class AveragedEstimate:
         """The estimate under the most likely noise, that of the largest weight; the first one of equals."""
         return max(self.estimates, key=lambda estimate: estimate.weight)
 
-    def quantile(self, index: int, level: float) -> float:
-        """Return the value, less its best estimate, below which a parameter is with a probability `level`.
+    @property
+    def covariance(self) -> Array:
+        """The covariance of the parameters, (p, p): its mean over the noises, and that of the estimates' scatter."""
+        weights = np.array([estimate.weight for estimate in self.estimates])
+        steps = np.array([estimate.step for estimate in self.estimates])
+        off = steps - weights @ steps
+        mean = np.einsum("k,kij->ij", weights, [estimate.covariance for estimate in self.estimates])
+        return np.asarray(mean + off.T @ (weights[:, None] * off))
+
+    def ends(self, index: int, coverage: float) -> Array:
+        """Return (lower, upper) end of an interval of a parameter, less its best estimate, (2,).
 
         Its unit is that of the parameters of the least squares: log p of a positive parameter p. The distribution is
-        the average of Student's t under each noise. `index`: of the parameter; `level`: between 0 and 1, exclusive.
+        the average of Student's t under each noise, and half of what is not covered is on each side.
+
+        Args:
+            index: of the parameter.
+            coverage: probability of the interval, between 0 and 1, exclusive.
         """
         weights = np.array([estimate.weight for estimate in self.estimates])
         centres = np.array([estimate.step[index] for estimate in self.estimates]) - self.best.step[index]
         scales = np.sqrt([estimate.covariance[index, index] for estimate in self.estimates])
 
-        def excess(value: float) -> float:
+        def excess(value: float, level: float) -> float:
             """Return the probability of a smaller value less `level`, so that it is 0 at the quantile."""
             return float(weights @ stdtr(self.freedom, (value - centres) / scales)) - level
 
         reach = 60.0 * float(scales.max()) + float(np.abs(centres).max())
-        return float(brentq(excess, -reach, reach, rtol=1e-6, xtol=1e-9 * reach))
+        levels = 0.5 * (1.0 - coverage), 0.5 * (1.0 + coverage)
+        return np.array([brentq(excess, -reach, reach, (level,), 1e-9 * reach, 1e-6) for level in levels])
 
 
 @dataclass(frozen=True)

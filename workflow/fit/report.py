@@ -20,9 +20,10 @@ from contact1d.workflow.body.cases import ASSUMED_RANGE
 from contact1d.workflow.fit import curve as curves
 from contact1d.workflow.fit import search
 from contact1d.workflow.fit.comparison import BOTH, CurveFit
+from contact1d.workflow.fit.determined import SOFTEST
 from contact1d.workflow.fit.fit import FitResult
+from contact1d.workflow.fit.fitted import UNITS, Fitted
 from contact1d.workflow.fit.plan import STIFFNESS
-from contact1d.workflow.fit.solution import SOFTEST, UNITS, Fitted
 from contact1d.workflow.fit.subject import POINT, modulus_of
 from contact1d.workflow.laws import law_of
 from contact1d.workflow.scene.problems import tables_as_toml
@@ -100,7 +101,7 @@ def document(result: FitResult) -> dict[str, Any]:
             {"line": int(curve.lines[i]), "position": curve.positions[i], "force": curve.forces[i]} for i in outliers
         ],
         "snap_out": {
-            "position": fit.jumps_at(fit.solution.values)[1],
+            "position": fit.subject.jumps_at(fit.solution.values)[1],
             "bracket": None if math.isnan(result.bracket[0]) else result.bracket,
             "unit": "m",
         },
@@ -145,25 +146,19 @@ def alone(fit: Fitted) -> dict[str, Any]:
     return {"parameters": parameters, **entries(fit, UNITS), "reduced_chi_squared": fit.misfit}
 
 
-def entry(fit: Fitted, key: str) -> dict[str, Any]:
-    """Return {"value", "unit", "interval"} of an unknown of a fit, in SI: the interval [lower, upper] is that of 95 %.
-
-    Without "interval" where it has none: a nuisance parameter other than the contact point, or a model that is compared
-    only. `key`: a dotted key of the scene, "contact_point", "force_offset" or "instrument.stiffness".
-
-    Raises:
-        KeyError: the fit has no such unknown.
-    """
-    table: dict[str, Any] = {"value": fit.values[key], "unit": fit.unit(key)}
-    return table | ({"interval": list(fit.intervals[key])} if key in fit.intervals else {})
-
-
 def entries(fit: Fitted, keys: Iterable[str]) -> dict[str, Any]:
     """Return {"value", "unit", "interval"} in SI by key, in order, of the keys that are unknowns of a fit.
 
-    Other keys are left out, and "interval" where an unknown has none.
+    The interval [lower, upper] is that of 95 %; a nuisance parameter other than the contact point, and a model that is
+    compared only, has none. Other keys are left out.
+
+    `keys`: dotted keys of the scene, "contact_point", "force_offset" or "instrument.stiffness".
     """
-    return {key: entry(fit, key) for key in keys if key in fit.values}
+    shown = {key: {"value": fit.values[key], "unit": fit.unit(key)} for key in keys if key in fit.values}
+    return {
+        key: table | ({"interval": list(fit.intervals[key])} if key in fit.intervals else {})
+        for key, table in shown.items()
+    }
 
 
 def pull_off(result: FitResult) -> dict[str, Any] | None:
@@ -288,17 +283,14 @@ def lines(result: FitResult) -> list[str]:
     """
     fit, best = result.fit, result.fit.solution.best
     shown = [fit.plan.fit.title]
-    for key, estimate in result.segments.estimates.items():
-        parts = {"": estimate} if estimate else {}
-        for name, part in result.segments.fits.items() if not estimate else ():
-            parts[f" of {curves.NOUNS[name]}"] = part.values[key], part.intervals[key]
-        for words, (value, ends) in parts.items():
+    for key in result.segments.estimates:
+        for segment, (value, ends) in result.segments.by_segment(key).items():
             factor, unit = scale_of(value, fit.unit(key))
             low, high = (end * factor for end in ends)
             # As many digits as show the interval, four at least.
             share = abs(high - low) / max(abs(value * factor), 1e-300)
             digits = max(4, 2 - math.floor(math.log10(share))) if 0.0 < share < math.inf else 4
-            name = f"{key}{words}"
+            name = f"{key} of {curves.NOUNS[segment]}" if segment else key
             behind = "" if unit == NUMBER else f" {unit}"
             text = f"{value * factor:.{digits}g}{behind}, 95 %: {low:.{digits}g} to {high:.{digits}g}{behind}"
             shown.append(f"  {name:<44}{text}")

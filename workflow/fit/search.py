@@ -346,8 +346,7 @@ def interval(solution: Solution, index: int, farthest: float = 4.0) -> tuple[flo
     spread = math.sqrt(best.covariance[index, index])
     along = best.covariance[index] / best.covariance[index, index]  # how the other unknowns follow
     ends = []
-    for side in (-1.0, 1.0):
-        quantile = abs(solution.average.quantile(index, 0.5 * (1.0 + side * LEVEL)))
+    for side, quantile in zip((-1.0, 1.0), np.abs(solution.average.ends(index, LEVEL)).tolist(), strict=True):
         wanted = quantile / spread  # standard deviations
         u, low, high = solution.u.copy(), (0.0, 0.0), None
         change = quantile

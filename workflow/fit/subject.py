@@ -143,16 +143,22 @@ class Subject:
             forces[segment.points] += named[name if name in named else OFFSETS[APPROACH]]
         return np.asarray(forces)
 
+    def jumps_at(self, values: Sequence[float]) -> Array:
+        """Return the positions z [LU] at which the force begins and at which the contact is lost, (2,).
+
+        `values`: of all unknowns, in their order and units.
+        """
+        branch, stiffness, point = self.parts(values)
+        return np.asarray(point + np.array([branch.displacements[0], branch.snap_out(stiffness)[0]]))
+
     def apart_at(self, values: Sequence[float]) -> NDArray[np.bool_]:
         """Return the mask of the points at which bodies are apart, (n,); `values`: of all unknowns.
 
         Where no jump tells, they are those below the first force of the contact on the approach, and below its loss
         on the retraction.
         """
-        branch, stiffness, point = self.parts(values)
-        z = self.curve.positions - point
-        ends = np.where(self.approaching, branch.displacements[0], branch.snap_out(stiffness)[0])
-        return np.asarray(self.apart | (self.undecided & (z < ends)))
+        ends = np.where(self.approaching, *self.jumps_at(values))
+        return np.asarray(self.apart | (self.undecided & (self.curve.positions < ends)))
 
     def excess(self, values: Sequence[float]) -> Array:
         """Return how far the contact exists where the model has none, over the distance of positions, (b,), ≥ 0.
@@ -160,14 +166,10 @@ class Subject:
         On the retraction it is the model's loss of the contact above the last position in contact, on the approach its
         first force above the first one. Segments of which it is not known count 0. `values`: of all unknowns.
         """
-        branch, stiffness, point = self.parts(values)
-        lengths = []
-        for segment in self.curve.segments:
-            held = segment.held
-            if segment.name == RETRACT and held.size:
-                lengths.append(point + branch.snap_out(stiffness)[0] - self.curve.positions[held[-1]])
-            elif segment.name == APPROACH and held.size:
-                lengths.append(point + branch.displacements[0] - self.curve.positions[held[0]])
+        begin, loss = self.jumps_at(values)
+        held = {segment.name: self.curve.positions[segment.held] for segment in self.curve.segments}
+        lengths = [begin - z[0] for name, z in held.items() if name == APPROACH and z.size]
+        lengths += [loss - z[-1] for name, z in held.items() if name == RETRACT and z.size]
         return np.asarray(np.maximum(0.0, np.array(lengths)) / self.pitch)
 
     def resting(self, values: Sequence[float], compared: Sequence[Indices], fewest: int = 30) -> Resting | None:
