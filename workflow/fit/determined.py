@@ -48,7 +48,7 @@ def checked(fit: Fitted, widest: float = 1.0, by_profile: bool = True) -> Fitted
         raise UndeterminedError(
             f"{solution.outliers.size} points are outliers, more than outliers = {fit.plan.fit.outliers}: either "
             f"{fit.model} does not describe the curve, or a unit or the stiffness is wrong, or the noise is not one "
-            "of the instrument; look at the residuals"
+            'of the instrument; fit one segment, segment = "approach", and look at its residuals'
         )
     _require_stiff(fit)
     _require_points(fit)

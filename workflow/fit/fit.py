@@ -229,12 +229,18 @@ def differences(fits: CurveFit) -> str:
             for segment, (value, (low, high)) in fits.by_segment(name).items()
         )
         parts.append(f"{name} is {', '.join(texts)}")
-    cause = (
-        "bodies that adhere more while they separate, or relax, do so"
-        if fit.subject.model.needs
-        else "bodies that relax or yield do so, and E of the approach is an apparent modulus; with a column t the "
-        'terms of [viscoelasticity] can be fitted, such as parameters = ["viscoelasticity.terms[0].share"]'
-    )
+    if fit.subject.model.needs:
+        cause = "bodies that adhere more while they separate, or relax, do so"
+    else:
+        cause = (
+            "bodies that relax or yield do so, and E of the approach is an apparent modulus; with a column t the "
+            'terms of [viscoelasticity] can be fitted, such as parameters = ["viscoelasticity.terms[0].share"]'
+        )
+        pulled, uncertainty = fits.shown[-1].pull_off
+        if pulled > uncertainty:
+            cause += (
+                f"; a pull-off force of {Quantity(pulled, uncertainty, 'N')} is that of adhesion: give [base.adhesion]"
+            )
     return f"approach and retraction differ by more than their intervals: {'; '.join(parts)}: {cause}"
 
 

@@ -47,7 +47,7 @@ class Fit(Table):
     """The keys of a fit file except its base scene."""
 
     title: str = "Fit of a force curve"
-    """title, one line"""
+    """title, one line; absent: that of the base scene"""
     data: str
     """a CSV file with columns z or d, and F; several by a folder or a pattern, or a column `curve`: a map"""
     parameters: Listed[str]
@@ -126,6 +126,8 @@ def read_fit(source: AnyFit, **changes: Any) -> FitPlan:
     require_kind(tables, "fit file", source)
     folder = Path.cwd() if isinstance(source, Mapping) else Path(source).parent
     base = tables.pop("base", None)
+    if isinstance(base, Mapping) and "title" in base:
+        tables.setdefault("title", base["title"])
     whole = Place(tables, allowed_by(Fit))
     mend_words(whole)
     shares = take_shares(whole)

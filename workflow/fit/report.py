@@ -269,6 +269,12 @@ def written(entry: Mapping[str, Any]) -> str:
     return str(Quantity(entry["value"], 0.5 * (high - low), entry["unit"]))
 
 
+def noise_in_words(deviation: float, share: float, memory: float) -> str:
+    """Return the standard deviation [N] of a noise as text, with its memory [points] unless their share s is 0."""
+    factor, unit = scale_of(deviation, "N")
+    return f"{deviation * factor:.3g} {unit}, " + (f"memory {memory:.0f} points" if share else "white")
+
+
 def _alone(record: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield name and entry of each segment that was fitted alone; `record`: content of fit.json."""
     yield from ((name, part) for name, part in record["segments"].items() if "refused" not in part)
@@ -282,6 +288,7 @@ def lines(result: FitResult) -> list[str]:
     the least one, the most likely first.
     """
     fit, best = result.fit, result.fit.solution.best
+    noise = noise_in_words(best.deviation, best.noise.share, best.noise.memory)
     shown = [fit.plan.fit.title]
     for key in result.segments.estimates:
         for segment, (value, ends) in result.segments.by_segment(key).items():
@@ -297,9 +304,6 @@ def lines(result: FitResult) -> list[str]:
     measured = pull_off(result)
     if measured:
         shown.append(f"  {'measured pull-off force':<44}{Quantity(measured['value'], measured['uncertainty'], 'N')}")
-    factor, unit = scale_of(best.deviation, "N")
-    memory = f"memory {best.noise.memory:.0f} points" if best.noise.share else "white"
-    noise = f"{best.deviation * factor:.3g} {unit}, {memory}"
     least = next(iter(result.models.values())).criterion
     above = {name: float(f"{model_fit.criterion - least:.2g}") for name, model_fit in result.models.items()}
     ranked = ", ".join(f"{name} +{difference:.0f}" for name, difference in above.items())

@@ -22,7 +22,7 @@ from contact1d.workflow.body.theory import in_words
 from contact1d.workflow.errors import FolderError
 from contact1d.workflow.fit.curve import NOUNS
 from contact1d.workflow.fit.report import RECORD as FIT
-from contact1d.workflow.fit.report import TABLE, chart, written
+from contact1d.workflow.fit.report import TABLE, chart, noise_in_words, written
 from contact1d.workflow.fit.subject import POINT
 from contact1d.workflow.report.charts import Data, charts_of, path_of, symbols
 from contact1d.workflow.runs.charts import charts
@@ -170,11 +170,10 @@ def _of_fit(folder: Path) -> str:
     if record["pull_off_force"]:
         measured = Quantity.of(record["pull_off_force"])
         rows["measured pull-off force"] = dict.fromkeys(columns, "—") | {list(columns)[-1]: str(measured)}
-    noise = record["noise"]
-    memory = f"{noise['share_with_memory']:.0%} of the variance with a memory of {noise['memory']:.0f} points"
+    noise = noise_in_words(*(record["noise"][name] for name in ("value", "share_with_memory", "memory")))
     return _page(
         "fit.html", charts_of({"": {"fit": chart(record, read_csv(folder / TABLE))}}), None, record=record, rows=rows,
-        columns=[*columns], folder=folder, noise=f"{Quantity(noise['value'], 0.0, 'N')}, {memory}",
+        columns=[*columns], folder=folder, noise=noise,
         scene=(folder / "scene.toml").read_text(encoding="utf-8"),
     )  # fmt: skip
 
