@@ -17,12 +17,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from contact1d.analysis.pressure import Array
-from contact1d.analysis.theory.adhesion import Dmt, MaugisDugdale, Theory, of_tabor, valid_theory
+from contact1d.analysis.theory.adhesion import Theory, of_tabor, valid_theory
 from contact1d.analysis.theory.indenters import Contact, PowerLaw
 from contact1d.analysis.theory.mindlin import (
     mindlin_cycle_energy,
@@ -35,6 +36,14 @@ from contact1d.workflow.body.cases import Case, Values
 from contact1d.workflow.scene import Friction, Scene
 from contact1d.workflow.units import Quantity, Scales, scale_of
 
+ANY = ""
+"""The kind of profile of a closed form for several kinds."""
+BODIES = {
+    "parabola": "a paraboloid", "cone": "a cone", "flat_punch": "a flat punch", "circle": "a whole sphere",
+    "ellipsoid": "a whole ellipsoid", "power": "a power of the radius",
+}  # fmt: skip
+"""The name of a body by the kind of its profile."""
+
 
 @dataclass(frozen=True)
 class ClosedForm:
@@ -43,18 +52,24 @@ class ClosedForm:
     Attributes:
         name: its usual name: "Hertz".
         source: its publication.
-        applies: returns why it holds for a case of its family, in a few words; "" where it does not.
+        holds: returns why it holds for a body of its kind, in a few words; "" where it does not.
         values: returns its predictions, by the names of results, in their units of the model.
+        kind: kind of the profile that it is for, as in a scene; ANY where `holds` decides.
         pressure: returns p(r) [FU/LU²] at r (n,) [LU] in the reported state; None where it predicts no pressure.
         has_range: whether the predictions depend on the Tabor parameter.
     """
 
     name: str
     source: str
-    applies: Callable[[Case], str]
+    holds: Callable[[Case], str]
     values: Callable[[Case], Values]
+    kind: str = "parabola"
     pressure: Callable[[Case, Array], Array] | None = None
     has_range: bool = False
+
+    def applies(self, case: Case) -> str:
+        """Return why the theory holds for a case of its family, in a few words; "" where it does not."""
+        return self.holds(case) if self.kind in (ANY, case.kind) else ""
 
 
 def applying(case: Case) -> list[ClosedForm]:
@@ -147,29 +162,16 @@ def in_words(results: Mapping[str, Any], name: str) -> Iterator[str]:
 # Without adhesion. Under a given F: d, a, F/πa², p(0), dF/dd = 2E*a; at a given d: F, a and the pressures.
 
 
-def _without_adhesion(kind: str, body: str) -> Callable[[Case], str]:
-    """Return a function of a case: "<body>, pressed without adhesion" where such a closed form holds, else "".
+def _pressed(case: Case) -> str:
+    """Return "<body>, pressed without adhesion" where the closed form of such a body holds, else "".
 
-    It holds where the profile is of this kind, particles are pressed as linear springs (no attraction, viscoelasticity,
-    springs between neighbours, or noise), the run has a force or a given displacement (an impact has neither), and the
-    reduction is "mdr", or the paper's for a parabola or a circle without [interaction].
-
-    Args:
-        kind: of the profile, as in a scene: "cone".
-        body: its name in the text: "a cone".
+    It holds where particles are pressed as linear springs (no attraction, viscoelasticity, springs between neighbours,
+    or noise), the run has a force or a given displacement (an impact has neither), and the reduction is "mdr", or the
+    paper's for a parabola or a circle without [interaction].
     """
-
-    def applies(case: Case) -> str:
-        """Return "<body>, pressed without adhesion" for a profile of this kind on linear springs; else "".
-
-        "" also without a known force or displacement, and for a reduction of which the closed form is not.
-        """
-        kept = case.scene.bodies.reduction == "mdr" or (case.radius is not None and case.scene.interaction is None)
-        pressed = case.force is not None or case.displacement is not None
-        holds = case.kind == kind and kept and pressed and case.is_elastic
-        return f"{body}, pressed without adhesion" if holds else ""
-
-    return applies
+    kept = case.scene.bodies.reduction == "mdr" or (case.radius is not None and case.scene.interaction is None)
+    pressed = case.force is not None or case.displacement is not None
+    return f"{BODIES[case.kind]}, pressed without adhesion" if kept and pressed and case.is_elastic else ""
 
 
 def _contact(case: Case, a: float, d: float, force: float) -> Values:
@@ -246,16 +248,12 @@ def _punch_pressure(case: Case, r: Array) -> Array:
 # Adhesive: F_A, the radii there and at F = 0, and d, F and a of a load or of the largest displacement of a path.
 
 
-def _adhesive(kind: str, body: str) -> Callable[[Case], str]:
-    """Return a function of a case: "<body> that adheres, without a range" for a profile of this kind, else "".
+def _adhesive(case: Case) -> str:
+    """Return "<body> that adheres, without a range".
 
     That the case has adhesion is not checked: only laws with [adhesion] have such closed forms.
-
-    Args:
-        kind: of the profile, as in a scene: "cone".
-        body: its name in the text: "a cone".
     """
-    return lambda case: f"{body} that adheres, without a range" if case.kind == kind else ""
+    return f"{BODIES[case.kind]} that adheres, without a range"
 
 
 def _marks(case: Case, contact: Contact) -> Values:
@@ -273,15 +271,6 @@ def _marks(case: Case, contact: Contact) -> Values:
         a = contact.contact_radius(case.force)
         values |= {"contact_radius": a, "displacement": contact.displacement(a)}
     return values
-
-
-def _jkr_values(case: Case) -> Values:
-    """Return the predictions of JKR for a sphere with an interaction, by the names of results.
-
-    "adhesion_force" [FU], a positive tension, "critical_radius" and "zero_load_radius" [LU], and under a known force
-    that the contact sustains "contact_radius" and "displacement" [LU].
-    """
-    return _marks(case, case.body)
 
 
 def _adhesive_values(case: Case) -> Values:
@@ -327,69 +316,53 @@ def tabor(case: Case) -> float | None:
     return None if case.with_range is None else case.with_range.tabor
 
 
-def _with_a_range(of_any: bool) -> Callable[[Case], str]:
-    """Return a function of a case: text on the Tabor parameter of an adhesive paraboloid, or "".
+def _has_range(case: Case) -> str:
+    """Return text with the Tabor parameter of an adhesive paraboloid and the theory that holds there.
 
-    It is "" for another profile, without a Tabor parameter, and, unless `of_any`, where that is one of JKR, above 5.
-    The range may be an assumed one.
+    The range may be an assumed one. "" without a Tabor parameter.
     """
-
-    def applies(case: Case) -> str:
-        """Return text with the Tabor parameter of an adhesive paraboloid and the theory that holds there.
-
-        "" for another profile, without a Tabor parameter, and, unless `of_any`, where it is one of JKR, above 5.
-        """
-        mu = tabor(case)
-        if mu is None or case.kind != "parabola" or (of_tabor(mu) is Theory.JKR and not of_any):
-            return ""
-        return f"a paraboloid with a range; the Tabor parameter is {mu:.3g}, where {valid_theory(mu, 0.0).theory} holds"
-
-    return applies
+    mu = tabor(case)
+    if mu is None:
+        return ""
+    return f"a paraboloid with a range; the Tabor parameter is {mu:.3g}, where {valid_theory(mu, 0.0).theory} holds"
 
 
-def _by_tabor(theory: Theory) -> Callable[[Case], str]:
-    """Return a function of a case with an interaction: text with its Tabor parameter where `theory` holds, or "".
+def _is_below_jkr(case: Case) -> str:
+    """Return the text of `_has_range` for a Tabor parameter that is not one of JKR, up to 5; else ""."""
+    mu = tabor(case)
+    return "" if mu is None or of_tabor(mu) is Theory.JKR else _has_range(case)
 
-    It is "" for another profile than a parabola, another reduction than the MDR (with which E* and R are the body's),
-    with springs between neighbours, with noise, and where the Tabor parameter is one of another theory (JKR above 5,
-    DMT below 0.1, else Maugis and Dugdale).
+
+def _by_tabor(theory: Theory, case: Case) -> str:
+    """Return text with the Tabor parameter of a case with an interaction where `theory` holds, or "".
+
+    It is "" for another reduction than the MDR (with which E* and R are the body's), with springs between neighbours,
+    with noise, and where the Tabor parameter is one of another theory (JKR above 5, DMT below 0.1, else Maugis and
+    Dugdale).
     """
-
-    def applies(case: Case) -> str:
-        """Return text with the Tabor parameter of the interaction; "" where it is one of another theory than `theory`.
-
-        "" also for another profile than a parabola, another reduction than the MDR, with [neighbours], or with noise.
-        """
-        scene, mu = case.scene, tabor(case)
-        sphere = case.kind == "parabola" and scene.bodies.reduction == "mdr"
-        if mu is None or not sphere or scene.neighbours or scene.noise or of_tabor(mu) is not theory:
-            return ""
-        return f"the Tabor parameter μ = {mu:.3g}, of the implied W and the force-free distance"
-
-    return applies
+    scene, mu = case.scene, tabor(case)
+    other = scene.bodies.reduction != "mdr" or scene.neighbours or scene.noise
+    if mu is None or other or of_tabor(mu) is not theory:
+        return ""
+    return f"the Tabor parameter μ = {mu:.3g}, of the implied W and the force-free distance"
 
 
-def _maugis_values(case: Case) -> Values:
-    """Return the predictions of Maugis and Dugdale for a sphere with a range, by the names of results.
+def _sphere_values(theory: Theory, case: Case) -> Values:
+    """Return the predictions of JKR, DMT, or Maugis and Dugdale for a sphere with a range, by the names of results.
 
-    "adhesion_force" [FU], a positive tension, "critical_radius" and "zero_load_radius" [LU], and under a known force
-    that the contact sustains "contact_radius" and "displacement" [LU]. For an interaction "displacement" is left out:
-    there it has another origin.
+    "adhesion_force" [FU], a positive tension, "critical_radius" (but by DMT) and "zero_load_radius" [LU], and under a
+    known force that the contact sustains "contact_radius" and "displacement" [LU]. Maugis and Dugdale predict no
+    "displacement" for an interaction: there it has another origin.
+
+    Raises:
+        AssertionError: the case has no range of an attraction.
     """
-    values = _marks(case, MaugisDugdale(*case.sphere, case.range))
-    if case.scene.interaction:  # its displacement has another origin
+    assert case.with_range
+    values = _marks(case, case.with_range.theories[theory])
+    if theory is Theory.DMT:
+        del values["critical_radius"]
+    if theory is Theory.MAUGIS and case.scene.interaction:
         values.pop("displacement", None)
-    return values
-
-
-def _dmt_values(case: Case) -> Values:
-    """Return the predictions of DMT for a sphere, by the names of results, without a critical radius.
-
-    "adhesion_force" [FU], a positive tension, "zero_load_radius" [LU], and under a known force that the contact
-    sustains "contact_radius" and "displacement" [LU].
-    """
-    values = _marks(case, Dmt(*case.sphere))
-    del values["critical_radius"]
     return values
 
 
@@ -504,66 +477,57 @@ FORMS: Mapping[str, tuple[ClosedForm, ...]] = {
         ClosedForm(
             "Hertz",
             "H. Hertz 1882; K. L. Johnson, Contact Mechanics, 1985, section 4.2",
-            _without_adhesion("parabola", "a paraboloid"),
+            _pressed,
             _elastic_values,
-            _pressure,
+            pressure=_pressure,
         ),
-        ClosedForm("Sneddon, cone", SNEDDON, _without_adhesion("cone", "a cone"), _elastic_values, _pressure),
-        ClosedForm(
-            "Sneddon, flat punch",
-            SNEDDON,
-            _without_adhesion("flat_punch", "a flat punch"),
-            _punch_values,
-            _punch_pressure,
-        ),
-        ClosedForm("Sneddon, sphere", SNEDDON, _without_adhesion("circle", "a whole sphere"), _elastic_values),
-        ClosedForm(
-            "Sneddon, ellipsoid",
-            f"{SNEDDON}: his sphere, flattened",
-            _without_adhesion("ellipsoid", "a whole ellipsoid"),
-            _elastic_values,
-        ),
-        ClosedForm(
-            "Galin, power",
-            f"L. A. Galin 1953; {SNEDDON}",
-            _without_adhesion("power", "a power of the radius"),
-            _elastic_values,
-        ),
+        ClosedForm("Sneddon, cone", SNEDDON, _pressed, _elastic_values, "cone", _pressure),
+        ClosedForm("Sneddon, flat punch", SNEDDON, _pressed, _punch_values, "flat_punch", _punch_pressure),
+        ClosedForm("Sneddon, sphere", SNEDDON, _pressed, _elastic_values, "circle"),
+        ClosedForm("Sneddon, ellipsoid", f"{SNEDDON}: his sphere, flattened", _pressed, _elastic_values, "ellipsoid"),
+        ClosedForm("Galin, power", f"L. A. Galin 1953; {SNEDDON}", _pressed, _elastic_values, "power"),
     ),
     "adhesive": (
-        ClosedForm("JKR", JKR, _adhesive("parabola", "a paraboloid"), _adhesive_values, _pressure),
+        ClosedForm("JKR", JKR, _adhesive, _adhesive_values, pressure=_pressure),
         ClosedForm(
             "Maugis and Barquins, cone",
             "D. Maugis, M. Barquins, J. Phys. Lett. 42 (1981) L95",
-            _adhesive("cone", "a cone"),
+            _adhesive,
             _adhesive_values,
+            "cone",
         ),
         ClosedForm(
             "Popov and Heß, power",
             "V. L. Popov, M. Heß, Method of Dimensionality Reduction, 2015, section 4.4",
-            _adhesive("power", "a power of the radius"),
+            _adhesive,
             _adhesive_values,
+            "power",
         ),
-        ClosedForm(
-            "JKR, whole sphere",
-            "D. Maugis, Langmuir 11 (1995) 679",
-            _adhesive("circle", "a whole sphere"),
-            _adhesive_values,
-        ),
+        ClosedForm("JKR, whole sphere", "D. Maugis, Langmuir 11 (1995) 679", _adhesive, _adhesive_values, "circle"),
         ClosedForm(
             "Kendall, flat punch",
             "K. Kendall, J. Phys. D 4 (1971) 1186",
-            _adhesive("flat_punch", "a flat punch"),
+            _adhesive,
             _adhesive_punch_values,
+            "flat_punch",
         ),
     ),
-    "zone": (ClosedForm("Maugis and Dugdale", MAUGIS, _with_a_range(True), _maugis_values, has_range=True),),
-    "transition": (ClosedForm("Maugis and Dugdale", MAUGIS, _with_a_range(False), _maugis_values, has_range=True),),
-    "dmt": (ClosedForm("DMT", DMT, _with_a_range(False), _dmt_values),),
-    "interaction": (
-        ClosedForm("JKR", JKR, _by_tabor(Theory.JKR), _jkr_values),
-        ClosedForm("Maugis-Dugdale", MAUGIS, _by_tabor(Theory.MAUGIS), _maugis_values, has_range=True),
-        ClosedForm("DMT", DMT, _by_tabor(Theory.DMT), _dmt_values),
+    "zone": (
+        ClosedForm("Maugis and Dugdale", MAUGIS, _has_range, partial(_sphere_values, Theory.MAUGIS), has_range=True),
+    ),
+    "transition": (
+        ClosedForm("Maugis and Dugdale", MAUGIS, _is_below_jkr, partial(_sphere_values, Theory.MAUGIS), has_range=True),
+    ),
+    "dmt": (ClosedForm("DMT", DMT, _is_below_jkr, partial(_sphere_values, Theory.DMT)),),
+    "interaction": tuple(
+        ClosedForm(
+            str(theory),
+            source,
+            partial(_by_tabor, theory),
+            partial(_sphere_values, theory),
+            has_range=theory is Theory.MAUGIS,
+        )
+        for theory, source in ((Theory.JKR, JKR), (Theory.MAUGIS, MAUGIS), (Theory.DMT, DMT))
     ),
     "along": (
         ClosedForm(
@@ -579,6 +543,7 @@ FORMS: Mapping[str, tuple[ClosedForm, ...]] = {
             "T. C. T. Ting, J. Appl. Mech. 33 (1966) 845; loaded as by E. H. Lee, J. R. M. Radok 1960",
             _relaxes,
             _ting_values,
+            ANY,
         ),
     ),
 }
