@@ -88,7 +88,7 @@ class Taken:
     @property
     def pitch(self) -> float:
         """The median distance of neighbouring points, in the unit of the scan."""
-        return float(np.median(np.diff(self.x)))
+        return pitch_of(self.x)
 
     @property
     def both_sides(self) -> bool:
@@ -111,6 +111,11 @@ class Taken:
         r = np.linspace(0.0, end, 1 + round(end / self.pitch))
         z = np.mean([curve(side * r) for side in (right, -right)[: 1 + self.both_sides]], axis=0)
         return r, z - z[0]
+
+
+def pitch_of(x: Array) -> float:
+    """Return the median distance of neighbouring positions, (n,), rising, in their unit."""
+    return float(np.median(np.diff(x)))
 
 
 def is_two_sided(x: Array) -> bool:
@@ -193,7 +198,7 @@ def take(
     if float(z.max()) == base:
         raise ScanError('is flat: write kind = "flat_punch"')
     require_rising(x, z)
-    nearest, most = 0.0 if centre is None else float(np.abs(x - centre).min()), FEWEST * float(np.median(np.diff(x)))
+    nearest, most = 0.0 if centre is None else float(np.abs(x - centre).min()), FEWEST * pitch_of(x)
     if shape is None and nearest > most:
         raise ScanError(
             f"has no points within {nearest:.4g} LU of its apex, where at most {most:.4g} LU are allowed: give its "
@@ -234,9 +239,7 @@ class _Fit:
             ScanError: an inverted profile, or an apex or tilt that the points do not determine.
         """
         square, linear, _ = np.polyfit(self.x, self.z, 2)
-        start = -0.5 * linear / square if self.moves else 0.0
-        if self.moves:
-            start = min(max(start, float(self.x[0])), float(self.x[-1]))
+        start = self.inside(-0.5 * linear / square)
         reach = float(np.abs(self.x - start).max())
         if self.moves and self.tilts:
             self.require_flat_part(reach, start)
@@ -247,6 +250,10 @@ class _Fit:
             solved = self.solve(named(shape, max(2.0 * float(square), 1e-6)), start)
             return self.judged(solved, self.excess(solved, free))
         return self.judged(free, 0.0)
+
+    def inside(self, centre: float) -> float:
+        """Return the position of the apex over the width: the nearest one to `centre` in the scan; 0 if it is given."""
+        return float(np.clip(centre, self.x[0], self.x[-1])) if self.moves else 0.0
 
     def require_curvature(self, solved: _Solved, deviations: float = 6.0) -> None:
         """Raise ScanError where a fitted curve is no better than a straight line, by the noise of the scan.
@@ -345,10 +352,13 @@ class _Fit:
             step = bounded(columns, self.z - curve + columns @ parameters[free], form.least) - parameters[free]
             step[count + 1 :] = np.clip(step[count + 1 :], -largest_step, largest_step)
             parameters[free] += step
-            if self.moves:
-                parameters[count + 1] = min(max(parameters[count + 1], float(self.x[0])), float(self.x[-1]))
+            parameters[-2] = self.inside(parameters[-2])
+        return self.solved(form, parameters)
+
+    def solved(self, form: Form, parameters: Array, curves: Curves | None = None) -> _Solved:
+        """Return the fit of a form with its parameters θ, z₀, c and t, (k + 3,); `curves`: whose mean it is."""
         curve, columns = self.design(form, parameters)
-        return _Solved(form, parameters, columns[:, self.fitted(form)], self.z - curve)
+        return _Solved(form, parameters, columns[:, self.fitted(form)], self.z - curve, curves)
 
     def averaged(self, reach: float, centre: float, draws: Sequence[int]) -> _Solved:
         """Return the mean of the curves with drawn knots.
@@ -360,7 +370,7 @@ class _Fit:
             centre: position of the apex to begin with, over the width.
             draws: number of curves in each pass, with the noise, apex and candidates of the one before.
         """
-        pitch = float(np.median(np.diff(self.x)))
+        pitch = pitch_of(self.x)
         first = min(FIRST_KNOTS, max(2, round(reach / pitch / PER_KNOT)))
         solved = self.solve(smooth(np.linspace(0.0, reach, first + 1), False), centre)
         knots = np.linspace(0.0, 1.0, PER_KNOT * FIRST_KNOTS + 1) ** 2
@@ -377,7 +387,7 @@ class _Fit:
             near = np.searchsorted(knots, sure).clip(1, len(knots) - 2)
             finer = [np.linspace(knots[i - 1], knots[i + 1], 2 * PER_KNOT + 1) for i in near]
             knots = np.unique(np.concatenate([knots, *finer]).astype(np.float32)).astype(np.float64)
-            solved = self.mean_of(curves, solved.centre)
+            solved = self.mean_of(curves)
         return solved
 
     def candidates(self, solved: _Solved, knots: Array) -> Candidates:
@@ -390,15 +400,16 @@ class _Fit:
         power = max(round_off, self.noise_of(solved).power)
         return Candidates.of(knots, np.abs(self.x - solved.centre), heights, nuisance, power)
 
-    def mean_of(self, curves: Curves, centre: float) -> _Solved:
-        """Return the mean of curves as a fit; `centre`: position of the apex over the width, where it is given."""
-        form, slopes = smooth(curves.knots, curves.convex), curves.mean[: len(curves.knots) - 1]
-        parameters = np.append(np.diff(slopes, prepend=0.0) if form.convex else slopes, [0.0, centre, 0.0])
-        parameters[np.flatnonzero(self.fitted(form))[len(slopes) :]] = curves.mean[len(slopes) :]
-        if self.moves:
-            parameters[-2] = min(max(parameters[-2], float(self.x[0])), float(self.x[-1]))
-        curve, columns = self.design(form, parameters)
-        return _Solved(form, parameters, columns[:, self.fitted(form)], self.z - curve, curves)
+    def mean_of(self, curves: Curves) -> _Solved:
+        """Return the mean of curves as a fit."""
+        form = smooth(curves.knots, curves.convex)
+        count, fitted = len(form.start), self.fitted(form)
+        parameters = np.zeros(len(fitted))
+        parameters[fitted] = curves.mean
+        if form.convex:
+            parameters[:count] = np.diff(parameters[:count], prepend=0.0)
+        parameters[-2] = self.inside(parameters[-2])
+        return self.solved(form, parameters, curves)
 
     def noise_of(self, solved: _Solved) -> Noise:
         """Return the noise, over the width, by the difference of both sides; for one side by the residual.
@@ -479,7 +490,7 @@ class _Fit:
             offset=(self.base + size * offset, size * spread[0]),
             reach=size * reach,
             noise=size * noise.deviation,
-            correlation=size * 0.5 * (noise.together - 1.0) * float(np.median(np.diff(x))),
+            correlation=size * 0.5 * (noise.together - 1.0) * pitch_of(x),
             x=size * x,
             heights=size * heights,
             residual=size * solved.residual,
