@@ -64,23 +64,6 @@ class ZonedProfile(Profile):
     layer: float = 0.0
 
 
-def zoned(
-    profile: Profile, edge: float, reach: float, jump: float, doubt: float = 0.0, layer: float = 0.0
-) -> ZonedProfile:
-    """Return a profile with the columns of `profile`, not copied, and a known contact edge.
-
-    Args:
-        profile: without an edge, or with another one, which is dropped.
-        edge: contact radius a [LU].
-        reach: outer radius c of an attraction with a range [LU].
-        jump: the line load just inside of a less that just outside [FU/LU].
-        doubt: uncertainty of a [LU].
-        layer: possible rise of the line load just inside of a, over less than the spacing [FU/LU].
-    """
-    columns = profile.x, profile.z_lower, profile.z_upper, profile.pressure, profile.shear
-    return ZonedProfile(*columns, edge, reach, jump, doubt, layer)
-
-
 def pressure_profile(
     x_upper: ArrayLike,
     z_upper: ArrayLike,

@@ -17,7 +17,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.pressure import Profile, zoned
+from contact1d.analysis.pressure import Profile, ZonedProfile
 from contact1d.workflow.continuation import consistency
 from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.context import ContactBranch, RunContext
@@ -116,7 +116,7 @@ class Plan:
             zones = zip(*(column.tolist() for column in followed.zone), strict=True)
             round_off = np.broadcast_to(followed.round_off, followed.total.shape).tolist()
             states = [
-                replace(state, profile=_zoned(bodies, spring, state, *zone), residual=state.residual + error)
+                replace(state, profile=_zoned(bodies, spring, state, zone), residual=state.residual + error)
                 for state, zone, error in zip(states, zones, round_off, strict=True)
             ]
         if self.path.time.any():
@@ -126,19 +126,25 @@ class Plan:
         return states
 
 
-def _zoned(bodies: Bodies, spring: float, state: State, edge: float, reach: float, *further: float) -> Profile:
-    """Return the profile of a state with its contact radius `edge` and outer radius `reach` of the attraction [LU].
+def _zoned(bodies: Bodies, spring: float, state: State, zone: Sequence[float]) -> Profile:
+    """Return the profile of a state with the zone of its contact edge.
 
     Where the attraction reaches beyond the edge, upper surfaces inside it are on the plane, others at the height of the
-    body on its springs, but not below the plane; else they stay. `spring`: stiffness of a particle [FU/LU]; `further`:
-    jump of the line load at the edge [FU/LU], uncertainty of the edge [LU], rise of the line load inside it [FU/LU].
+    body on its springs, but not below the plane; else they stay.
+
+    Args:
+        bodies: whose profile it is.
+        spring: stiffness of a particle [FU/LU].
+        state: read off LAMMPS, which knows no edge.
+        zone: contact radius, outer radius of the attraction [LU], jump of the line load at the edge [FU/LU] and, where
+            the law has them, uncertainty of the edge [LU] and rise of the line load inside it [FU/LU].
     """
-    profile = state.profile
+    (edge, reach, *_), profile = zone, state.profile
     if reach > edge:
         heights = bodies.height(profile.x) - state.displacement
         surface = np.maximum(heights + profile.pressure * bodies.spacing / spring, 0.0)
         profile = replace(profile, z_upper=np.where(np.abs(profile.x) < edge, 0.0, surface))
-    return zoned(profile, edge, reach, *further)
+    return ZonedProfile(*vars(profile).values(), *zone)
 
 
 class PlannedBranch(ContactBranch):
