@@ -155,17 +155,15 @@ class Case:
             AssertionError: a profile of another kind without an effective radius, as a flat punch.
         """
         profile: Any = self.scene.bodies.profile
+        material = self.contact_modulus, self.work
         if self.kind == "cone":
-            return PowerLaw(profile.rise, 1.0, self.contact_modulus, self.work)
+            return PowerLaw(profile.rise, 1.0, *material)
         if self.kind == "power":
-            factor = profile.height_there / profile.radius**profile.exponent
-            return PowerLaw(factor, profile.exponent, self.contact_modulus, self.work)
+            return PowerLaw(profile.height_there / profile.radius**profile.exponent, profile.exponent, *material)
         if self.kind == "ellipsoid":
-            return Ellipsoid(profile.radius, profile.half_axis, self.contact_modulus, self.work)
-        radius, modulus, work = self.sphere
-        if self.kind == "circle":
-            return Ellipsoid(radius, radius, modulus, work)
-        return PowerLaw.sphere(radius, modulus, work)
+            return Ellipsoid(profile.radius, profile.half_axis, *material)
+        radius, _, _ = self.sphere
+        return Ellipsoid(radius, radius, *material) if self.kind == "circle" else PowerLaw.sphere(radius, *material)
 
     @cached_property
     def contact_radius(self) -> float:

@@ -243,21 +243,17 @@ def with_body(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressu
     if not is_of_a_body(scene):
         return outcome
     of_pressure: Made = {}
-    share = max((_pressure_share(scene, outcome, name) for name in reported_state(outcome)), default=0.0)
     for name in reported_state(outcome):
         if pressure := pressures.get(name):
+            share = _pressure_share(scene, outcome, name)
             # The residual force of the state at F = 0 is distributed over the contact.
             residual = abs(outcome.marked[name].force) / pressure.contact_radius**2 if name == "zero_load" else 0.0
-            given = {key: share * abs(result.value) for key, result in pressure.results.items()}
-            of_pressure = {
-                key: (replace(result, uncertainty=result.uncertainty - given[key] + residual), given[key])
-                for key, result in pressure.results.items()
-            }
-    # Without an attraction dF/dd is that of springs in equilibrium.
-    if "pressed" in law_of(scene).closed_forms and not (scene.interaction or scene.noise):
-        for name in reported_state(outcome):
-            if (pressure := pressures.get(name)) and pressure.stiffness:
-                of_pressure["contact_stiffness"] = (pressure.stiffness, share * pressure.stiffness.value)
+            for key, result in pressure.results.items():
+                given = share * abs(result.value)
+                of_pressure[key] = replace(result, uncertainty=result.uncertainty - given + residual), given
+            # Without an attraction dF/dd is that of springs in equilibrium.
+            if pressure.stiffness and "pressed" in law_of(scene).closed_forms and not scene.interaction:
+                of_pressure["contact_stiffness"] = pressure.stiffness, share * pressure.stiffness.value
     makers = (_contact_results, _adhesion_energy, _tabor)
     made = {name: quantity for make in makers for name, quantity in outcome.made(scene, make).items()}
     return _with_results(outcome, of_pressure | made)

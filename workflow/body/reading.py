@@ -52,15 +52,14 @@ def of_the_body(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Q
     named: dict[str, Quantity] = {}
     spheres = scene.bodies.profile.kind in SPHERES
     for name, quantity in quantities.items():
-        if name.endswith("radius"):
+        is_radius = name.endswith("radius")
+        if is_radius:
             named[IMAGE + name] = quantity
-            if spheres:
-                named[name] = product(1.0 / WIDER_THAN_SPHERES, quantity.unit, (quantity, 1.0))
-        elif name == "mean_pressure":
-            if spheres:
-                named[name] = product(WIDER_THAN_SPHERES**2, quantity.unit, (quantity, 1.0))
-        else:
+        if not is_radius and name != "mean_pressure":
             named[name] = quantity
+        elif spheres:
+            factor = 1.0 / WIDER_THAN_SPHERES if is_radius else WIDER_THAN_SPHERES**2
+            named[name] = product(factor, quantity.unit, (quantity, 1.0))
     return named
 
 

@@ -341,8 +341,8 @@ def _by_tabor(theory: Theory, case: Case) -> str:
     Dugdale).
     """
     scene, mu = case.scene, tabor(case)
-    other = scene.bodies.reduction != "mdr" or scene.neighbours or scene.noise
-    if mu is None or other or of_tabor(mu) is not theory:
+    departs = scene.bodies.reduction != "mdr" or scene.neighbours or scene.noise
+    if mu is None or departs or of_tabor(mu) is not theory:
         return ""
     return f"the Tabor parameter μ = {mu:.3g}, of the implied W and the force-free distance"
 

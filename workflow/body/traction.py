@@ -16,7 +16,7 @@ length on a plane, of a shape g and with a jump J ∝ √a,
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from operator import itemgetter
 from typing import Any
@@ -77,15 +77,11 @@ class BodyShear:
         r: radii from 0, without the singular q of a slipping apex, to the contact radius [LU].
         shear: q with which the plane resists a move to the right [FU/LU²].
         uncertainty: uncertainty of q [FU/LU²].
-        edge: the contact radius [LU].
-        stick: the stick radius [LU].
     """
 
     r: Array
     shear: Array
     uncertainty: Array
-    edge: float
-    stick: float
 
 
 def is_of_a_body(scene: Scene) -> bool:
@@ -183,10 +179,11 @@ def _pressure(state: LoadedState, share: float, given: float, most: int = 1000) 
     error = spread + share * sensitivity + given * np.abs(p) + 2e-12 * state.layer
     if zone:  # a layer acts as a jump, but for the particle that is in it
         error += zone.layer / (np.pi * np.sqrt(fine.edge**2 - r**2)) * (r > fine.edge - scene.bodies.spacing)
-    largest = _bounded_pressures(state, fine, r, resolved, lambda r: fine.pressure(r) - attraction(r))
     results = {
-        name: replace(quantity, uncertainty=quantity.uncertainty or float(error[index] + shape_error(read)))
-        for name, (quantity, index, read) in largest.items()
+        name: Quantity(value, float(error[index] + shape_error(read)) if is_known else np.inf, MEAN_PRESSURE)
+        for name, index, read, value, is_known in _bounded_pressures(
+            state, fine, r, resolved, lambda r: fine.pressure(r) - attraction(r)
+        )
     }
     force, size = float(forces.sum()) + ring, float(np.abs(forces).sum()) - ring
     edge, stiffness = state.radius.value / state.image_ratio, _stiffness(state, share)
@@ -306,15 +303,14 @@ def _shape_error(
 
 def _bounded_pressures(
     state: LoadedState, fine: LineLoad, r: Array, levels: Sequence[Array], pressure: Callable[[Array], Array]
-) -> dict[str, tuple[Quantity, int, Callable[[Array], Any]]]:
-    """Return "central_pressure" p(0) and "peak_pressure" by name, each as (value [FU/LU²], its index in r, its reader).
+) -> Iterator[tuple[str, int, Callable[[Array], Any], float, bool]]:
+    """Yield (name, index in r, reader, value [FU/LU²], whether its error is known) of p(0) and of the largest p.
 
-    The reader is a function that takes p, (n,), and returns the value: the first element or the largest. Both are left
-    out under a tip, and the peak where it is singular (at an edge or a kink), not above 0, or off the axis of a contact
-    too narrow for three levels. A pressure that does not converge over the levels is left out, or if the shape is
-    uncertain (a table or a scan) has an infinite uncertainty; that of a peak is infinite, too, where another possible
-    shape has a kink inside the contact. Else the uncertainty is 0, for the caller to fill in by index and reader.
-    "peak_pressure" is that of the vertex between radii.
+    The names are "central_pressure" and "peak_pressure", that of the vertex between radii; the reader is a function
+    that takes p, (n,), and returns the first element or the largest. Both are left out under a tip, and the peak where
+    it is singular (at an edge or a kink), not above 0, or off the axis of a contact too narrow for three levels. A
+    pressure that does not converge over the levels is left out, or if the shape is uncertain (a table or a scan) has an
+    unknown error; that of a peak is unknown, too, where another possible shape has a kink inside the contact.
 
     Args:
         state: the line load of the state.
@@ -335,16 +331,13 @@ def _bounded_pressures(
         highest = int(p_near.argmax())
         peak = vertex(near, p_near, highest, 1)[1] if 0 < highest < near.size - 1 else p_near[highest]
     hidden = any(map(state.has_kinks, shape.alternatives))
-    results: dict[str, tuple[Quantity, int, Callable[[Array], Any]]] = {}
     for name, index, read, value, is_open, may_have in (
         ("central_pressure", 0, itemgetter(0), p[0], False, True),
         ("peak_pressure", top, np.max, peak, hidden, smooth),
     ):
         known = _converges([read(level) for level in levels], noise)
         if may_have and not fine.has_apex and (known or unsure):
-            off = 0.0 if known and not is_open else np.inf
-            results[name] = Quantity(float(value), off, MEAN_PRESSURE), index, read
-    return results
+            yield name, index, read, float(value), known and not is_open
 
 
 def _is_bounded(state: LoadedState, fine: LineLoad, top: int, noise: float) -> bool:
@@ -473,13 +466,13 @@ def body_shears(
     """
     if not scene.experiment.goes_along or scene.bodies.reduction != "mdr" or scene.bodies.profile.has_edge:
         return {}
-    sticks, edges = columns["stick_radius"], np.nan_to_num(contact_radii)
-    kinks = kinks_of(sticks.tolist(), edges.tolist())
+    edges = np.nan_to_num(contact_radii)
+    kinks = kinks_of(columns["stick_radius"].tolist(), edges.tolist())
     return {
         name: shear
         for name, profile in profiles.items()
         if edges[row := row_of(name, columns)] > 0.0
-        and (shear := _shear(scene, profile, float(edges[row]), kinks[row], float(sticks[row])))
+        and (shear := _shear(scene, profile, float(edges[row]), kinks[row]))
     }
 
 
@@ -493,7 +486,7 @@ def row_of(state: str, columns: Mapping[str, Array]) -> int:
     return len(positions) - 1 if state == "final" else int(np.argmax(np.abs(positions)))
 
 
-def _shear(scene: Scene, profile: Profile, edge: float, kinks: Sequence[float], stick: float) -> BodyShear | None:
+def _shear(scene: Scene, profile: Profile, edge: float, kinks: Sequence[float]) -> BodyShear | None:
     """Return q(r) [FU/LU²] of a state, at 100 radii from 0 to the contact radius and at the kinks.
 
     q resists a move to the right. r = 0 is left out under a tip, where q is singular. None where fewer than 3 particles
@@ -505,7 +498,6 @@ def _shear(scene: Scene, profile: Profile, edge: float, kinks: Sequence[float], 
         profile: of the state.
         edge: contact radius [LU].
         kinks: radii at which q has kinks [LU].
-        stick: stick radius [LU].
     """
 
     def load(chosen: Array) -> LineLoad:
@@ -521,4 +513,4 @@ def _shear(scene: Scene, profile: Profile, edge: float, kinks: Sequence[float], 
         return None
     r = np.unique(np.concatenate([np.linspace(0.0, edge, 100), kinks]))[levels[0].has_apex :]
     shears = [level.pressure(r) for level in levels]
-    return BodyShear(r, shears[0], _level_difference(*shears), edge, stick)
+    return BodyShear(r, shears[0], _level_difference(*shears))
