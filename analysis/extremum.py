@@ -89,17 +89,10 @@ def _noise(y: Array, index: int, reach: int = 20, highest_order: int = 12) -> fl
     for d in range(1, min(highest_order + 1, len(difference))):
         difference = difference[1:] - difference[:-1]
         if d > 1:
-            least = min(least, _median(np.abs(difference)) / (median_to_sigma * math.sqrt(math.comb(2 * d, d))))
+            least = min(
+                least, float(np.median(np.abs(difference))) / (median_to_sigma * math.sqrt(math.comb(2 * d, d)))
+            )
     return least if least < math.inf else 0.0
-
-
-def _median(values: Array) -> float:
-    """Return the median of a few finite values, one at least, in any order; in their unit.
-
-    `numpy.median` with its checks takes five times as long.
-    """
-    ordered = np.sort(values)
-    return 0.5 * float(ordered[(len(ordered) - 1) // 2] + ordered[len(ordered) // 2])
 
 
 def _smoothest(x: Array, y: Array, index: int, size: int) -> list[slice]:
@@ -138,7 +131,7 @@ def _converging(x: Array, y: Array, index: int, noise: float) -> EstimatedPositi
     before: float | None = None
     change = 0.0
     for count in (count for count in SIDE_COUNTS if count <= room):
-        position, shift = _minimum(x, y, slice(index - count, index + count + 1), low, high, near=before)
+        position, shift = _minimum(x, y, slice(index - count, index + count + 1), low, high)
         if math.isnan(position):
             break
         if before is not None:
@@ -259,7 +252,7 @@ def _misfit(x: Array, y: Array, window: slice, degree: int) -> float:
 
 
 def _minimum(
-    x: Array, y: Array, under: slice, low: float, high: float, degree: int | None = None, near: float | None = None
+    x: Array, y: Array, under: slice, low: float, high: float, degree: int | None = None
 ) -> tuple[float, float]:
     """Return the position of the lowest minimum, between low and high, of the polynomial over samples, and its shift.
 
@@ -271,15 +264,13 @@ def _minimum(
         under: the samples of the polynomial.
         low, high: ends of the interval, in the unit of x.
         degree: of a least-squares polynomial; None: it goes through all samples.
-        near: position from which the minimum is sought; None: the lowest of all is taken.
     """
     points, values = x[under], y[under]
     origin, width, depth = float(points.sum()) / len(points), float(np.ptp(points)), float(np.abs(values).max())
     if depth == 0.0:
         return math.nan, math.nan
     matrix = fitting((points - origin) / width, degree or len(points) - 1)
-    start = None if near is None else (near - origin) / width
-    t, bend = lowest_minimum(matrix @ (values / depth), (low - origin) / width, (high - origin) / width, start)
+    t, bend = lowest_minimum(matrix @ (values / depth), (low - origin) / width, (high - origin) / width)
     powers = np.arange(1, len(matrix))
     slope = float(np.linalg.norm((powers * t ** (powers - 1)) @ matrix[1:]))
     return origin + t * width, slope * width / (bend * depth)

@@ -108,54 +108,25 @@ def real_roots(c: Array, low: float, high: float) -> Array:
     return real[(real >= low) & (real <= high)]
 
 
-def lowest_minimum(c: Array, low: float, high: float, near: float | None = None) -> tuple[float, float]:
+def lowest_minimum(c: Array, low: float, high: float) -> tuple[float, float]:
     """Return t and P″(t) of the lowest minimum of P between low and high; (NaN, NaN) where it has none.
 
-    A minimum at an end of the interval, where P′ is not 0, does not count, nor one without P″ > 0. From `near` only one
-    is sought, and it is (NaN, NaN) without convergence.
+    A minimum at an end of the interval, where P′ is not 0, does not count, nor one without P″ > 0.
 
     Args:
         c: coefficients of P, (n,), lowest power first.
         low, high: ends of the interval.
-        near: a position near the minimum, from which Newton's method finds it, where |t| < 1; None: all are compared.
     """
     powers = np.arange(len(c))
     first = c[1:] * powers[1:]
     second = first[1:] * powers[1:-1]
-    extrema = real_roots(first, low, high) if near is None else _newton(first, second, low, high, near)
+    extrema = real_roots(first, low, high)
     at_extrema = extrema[:, None] ** powers
     bends = at_extrema[:, :-2] @ second
     if not (minima := np.flatnonzero(bends > 0.0)).size:
         return math.nan, math.nan
     lowest = minima[np.argmin(at_extrema[minima] @ c)]
     return float(extrema[lowest]), float(bends[lowest])
-
-
-def _newton(
-    first: Array, second: Array, low: float, high: float, t: float, steps: int = 20, last: float = 1e-12
-) -> Array:
-    """Return the root of P′ near t with P″ > 0, (1,).
-
-    Empty where it is not between low and high (both included), where P″ ≤ 0 on the path, or without convergence.
-
-    Args:
-        first, second: coefficients of P′ and P″, lowest power first.
-        low, high: ends of the interval.
-        t: position to begin with; |t| must stay below 1.
-        steps: at most.
-        last: step that ends the iteration; a shorter one would be round-off.
-    """
-    exponents = np.arange(len(first))
-    for _ in range(steps):
-        powers = t**exponents
-        slope = float(second @ powers[:-1])
-        step = float(first @ powers) / slope if slope > 0.0 else math.nan
-        t -= step
-        if abs(step) <= last:
-            return np.asarray([t] if low <= t <= high else [])
-        if not abs(t) < 1.0:
-            break
-    return np.empty(0)
 
 
 @cache
