@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from functools import cache, lru_cache
 
 import numpy as np
+from numpy.polynomial.polynomial import polycompanion, polyder, polytrim, polyval
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -83,27 +84,23 @@ def real_roots(c: Array, low: float, high: float) -> Array:
     """Return the positions between low and high where P is 0, in no order; empty for a constant P, also for P = 0.
 
     A double root appears twice, or is missing where round-off makes it complex. They are eigenvalues of the companion
-    matrix; `numpy.polynomial` does the same in twice the time. With the textbook form of the matrix a highest
-    coefficient of mere round-off would spoil all roots. Roots far off leave errors in those between low and high, which
-    a Newton step removes. A longer one than 1e-6 is not made: next to a double root it is round-off over round-off.
+    matrix, in the order of rows in which a highest coefficient of mere round-off spoils no other root. Roots far off
+    leave errors in those between low and high, which a Newton step removes. A longer one than 1e-6 is not made: next to
+    a double root it is round-off over round-off.
 
     Args:
-        c: coefficients of P, (n,), lowest power first.
+        c: coefficients of P, (n,), one at least, lowest power first.
         low, high: ends of the interval, both included.
     """
     round_off, longest_step = 1e-9, 1e-6
-    while len(c) and c[-1] == 0.0:
-        c = c[:-1]
-    if len(c) < 2:
+    trimmed = polytrim(c)
+    if len(trimmed) < 2:
         return np.empty(0)
-    companion = np.eye(len(c) - 1, k=-1)
-    companion[:, -1] -= c[:-1] / c[-1]
-    roots = np.asarray(np.linalg.eigvals(companion[::-1, ::-1]), dtype=np.complex128)
+    roots = np.asarray(np.linalg.eigvals(polycompanion(trimmed)[::-1, ::-1]), dtype=np.complex128)
     real = roots.real[np.abs(roots.imag) < round_off]
     real = real[(real >= low - longest_step) & (real <= high + longest_step)]
-    powers = real[:, None] ** np.arange(len(c))
-    slope = powers[:, :-1] @ (c[1:] * np.arange(1, len(c)))
-    step = np.divide(powers @ c, slope, out=np.zeros_like(real), where=slope != 0.0)
+    slope = polyval(real, polyder(c))
+    step = np.divide(polyval(real, c), slope, out=np.zeros_like(real), where=slope != 0.0)
     real = np.where(np.abs(step) < longest_step, real - step, real)
     return real[(real >= low) & (real <= high)]
 
@@ -114,18 +111,15 @@ def lowest_minimum(c: Array, low: float, high: float) -> tuple[float, float]:
     A minimum at an end of the interval, where P′ is not 0, does not count, nor one without P″ > 0.
 
     Args:
-        c: coefficients of P, (n,), lowest power first.
+        c: coefficients of P, (n,), one at least, lowest power first.
         low, high: ends of the interval.
     """
-    powers = np.arange(len(c))
-    first = c[1:] * powers[1:]
-    second = first[1:] * powers[1:-1]
-    extrema = real_roots(first, low, high)
-    at_extrema = extrema[:, None] ** powers
-    bends = at_extrema[:, :-2] @ second
+    slope = np.asarray(polyder(c), dtype=np.float64)
+    extrema = real_roots(slope, low, high)
+    bends = polyval(extrema, polyder(slope))
     if not (minima := np.flatnonzero(bends > 0.0)).size:
         return math.nan, math.nan
-    lowest = minima[np.argmin(at_extrema[minima] @ c)]
+    lowest = minima[np.argmin(polyval(extrema[minima], c))]
     return float(extrema[lowest]), float(bends[lowest])
 
 
