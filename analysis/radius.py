@@ -225,14 +225,12 @@ def _of_edges(
         middle = float(0.5 * (x.max() + x.min()))
         return ContactRadius(0.0, 0.5 * spacing_of(x), middle, middle, False)
     first, last = int(carrying[0]), int(carrying[-1])
-    sides = [(x, p, first, last), (-x[::-1], p[::-1], end - last, end - first)]
     edges = []
-    # A symmetric contact has the same edge on both sides.
-    for positions, pressures, least, most in sides[: 1 if x[0] == -x[-1] and (p == p[::-1]).all() else 2]:
+    for positions, pressures, least, most in ((x, p, first, last), (-x[::-1], p[::-1], end - last, end - first)):
         low = max(0, most - PARABOLA_POINTS)
         near = slice(low, most + 2)
         edges.append(edge(positions[near].tolist(), pressures[near].tolist(), least - low, most - low))
-    right, mirrored = edges[0], edges[-1]
+    right, mirrored = edges
     return _between(EstimatedPosition(-mirrored.position, mirrored.uncertainty, mirrored.at_end), right)
 
 
