@@ -12,7 +12,8 @@ import pytest
 from scipy.signal import lfilter
 
 from contact1d.analysis.residual import independent, noise_by
-from contact1d.analysis.scan import ScanError, Taken, one_pass, take
+from contact1d.analysis.scan import ScanError, Taken, one_pass
+from contact1d.analysis.scan_fit import take
 
 R, LAND, NOISE = 1e4, 100.0, 3e-3
 """[µm]; 3 nm."""

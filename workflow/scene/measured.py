@@ -1,4 +1,4 @@
-"""A measured profile: its points as they are, or a curve that is fitted to them as a scan (`analysis.scan`)."""
+"""A measured profile: its points as they are, or a curve that is fitted to them as a scan (`analysis.scan_fit`)."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ class Measured(Shape):
     """Profile of the upper body: a measured axisymmetric one, from a file or from two lists.
 
     As it is, it goes through its points by monotone cubics. Where `centre`, `level`, `smooth` or `fit` say how its scan
-    is to be read, the points are kept, and the profile is what `analysis.scan` takes of them.
+    is to be read, the points are kept, and the profile is what `analysis.scan_fit` takes of them.
     """
 
     slow = True
@@ -266,6 +266,6 @@ def _take(along: tuple[float, ...], z: tuple[float, ...], *settings: Any) -> Tak
     """
     import numpy as np
 
-    from contact1d.analysis.scan import take
+    from contact1d.analysis.scan_fit import take
 
     return take(np.asarray(along), np.asarray(z), *settings)
