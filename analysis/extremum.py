@@ -19,6 +19,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import islice
+from statistics import median
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,9 +90,7 @@ def _noise(y: Array, index: int, reach: int = 20, highest_order: int = 12) -> fl
     for d in range(1, min(highest_order + 1, len(difference))):
         difference = difference[1:] - difference[:-1]
         if d > 1:
-            least = min(
-                least, float(np.median(np.abs(difference))) / (median_to_sigma * math.sqrt(math.comb(2 * d, d)))
-            )
+            least = min(least, median(np.abs(difference).tolist()) / (median_to_sigma * math.sqrt(math.comb(2 * d, d))))
     return least if least < math.inf else 0.0
 
 

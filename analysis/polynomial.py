@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from functools import cache, lru_cache
 
 import numpy as np
-from numpy.polynomial.polynomial import polycompanion, polyder, polytrim, polyval
+from numpy.polynomial.polynomial import polycompanion, polytrim
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -99,8 +99,9 @@ def real_roots(c: Array, low: float, high: float) -> Array:
     roots = np.asarray(np.linalg.eigvals(polycompanion(trimmed)[::-1, ::-1]), dtype=np.complex128)
     real = roots.real[np.abs(roots.imag) < round_off]
     real = real[(real >= low - longest_step) & (real <= high + longest_step)]
-    slope = polyval(real, polyder(c))
-    step = np.divide(polyval(real, c), slope, out=np.zeros_like(real), where=slope != 0.0)
+    powers = real[:, None] ** np.arange(len(c))
+    slope = powers[:, :-1] @ (c[1:] * np.arange(1, len(c)))
+    step = np.divide(powers @ c, slope, out=np.zeros_like(real), where=slope != 0.0)
     real = np.where(np.abs(step) < longest_step, real - step, real)
     return real[(real >= low) & (real <= high)]
 
@@ -111,15 +112,18 @@ def lowest_minimum(c: Array, low: float, high: float) -> tuple[float, float]:
     A minimum at an end of the interval, where P′ is not 0, does not count, nor one without P″ > 0.
 
     Args:
-        c: coefficients of P, (n,), one at least, lowest power first.
+        c: coefficients of P, (n,), two at least, lowest power first.
         low, high: ends of the interval.
     """
-    slope = np.asarray(polyder(c), dtype=np.float64)
-    extrema = real_roots(slope, low, high)
-    bends = polyval(extrema, polyder(slope))
+    powers = np.arange(len(c))
+    first = c[1:] * powers[1:]
+    second = first[1:] * powers[1:-1]
+    extrema = real_roots(first, low, high)
+    at_extrema = extrema[:, None] ** powers
+    bends = at_extrema[:, :-2] @ second
     if not (minima := np.flatnonzero(bends > 0.0)).size:
         return math.nan, math.nan
-    lowest = minima[np.argmin(polyval(extrema[minima], c))]
+    lowest = minima[np.argmin(at_extrema[minima] @ c)]
     return float(extrema[lowest]), float(bends[lowest])
 
 
