@@ -15,10 +15,9 @@ import numpy as np
 from contact1d.analysis.abel import FEWEST, LineLoad, line_load
 from contact1d.analysis.pressure import Array, Profile, ZonedProfile
 from contact1d.analysis.radius import ContactRadius
-from contact1d.workflow.body.reading import stands_for_spheres
+from contact1d.workflow.body.reading import image_ratio
 from contact1d.workflow.laws.radius import RadiusRule
 from contact1d.workflow.scene import Scene, Shape
-from contact1d.workflow.scene.tables import WIDER_THAN_SPHERES
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,12 +37,8 @@ class LoadedState:
 
     @cached_property
     def image_ratio(self) -> float:
-        """Width of the contact in the particle model over that of the body, dimensionless; cached.
-
-        It is 2 where results are those of two equal spheres (the reduction of Geike and Popov, chosen against the
-        default, of a parabola or a circle), else 1.
-        """
-        return WIDER_THAN_SPHERES if stands_for_spheres(self.scene) else 1.0
+        """Width of the contact in the particle model over that of the body, dimensionless; cached."""
+        return image_ratio(self.scene)
 
     @property
     def shape(self) -> Shape:

@@ -39,6 +39,15 @@ def stands_for_spheres(scene: Scene) -> bool:
     return _is_image(scene) and scene.bodies.profile.kind in SPHERES
 
 
+def image_ratio(scene: Scene) -> float:
+    """Return the width of the contact in the particle model over that of the body, dimensionless.
+
+    It is 2 where results are those of two equal spheres (the reduction of Geike and Popov, chosen against the default,
+    of a parabola or a circle), else 1.
+    """
+    return WIDER_THAN_SPHERES if stands_for_spheres(scene) else 1.0
+
+
 def of_the_body(scene: Scene, quantities: Mapping[str, Quantity]) -> dict[str, Quantity]:
     """Return a new dict of the quantities of a run, by names that state the body to which they belong.
 

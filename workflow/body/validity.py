@@ -21,11 +21,10 @@ from contact1d.analysis.theory.indenters import Ellipsoid, PowerLaw
 from contact1d.digits import apart, digits_apart
 from contact1d.workflow.body.cases import ASSUMED_RANGE, Case
 from contact1d.workflow.body.derived import pressures_of
-from contact1d.workflow.body.reading import stands_for_spheres
+from contact1d.workflow.body.reading import image_ratio
 from contact1d.workflow.body.traction import is_of_a_body
 from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.scene.tables import WIDER_THAN_SPHERES
 from contact1d.workflow.units import MEAN_PRESSURE, Quantity, Scales, prefixed
 
 RADII = ("contact_radius", "largest_radius", "zero_load_radius", "critical_radius", "peak_contact_radius")
@@ -77,8 +76,7 @@ def checks(scene: Scene, outcome: Outcome, quantities: Mapping[str, Quantity], s
     """
     if not is_of_a_body(scene):
         return []
-    wider = WIDER_THAN_SPHERES if stands_for_spheres(scene) else 1.0
-    radii = [state.radius.value / wider for state in outcome.states if state.radius]
+    radii = [state.radius.value / image_ratio(scene) for state in outcome.states if state.radius]
     radius = max([*radii, *(quantities[name].value for name in RADII if name in quantities)], default=0.0)
     if radius <= 0.0:
         return []

@@ -19,7 +19,7 @@ from contact1d.analysis.theory.indenters import Ellipsoid, PowerLaw
 from contact1d.analysis.theory.mindlin import mindlin_path
 from contact1d.workflow.body.cases import Case
 from contact1d.workflow.body.derived import REPORTED
-from contact1d.workflow.body.reading import IMAGE, stands_for_spheres
+from contact1d.workflow.body.reading import IMAGE, image_ratio
 from contact1d.workflow.body.theory import applying, drawn_along, indented, sliding_contact
 from contact1d.workflow.body.traction import row_of
 from contact1d.workflow.continuation.state import radius_rule
@@ -27,7 +27,7 @@ from contact1d.workflow.laws import law_of
 from contact1d.workflow.runs import inputs
 from contact1d.workflow.runs.report import COLUMN_UNITS
 from contact1d.workflow.scene import History
-from contact1d.workflow.scene.tables import SPHERES, WIDER_THAN_SPHERES
+from contact1d.workflow.scene.tables import SPHERES
 from contact1d.workflow.units import NUMBER
 
 if TYPE_CHECKING:
@@ -242,7 +242,7 @@ def _marks(run: Run, radii: Mapping[str, ContactRadius]) -> dict[str, dict[str, 
 
     The contact radius is that on the body: half of the image's where this stands for two equal spheres.
     """
-    wider = WIDER_THAN_SPHERES if stands_for_spheres(run.scene) else 1.0
+    wider = image_ratio(run.scene)
     sticks = _zones(run, radii) if run.scene.experiment.goes_along else {}
     return {
         state: {CONTACT_RADIUS: radius.value / wider} | ({"stick radius c": sticks[state][0]} if sticks else {})
