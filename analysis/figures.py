@@ -7,7 +7,6 @@ along x and y.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
@@ -30,6 +29,7 @@ from contact1d.analysis.chart import (
     area,
     upright,
 )
+from contact1d.analysis.friction import standard_error
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import ContactRadius
 from contact1d.analysis.scan import Taken
@@ -107,8 +107,8 @@ def detachments(forces: Array) -> Chart:
     Args:
         forces: these tensions, positive, (pulls,) [FU], two at least.
     """
-    share, error = (np.arange(forces.size) + 0.5) / forces.size, float(forces.std(ddof=1)) / math.sqrt(forces.size)
-    mean = level(float(forces.mean()), error, f"mean of {forces.size} repeats, standard error")
+    share = (np.arange(forces.size) + 0.5) / forces.size
+    mean = level(float(forces.mean()), standard_error(forces), f"mean of {forces.size} repeats, standard error")
     legs = [("pulls", np.arange(forces.size))]
     return path(Axis("share of the pulls"), share, legs, (Axis("detachment force", "FU"), np.sort(forces), mean))
 

@@ -118,9 +118,7 @@ class LoadedState:
         It is the law's own where the law computes the edge; else 0, of a load that falls to 0 at its edge, or of an
         interaction. None where only the particles show it: at the edge of a flat punch, and of JKR.
         """
-        if self.zone:
-            return self.zone.jump
-        return self.rule.jump
+        return self.zone.jump if self.zone else self.rule.jump
 
     @cached_property
     def load(self) -> Array:
