@@ -66,7 +66,9 @@ def path(x: Axis, along: Array, legs: Legs, *panels: Upwards, spread: Array | fl
     few = 25  # points that are marked: a line through a single one would be invisible
     for number, (y, column, compared) in enumerate(panels, 1):
         series = []
-        for name, rows in [(name, rows) for name, rows in legs if np.isfinite(along[rows]).any()]:
+        for name, rows in legs:
+            if not np.isfinite(along[rows]).any():
+                continue
             colour, width = LEGS.get(name, (UNLOADING, 1.4))
             points = len(rows) <= few or spread.any()
             look = "-" if not points else "o" if compared else "o-"
@@ -99,7 +101,7 @@ def reduced(largest: float) -> list[Series]:
     return [Series(a, 4.0 * a**3 - 4.0 * a**1.5, "JKR", BLACK, "--")]
 
 
-def detachments(forces: Array) -> Chart:
+def detachments(forces: NDArray[np.float64]) -> Chart:
     """Return the chart of the tensions at which the bodies separated, in ascending order over the share of the pulls.
 
     Their mean is a line, with a band of ± its standard error.

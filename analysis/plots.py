@@ -75,8 +75,9 @@ def draw_panel(axes: Axes, x: Axis, panel: Panel, legend: bool = True) -> None:
 
     for series in panel.series:
         along, up = x.ended(series.x), panel.y.ended(series.y)
-        look: dict[str, Any] = {"color": series.colour, "alpha": series.opacity, "linewidth": series.width}
-        look["label"] = series.name
+        look: dict[str, Any] = {
+            "color": series.colour, "alpha": series.opacity, "linewidth": series.width, "label": series.name,
+        }  # fmt: skip
         if series.look == FILL:
             axes.fill(along, up, **look | {"linewidth": 0.0})
             continue
