@@ -105,8 +105,15 @@ class Candidates:
             design[:, :-1] -= design[:, 1:]
         return np.asarray(design)
 
-    def likelihood(self, chosen: Mask, convex: bool, odds: float) -> float:
-        """Return the logarithm of the probability of chosen knots, and of a curve that is convex or not."""
+    def likelihood(self, chosen: Mask, convex: bool, odds: float = 0.03) -> float:
+        """Return the logarithm of the probability of chosen knots, and of a curve that is convex or not.
+
+        Args:
+            chosen: which radii are knots.
+            convex: whether the slope rises from knot to knot.
+            odds: ω. Of 0.0005, 0.003, 0.01, 0.03 and 0.2, measured on shallow lands and parabolas, smaller ones miss
+                lands that the noise conceals, larger ones widen the uncertainties.
+        """
         from scipy.optimize import nnls
 
         design = self.design(chosen, convex)[self.count :]
@@ -126,24 +133,22 @@ class Candidates:
         nuisance = np.linalg.lstsq(self.columns[:count, :count], (heights - design @ theta)[:count])[0]
         return np.interp(self.knots[1:], self.knots[chosen], slopes), nuisance
 
-    def drawn(self, start: Mask, seed: int, draws: int, odds: float = 0.03, most: int = 40) -> Curves:
+    def drawn(self, start: Mask, seed: int, draws: int, most: int = 40) -> Curves:
         """Return curves along a Metropolis chain, from half of its steps on; each call has the same random numbers.
 
         Args:
             start: knots to begin with.
             seed: of the random numbers.
             draws: number of curves, half of that of the steps.
-            odds: ω. Of 0.0005, 0.003, 0.01, 0.03 and 0.2, measured on shallow lands and parabolas, smaller ones miss
-                lands that the noise conceals, larger ones widen the uncertainties.
             most: number of knots of a curve at most, and of those of all curves that are kept.
         """
         rng, chosen, convex, rising = np.random.default_rng(seed), start, True, True
-        likelihood = self.likelihood(chosen, convex, odds)
+        likelihood = self.likelihood(chosen, convex)
         curves, best, masks = list[tuple[Array, Array]](), list[tuple[Array, Array]](), list[Mask]()
         for step in range(-2 * draws, 2 * draws):
             trial, rises = _proposed(chosen, convex, rng)
             if trial.sum() <= max(most, chosen.sum()):
-                level = self.likelihood(trial, rises, odds)
+                level = self.likelihood(trial, rises)
                 if math.log(1.0 - rng.random()) < level - likelihood:
                     chosen, convex, likelihood = trial, rises, level
             if step >= 0 and step % 2 == 0:

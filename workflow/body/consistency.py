@@ -30,14 +30,14 @@ def pressure(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPressur
     if scene.interaction is not None:
         return {}
     agreements, shape = [], scene.bodies.profile
-    rows = {name: sum(outcome.rows.get(name, {}).values()) for name in ("force", "displacement")}
+    rows = [sum(outcome.rows.get(name, {}).values()) for name in ("force", "displacement")]
     # Relative to ∫ |p| dA, for a profile given by a table or a scan and for one given by a formula.
     least = 1e-3 if shape.alternatives or shape.deviations or shape.slow else 1e-4
     for name, body in pressures.items():
         marked = outcome.marked[name]
         index = next((i for i, state in enumerate(outcome.states) if state is marked), None)
         force_error, displacement_error = (
-            0.0 if index is None else float(np.broadcast_to(row, len(outcome.states))[index]) for row in rows.values()
+            0.0 if index is None else float(np.broadcast_to(row, len(outcome.states))[index]) for row in rows
         )
         force_error += displacement_error * (body.stiffness.value if body.stiffness else 0.0)
         force, size = marked.force, float(np.trapezoid(np.abs(body.pressure) * body.r, body.r))

@@ -80,14 +80,14 @@ def _with_results(outcome: Outcome, made: Made) -> Outcome:
         outcome: the outcome, with one state at least.
         made: (quantity, uncertainty by the inputs in its unit), by name.
     """
-    sources = {"work_of_adhesion": MODEL}
     radii = (quantity.value for name, quantity in outcome.quantities.items() if name.endswith("radius"))
     radius = max(radii, default=0.0)
     pressure = max(abs(state.force) for state in outcome.states) / radius**2 if radius > 0.0 else None
     results = {}
     for name, (quantity, given) in made.items():
         is_zero = quantity.unit == MEAN_PRESSURE and abs(quantity.value) <= quantity.uncertainty
-        errors = {sources.get(name, "input"): quantity.uncertainty + given}
+        source = MODEL if name == "work_of_adhesion" else "input"
+        errors = {source: quantity.uncertainty + given}
         results[name] = Result(quantity.value, quantity.unit, errors, pressure if is_zero else None, given=given)
     return replace(outcome, results={**outcome.results, **results})
 
@@ -108,15 +108,16 @@ def implied(scene: Scene, settings: Settings, results: Mapping[str, Quantity]) -
     """
     if settings.forces.law is None or settings.forces.law.attraction is None:
         return {}
-    spacing, spheres = scene.bodies.spacing, scene.bodies.reduction == "geike_popov"
+    spacing = scene.bodies.spacing
+    # The area that separates, 2πa da, over that of the body, with a of the image, and R_e/R.
+    factor, effective = (4.0, 0.5) if scene.bodies.reduction == "geike_popov" else (1.0, 1.0)
     line = product(1.0 / spacing, FORCE, (_work(settings.forces.law, spacing), 1.0))
     quantities = {"separation_energy": line}
     radius, curvature = first_of(results, "zero_load_radius", "contact_radius"), scene.bodies.profile.curvature_radius
     if radius is None or curvature is None or not radius.value > 0.0:
         return quantities
-    energy = product((4.0 if spheres else 1.0) / math.pi, LINE_PRESSURE, (line, 1.0), (radius, -1.0))
+    energy = product(factor / math.pi, LINE_PRESSURE, (line, 1.0), (radius, -1.0))
     tension = results.get("adhesion_force", Quantity(settings.law.pull_off_force(), 0.0, FORCE))
-    effective = 0.5 if spheres else 1.0  # R_e/R
     jkr = product(1.0 / (1.5 * math.pi * effective * curvature), LINE_PRESSURE, (tension, 1.0))
     spread = energy.uncertainty + abs(energy.value - jkr.value) + jkr.uncertainty
     return quantities | {"work_of_adhesion": Quantity(energy.value, spread, LINE_PRESSURE)}

@@ -146,17 +146,14 @@ def in_words(results: Mapping[str, Any], name: str) -> Iterator[str]:
         name: of the result.
     """
 
-    def named(form: Mapping[str, Any]) -> str:
-        """Return the name of a closed form, with the Tabor parameter in brackets if its entry has that."""
-        return f"{form['name']} (μ = {form['tabor']:.3g})" if "tabor" in form else str(form["name"])
-
     for form in results.get("theory", ()):
         if prediction := form["values"].get(name):
             entry, deviation = prediction.get("si", prediction), prediction["deviation"]
             factor, unit = scale_of(entry["value"], entry["unit"]) if "si" in prediction else (1.0, prediction["unit"])
             # Smaller deviations are round-off, and + 0.0 makes no −0 of them.
             off = "" if deviation is None else f" ({round(100.0 * deviation, 6) + 0.0:+.2g} %)"
-            yield f"{named(form)} {entry['value'] * factor:.5g} {unit}{off}"
+            tabor_parameter = f" (μ = {form['tabor']:.3g})" if "tabor" in form else ""
+            yield f"{form['name']}{tabor_parameter} {entry['value'] * factor:.5g} {unit}{off}"
 
 
 # Without adhesion. Under a given F: d, a, F/πa², p(0), dF/dd = 2E*a; at a given d: F, a and the pressures.
