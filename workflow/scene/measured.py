@@ -190,13 +190,8 @@ class Measured(Shape):
 
     @property
     def body(self) -> Shape:
-        """The body through the points, or the fitted curve of a scan with smooth or fit; a new object for each call."""
-        from contact1d.workflow.scene.points import Points, curve_of  # it loads scipy as well
-
-        if self.is_curve and (taken := self.taken):
-            return curve_of(taken, taken.parameters)
-        r, z = self._from_the_axis()
-        return Points.model_construct(r=r, z=z)
+        """The body through the points, or the fitted curve of a scan with smooth or fit; cached."""
+        return _body(self)
 
     def height(self, x: Array) -> Array:
         """Return the height [LU] of the measured body above its apex at positions x [LU]; same shape.
@@ -269,3 +264,14 @@ def _take(along: tuple[float, ...], z: tuple[float, ...], *settings: Any) -> Tak
     from contact1d.analysis.scan_fit import take
 
     return take(np.asarray(along), np.asarray(z), *settings)
+
+
+@lru_cache(maxsize=8)
+def _body(profile: Measured) -> Shape:
+    """Return the body through the points of a profile, or the fitted curve of its scan; cached with its curve."""
+    from contact1d.workflow.scene.points import Points, curve_of  # it loads scipy as well
+
+    if profile.is_curve and (taken := profile.taken):
+        return curve_of(taken, taken.parameters)
+    r, z = profile._from_the_axis()
+    return Points.model_construct(r=r, z=z)

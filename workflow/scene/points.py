@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from functools import lru_cache
+from functools import cached_property
 from itertools import pairwise
 from typing import Any, ClassVar
 
@@ -26,16 +26,17 @@ class Piecewise(Shape):
 
     slow = True
 
+    @property
     @abstractmethod
-    def _curve(self) -> Any:
-        """Return the height [LU] over r [LU], 0 on the axis, as a `scipy.interpolate.PPoly` up to the body's end.
+    def curve(self) -> Any:
+        """The height [LU] over r [LU], 0 on the axis, a `scipy.interpolate.PPoly` of the third degree; cached.
 
-        It is of the third degree at most, and NaN beyond the end.
+        NaN beyond the body's end.
         """
 
     def height(self, x: Array) -> Array:
         """Return the height z(|x|) − z(0) [LU] at positions x [LU], constant beyond the body's end; same shape."""
-        return np.asarray(self._curve()(np.minimum(np.abs(x), self.reach)))
+        return np.asarray(self.curve(np.minimum(np.abs(x), self.reach)))
 
     def transformed(self, x: Array) -> Array:
         """Return the height g(x) [LU] after the MDR transform at positions x [LU]; same shape.
@@ -43,7 +44,10 @@ class Piecewise(Shape):
         It is constant beyond the body's end. It is exact: the slope is a parabola p₀ + p₁ r + p₂ r² between two points,
         and ∫ (p₀ + p₁ r + p₂ r²)/√(x² − r²) dr = (p₀ + p₂ x²/2) arcsin(r/x) − (p₁ + p₂ r/2) √(x² − r²).
         """
-        radii, p_0, p_1, p_2 = _slope_polynomials(self._curve())
+        p_2, linear, constant = self.curve.derivative().c
+        radii = self.curve.x
+        p_1 = linear - 2.0 * p_2 * radii[:-1]
+        p_0 = constant - radii[:-1] * (linear - p_2 * radii[:-1])
         flat = np.minimum(np.abs(np.ravel(x)), self.reach)
         g = np.zeros_like(flat)
         chunk = max(1, 1_000_000 // len(p_0))  # positions times points at once: it bounds the memory
@@ -79,12 +83,11 @@ class Points(Piecewise):
     def kinks(self) -> tuple[float, ...]:
         """Radii [LU], rising, at which the points show that the slope jumps; empty without any.
 
-        There the curvature at a point, or in sum at two in sequence, exceeds that at both neighbours by a factor: 8,
-        for `Corners` 3. A jump between two points is where the parabolas through the points of either side meet. The
-        axis and the last point are not among them.
+        There the curvature at a point, or in sum at two in sequence, exceeds that at both neighbours by a factor, 8. A
+        jump between two points is where the parabolas through the points of either side meet. The axis and the last
+        point are not among them.
         """
-        x, _, corners = _with_corners(self.r, self.z, self.sharp)
-        return tuple(x[corners].tolist())
+        return tuple(sorted(self._corners(self.sharp)))
 
     @property
     def alternatives(self) -> tuple[Shape, ...]:
@@ -95,12 +98,13 @@ class Points(Piecewise):
         fewer, also a body whose apex is half a digit lower, and two whose heights are by as much higher and lower in
         pairs, which changes the slope at every other point most.
         """
-        bodies: list[Shape] = [kind.model_construct(r=self.r, z=self.z) for kind in (Chords, Corners)]
+        bodies: list[Shape] = [Rough.model_construct(r=self.r, z=self.z, corners=corners) for corners in (False, True)]
         if digit := _smallest_digit(self.z):
-            bodies.append(Points.model_construct(r=self.r, z=(self.z[0] - 0.5 * digit, *self.z[1:])))
-            for first in (1, 2):  # at the points between, too
-                z = [z + (digit * ((i + first) % 4 < 2) - 0.5 * digit) * (i > 0) for i, z in enumerate(self.z)]
-                bodies.append(Points.model_construct(r=self.r, z=tuple(z)))
+            index = np.arange(len(self.z))
+            pairs = [(index > 0) * np.where((index + first) % 4 < 2, 1.0, -1.0) for first in (1, 2)]
+            for signs in (-1.0 * (index == 0), *pairs):
+                z = np.asarray(self.z) + 0.5 * digit * signs
+                bodies.append(Points.model_construct(r=self.r, z=tuple(z.tolist())))
         return tuple(bodies)
 
     @property
@@ -109,133 +113,148 @@ class Points(Piecewise):
 
         Without those of fewer than four points, so that there are two, one or none.
         """
-        r, z = self.r, self.z
-        fewer = [((r[0], *r[first:-1:2], r[-1]), (z[0], *z[first:-1:2], z[-1])) for first in (1, 2)]
+        fewer = [[(x[0], *x[first:-1:2], x[-1]) for x in (self.r, self.z)] for first in (1, 2)]
         return tuple(Points.model_construct(r=r, z=z) for r, z in fewer if len(r) >= FEWEST_POINTS)
 
-    def _curve(self) -> Any:
-        """Return the height [LU] over r [LU], a `PPoly`: monotone cubics through the points.
+    @cached_property
+    def curve(self) -> Any:
+        """Monotone cubics through the points, z(0) = 0, a `PPoly`: height [LU] over r [LU]; cached.
 
-        0 on the axis, NaN beyond the last point.
+        It is NaN beyond the last point. Where the slope jumps, it has a further point, and the cubics of each side have
+        their own slope, unless the jump is less than two points from the next one or from an end.
         """
-        return _spline(self.r, self.z)
+        least = 2  # points of a curve in addition to the one at which its slope jumps
+        x, y, *_ = self._chords()
+        corners = self._corners(self.sharp)
+        x, y = np.array(sorted((dict(zip(x.tolist(), y.tolist(), strict=True)) | corners).items())).T
+        ends = [0]
+        for corner in np.searchsorted(x, sorted(corners)):
+            if corner - ends[-1] >= least and corner <= len(x) - 1 - least:
+                ends.append(corner)
+        pieces = [_cubics(x[first : last + 1], y[first : last + 1]) for first, last in pairwise([*ends, len(x) - 1])]
+        return PPoly(np.concatenate(pieces, axis=1), x, extrapolate=False)
 
+    def _chords(self) -> tuple[Array, Array, Array, Array]:
+        """Return (radii [LU], heights above the apex [LU], slopes of the chords, their changes per length [1/LU]).
 
-class Chords(Points):
-    """A measured profile that is straight between its points, where these show no smooth curve."""
-
-    def _curve(self) -> Any:
-        """Return the height [LU] over r [LU], a `PPoly`: monotone cubics, or chords where points show no smooth curve.
-
-        0 on the axis, NaN beyond the last point.
+        Radii and heights are (n,). The body is even in x: the chords begin at the point on the other side of the axis,
+        (n,). The changes of slope are over the distance of the two neighbours, at the axis and all points but the last,
+        (n − 1,).
         """
-        return _rough_curve(self.r, self.z, False)
+        x, y = np.asarray(self.r), np.asarray(self.z) - self.z[0]
+        slope = np.diff(y, prepend=y[1]) / np.diff(x, prepend=-x[1])
+        return x, y, slope, np.diff(slope) / np.append(2.0 * x[1], x[2:] - x[:-2])
+
+    def _corners(self, sharpness: float, smooth: bool = True) -> dict[float, float]:
+        """Return the height above the apex [LU] at each radius [LU] at which the slope jumps.
+
+        It jumps between two points whose curvatures are in sum more than `sharpness` times each of their neighbours':
+        where the parabolas through the points of either side meet, or at a point where these do not meet between two
+        and its curvature alone is as large. Jumps in the round-off error do not count. It also jumps at points of a
+        `smooth` body at which no slope keeps the cubics of both sides convex.
+        """
+        flank = 3  # points that determine the parabola of one side
+        margin = 1e-3  # share of a cell at its ends, where a jump would have shown at the next points
+        x, y, slope, bend = self._chords()
+        curvature = np.where(np.abs(np.diff(slope)) > LEAST_JUMP * np.abs(slope).max(), np.abs(bend), 0.0)
+        excess = curvature[1:-2] + curvature[2:-1] - sharpness * np.maximum(curvature[:-3], curvature[3:])
+        corners, used = dict[float, float](), set[int]()
+        for i in np.argsort(-excess) + 1:
+            if excess[i - 1] <= 0.0 or used & {i, i + 1}:
+                continue
+            sides, step = (slice(max(0, i + 1 - flank), i + 1), slice(i + 1, i + 1 + flank)), x[i + 1] - x[i]
+            parabolas = [np.polyfit((x[side] - x[i]) / step, y[side], min(2, len(x[side]) - 1)) for side in sides]
+            roots = np.roots(np.polysub(*parabolas))
+            meetings = [root.real for root in roots if root.imag == 0.0 and margin < root.real < 1.0 - margin]
+            if len(meetings) == 1:
+                used |= {i, i + 1}
+                corners[float(x[i] + step * meetings[0])] = float(np.polyval(parabolas[0], meetings[0]))
+        single = curvature[1:-1] > sharpness * np.maximum(curvature[:-2], curvature[2:])
+        single[1:] |= smooth & _bends_too_much(x, y)
+        return corners | {float(x[i]): float(y[i]) for i in {*(np.flatnonzero(single) + 1)} - used}
 
 
-class Corners(Points):
-    """A measured profile with a corner in each cell without a smooth curve in which the chords of both sides meet.
+class Rough(Points):
+    """A measured profile with chords in place of cubics where its points show no smooth curve.
 
-    Kinks are also where the points do not exclude that the slope jumps.
+    Attributes:
+        corners: whether the chords of both sides go on into a cell up to the corner in which they meet; kinks are then
+            also where the points do not exclude that the slope jumps.
     """
 
-    sharp: ClassVar[float] = 3.0
+    uneven: ClassVar[float] = 3.0
     """Ratio of the curvatures at the four points around a cell beyond which they show no smooth curve."""
+    corners: bool
 
-    def _curve(self) -> Any:
-        """Return the height [LU] over r [LU], a `PPoly`: monotone cubics, or chords where points show no smooth curve.
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Radii [LU], rising, at which the slope jumps, with `corners` also where the points do not exclude it."""
+        return tuple(sorted(self._corners(self.uneven if self.corners else self.sharp)))
 
-        These go on from both sides into a cell up to the corner in which they meet. 0 on the axis, NaN beyond the last
-        point.
+    @cached_property
+    def curve(self) -> Any:
+        """The height above the apex [LU] over r [LU], a `PPoly`: monotone cubics, and chords in rough cells; cached.
+
+        Rough cells are within two cells of one that shows no smooth curve. It is NaN beyond the last point.
         """
-        return _rough_curve(self.r, self.z, True)
+        spline = Points.model_construct(r=self.r, z=self.z).curve
+        x, y = self._with_chord_corners() if self.corners else self._chords()[:2]
+        radii = np.union1d(spline.x, x)
+        start = radii[:-1]
+        smooth = [spline(start, k) / math.factorial(k) for k in (3, 2, 1, 0)]
+        chord = (np.diff(y) / np.diff(x))[np.searchsorted(x, start, side="right") - 1]
+        straight = [0.0 * start, 0.0 * start, chord, np.interp(start, x, y)]
+        rough = self._is_rough()[np.searchsorted(self.r, start, side="right") - 1]
+        return PPoly(np.where(rough, straight, smooth), radii, extrapolate=False)
+
+    def _with_chord_corners(self) -> tuple[Array, Array]:
+        """Return (radii, heights) [LU] of the points, with one in each cell in which the chords of both sides meet.
+
+        Radii rise, heights are above the apex. No point is added where chords do not meet inside the cell, in the first
+        and last cell, and beside a point at which the slope jumps.
+        """
+        x, y, slope, _ = self._chords()
+        before, after, start, end = slope[1:-2], slope[3:], slice(1, -2), slice(2, -1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            meet = (y[end] - y[start] + before * x[start] - after * x[end]) / (before - after)
+            level = y[start] + before * (meet - x[start])
+        is_corner = np.isin(x, [*self._corners(self.sharp, smooth=False)])
+        inside = (meet > x[start]) & (meet < x[end]) & ~is_corner[start] & ~is_corner[end]
+        behind = np.flatnonzero(inside) + 2
+        return np.insert(x, behind, meet[inside]), np.insert(y, behind, level[inside])
+
+    def _is_rough(self) -> NDArray[np.bool_]:
+        """Return whether each cell between two points is within two cells of one that shows no smooth curve, (n − 1,).
+
+        That is one around which one of the four curvatures is 0 or negative, or the largest is more than 3 times the
+        smallest, unless all are round-off errors.
+        """
+        x, _, slope, bend = self._chords()
+        bend = np.concatenate([bend[1:2], bend, bend[-1:], bend[-1:]])  # of the points from −1 to n
+        around = np.lib.stride_tricks.sliding_window_view(bend, 4)
+        low, high = around.min(axis=1), around.max(axis=1)
+        least = LEAST_JUMP * np.abs(slope).max() / x[-1]
+        rough = (np.abs(around).max(axis=1) > least) & ((low <= 0.0) | (high > self.uneven * low))
+        return np.asarray(np.convolve(rough, np.ones(5), mode="same") > 0.0)  # two cells on either side
 
 
-def _chord_slopes(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Array, Array, Array]:
-    """Return (radii [LU], heights above the apex [LU], slopes of the chords, their changes per length [1/LU]).
-
-    Radii and heights are (n,). The body is even in x: the chords begin at the point on the other side of the axis,
-    (n,). The changes of slope are over the distance of the two neighbours, at the axis and all points but the last, (n
-    − 1,).
-    """
-    x, y = np.asarray(r), np.asarray(z) - z[0]
-    slope = np.diff(y, prepend=y[1]) / np.diff(x, prepend=-x[1])
-    return x, y, slope, np.diff(slope) / np.append(2.0 * x[1], x[2:] - x[:-2])
-
-
-@lru_cache(maxsize=8)
-def _with_corners(
-    r: tuple[float, ...], z: tuple[float, ...], sharpness: float = Points.sharp, smooth: bool = True
-) -> tuple[Array, Array, Any]:
-    """Return (radii, heights) [LU] of the points, with one at each jump of the slope, and the indices of the jumps.
-
-    Radii rise, heights are above the apex. Cached: the arrays must not be changed. The slope jumps between two points
-    whose curvatures are in sum more than `sharpness` times each of their neighbours': where the parabolas through the
-    points of either side meet, or at a point where these do not meet between two and its curvature alone is as large.
-    Jumps in the round-off error do not count. It also jumps at points of a `smooth` body at which no slope keeps the
-    cubics of both sides convex.
-    """
-    flank = 3  # points that determine the parabola of one side
-    margin = 1e-3  # share of a cell at its ends, where a jump would have shown at the next points
-    x, y, slope, bend = _chord_slopes(r, z)
-    curvature = np.where(np.abs(np.diff(slope)) > LEAST_JUMP * np.abs(slope).max(), np.abs(bend), 0.0)
-    excess = curvature[1:-2] + curvature[2:-1] - sharpness * np.maximum(curvature[:-3], curvature[3:])
-    corners, used = dict[float, float](), set[int]()
-    for i in np.argsort(-excess) + 1:
-        if excess[i - 1] <= 0.0 or used & {i, i + 1}:
-            continue
-        left, right, step = slice(max(0, i + 1 - flank), i + 1), slice(i + 1, i + 1 + flank), x[i + 1] - x[i]
-        parabolas = [np.polyfit((x[side] - x[i]) / step, y[side], min(2, len(x[side]) - 1)) for side in (left, right)]
-        roots = np.roots(np.polysub(*parabolas))
-        meetings = [root.real for root in roots if root.imag == 0.0 and margin < root.real < 1.0 - margin]
-        if len(meetings) == 1:
-            used |= {i, i + 1}
-            corners[float(x[i] + step * meetings[0])] = float(np.polyval(parabolas[0], meetings[0]))
-    single = curvature[1:-1] > sharpness * np.maximum(curvature[:-2], curvature[2:])
-    single[1:] |= smooth & _bends_too_much(x, slope)
-    for i in {*(np.flatnonzero(single) + 1)} - used:
-        corners[float(x[i])] = float(y[i])
-    heights = dict(zip(x.tolist(), y.tolist(), strict=True)) | corners
-    radii = sorted(heights)
-    return np.asarray(radii), np.asarray([heights[radius] for radius in radii]), np.searchsorted(radii, sorted(corners))
-
-
-def _bends_too_much(x: Array, slope: Array) -> NDArray[np.bool_]:
+def _bends_too_much(x: Array, y: Array) -> NDArray[np.bool_]:
     """Return whether no slope at a point keeps the cubics of both sides convex, (n − 4,), from the third point on.
 
     The cubic over a chord of slope S₁ from the slope d₀ to d is convex for d ≤ 3 S₁ − 2 d₀, the one over S₂ to d₃ for
     d ≥ 3 S₂ − 2 d₃. False where the chords around the point are not convex themselves, or within the round-off error.
 
     Args:
-        x: radii of the points [LU], (n,).
-        slope: of the chords, the first from the point on the other side of the axis, (n,).
+        x, y: radii and heights of the points [LU], (n,).
     """
-    step, bend = np.diff(x, prepend=-x[1]), np.diff(slope)
-    inner = (step[1:] * slope[:-1] + step[:-1] * slope[1:]) / (step[1:] + step[:-1])  # at the points but the last
-    before, jump, after = (part[1:] for part in (bend[:-2], bend[1:-1], bend[2:]))
-    excess = 3.0 * jump - 2.0 * (inner[2:] - inner[:-2])[1:]
-    convex = np.minimum(before, after) >= 0.0
+    step = np.diff(x)
+    slope = np.diff(y) / step
+    inner = (step[1:] * slope[:-1] + step[:-1] * slope[1:]) / (step[1:] + step[:-1])
+    bend = np.diff(slope)
+    jump = bend[1:-1]
+    excess = 3.0 * jump - 2.0 * (inner[2:] - inner[:-2])
+    convex = np.minimum(bend[:-2], bend[2:]) >= 0.0
     return np.asarray(convex & (excess > 0.0) & (jump > LEAST_JUMP * np.abs(slope).max()))
-
-
-def _with_chord_corners(r: tuple[float, ...], z: tuple[float, ...]) -> tuple[Array, Array]:
-    """Return (radii, heights) [LU] of the points, with one in each cell in which the chords of both sides meet.
-
-    Radii rise, heights are above the apex. No point is added where chords do not meet inside the cell, in the first and
-    last cell, and beside a point at which the slope jumps.
-    """
-    x, y, slope, _ = _chord_slopes(r, z)
-    before, after, start, end = slope[1:-2], slope[3:], slice(1, -2), slice(2, -1)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        meet = (y[end] - y[start] + before * x[start] - after * x[end]) / (before - after)
-        level = y[start] + before * (meet - x[start])
-    # Beside a point that is a corner itself there is no other.
-    radii, _, corners = _with_corners(r, z, smooth=False)
-    is_corner = np.isin(x, radii[corners])
-    inside = (meet > x[start]) & (meet < x[end]) & ~is_corner[start] & ~is_corner[end]
-    radii = np.append(x, meet[inside])
-    heights = np.append(y, level[inside])
-    order = np.argsort(radii)
-    return radii[order], heights[order]
 
 
 def _smallest_digit(z: tuple[float, ...]) -> float:
@@ -252,83 +271,19 @@ def _smallest_digit(z: tuple[float, ...]) -> float:
     return 0.0
 
 
-@lru_cache(maxsize=8)
-def _rough_curve(r: tuple[float, ...], z: tuple[float, ...], corners: bool) -> Any:
-    """Return the height above the apex [LU] over r [LU], a `PPoly`: monotone cubics, and chords in rough cells; cached.
-
-    Rough cells are within two cells of one that shows no smooth curve. With `corners` the chords of both sides go on up
-    to where they meet. It is NaN beyond the last point.
-    """
-    spline = _spline(r, z)
-    x, y = _with_chord_corners(r, z) if corners else (np.asarray(r), np.asarray(z) - z[0])
-    radii = np.union1d(spline.x, x)
-    start = radii[:-1]
-    smooth = [spline(start, k) / math.factorial(k) for k in (3, 2, 1, 0)]
-    chord = (np.diff(y) / np.diff(x))[np.searchsorted(x, start, side="right") - 1]
-    straight = [0.0 * start, 0.0 * start, chord, np.interp(start, x, y)]
-    rough = _is_rough(r, z)[np.searchsorted(r, start, side="right") - 1]
-    return PPoly(np.where(rough, straight, smooth), radii, extrapolate=False)
-
-
-def _is_rough(r: tuple[float, ...], z: tuple[float, ...]) -> NDArray[np.bool_]:
-    """Return whether each cell between two points is within two cells of one that shows no smooth curve, (n − 1,).
-
-    That is one around which one of the four curvatures is 0 or negative, or the largest is more than 3 times the
-    smallest, unless all are round-off errors. r, z: of the points [LU].
-    """
-    x, _, slope, bend = _chord_slopes(r, z)
-    bend = np.concatenate([bend[1:2], bend, bend[-1:], bend[-1:]])  # of the points from −1 to n
-    around = np.lib.stride_tricks.sliding_window_view(bend, 4)
-    low, high = around.min(axis=1), around.max(axis=1)
-    least = LEAST_JUMP * np.abs(slope).max() / x[-1]
-    rough = (np.abs(around).max(axis=1) > least) & ((low <= 0.0) | (high > Corners.sharp * low))
-    return np.asarray(np.convolve(rough, np.ones(5), mode="same") > 0.0)  # two cells on either side
-
-
-@lru_cache(maxsize=8)
-def _spline(r: tuple[float, ...], z: tuple[float, ...]) -> Any:
-    """Return monotone cubics through the points, z(0) = 0, as a `PPoly`: height [LU] over r [LU]; cached.
-
-    It is NaN beyond the last point. Where the slope jumps, it has a further point, and the cubics of each side have
-    their own slope, unless the jump is less than two points from the next one or from an end.
-    """
-    least = 2  # points of a curve in addition to the one at which its slope jumps
-    x, y, corners = _with_corners(r, z)
-    ends = [0]
-    for corner in corners:
-        if corner - ends[-1] >= least and corner <= len(x) - 1 - least:
-            ends.append(corner)
-    ends.append(len(x) - 1)
-    pieces = [_cubic_coefficients(x[first : last + 1], y[first : last + 1]) for first, last in pairwise(ends)]
-    return PPoly(np.concatenate(pieces, axis=1), x, extrapolate=False)
-
-
-def _cubic_coefficients(x: Array, y: Array) -> Array:
+def _cubics(x: Array, y: Array) -> Array:
     """Return the coefficients of monotone cubics through the points (x, y), (4, n − 1), as `PPoly` has them.
 
     x rises; three points are needed. The slope at a point is that of the parabola through it and its neighbours, so
     that a sphere's paraboloid is met exactly, but no more than three times the rise to either side, and 0 where that
     changes its sign: then no cubic overshoots (F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238).
     """
-    step, rise = np.diff(x), np.diff(y) / np.diff(x)
-    inner = (step[1:] * rise[:-1] + step[:-1] * rise[1:]) / (step[1:] + step[:-1])
-    first = rise[0] + step[0] / (step[0] + step[1]) * (rise[0] - rise[1])
-    last = rise[-1] + step[-1] / (step[-1] + step[-2]) * (rise[-1] - rise[-2])
+    rise = np.diff(y) / np.diff(x)
     before, after = np.append(rise[0], rise), np.append(rise, rise[-1])
-    least = np.where(np.abs(before) < np.abs(after), before, after)
-    limit = np.where(before * after > 0.0, 3.0 * np.abs(least), 0.0)
-    slopes = np.sign(least) * np.clip(np.sign(least) * np.concatenate([[first], inner, [last]]), 0.0, limit)
+    steepest = 1.5 * (np.sign(before) + np.sign(after)) * np.minimum(np.abs(before), np.abs(after))
+    parabolic = np.gradient(y, x, edge_order=2)
+    slopes = np.clip(parabolic, np.minimum(steepest, 0.0), np.maximum(steepest, 0.0))
     return np.asarray(CubicHermiteSpline(x, y, slopes).c)
-
-
-def _slope_polynomials(curve: Any) -> tuple[Array, Array, Array, Array]:
-    """Return radii r, (n,) [LU], and p₀, p₁ [1/LU], p₂ [1/LU²] of the slope p₀ + p₁ r + p₂ r² between, (n − 1,) each.
-
-    `curve`: height over r, a `PPoly` of the third degree.
-    """
-    square, linear, constant = curve.derivative().c
-    start = curve.x[:-1]
-    return curve.x, constant - linear * start + square * start**2, linear - 2.0 * square * start, square
 
 
 class Smoothed(Piecewise):
@@ -361,21 +316,15 @@ class Smoothed(Piecewise):
         middles = 0.5 * (knots[1:] + knots[:-1])[(rates > steep) & steepest]
         return tuple(middle for middle in middles.tolist() if middle > self.knots[1])
 
-    def _curve(self) -> Any:
-        """Return the height [LU] over r [LU], a `PPoly`: parabolas between knots; 0 on the axis, NaN beyond the end."""
-        return _quadratics(self.knots, self.slopes)
+    @cached_property
+    def curve(self) -> Any:
+        """The height [LU] over r [LU], a `PPoly`: parabolas between knots; 0 on the axis, NaN beyond the end; cached.
 
-
-@lru_cache(maxsize=64)
-def _quadratics(knots: tuple[float, ...], slopes: tuple[float, ...]) -> Any:
-    """Return the height [LU] over r [LU], 0 on the axis, as a `PPoly`, by its slopes at knots [LU]; cached.
-
-    NaN beyond the last knot. It is stored in the third degree, with 0 as first coefficient.
-    """
-    x, slope = np.asarray(knots), np.asarray(slopes)
-    return PPoly(
-        np.stack([0.0 * x[1:], np.diff(slope) / np.diff(x), slope[:-1]]), x, extrapolate=False
-    ).antiderivative()
+        It is stored in the third degree, with 0 as first coefficient.
+        """
+        x, slope = np.asarray(self.knots), np.asarray(self.slopes)
+        slopes = [0.0 * x[1:], np.diff(slope) / np.diff(x), slope[:-1]]
+        return PPoly(np.stack(slopes), x, extrapolate=False).antiderivative()
 
 
 class Fitted(Shape):
