@@ -79,9 +79,9 @@ class Points(Piecewise):
         """The radius [LU] of the last point."""
         return self.r[-1]
 
-    @property
+    @cached_property
     def kinks(self) -> tuple[float, ...]:
-        """Radii [LU], rising, at which the points show that the slope jumps; empty without any.
+        """Radii [LU], rising, at which the points show that the slope jumps; empty without any; cached.
 
         There the curvature at a point, or in sum at two in sequence, exceeds that at both neighbours by a factor, 8. A
         jump between two points is where the parabolas through the points of either side meet. The axis and the last
@@ -186,9 +186,9 @@ class Rough(Points):
     """Ratio of the curvatures at the four points around a cell beyond which they show no smooth curve."""
     corners: bool
 
-    @property
+    @cached_property
     def kinks(self) -> tuple[float, ...]:
-        """Radii [LU], rising, at which the slope jumps, with `corners` also where the points do not exclude it."""
+        """Radii [LU], rising, at which the slope jumps, with `corners` also where points do not exclude it."""
         return tuple(sorted(self._corners(self.uneven if self.corners else self.sharp)))
 
     @cached_property

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
+from fractions import Fraction
 from itertools import chain, pairwise
 from pathlib import Path
 
@@ -30,7 +31,7 @@ HEIGHTS = ("z", "h", "height", "heights", "höhe", "hoehe", "hauteur", "altezza"
 NAME = re.compile(r"([^\W_]+)(?:\s*[\[(/_]\s*|\sin\s+|\s*$)([^])]*)[])]?$", re.IGNORECASE)
 """Name and unit of a column: r, r [µm], r (µm), r/µm, r_um, r in µm."""
 MODEL = "LU"
-COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
+COMMA = re.compile(r"^([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)$")
 """A number with a decimal comma."""
 LABEL = re.compile(r":(\s|$)")
 """A label of a line that an instrument adds, as in Date: 1.2.2026."""
@@ -48,34 +49,37 @@ def take_points(scene: Place, folder: Path) -> dict[str, list[float]]:
     has lists of its own beside it, and where the file, its units or the scale are wrong, which is reported. Of a
     profile with such an error only its kind remains in the scene.
     """
-    profile, file, scale, given = (scene.find(f"bodies.profile{key}") for key in ("", ".file", ".scale", ".units"))
-    if not profile or not file or not scale or not given or not isinstance(file.value, str):
+    profile = scene.find("bodies.profile")
+    if not profile or "file" not in profile.inside or not isinstance(profile.inside["file"].value, str):
         return {}
+    wrong = file = profile.inside["file"]
+    scale, given = profile.inside["scale"], profile.inside["units"]
     if not {"r", "x", "z"}.isdisjoint(profile.value):
         file.doubt()  # a rule reports it
         return {}
-    wrong = file
     try:
         lists, units = read_profile(folder / file.value, is_scan(profile.value))
-        wrong, in_names = scale, _unit_and_ratio(units) if units else None
+        wrong = scale
+        sizes = _sizes(units) if units else None
         if not given.absent:
             wrong = given
             if not scale.absent:
                 raise ValueError("not together with scale; remove it")
-            unit, ratio = _unit_and_ratio(given.value)
-            if in_names and not _are_equal(in_names, (unit, abs(ratio))):
+            along, up = _sizes(given.value)
+            if sizes and sizes != (along, abs(up)):
                 raise ValueError("not together with other units in the file's names; remove it")
-            units, in_names = given.value, (unit, ratio)
+            units, sizes = given.value, (along, up)
         if scale.absent:
-            scale.put(in_names[0] if in_names else 1.0)
+            scale.put(f"1 {units[0]}" if units else 1.0)
             scale.source = file
-        elif in_names:
+        elif units:
             raise ValueError("not together with units in the file's names; remove it")
         elif isinstance(scale.value, str):
             si_value(scale.value, MODEL)
         elif not is_positive(scale):
             raise ValueError(f"must be {described(scale.allowed)}")
-        lists["z"] = [(in_names[1] if in_names else 1.0) * value for value in lists["z"]]
+        if sizes:
+            lists["z"] = [float(sizes[1] / sizes[0]) * value for value in lists["z"]]
         wrong = file
         if units and is_scan(profile.value):
             _require_rising(lists, units)
@@ -103,32 +107,18 @@ def _require_rising(lists: dict[str, list[float]], units: Sequence[str]) -> None
         raise ValueError(f'{error}, or of its unit: units = ["{along}", "{opposite}"]') from None
 
 
-def _unit_and_ratio(units: object) -> tuple[str, float]:
-    """Return the unit of positions, "1 µm", and the ratio of the unit of heights to it, negative if that has a minus.
-
-    `units`: two texts, such as ["µm", "-nm"].
+def _sizes(units: object) -> tuple[Fraction, Fraction]:
+    """Return the exact sizes [m] of the units of positions and heights, the latter negative where it has a minus.
 
     Raises:
         ValueError: they are not the units of two lengths.
     """
     try:
         along, up = map(str, units)  # type: ignore[call-overload]
-        size = si_value(f"1 {up.lstrip('-−')}", MODEL)[0] / si_value(f"1 {along}", MODEL)[0]
+        length, height = (si_value(f"1 {unit}", MODEL)[0] for unit in (along, up.lstrip("-−")))
     except (ValueError, TypeError):
         raise ValueError('must be the two units of position and height, such as ["µm", "nm"]') from None
-    return f"1 {along}", float(-size if up[0] in "-−" else size)
-
-
-def _are_equal(first: tuple[str, float], second: tuple[str, float]) -> bool:
-    """Return whether two pairs are equal: (unit of positions, "1 µm"; ratio of the unit of heights to it).
-
-    Units are equal if their sizes in metres are, ratios within 1e-9 (relative).
-
-    Raises:
-        UnitTextError: a unit is no length.
-    """
-    sizes = {si_value(unit, MODEL)[0] for unit, _ in (first, second)}
-    return len(sizes) == 1 and math.isclose(first[1], second[1])
+    return length, -height if up[0] in "-−" else height
 
 
 def put_points(scene: Place, lists: dict[str, list[float]]) -> None:
@@ -218,12 +208,12 @@ def rows_in(lines: list[str], most: int = 100_000) -> list[Row]:
     """
     if len(lines) > most:
         raise ProfileFileError(f"has {len(lines)} lines, at most {most} are allowed; use fewer points")
-    full = [(i, line) for i, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
+    full = [(i, line) for i, line in enumerate(lines, 1) if line.strip()[:1] not in ("", "#")]
     if full and re.fullmatch(r"sep=.", full[0][1].strip()):
         del full[0]
     rows = [(i, _cells(line)) for i, line in full]
     if not any("." in cell for _, cells in rows for cell in cells if _number(cell) is not None):
-        rows = [(i, [cell.replace(",", ".") if COMMA.fullmatch(cell) else cell for cell in cells]) for i, cells in rows]
+        rows = [(i, [COMMA.sub(r"\1.\2", cell) for cell in cells]) for i, cells in rows]
     return rows
 
 
@@ -247,23 +237,24 @@ def _without_preamble(rows: list[Row]) -> None:
     known or not. Without any row of numbers nothing is removed.
     """
     start = next((i for i, (_, cells) in enumerate(rows) if sum(_number(cell) is not None for cell in cells) > 1), 0)
-    names = [i for i, (_, cells) in enumerate(rows[:start]) if {*_words(cells)} & {*HEIGHTS} and len(cells) > 1]
-    width = len(rows[start][1]) if rows else 0
-    alike = [i for i, (_, cells) in enumerate(rows[:start]) if len(cells) == width and not LABEL.search(cells[0])]
-    del rows[: names[-1] if names else alike[0] if alike else start]
+    above = [cells for _, cells in rows[:start]]
+    names = [i for i, cells in enumerate(above) if {*map(_word, cells)} & {*HEIGHTS} and len(cells) > 1]
+    alike = [i for i, cells in enumerate(above) if len(cells) == len(rows[start][1]) and not LABEL.search(cells[0])]
+    del rows[: [*names[-1:], *alike, start][0]]
 
 
-def _words(names: list[str]) -> list[str]:
-    """Return the names of the columns in lower case, in order, without their units; "" for a cell that is no name."""
-    matches = [NAME.match(name.strip('" ')) for name in names]
-    return [match[1].lower() if match else "" for match in matches]
+def _word(heading: str) -> str:
+    """Return the name of a column in lower case, without its unit; "" for a cell that is no name."""
+    match = NAME.match(heading.strip('" '))
+    return match[1].lower() if match else ""
 
 
 def _header(rows: list[Row]) -> tuple[Sequence[int], Sequence[str]]:
     """Return ((column of radii or positions, column of heights), their units, such as ["µm", "nm"]).
 
     Columns are indices, (0, 1) without names. Without units, or with LU, the second is empty. The lines of names and
-    units, and all lines before them, are removed from `rows`, in place.
+    units, and all lines before them, are removed from `rows`, in place. Units are in the names, or in the next line if
+    that has a cell for each name, none of them empty or with a digit.
 
     Raises:
         ProfileFileError: names or units are not known, only one of the two columns has a unit, there are more than two
@@ -272,18 +263,20 @@ def _header(rows: list[Row]) -> tuple[Sequence[int], Sequence[str]]:
     _without_preamble(rows)
     line, names = rows[0] if rows else (0, ["0"])
     if any(_number(name) is not None for name in names):
-        count = sum(bool(cell) for cell in names)
+        count = sum(map(bool, names))
         if count > 2:
             raise ProfileFileError(f"has {count} columns without names; {FORM}")
         return (0, 1), ()
     del rows[0]
     if rows:
         require_names(*rows[0], names)
-    words = _words(names)
-    sides = RADII if set(words) & set(RADII) else POSITIONS
+    words, below = [*map(_word, names)], rows[0][1] if rows else []
+    sides = POSITIONS if {*words}.isdisjoint(RADII) else RADII
     columns = [_column_of(line, words, allowed) for allowed in (sides, HEIGHTS)]
-    units, are_below = units_of(names, rows[0][1] if rows else [], columns)
-    del rows[:are_below]
+    units = [NAME.sub(r"\2", names[column].strip('" ')).strip() for column in columns]
+    if not any(units) and len(below) == len(names) and all(below) and not any(map(str.isdigit, "".join(below))):
+        units = [below[column].strip('[]()" ') for column in columns]
+        del rows[0]
     known = [unit for unit in units if unit not in ("", MODEL)]
     for unit in known:
         try:
@@ -295,22 +288,6 @@ def _header(rows: list[Row]) -> tuple[Sequence[int], Sequence[str]]:
         problem = "only one of radius and height has a unit"
         raise ProfileFileError(f"line {line}: {problem}; give both the same way, r [µm], z [µm]")
     return columns, known
-
-
-def units_of(names: list[str], below: list[str], columns: Sequence[int]) -> tuple[list[str], bool]:
-    """Return (units of `columns` in order, whether the cells below the names have them); "" for a column without one.
-
-    Args:
-        names: of all columns, with units or without.
-        below: cells of the next line, which counts as that of units where it has a cell for each name, none of them
-            empty or with a digit, and the names of `columns` have no units.
-        columns: indices of the columns.
-    """
-    units = [match[2].strip() if (match := NAME.match(names[column].strip('" '))) else "" for column in columns]
-    words = len(below) == len(names) and all(cell and not any(map(str.isdigit, cell)) for cell in below)
-    if any(units) or not words:
-        return units, False
-    return [below[column].strip('[]()" ') for column in columns], True
 
 
 def require_names(line: int, cells: list[str], names: list[str]) -> None:
