@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import median_filter
+from scipy.ndimage import label, median_filter
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -173,12 +173,9 @@ class ForceCurve:
             return None
         # A jump may take several points: a neighbour belongs to it whose change is half of JUMP and a fifth of the
         # largest one, since close to the fold a contact softens, which is no jump.
-        first, last, least = peak, peak, max(0.5 * JUMP * spread, 0.2 * change[peak])
-        while first > 0 and change[first - 1] > least:
-            first -= 1
-        while last < change.size - 1 and change[last + 1] > least:
-            last += 1
-        return first, last + 1
+        runs, _ = label(change > max(0.5 * JUMP * spread, 0.2 * change[peak]))
+        jump = np.flatnonzero(runs == runs[peak])
+        return int(jump[0]), int(jump[-1]) + 1
 
     @property
     def depth(self) -> float:

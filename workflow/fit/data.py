@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 PATTERN = "*.csv"
 """Names of the files of curves in a folder."""
 NUMBER = re.compile(r'"?[-+]?[\d.,]*\d(e[-+]?\d+)?"?|nan', re.IGNORECASE)
-REMARK = re.compile(r"\s*[#%]+\s*(?:\w+:\s+)?")
+REMARK = re.compile(r"^\s*[#%]+\s*(?:\w+:\s+)?")
 """Beginning of a line of remarks, maybe with a label, "# columns: "."""
 FEWEST_POINTS = 40
 """Least number of points of a curve; a segment has a quarter of it."""
@@ -187,12 +187,13 @@ def _cells(line: str) -> list[str]:
 
     They are separated by semicolon, tab or comma, else in quotes, else by two blanks or one; units remain behind names.
     """
-    text = REMARK.sub("", line, count=1) if REMARK.match(line) else line
+    text = REMARK.sub("", line)
     separator = next((sign for sign in ";\t," if sign in text), None)
     if separator is None and '"' in text:
         return re.findall(r'"([^"]*)"', text)
-    blanks = r"\s{2,}" if "  " in text.strip() else r"(?<!/)\s+(?![\[(/])"
-    return [cell.strip('" ') for cell in (text.split(separator) if separator else re.split(blanks, text.strip()))]
+    if separator is None:
+        text, separator = text.strip(), r"\s{2,}" if "  " in text.strip() else r"(?<!/)\s+(?![\[(/])"
+    return [cell.strip('" ') for cell in re.split(separator, text)]
 
 
 def _rows(lines: list[str], first: int, columns: dict[str, dict[str, Column]]) -> DataFrame:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -80,10 +80,9 @@ def words_in(text: str) -> list[str]:
     return re.findall(r"[^\W\d_]+", re.sub(r"(?<=[a-zà-ÿ])(?=[A-Z])", " ", text).lower())
 
 
-def segment_in(words: Sequence[str]) -> str:
-    """Return the name of the segment that the first known one of `words` means, "approach" …; "" without one."""
-    names = (name for word in words for name, known in SEGMENT_WORDS.items() if word in known.split())
-    return next(names, "")
+def meanings(words: Sequence[str], known: Mapping[str, str]) -> list[str]:
+    """Return what each of `words` means, in their order: the keys of `known` among whose words it is, maybe none."""
+    return [name for word in words for name, synonyms in known.items() if word in synonyms.split()]
 
 
 def unit_in(heading: str) -> str:
@@ -109,11 +108,12 @@ def known_columns(headings: Sequence[str], units: Sequence[str] = ()) -> list[Co
     columns = []
     for i, heading in enumerate(headings):
         words = words_in(heading)
-        names = [name for word in words for name, known in QUANTITIES.items() if word in known.split()]
+        names = meanings(words, QUANTITIES)
         unit = (unit_in(heading) if names else "") or "".join(units[i : i + 1])
-        segment = segment_in([word for word in words if word not in " ".join(QUANTITIES.values()).split()])
-        meanings = [Column(name, i, heading, unit, segment) for name in names]
-        columns += [column for column in meanings if column.fits][:1] or meanings[:1]
+        unnamed = [word for word in words if not meanings([word], QUANTITIES)]
+        segment = next(iter(meanings(unnamed, SEGMENT_WORDS)), "")
+        named = [Column(name, i, heading, unit, segment) for name in names]
+        columns += [column for column in named if column.fits][:1] or named[:1]
     return sorted(columns, key=lambda column: ("measured" not in column.heading.lower(), len(words_in(column.heading))))
 
 

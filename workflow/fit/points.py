@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from pandas import Series
 
 from contact1d.workflow.fit.curve import APPROACH, HOLD, RETRACT, SEGMENTS, ForceCurve
-from contact1d.workflow.fit.headings import SEGMENT_WORDS, DataError, segment_in, words_in
+from contact1d.workflow.fit.headings import SEGMENT_WORDS, DataError, meanings, words_in
 
 Array = NDArray[np.float64]
 Kinds = NDArray[np.int_]
@@ -30,7 +30,7 @@ def told_kinds(cells: Series[str]) -> Kinds | None:
     if all(word.strip("-+.0123456789") in ("", "true", "false") for word in words):
         names = {2: [APPROACH, RETRACT], len(SEGMENTS): [*SEGMENTS]}.get(len(words), [HOLD])
     else:
-        names = [segment_in(words_in(word)) for word in words]
+        names = [next(iter(meanings(words_in(word), SEGMENT_WORDS)), "") for word in words]
     if "" in names:
         known = "; ".join(f"{name}: {', '.join(words.split())}" for name, words in SEGMENT_WORDS.items())
         raise DataError(f"column segment has the word '{words[names.index('')]}'; known are {known}")

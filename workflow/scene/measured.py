@@ -165,17 +165,12 @@ class Measured(Shape):
     def taken(self) -> Taken | None:
         """The curve that is fitted to the scan, with its parameters in powers of LU; None where the points are no scan.
 
-        It is there, too, where the points of the scan are kept (only centred or levelled).
+        It is there, too, where the points of the scan are kept (only centred or levelled). Cached.
 
         Raises:
             ScanError: the points determine no such curve.
         """
-        if not self.is_scan:
-            return None
-        along = self.r if self.x is None else self.x
-        centre = None if self.centre == "auto" else self.centre or 0.0
-        length = self.smooth if isinstance(self.smooth, float | int) else None
-        return _take(along or (), self.z or (), centre, self.level, length, None if self.fit == "none" else self.fit)
+        return _taken(self)
 
     def _from_the_axis(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Return (radii, heights) [LU] of the points as given, not of a scan.
@@ -250,20 +245,23 @@ class Measured(Shape):
 
 
 @lru_cache(maxsize=8)
-def _take(along: tuple[float, ...], z: tuple[float, ...], *settings: Any) -> Taken:
-    """Return the curve that is fitted to a scan of positions `along` and heights z [LU]; cached for repeated calls.
-
-    `settings`: centre [LU] or None for a search, whether a tilt is removed, distance of knots [LU] or None for one by
-    the noise, and the name of a shape or None for a smooth curve.
+def _taken(profile: Measured) -> Taken | None:
+    """Return the curve that is fitted to the scan of a profile; None where its points are no scan; cached.
 
     Raises:
         ScanError: the points determine no such curve.
     """
+    if not profile.is_scan:
+        return None
     import numpy as np
 
     from contact1d.analysis.scan_fit import take
 
-    return take(np.asarray(along), np.asarray(z), *settings)
+    along = profile.r if profile.x is None else profile.x
+    centre = None if profile.centre == "auto" else profile.centre or 0.0
+    length = profile.smooth if isinstance(profile.smooth, float | int) else None
+    shape = None if profile.fit == "none" else profile.fit
+    return take(np.asarray(along), np.asarray(profile.z), centre, profile.level, length, shape)
 
 
 @lru_cache(maxsize=8)

@@ -312,9 +312,9 @@ class Smoothed(Piecewise):
         """
         knots, steep = np.asarray(self.knots), Points.sharp * max(self.slopes) / self.reach
         rates = np.diff(self.slopes) / np.diff(knots)
-        steepest = (rates >= np.append(0.0, rates[:-1])) & (rates > np.append(rates[1:], 0.0))
-        middles = 0.5 * (knots[1:] + knots[:-1])[(rates > steep) & steepest]
-        return tuple(middle for middle in middles.tolist() if middle > self.knots[1])
+        steepest = (rates[1:] >= rates[:-1]) & (rates[1:] > np.append(rates[2:], 0.0)) & (rates[1:] > steep)
+        first = 1 + np.flatnonzero(steepest)  # knots with which these intervals begin
+        return tuple((0.5 * (knots[first] + knots[first + 1])).tolist())
 
     @cached_property
     def curve(self) -> Any:

@@ -20,53 +20,34 @@ from contact1d.workflow.units import FIRST, SI
 from contact1d.workflow.units import PREFIXES as BY_THOUSANDS
 
 DIMENSIONS = {
-    "m": "a length",
-    "N": "a force",
-    "Pa": "a pressure",
-    "kg": "a mass",
-    "s": "a time",
-    "K": "a temperature",
-    "J": "an energy",
-    "N/m": "a force per length or energy per area",
-    "J/m²": "an energy per area",
-    "m/s": "a velocity",
-    "N·s/m": "a drag coefficient",
-    "N/s": "a force per time",
+    "m": "a length, such as 10 mm",
+    "N": "a force, such as 10 N",
+    "Pa": "a pressure, such as 210 GPa",
+    "kg": "a mass, such as 1 ng",
+    "s": "a time, such as 1 µs",
+    "K": "a temperature, such as 300 K",
+    "J": "an energy, such as 1 aJ",
+    "N/m": "a force per length or energy per area, such as 100 N/m",
+    "J/m²": "an energy per area, such as 50 mJ/m²",
+    "m/s": "a velocity, such as 1 µm/s",
+    "N·s/m": "a drag coefficient, such as 1 mN·s/m",
+    "N/s": "a force per time, such as 1 mN/s",
     "m²": "an area",
     "m³": "a volume",
     "m/s²": "an acceleration",
     "kg/m³": "a density",
     "W": "a power",
-    "Hz": "a frequency",
-    "rad/s": "an angular frequency",
+    "Hz": "a frequency, such as 10 Hz",
+    "rad/s": "an angular frequency, such as 10 rad/s",
     "Pa·s": "a viscosity",
     "V": "a voltage",
     "A": "a current",
     "mol": "an amount of substance",
     "C": "an electric charge",
-    "1": "a number without a unit",
-    "rad": "an angle",
+    "1": "a number without a unit, such as 0.3",
+    "rad": "an angle, such as 80°",
 }
-"""Each dimension in words, by its unit in SI."""
-EXAMPLES = {
-    "m": "10 mm",
-    "N": "10 N",
-    "Pa": "210 GPa",
-    "kg": "1 ng",
-    "s": "1 µs",
-    "K": "300 K",
-    "J": "1 aJ",
-    "N/m": "100 N/m",
-    "J/m²": "50 mJ/m²",
-    "m/s": "1 µm/s",
-    "N·s/m": "1 mN·s/m",
-    "N/s": "1 mN/s",
-    "Hz": "10 Hz",
-    "rad/s": "10 rad/s",
-    "1": "0.3",
-    "rad": "80°",
-}
-"""An example of a quantity as text, by its unit in SI."""
+"""Each dimension in words, most with an example, by its unit in SI."""
 COMMON = (
     "m", "mm", "µm", "nm", "pm", "cm", "Å", "N", "kN", "mN", "µN", "nN", "Pa", "kPa", "MPa", "GPa", "J", "J/m²",
     "mJ/m²", "N/m", "mN/m", "kg", "g", "mg", "K", "s", "ms", "µs", "ns", "m/s", "mm/s", "µm/s", "nm/s",
@@ -141,21 +122,21 @@ FACTOR = re.compile(rf"({'|'.join(PREFIXES)})({'|'.join(BASES | DERIVED)})([²³
 
 
 def in_words(unit: str) -> str:
-    """Return what a quantity in `unit` (of SI or of the model) is, with an example: "a force, such as 10 N".
+    """Return what a quantity in `unit` (of SI or of the model) is, mostly with an example: "a force, such as 10 N".
 
     Raises:
-        KeyError: no name or no example is known of this dimension.
+        KeyError: no name is known of this dimension.
     """
-    return f"{DIMENSIONS[in_si(unit)]}, such as {example(unit)}"
+    return DIMENSIONS[in_si(unit)]
 
 
 def example(unit: str) -> str:
-    """Return an example of a quantity in `unit` (of SI or of the model) as text: "10 mm".
+    """Return an example of a quantity in `unit` (of SI or of the model) as text: "10 mm"; "" where none is known.
 
     Raises:
-        KeyError: no example is known of this dimension.
+        KeyError: no name is known of this dimension.
     """
-    return EXAMPLES[in_si(unit)]
+    return in_words(unit).partition(", such as ")[2]
 
 
 def in_si(unit: str) -> str:
@@ -220,7 +201,8 @@ def si_value(text: str, unit: str, *also: str) -> tuple[Fraction, str]:
         for name in (unit, *also):
             if given.measures(in_si(name)):
                 return value, name
-        words = next((words for name, words in DIMENSIONS.items() if given.measures(name)), "another quantity")
+        names = (words.partition(",")[0] for name, words in DIMENSIONS.items() if given.measures(name))
+        words = next(names, "another quantity")
         if given.angular and in_si(unit) == "1":
             slope = math.tan(value)
             half = math.degrees(math.atan2(1.0, slope))
@@ -290,8 +272,7 @@ def _dimension(unit: str) -> Mapping[str, Any]:
 
 def _for_pint(unit: str) -> str:
     """Return `unit` in the notation of pint, unchecked: "J/m**2" for J/m2, J/m^2 and J/m², "*" for "·" and "×"."""
-    plain = unit.translate(str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")).replace("·", "*").replace("×", "*")
-    plain = re.sub(r"(\*\*|\^)", "", plain)
+    plain = re.sub(r"\*\*|\^", "", unit.translate(str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻·×", "0123456789-**")))
     return re.sub(r"(?<=[^\W\d_])(-?\d+)", r"**\1", plain)
 
 
