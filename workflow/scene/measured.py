@@ -120,21 +120,20 @@ class Measured(Shape):
     @model_validator(mode="after")
     def _is_a_profile(self) -> Self:
         """Return this profile unchanged; raise PydanticCustomError where points are missing or are no profile."""
-        along = self.r if self.x is None else self.x
-        if along is None or self.z is None:
-            raise PydanticCustomError("scene", "needs a file, or the lists r and z")
-        problem = self._fault(along, self.z)
-        if problem:
+        if problem := self._fault():
             raise PydanticCustomError("scene", "{problem}", {"problem": problem})
         return self
 
-    def _fault(self, along: tuple[float, ...], z: tuple[float, ...]) -> str | None:
-        """Return why positions `along` and heights z [LU] are no profile, with the suggested fix; None if they are one.
+    def _fault(self) -> str | None:
+        """Return why positions and heights [LU] are missing or no profile, with the suggested fix; None if they are one.
 
         Points that are kept must begin at the axis and rise from there; positions x from side to side need one of the
         keys centre, level, smooth and fit. Of points that a curve replaces it is the reason for which it cannot be
         fitted, or that the keys exclude each other.
         """
+        along, z = self.r if self.x is None else self.x, self.z
+        if along is None or z is None:
+            return "needs a file, or the lists r and z"
         if not self.is_scan:
             return fault_of(along, z) if self.x is None else f"positions x need to be read as a scan: {AS_A_SCAN}"
         if self.smooth not in (None, "none") and self.fit != "none":
@@ -223,8 +222,9 @@ class Measured(Shape):
         """
         if not self.is_curve:
             return self.body.alternatives
-        finer = {"smooth": 0.5 * self.smooth} if isinstance(self.smooth, float | int) else {}
-        return (self.model_copy(update=finer).body,) if finer else ()
+        if isinstance(self.smooth, float | int):
+            return (self.model_copy(update={"smooth": 0.5 * self.smooth}).body,)
+        return ()
 
     @property
     def coarser(self) -> tuple[Shape, ...]:

@@ -45,20 +45,19 @@ class Piecewise(Shape):
         and ∫ (p₀ + p₁ r + p₂ r²)/√(x² − r²) dr = (p₀ + p₂ x²/2) arcsin(r/x) − (p₁ + p₂ r/2) √(x² − r²).
         """
         p_2, linear, constant = self.curve.derivative().c
-        radii = self.curve.x
-        p_1 = linear - 2.0 * p_2 * radii[:-1]
-        p_0 = constant - radii[:-1] * (linear - p_2 * radii[:-1])
+        radii, start = self.curve.x, self.curve.x[:-1]
+        p_1, p_0 = linear - 2.0 * p_2 * start, constant - start * (linear - p_2 * start)
         flat = np.minimum(np.abs(np.ravel(x)), self.reach)
         g = np.zeros_like(flat)
         chunk = max(1, 1_000_000 // len(p_0))  # positions times points at once: it bounds the memory
-        for start in range(0, flat.size, chunk):
-            position = flat[start : start + chunk, None]
+        for first in range(0, flat.size, chunk):
+            position = flat[first : first + chunk, None]
             ends = np.minimum(radii, position)
             angle = np.arcsin(ends / np.where(position > 0.0, position, 1.0))
             root = np.sqrt((position - ends) * (position + ends))
             parts = (p_0 + 0.5 * p_2 * position**2) * np.diff(angle, axis=1)
             parts -= p_1 * np.diff(root, axis=1) + 0.5 * p_2 * np.diff(ends * root, axis=1)
-            g[start : start + chunk] = position[:, 0] * parts.sum(axis=1)
+            g[first : first + chunk] = position[:, 0] * parts.sum(axis=1)
         return g.reshape(np.shape(x))
 
 
