@@ -125,7 +125,7 @@ class Measured(Shape):
         return self
 
     def _fault(self) -> str | None:
-        """Return why positions and heights [LU] are missing or no profile, with the suggested fix; None if they are one.
+        """Return why positions and heights [LU] are no profile, or are missing, with the suggested fix; None if valid.
 
         Points that are kept must begin at the axis and rise from there; positions x from side to side need one of the
         keys centre, level, smooth and fit. Of points that a curve replaces it is the reason for which it cannot be

@@ -34,6 +34,11 @@ class Piecewise(Shape):
         NaN beyond the body's end.
         """
 
+    @property
+    def reach(self) -> float:
+        """The radius [LU] of the last point or knot, at which the body ends."""
+        return float(self.curve.x[-1])
+
     def height(self, x: Array) -> Array:
         """Return the height z(|x|) − z(0) [LU] at positions x [LU], constant beyond the body's end; same shape."""
         return np.asarray(self.curve(np.minimum(np.abs(x), self.reach)))
@@ -48,17 +53,16 @@ class Piecewise(Shape):
         radii, start = self.curve.x, self.curve.x[:-1]
         p_1, p_0 = linear - 2.0 * p_2 * start, constant - start * (linear - p_2 * start)
         flat = np.minimum(np.abs(np.ravel(x)), self.reach)
-        g = np.zeros_like(flat)
-        chunk = max(1, 1_000_000 // len(p_0))  # positions times points at once: it bounds the memory
-        for first in range(0, flat.size, chunk):
-            position = flat[first : first + chunk, None]
+        count, g = 1 + flat.size * start.size // 1_000_000, []  # positions times points at once: it bounds the memory
+        for chunk in np.array_split(flat, count):
+            position = chunk[:, None]
             ends = np.minimum(radii, position)
             angle = np.arcsin(ends / np.where(position > 0.0, position, 1.0))
             root = np.sqrt((position - ends) * (position + ends))
             parts = (p_0 + 0.5 * p_2 * position**2) * np.diff(angle, axis=1)
             parts -= p_1 * np.diff(root, axis=1) + 0.5 * p_2 * np.diff(ends * root, axis=1)
-            g[first : first + chunk] = position[:, 0] * parts.sum(axis=1)
-        return g.reshape(np.shape(x))
+            g.append(chunk * parts.sum(axis=1))
+        return np.concatenate(g).reshape(np.shape(x))
 
 
 class Points(Piecewise):
@@ -72,11 +76,6 @@ class Points(Piecewise):
     """Curvature at a point, or at two in sequence, over that at both neighbours beyond which the slope jumps."""
     r: tuple[float, ...]
     z: tuple[float, ...]
-
-    @property
-    def reach(self) -> float:
-        """The radius [LU] of the last point."""
-        return self.r[-1]
 
     @cached_property
     def kinks(self) -> tuple[float, ...]:
@@ -295,11 +294,6 @@ class Smoothed(Piecewise):
 
     knots: tuple[float, ...]
     slopes: tuple[float, ...]
-
-    @property
-    def reach(self) -> float:
-        """The radius [LU] of the last knot."""
-        return self.knots[-1]
 
     @property
     def kinks(self) -> tuple[float, ...]:
