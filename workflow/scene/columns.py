@@ -8,23 +8,24 @@ from pathlib import Path
 
 from contact1d.files import read_text
 from contact1d.workflow.scene.instrument_file import ProfileFileError
-from contact1d.workflow.scene.profile_file import rows_in
+from contact1d.workflow.scene.profile_file import by_heading, rows_in
 from contact1d.workflow.scene.quantities import Place
 from contact1d.workflow.scene.si_text import NUMBER
 
-COLUMNS = {
-    "share": "share",
-    "share ±": "share_uncertainty, share uncertainty",
-    "time": "time, t, relaxation time, relaxation_time, zeit, temps",
-    "time ±": "time_uncertainty, time uncertainty",
-    "f": "f, freq, frequency, frequenz, fréquence",
-    "ω": "ω, omega, angular frequency, angular_frequency, kreisfrequenz",
-    "E": "e, e(t), modulus, relaxation modulus, relaxation_modulus, relaxationsmodul",
-    "E'": "e', e′, e’, storage, storage modulus, storage_modulus, speichermodul",
-    "E''": "e'', e″, e′′, e’’, e\", loss, loss modulus, loss_modulus, verlustmodul",
-}
-"""Headings of each column in lower case, without units."""
-NAMES = {heading: name for name, headings in COLUMNS.items() for heading in headings.split(", ")}
+NAMES = by_heading(
+    {
+        "share": "share",
+        "share ±": "share_uncertainty, share uncertainty",
+        "time": "time, t, relaxation time, relaxation_time, zeit, temps",
+        "time ±": "time_uncertainty, time uncertainty",
+        "f": "f, freq, frequency, frequenz, fréquence",
+        "ω": "ω, omega, angular frequency, angular_frequency, kreisfrequenz",
+        "E": "e, e(t), modulus, relaxation modulus, relaxation_modulus, relaxationsmodul",
+        "E'": "e', e′, e’, storage, storage modulus, storage_modulus, speichermodul",
+        "E''": "e'', e″, e′′, e’’, e\", loss, loss modulus, loss_modulus, verlustmodul",
+    }
+)
+"""The name of each column by its headings in lower case, without units."""
 UNIT = re.compile(r"\s*/?\s*[\[(/]\s*([^\[\]()]*?)\s*[\])]?$")
 """The unit at the end of a heading: storage modulus [MPa], E'/MPa, ω (rad/s)."""
 END_OF_NUMBER = re.compile(r"(?<=[\d.])(?=\s*(?:±|\+|$))")
@@ -37,7 +38,7 @@ KEY = "viscoelasticity.terms"
 
 
 def lines_in(text: str) -> list[tuple[int, defaultdict[str, str]]]:
-    """Return the lines below the headings of a table: number, and cells with their units by the names in `COLUMNS`.
+    """Return the lines below the headings of a table: number, and cells with their units by the names in `NAMES`.
 
     There is one line at least. A cell is "" where the line or the table lacks it. The headings are the first line that
     names two known columns.

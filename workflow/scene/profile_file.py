@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from itertools import chain, pairwise
 from pathlib import Path
@@ -21,13 +21,12 @@ from contact1d.workflow.scene.schema import described
 from contact1d.workflow.scene.shapes import FEWEST_POINTS
 from contact1d.workflow.scene.si_text import UnitTextError, si_value
 
-RADII = ("r", "radius", "radii", "rho", "ρ", "rayon", "raggio", "radio")
-POSITIONS = (
-    "x", "position", "distance", "lateral", "weg", "abstand", "strecke", "posizione", "distanza", "posición",
-    "distancia",
-)  # fmt: skip
-"""Names of a position from one side to the other, which is read if there is no radius."""
-HEIGHTS = ("z", "h", "height", "heights", "höhe", "hoehe", "hauteur", "altezza", "altura")
+COLUMNS = {
+    "r": "r, radius, radii, rho, ρ, rayon, raggio, radio",
+    "x": "x, position, distance, lateral, weg, abstand, strecke, posizione, distanza, posición, distancia",
+    "z": "z, h, height, heights, höhe, hoehe, hauteur, altezza, altura",
+}
+"""Headings of each column in lower case, without units: x, from one side to the other, is read if there is no r."""
 NAME = re.compile(r"([^\W_]+)(?:\s*[\[(/_]\s*|\sin\s+|\s*$)([^])]*)[])]?$", re.IGNORECASE)
 """Name and unit of a column: r, r [µm], r (µm), r/µm, r_um, r in µm."""
 MODEL = "LU"
@@ -37,6 +36,13 @@ LABEL = re.compile(r":(\s|$)")
 """A label of a line that an instrument adds, as in Date: 1.2.2026."""
 FORM = "name the radius r and the height z, with units if they have any (r [µm], z [µm])"
 
+
+def by_heading(columns: Mapping[str, str]) -> dict[str, str]:
+    """Return the name of a column by each of its headings; `columns`: headings between commas, by that name."""
+    return {heading: name for name, headings in columns.items() for heading in headings.split(", ")}
+
+
+NAMES = by_heading(COLUMNS)
 Row = tuple[int, list[str]]
 """A line of a file: its number and its cells."""
 
@@ -238,15 +244,15 @@ def _without_preamble(rows: list[Row]) -> None:
     """
     start = next((i for i, (_, cells) in enumerate(rows) if sum(_number(cell) is not None for cell in cells) > 1), 0)
     above = [cells for _, cells in rows[:start]]
-    names = [i for i, cells in enumerate(above) if {*map(_word, cells)} & {*HEIGHTS} and len(cells) > 1]
+    names = [i for i, cells in enumerate(above) if "z" in map(_name, cells) and len(cells) > 1]
     alike = [i for i, cells in enumerate(above) if len(cells) == len(rows[start][1]) and not LABEL.search(cells[0])]
     del rows[: [*names[-1:], *alike, start][0]]
 
 
-def _word(heading: str) -> str:
-    """Return the name of a column in lower case, without its unit; "" for a cell that is no name."""
+def _name(heading: str) -> str:
+    """Return the name in `COLUMNS` of a column, by its heading; "" for one that is not known."""
     match = NAME.match(heading.strip('" '))
-    return match[1].lower() if match else ""
+    return NAMES.get(match[1].lower(), "") if match else ""
 
 
 def _header(rows: list[Row]) -> tuple[Sequence[int], Sequence[str]]:
@@ -270,24 +276,23 @@ def _header(rows: list[Row]) -> tuple[Sequence[int], Sequence[str]]:
     del rows[0]
     if rows:
         require_names(*rows[0], names)
-    words, below = [*map(_word, names)], rows[0][1] if rows else []
-    sides = POSITIONS if {*words}.isdisjoint(RADII) else RADII
-    columns = [_column_of(line, words, allowed) for allowed in (sides, HEIGHTS)]
+    known, below = [*map(_name, names)], rows[0][1] if rows else []
+    columns = [_column_of(line, known, name) for name in ("r" if "r" in known else "x", "z")]
     units = [NAME.sub(r"\2", names[column].strip('" ')).strip() for column in columns]
     if not any(units) and len(below) == len(names) and all(below) and not any(map(str.isdigit, "".join(below))):
         units = [below[column].strip('[]()" ') for column in columns]
         del rows[0]
-    known = [unit for unit in units if unit not in ("", MODEL)]
-    for unit in known:
+    units = [unit for unit in units if unit not in ("", MODEL)]
+    for unit in units:
         try:
             si_value(f"1 {unit}", MODEL)
         except UnitTextError:
             problem = "the unit in the names is not a known length, such as µm"
             raise ProfileFileError(f"line {line}: {problem}; {FORM}; convert volts to lengths first") from None
-    if len(known) == 1:
+    if len(units) == 1:
         problem = "only one of radius and height has a unit"
         raise ProfileFileError(f"line {line}: {problem}; give both the same way, r [µm], z [µm]")
-    return columns, known
+    return columns, units
 
 
 def require_names(line: int, cells: list[str], names: list[str]) -> None:
@@ -312,20 +317,20 @@ def require_names(line: int, cells: list[str], names: list[str]) -> None:
         )
 
 
-def _column_of(line: int, words: list[str], allowed: tuple[str, ...]) -> int:
-    """Return the index of the only column with an allowed name.
+def _column_of(line: int, known: list[str], name: str) -> int:
+    """Return the index of the only column of a name, "r", "x" or "z".
 
-    `line`: number of the line, for messages; `words`: names of the columns in lower case.
+    `line`: number of the line, for messages; `known`: names of the columns, "" for one that is not known.
 
     Raises:
-        ProfileFileError: no column or several have such a name.
+        ProfileFileError: no column or several have the name.
     """
-    matches = [i for i, word in enumerate(words) if word in allowed]
-    if len(matches) == 1:
-        return matches[0]
-    problem = f"{len(matches)} columns match {allowed[0]}; give this name to one of them"
-    if not matches:
-        problem = f"the names of its {len(words)} columns are not known; {FORM}, or leave them out"
+    count = known.count(name)
+    if count == 1:
+        return known.index(name)
+    problem = f"{count} columns match {name}; give this name to one of them"
+    if not count:
+        problem = f"the names of its {len(known)} columns are not known; {FORM}, or leave them out"
     raise ProfileFileError(f"line {line}: {problem}")
 
 
