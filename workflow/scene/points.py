@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 from typing import Any, ClassVar
 
@@ -85,7 +85,7 @@ class Points(Piecewise):
         jump between two points is where the parabolas through the points of either side meet. The axis and the last
         point are not among them.
         """
-        return tuple(sorted(self._corners(self.sharp)))
+        return tuple(sorted(_corners(self, self.sharp)))
 
     @property
     def alternatives(self) -> tuple[Shape, ...]:
@@ -123,7 +123,7 @@ class Points(Piecewise):
         """
         least = 2  # points of a curve in addition to the one at which its slope jumps
         x, y, *_ = self._chords()
-        corners = self._corners(self.sharp)
+        corners = _corners(self, self.sharp)
         x, y = np.array(sorted((dict(zip(x.tolist(), y.tolist(), strict=True)) | corners).items())).T
         ends = [0]
         for corner in np.searchsorted(x, sorted(corners)):
@@ -143,34 +143,6 @@ class Points(Piecewise):
         slope = np.diff(y, prepend=y[1]) / np.diff(x, prepend=-x[1])
         return x, y, slope, np.diff(slope) / np.append(2.0 * x[1], x[2:] - x[:-2])
 
-    def _corners(self, sharpness: float, smooth: bool = True) -> dict[float, float]:
-        """Return the height above the apex [LU] at each radius [LU] at which the slope jumps.
-
-        It jumps between two points whose curvatures are in sum more than `sharpness` times each of their neighbours':
-        where the parabolas through the points of either side meet, or at a point where these do not meet between two
-        and its curvature alone is as large. Jumps in the round-off error do not count. It also jumps at points of a
-        `smooth` body at which no slope keeps the cubics of both sides convex.
-        """
-        flank = 3  # points that determine the parabola of one side
-        margin = 1e-3  # share of a cell at its ends, where a jump would have shown at the next points
-        x, y, slope, bend = self._chords()
-        curvature = np.where(np.abs(np.diff(slope)) > LEAST_JUMP * np.abs(slope).max(), np.abs(bend), 0.0)
-        excess = curvature[1:-2] + curvature[2:-1] - sharpness * np.maximum(curvature[:-3], curvature[3:])
-        corners, used = dict[float, float](), set[int]()
-        for i in np.argsort(-excess) + 1:
-            if excess[i - 1] <= 0.0 or used & {i, i + 1}:
-                continue
-            sides, step = (slice(max(0, i + 1 - flank), i + 1), slice(i + 1, i + 1 + flank)), x[i + 1] - x[i]
-            parabolas = [np.polyfit((x[side] - x[i]) / step, y[side], min(2, len(x[side]) - 1)) for side in sides]
-            roots = np.roots(np.polysub(*parabolas))
-            meetings = [root.real for root in roots if root.imag == 0.0 and margin < root.real < 1.0 - margin]
-            if len(meetings) == 1:
-                used |= {i, i + 1}
-                corners[float(x[i] + step * meetings[0])] = float(np.polyval(parabolas[0], meetings[0]))
-        single = curvature[1:-1] > sharpness * np.maximum(curvature[:-2], curvature[2:])
-        single[1:] |= smooth & _bends_too_much(x, y)
-        return corners | {float(x[i]): float(y[i]) for i in {*(np.flatnonzero(single) + 1)} - used}
-
 
 class Rough(Points):
     """A measured profile with chords in place of cubics where its points show no smooth curve.
@@ -187,7 +159,7 @@ class Rough(Points):
     @cached_property
     def kinks(self) -> tuple[float, ...]:
         """Radii [LU], rising, at which the slope jumps, with `corners` also where points do not exclude it."""
-        return tuple(sorted(self._corners(self.uneven if self.corners else self.sharp)))
+        return tuple(sorted(_corners(self, self.uneven if self.corners else self.sharp)))
 
     @cached_property
     def curve(self) -> Any:
@@ -216,7 +188,7 @@ class Rough(Points):
         with np.errstate(divide="ignore", invalid="ignore"):
             meet = (y[end] - y[start] + before * x[start] - after * x[end]) / (before - after)
             level = y[start] + before * (meet - x[start])
-        is_corner = np.isin(x, [*self._corners(self.sharp, smooth=False)])
+        is_corner = np.isin(x, [*_corners(self, self.sharp, smooth=False)])
         inside = (meet > x[start]) & (meet < x[end]) & ~is_corner[start] & ~is_corner[end]
         behind = np.flatnonzero(inside) + 2
         return np.insert(x, behind, meet[inside]), np.insert(y, behind, level[inside])
@@ -234,6 +206,36 @@ class Rough(Points):
         least = LEAST_JUMP * np.abs(slope).max() / x[-1]
         rough = (np.abs(around).max(axis=1) > least) & ((low <= 0.0) | (high > self.uneven * low))
         return np.asarray(np.convolve(rough, np.ones(5), mode="same") > 0.0)  # two cells on either side
+
+
+@lru_cache(maxsize=8)
+def _corners(body: Points, sharpness: float, smooth: bool = True) -> dict[float, float]:
+    """Return the height above the apex [LU] at each radius [LU] at which the slope of a body jumps; cached.
+
+    It jumps between two points whose curvatures are in sum more than `sharpness` times each of their neighbours':
+    where the parabolas through the points of either side meet, or at a point where these do not meet between two
+    and its curvature alone is as large. Jumps in the round-off error do not count. It also jumps at points of a
+    `smooth` body at which no slope keeps the cubics of both sides convex.
+    """
+    flank = 3  # points that determine the parabola of one side
+    margin = 1e-3  # share of a cell at its ends, where a jump would have shown at the next points
+    x, y, slope, bend = body._chords()
+    curvature = np.where(np.abs(np.diff(slope)) > LEAST_JUMP * np.abs(slope).max(), np.abs(bend), 0.0)
+    excess = curvature[1:-2] + curvature[2:-1] - sharpness * np.maximum(curvature[:-3], curvature[3:])
+    corners, used = dict[float, float](), set[int]()
+    for i in np.argsort(-excess) + 1:
+        if excess[i - 1] <= 0.0 or used & {i, i + 1}:
+            continue
+        sides, step = (slice(max(0, i + 1 - flank), i + 1), slice(i + 1, i + 1 + flank)), x[i + 1] - x[i]
+        parabolas = [np.polyfit((x[side] - x[i]) / step, y[side], min(2, len(x[side]) - 1)) for side in sides]
+        roots = np.roots(np.polysub(*parabolas))
+        meetings = [root.real for root in roots if root.imag == 0.0 and margin < root.real < 1.0 - margin]
+        if len(meetings) == 1:
+            used |= {i, i + 1}
+            corners[float(x[i] + step * meetings[0])] = float(np.polyval(parabolas[0], meetings[0]))
+    single = curvature[1:-1] > sharpness * np.maximum(curvature[:-2], curvature[2:])
+    single[1:] |= smooth & _bends_too_much(x, y)
+    return corners | {float(x[i]): float(y[i]) for i in {*(np.flatnonzero(single) + 1)} - used}
 
 
 def _bends_too_much(x: Array, y: Array) -> NDArray[np.bool_]:
