@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +16,7 @@ from numpy.typing import NDArray
 
 from contact1d.workflow.continuation.state import radius_rule
 from contact1d.workflow.continuation.trace import Trace, of_model
+from contact1d.workflow.deck.steps import last_steps
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import History, Path
 from contact1d.workflow.model.free import impact, swing
@@ -158,9 +158,8 @@ class ModelBranch:
         self._leg += 1
         self._given = "force" if history.by_force else self._given
         self._add_path(history.phases, history.path(self.model))
-        for i, (phase, following) in enumerate(pairwise([*history.phases, ""])):
-            if phase != following and phase in history.marks:
-                self.marks.setdefault(i, []).append(history.marks[phase])
+        ends = last_steps(history.phases)
+        self.marks |= {ends[phase]: [mark] for phase, mark in history.marks.items() if phase in ends}
 
     def fly(self, velocity: float) -> None:
         """Move freely from displacement 0 with an impact velocity [LU/TU], positive in approach, up to the rebound.

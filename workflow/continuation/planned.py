@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +26,7 @@ from contact1d.workflow.continuation.reduction import Reduction
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trust import DigitsError, TensionError, require_trust
 from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.deck.steps import Phase, numbered, swept
+from contact1d.workflow.deck.steps import Phase, last_steps, phase_names, swept
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import Followed, History, Path
 from contact1d.workflow.scene import Bodies
@@ -44,7 +43,7 @@ class Plan:
         model: the particles of the reduced model.
         path: displacements, positions along x and times of all load steps.
         names: of their phases, (m,); a phase is numbered where its name is repeated.
-        marks: numbers of load steps whose states are written: a phase ends there.
+        marks: numbers of load steps at the end of a phase whose states are written.
     """
 
     deck: Deck
@@ -71,14 +70,12 @@ class Plan:
     def phases(self) -> tuple[Phase, ...]:
         """The load steps as named phases, in order, numbered where a name is repeated ("loading_2"); cached.
 
-        A phase also ends at each marked load step, whose state is written; the rest then has the same name.
+        The state of a phase's last load step is written where that is marked.
         """
-        rows, phases = swept(self._columns), list[Phase]()
-        begins = [0, *(i for i, (before, name) in enumerate(pairwise(self.names), 1) if before != name)]
-        ends = sorted({*begins, *(mark + 1 for mark in self.marks), len(rows)})
-        for first, last in pairwise(ends):
-            name = numbered(self.names[first], [phase.name for phase in phases]) if first in begins else phases[-1].name
-            phases.append(Phase(name, tuple(rows[first:last]), state=last - 1 in self.marks))
+        rows, phases, first = swept(self._columns), list[Phase](), 0
+        for name, last in last_steps(phase_names(self.names)).items():
+            phases.append(Phase(name, tuple(rows[first : last + 1]), state=last in self.marks))
+            first = last + 1
         return tuple(phases)
 
     @cached_property

@@ -9,8 +9,10 @@ writes all states, and afterwards removes those that are not wanted.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from itertools import groupby
 from pathlib import Path
 from typing import ClassVar
 
@@ -198,6 +200,23 @@ def numbered(name: str, taken: Sequence[str]) -> str:
     """
     count = 1 + sum(phase.partition("_")[0] == name for phase in taken)
     return name if count == 1 else f"{name}_{count}"
+
+
+def phase_names(names: Iterable[str]) -> list[str]:
+    """Return the names of phases, one for each load step, with a number where a name comes again after another one.
+
+    "loading", "unloading", "loading_2"; load steps in succession with the same name are one phase.
+    """
+    counts, phases = Counter[str](), list[str]()
+    for name, steps in groupby(names):
+        counts[name] += 1
+        phases += [name if counts[name] == 1 else f"{name}_{counts[name]}"] * len(list(steps))
+    return phases
+
+
+def last_steps(phases: Sequence[str]) -> dict[str, int]:
+    """Return the number of the last load step of each phase, by the phase's name, from one name for each load step."""
+    return {name: number for number, name in enumerate(phases)}
 
 
 SWEPT: tuple[type[Row], ...] = (Displace, Cohere, Spend, Draw)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import groupby, pairwise
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.outcome import Outcome, Reading
 from contact1d.workflow.continuation.reduction import MARGIN
 from contact1d.workflow.continuation.trace import Trace
+from contact1d.workflow.deck.steps import phase_names
 from contact1d.workflow.experiments.experiment import Scripted, finer_spacing
 from contact1d.workflow.laws import law_of
 from contact1d.workflow.laws.path import History as LoadHistory
@@ -145,22 +146,9 @@ def _load_steps(scene: Scene) -> LoadHistory:
         names += [directions[float(np.sign(end - start))]] * parts.size
         times.append(before + (after - before) * parts)
         wanted.append(start + (end - start) * parts)
-    phases = _numbered([names[0], *names])
+    phases = tuple(phase_names([names[0], *names]))
     marks = {name: f"after_{name}" for name in phases} | {phases[-1]: "final"}
     return LoadHistory(phases, np.concatenate(times), np.concatenate(wanted), bool(given.force), marks)
-
-
-def _numbered(names: list[str]) -> tuple[str, ...]:
-    """Return the names of phases, one for each load step, with a number where a name comes again after another one.
-
-    "loading", "unloading", "loading_2"; load steps in succession with the same name keep one number.
-    """
-    counts: dict[str, int] = {}
-    numbered: list[str] = []
-    for name, steps in groupby(names):
-        counts[name] = counts.get(name, 0) + 1
-        numbered += [name if counts[name] == 1 else f"{name}_{counts[name]}"] * len(list(steps))
-    return tuple(numbered)
 
 
 def _peak_error(trace: Trace) -> float:

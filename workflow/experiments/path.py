@@ -11,7 +11,8 @@ from bisect import bisect_left
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from itertools import compress, pairwise
+from itertools import compress, groupby, pairwise
+from operator import itemgetter
 
 import numpy as np
 
@@ -30,7 +31,7 @@ from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import doubts, require_trust
 from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.deck.steps import Displace, DisplaceInTime, Phase, Row, displacements
+from contact1d.workflow.deck.steps import Displace, DisplaceInTime, Phase, Row, displacements, last_steps, phase_names
 from contact1d.workflow.experiments.experiment import Scripted, finer_spacing
 from contact1d.workflow.experiments.thermal import CERTAIN, averaged, thermal_rows
 from contact1d.workflow.laws.particles import Particles
@@ -94,10 +95,9 @@ class PathExperiment(Scripted[Path]):
 
         The state at the end of each phase is written.
         """
-        parts = stretches([position for position, _ in positions_of(deck.scene, deck.settings)])
-        names = [name for name, stretch in parts for _ in stretch]
-        ends = np.cumsum([len(stretch) for _, stretch in parts]) - 1
-        return Plan(deck, model, path_of(np.concatenate([stretch for _, stretch in parts])), names, ends.tolist())
+        positions = positions_of(deck.scene, deck.settings)
+        names, path = phases_of(positions), path_of(np.asarray([position for position, _ in positions]))
+        return Plan(deck, model, path, names, last_steps(names).values())
 
     def states(self, contact: Contact, positions: Positions) -> list[State]:
         """Run the path in LAMMPS and return a state for each of the positions, in order.
@@ -168,20 +168,16 @@ class PathExperiment(Scripted[Path]):
 
         Their phases are "loading" and "unloading". Where pairs snap, the positions in between are visited as well.
         """
-        settings, passed = branch.settings, 0
-        whole = positions_of(scene, settings)
-        first = [asked for _, asked in whole].index(True)
-        for name, stretch in stretches([position for position, _ in whole]):
-            rows = list(enumerate(whole[passed : passed + len(stretch)], passed))
-            passed += len(stretch)
-            parts = {
-                UNSEEN: [position for i, (position, _) in rows if i < first],
-                name: [position for i, (position, asked) in rows if i >= first and (asked or settings.law.snaps)],
-            }
-            for phase, positions in parts.items():
-                if positions:
-                    branch.begin(phase)
-                    branch.visit(positions)
+        positions = positions_of(scene, branch.settings)
+        first, snaps = [asked for _, asked in positions].index(True), branch.settings.law.snaps
+        visited = [
+            (UNSEEN if i < first else name, name, position)
+            for i, (name, (position, asked)) in enumerate(zip(phases_of(positions), positions, strict=True))
+            if i < first or asked or snaps
+        ]
+        for (phase, _), steps in groupby(visited, key=itemgetter(0, 1)):
+            branch.begin(phase)
+            branch.visit([position for _, _, position in steps])
 
     def _losses(self, trace: Trace, scene: Scene, settings: Settings) -> dict[str, Reading]:
         """Return the energy that a path dissipates [FU·LU], by name; {} with fewer than 3 states, or without a motion.
@@ -211,12 +207,11 @@ class PathExperiment(Scripted[Path]):
         if scene.is_stepped:
             return self._plan(Deck(scene, settings), reduced(scene, settings)).phases
         positions = positions_of(scene, settings)
-        phases, first = [], 0
-        for name, stretch in stretches([position for position, _ in positions]):
-            rows = self.rows(scene, settings, positions[first : first + len(stretch)])
-            phases.append(Phase(name, rows, state=True))
-            first += len(stretch)
-        return tuple(phases)
+        steps = groupby(zip(phases_of(positions), positions, strict=True), key=itemgetter(0))
+        return tuple(
+            Phase(name, self.rows(scene, settings, [position for _, position in phase]), state=True)
+            for name, phase in steps
+        )
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
         """Return the results of the last unloading, or without attraction of the deepest state, and the lost energy.
@@ -431,26 +426,13 @@ def _fixed_grips(branch: Trace) -> dict[str, Reading]:
     return {"fixed_grips_displacement": Reading(0.5 * (before + beyond), LENGTH, errors)}
 
 
-def stretches(positions: Sequence[float]) -> list[tuple[str, list[float]]]:
-    """Return (name, displacements [LU]) of stretches of one direction: "loading", "unloading", "loading_2", … in order.
+def phases_of(positions: Positions) -> list[str]:
+    """Return the name of the phase of each position: "loading", "unloading", "loading_2", … for each direction in turn.
 
     The first is "loading", if only with the first position. A position equal to the one before counts as unloading.
-
-    Raises:
-        IndexError: there are no positions.
     """
-    parts: list[tuple[str, list[float]]] = [("loading", [positions[0]])]
-    for before, position in pairwise(positions):
-        name = "loading" if position > before else "unloading"
-        if parts[-1][0] != name:
-            parts.append((name, []))
-        parts[-1][1].append(position)
-    counts: dict[str, int] = {}
-    numbered = []
-    for name, stretch in parts:
-        counts[name] = counts.get(name, 0) + 1
-        numbered.append((name if counts[name] == 1 else f"{name}_{counts[name]}", stretch))
-    return numbered
+    rises = (after > before for (before, _), (after, _) in pairwise(positions))
+    return phase_names(["loading", *("loading" if rise else "unloading" for rise in rises)])
 
 
 @lru_cache(maxsize=1)

@@ -12,7 +12,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import compress, pairwise
+from itertools import compress, groupby, pairwise
+from operator import itemgetter
 from typing import cast
 
 import numpy as np
@@ -30,7 +31,7 @@ from contact1d.workflow.continuation.trace import Trace, of_states
 from contact1d.workflow.continuation.trust import UntrustedError, doubts
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.lattice import particle_positions
-from contact1d.workflow.deck.steps import Phase
+from contact1d.workflow.deck.steps import Phase, last_steps, phase_names
 from contact1d.workflow.experiments.experiment import Scripted, finer_spacing
 from contact1d.workflow.laws.friction import JenkinsElements, SlidingSprings, Stop, elements_of, stops, without_stops
 from contact1d.workflow.laws.particles import Particles
@@ -102,9 +103,10 @@ class TangentialExperiment(Scripted[Tangential]):
         Those in between on a straight path at constant displacement, which change no later state, are left out.
         """
         model = cast("SlidingSprings", branch.model)
-        for name, stretch in stretches(load_steps(scene, model.chain, branch.settings, sparse=True)):
+        steps = load_steps(scene, model.chain, branch.settings, sparse=True)
+        for name, phase in groupby(zip(phases_of(steps), steps, strict=True), key=itemgetter(0)):
             branch.begin(name)
-            branch.visit(*zip(*(stop for stop, _ in stretch), strict=True))
+            branch.visit(*zip(*(stop for _, (stop, _) in phase), strict=True))
 
     def read(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Reading]:
         """Return the results of the last state by name.
@@ -153,12 +155,10 @@ class TangentialExperiment(Scripted[Tangential]):
 
         These are named "forward" or "backward", numbered where repeated; the state at the end of each is written.
         """
-        parts = stretches(load_steps(deck.scene, _chain(deck.scene, deck.settings), deck.settings))
-        names = [name for name, stretch in parts for _ in stretch]
-        ends = np.cumsum([len(stretch) for _, stretch in parts]) - 1
-        depths, along = zip(*(stop for _, stretch in parts for stop, _ in stretch), strict=True)
+        steps = load_steps(deck.scene, _chain(deck.scene, deck.settings), deck.settings)
+        names, (depths, along) = phases_of(steps), zip(*(stop for stop, _ in steps), strict=True)
         path = Path(np.asarray(depths), np.asarray(along), np.zeros(len(names)))
-        marks = [end for (name, _), end in zip(parts, ends.tolist(), strict=True) if name != PRESSING]
+        marks = [last for name, last in last_steps(names).items() if name != PRESSING]
         return Plan(deck, model, path, names, marks)
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
@@ -358,24 +358,20 @@ def load_steps(
     return steps
 
 
-def stretches(steps: Sequence[tuple[Stop, bool]]) -> list[tuple[str, list[tuple[Stop, bool]]]]:
-    """Return (name, load steps) of stretches of one direction: "pressing" with the first, then "forward", "backward", …
+def phases_of(steps: Sequence[tuple[Stop, bool]]) -> list[str]:
+    """Return the name of the phase of each load step: "pressing" of the first, then "forward", "backward", "forward_2".
 
-    A repeated name gets a number, "forward_2". Load steps that do not move along x belong to the stretch before, and
-    those before the first move to the stretch of that move.
+    Load steps that do not move along x belong to the phase before, and those before the first move to the phase of that
+    move.
     """
     moves = [after[1] - before[1] for (before, _), (after, _) in pairwise(steps)]
     direction = BACKWARD if next((move for move in moves if move), 1.0) < 0.0 else FORWARD
-    parts = [(PRESSING, [steps[0]])]
-    counts: dict[str, int] = {}
-    for step, moved in zip(steps[1:], moves, strict=True):
+    names = [PRESSING]
+    for moved in moves:
         if moved:
             direction = FORWARD if moved > 0.0 else BACKWARD
-        if parts[-1][0].partition("_")[0] != direction:
-            counts[direction] = counts.get(direction, 0) + 1
-            parts.append((direction if counts[direction] == 1 else f"{direction}_{counts[direction]}", []))
-        parts[-1][1].append(step)
-    return parts
+        names.append(direction)
+    return phase_names(names)
 
 
 def _contact_error(scene: Scene, settings: Settings) -> float:
