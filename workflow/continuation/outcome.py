@@ -215,6 +215,11 @@ class Outcome:
             moves.append(replace(move, changes=changes))
         return {name: (result, in_squares(moves, name)) for name, result in made.items()}
 
+    def adding(self, **parts: Mapping[str, Any]) -> Outcome:
+        """Return a copy with further entries in the `warnings`, `columns`, `tables` or checks of `consistency`."""
+        changes: dict[str, Any] = {name: {**getattr(self, name), **entries} for name, entries in parts.items()}
+        return replace(self, **changes)
+
     @property
     def profiles(self) -> dict[str, Profile]:
         """The pressure profiles [FU/LU] over x [LU] of the states that are reported with their profiles, by name."""

@@ -7,17 +7,15 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache, partial
 from typing import ClassVar, Generic, TypeVar, cast
 
-from contact1d.workflow.continuation import consistency
 from contact1d.workflow.continuation.branch import Branch, SecondMaximumError
 from contact1d.workflow.continuation.budget import budgeted, curve_errors, force_errors
 from contact1d.workflow.continuation.context import ContactBranch, RunContext
 from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.load_control import LoadBranch
-from contact1d.workflow.continuation.outcome import Agreement, Outcome, Reading, Result
+from contact1d.workflow.continuation.outcome import Outcome, Reading
 from contact1d.workflow.continuation.planned import Plan, PlannedBranch
 from contact1d.workflow.continuation.reduction import Reduction
 from contact1d.workflow.continuation.replayed import ReplayedBranch
-from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.continuation.trust import ThroughError, doubts
 from contact1d.workflow.deck.deck import Deck
@@ -37,11 +35,13 @@ class Experiment(ABC, Generic[K]):
         branches: names of the branches of the curve, by the phases that are named otherwise.
         is_statistical: whether results are means, the errors of which follow from their scatter.
         curve_is_result: whether the forces of curve.csv are results that the tolerance holds for.
+        curve_has_times: whether curve.csv has the time of each state [TU] since the start of the run.
     """
 
     main_results: ClassVar[tuple[str, ...]]
     is_statistical: ClassVar[bool] = False
     curve_is_result: ClassVar[bool] = False
+    curve_has_times: ClassVar[bool] = False
     branches: ClassVar[Mapping[str, str]] = {}
 
     def given(self, scene: Scene) -> K:
@@ -139,17 +139,11 @@ class Scripted(Experiment[K]):
         Other errors are found by perturbing the trace. A result that the states do not give is left out.
         """
 
-    def tables(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Mapping[str, tuple[float, ...]]]:
-        """Return the columns (m,) of further files, by the names of the files and of the columns.
+    def finish(self, outcome: Outcome, case: Reduction, trace: Trace) -> Outcome:
+        """Return the outcome with the warnings, columns, tables and checks of the experiment alone; here unchanged.
 
-        Here {}; a pull-off with several cycles has one file.
-        """
-        return {}
-
-    def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """Return the outcome with the warnings and columns of the experiment; here unchanged.
-
-        A pull-off refuses results that contradict its states (UntrustedError).
+        A pull-off refuses results that contradict its states (UntrustedError). `case`, `trace`: the experiment on the
+        reduced model, and the trace of all states in LAMMPS.
         """
         return outcome
 
@@ -173,31 +167,15 @@ class Scripted(Experiment[K]):
         length = 0.5 * settings.forces.range
         results = budgeted(case, trace, errors, self.is_sampled(scene), length, repeated=slower)
         warnings = doubts(scene, settings, tuple(branch.states))
-        tables = self.tables(trace, scene, settings)
         states, moves = tuple(branch.states), case.moves
+        columns = {"time": tuple(trace.time.tolist())} if self.curve_has_times else {}
         energies = (result for result in results.values() if result.unit == ENERGY and result.size)
         doubt = min(max((energy.share for energy in energies), default=0.0), 0.1)  # more would check nothing
-        checks = branch.checks(case, doubt) | consistency.asked(scene, self.asked(trace, scene), states)
-        checks |= self.energy(case, states, results)
-        rows = curve_errors(case, trace, errors.common, slower)
+        checks, rows = branch.checks(case, doubt), curve_errors(case, trace, errors.common, slower)
         outcome = Outcome(
-            results, states, branch.marked, branch.phases, warnings, {}, rows, tables, moves=moves, consistency=checks
+            results, states, branch.marked, branch.phases, warnings, columns, rows, moves=moves, consistency=checks
         )
-        return self.finish(outcome, scene, settings)
-
-    def asked(self, trace: Trace, scene: Scene) -> Sequence[tuple[float, float]]:
-        """Return pairs (force that the scene prescribes, force of its state) [FU], compression positive.
-
-        Here none, (); a load, a pull-off and a history of forces have some.
-        """
-        return ()
-
-    def energy(self, case: Reduction, states: Sequence[State], results: Mapping[str, Result]) -> dict[str, Agreement]:
-        """Return {"energy": `Agreement`}, the check of the energy of a free motion; here {}, all but an impact.
-
-        Load steps on a rigid plane have their check of energy without this.
-        """
-        return {}
+        return self.finish(outcome, case, trace)
 
     def _driven(self, context: RunContext, case: Reduction) -> tuple[ContactBranch, Trace]:
         """Run the script on a new contact in LAMMPS, which is closed at the end; return its driver and its trace.

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -15,9 +14,10 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.curve_marks import vertex
 from contact1d.analysis.polynomial import through
+from contact1d.workflow.continuation import consistency
 from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.outcome import Outcome, Reading
-from contact1d.workflow.continuation.reduction import MARGIN
+from contact1d.workflow.continuation.reduction import MARGIN, Reduction
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.deck.steps import phase_names
 from contact1d.workflow.experiments.experiment import Scripted, finer_spacing
@@ -32,6 +32,7 @@ class HistoryExperiment(Scripted[History]):
     """d, F and a at the end, the peaks, the dissipated energy, and the time of contact."""
 
     main_results = ("peak_force", "peak_displacement", "displacement", "force", "contact_radius")
+    curve_has_times = True
 
     def is_sampled(self, scene: Scene) -> bool:
         """Return True: the load steps of a history are known beforehand, so that results have a sampling error."""
@@ -83,23 +84,13 @@ class HistoryExperiment(Scripted[History]):
                 results["contact_radius"] = Reading(0.0, LENGTH, {"sampling": radius})
         return results if law_of(scene).jumps(scene) else results | _slopes(trace)
 
-    def asked(self, trace: Trace, scene: Scene) -> Sequence[tuple[float, float]]:
-        """Return pairs (prescribed force, force of the state) [FU], compression positive, one for each state.
-
-        There are none, (), where the history prescribes displacements.
-        """
-        given = self.given(scene)
-        if not given.force:
-            return ()
-        wanted = np.interp(trace.time, given.times, [point.force for point in given.force])
-        return list(zip(wanted.tolist(), trace.force.tolist(), strict=True))
-
-    def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """Return the outcome with the time of each state [TU] as its one column, and warnings of results that it lacks.
+    def finish(self, outcome: Outcome, case: Reduction, trace: Trace) -> Outcome:
+        """Return the outcome with warnings of results that it lacks, and a check of the forces that are prescribed.
 
         "no_energy": there is no contact time, or no dissipated energy; "no_slope": there are no stiffnesses, since the
         force of dashpots jumps where an unloading begins.
         """
+        given, scene = self.given(case.scene), case.scene
         missing, words = {"contact_time", "dissipated_energy"} - outcome.results.keys(), ""
         if len(missing) > 1:
             words = "the bodies touch at the end, or never, so there is neither a contact_time nor a dissipated_energy"
@@ -113,8 +104,12 @@ class HistoryExperiment(Scripted[History]):
                 "the force of a dashpot jumps where the unloading begins, so there is neither an unloading_stiffness "
                 "nor a creep_corrected_stiffness"
             )
-        times = tuple(state.time for state in outcome.states)
-        return replace(outcome, warnings={**outcome.warnings, **warnings}, columns={"time": times})
+        pairs = []
+        if given.force:
+            wanted = np.interp(trace.time, given.times, [point.force for point in given.force])
+            pairs = list(zip(wanted.tolist(), trace.force.tolist(), strict=True))
+        checks = consistency.asked(scene, pairs, outcome.states)
+        return outcome.adding(warnings=warnings, consistency=checks)
 
     def advice(self, scene: Scene) -> str:
         """Return the advice to use more load steps, or a smaller spacing, as a sentence without a full stop."""

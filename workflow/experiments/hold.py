@@ -7,10 +7,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
 
 from contact1d.workflow.continuation.driver import Driver
-from contact1d.workflow.continuation.outcome import Outcome, Reading
+from contact1d.workflow.continuation.outcome import Reading
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.deck.steps import DisplaceInTime, Phase, Row, UnderLoad
 from contact1d.workflow.experiments.experiment import Scripted
@@ -23,6 +22,7 @@ class HoldExperiment(Scripted[Hold]):
     """d, F, a and F/(πa²) at the end, and the change of the free variable since the beginning."""
 
     main_results = ("displacement", "force", "contact_radius")
+    curve_has_times = True
 
     def script(self, branch: Driver, scene: Scene) -> None:
         """Hold the prescribed displacement or force for its duration, in a phase "holding"; mark the end "final"."""
@@ -66,8 +66,3 @@ class HoldExperiment(Scripted[Hold]):
             elif held.displacement is not None:
                 rows.append(DisplaceInTime(held.displacement, steps))
         return (Phase("holding", tuple(rows), state=True),)
-
-    def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """Return the outcome with one column, the time of each state [TU] since the start of the LAMMPS run."""
-        times = tuple(state.step * settings.motion.time_step for state in outcome.states)
-        return replace(outcome, columns={"time": times})

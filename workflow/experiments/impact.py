@@ -6,7 +6,6 @@ v and v′ are the velocities [LU/TU] before and after it, M is the mass of the 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +34,7 @@ class ImpactExperiment(Scripted[Impact]):
     """e = −v′/v, the time of contact, the peaks, and ½ M (v² − v′²)."""
 
     main_results = ("restitution", "contact_time", "peak_force", "peak_displacement", "peak_contact_radius")
+    curve_has_times = True
     branches = {"touching": "impact"}  # noqa: RUF012
 
     def is_sampled(self, scene: Scene) -> bool:
@@ -72,16 +72,21 @@ class ImpactExperiment(Scripted[Impact]):
         }
         return results | ({"contact_time": contact_time(trace)} if parted else {})
 
-    def energy(self, case: Reduction, states: Sequence[State], results: Mapping[str, Result]) -> dict[str, Agreement]:
+    def finish(self, outcome: Outcome, case: Reduction, trace: Trace) -> Outcome:
+        """Return the outcome with the check of its energy, and a warning "sticks" where the body does."""
+        words = "the body sticks: it comes down again without having parted, so there is no contact_time"
+        warnings = {} if "contact_time" in outcome.results else {"sticks": words}
+        checks = self._energy(case, outcome.states, outcome.results) if case.scene.is_modelled else {}
+        return outcome.adding(warnings=warnings, consistency=checks)
+
+    def _energy(self, case: Reduction, states: Sequence[State], results: Mapping[str, Result]) -> dict[str, Agreement]:
         """Return {"energy": `Agreement`} of the lost kinetic energy with what the contact stores and dissipates.
 
         Between two states the path is the cubic of their displacements and velocities, with three points in between. {}
-        where the reduced model lacks an effect of the scene, or its law has no energies.
+        where the law of the reduced model has no energies.
         """
         velocity, mass = self.given(case.scene).velocity, case.scene.the(Plate).mass
         assert mass != "auto"
-        if not case.scene.is_modelled:
-            return {}
         from scipy.interpolate import CubicHermiteSpline
 
         step = case.settings.motion.time_step
@@ -97,14 +102,6 @@ class ImpactExperiment(Scripted[Impact]):
         peak = results["peak_force"]  # a body that sticks has lost all, whatever its forces
         doubt = max(results["dissipated_energy"].uncertainty / first, peak.uncertainty / peak.value)
         return consistency.energy(case, consistency.Work(path, kinetic=(first, first - left)), doubt)
-
-    def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """Return the outcome with one column, the time of each state [TU], and a warning "sticks" if the body does."""
-        if "contact_time" not in outcome.results:
-            words = "the body sticks: it comes down again without having parted, so there is no contact_time"
-            outcome = replace(outcome, warnings={**outcome.warnings, "sticks": words})
-        times = tuple(state.step * settings.motion.time_step for state in outcome.states)
-        return replace(outcome, columns={"time": times})
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """Return the expected phases "touching", of one load step, and "impact", as long as on the reduced model."""

@@ -6,17 +6,19 @@ d [LU] and F [FU] are positive in compression, a is the contact radius [LU].
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
 
+from contact1d.workflow.continuation import consistency
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.holding import held_phase
 from contact1d.workflow.continuation.load_control import FIRST_RISE, LoadBranch
 from contact1d.workflow.continuation.outcome import Outcome, Reading
+from contact1d.workflow.continuation.reduction import Reduction
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.experiments.experiment import Scripted
@@ -94,23 +96,18 @@ class LoadExperiment(Scripted[Load]):
                 results["mean_pressure"] = Reading(carried / area, MEAN_PRESSURE, errors, prescribed=is_free)
         return results
 
-    def asked(self, trace: Trace, scene: Scene) -> Sequence[tuple[float, float]]:
-        """Return one pair (load of the scene, force nearest to it of all states) [FU], compression positive."""
-        force = self.given(scene).force
-        return [(force, float(trace.force[np.argmin(np.abs(trace.force - force))]))]
+    def finish(self, outcome: Outcome, case: Reduction, trace: Trace) -> Outcome:
+        """Return the outcome with a check of the force, and a warning "no_radius" where the contact has no radius."""
+        force = self.given(case.scene).force
+        carried = float(trace.force[np.argmin(np.abs(trace.force - force))])
+        checks = consistency.asked(case.scene, [(force, carried)], outcome.states)
+        return outcome.adding(warnings=_missing_radius(outcome), consistency=checks)
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """Return one phase, "loading", of one load step in which the force is held, also if it is a tension."""
         force = self.given(scene).force
         scale = max(abs(force), settings.forces.scale)
         return (held_phase("loading", scene, settings, (force,), scale, state=True),)
-
-    def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """Return the outcome, with a warning "no_radius" where it has no result "contact_radius"; else unchanged."""
-        if "contact_radius" in outcome.results:
-            return outcome
-        missing = {"no_radius": "the contact has no width, so there is no contact radius"}
-        return replace(outcome, warnings={**outcome.warnings, **missing})
 
 
 class ThermalLoad(LoadExperiment):
@@ -131,9 +128,15 @@ class ThermalLoad(LoadExperiment):
                 contact reaches the end of its chain.
             EngineError: LAMMPS failed.
         """
-        scene = context.deck.scene
-        return self.finish(thermal_load(context, self.given(scene).force), scene, context.deck.settings)
+        outcome = thermal_load(context, self.given(context.deck.scene).force)
+        return outcome.adding(warnings=_missing_radius(outcome))
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """Return the phases "settling" of the run-in and "sampling" of the first 200 samples under the force."""
         return planned_samples(settings, self.given(scene).force)
+
+
+def _missing_radius(outcome: Outcome) -> dict[str, str]:
+    """Return a warning, {"no_radius": text}, of an outcome without a result "contact_radius"; else {}."""
+    words = "the contact has no width, so there is no contact radius"
+    return {} if "contact_radius" in outcome.results else {"no_radius": words}

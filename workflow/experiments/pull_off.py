@@ -7,19 +7,20 @@ between two turns of the loading. Displacements [LU] and forces [FU] are positiv
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.polynomial import through
+from contact1d.workflow.continuation import consistency
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.holding import held_phase, overshoot
 from contact1d.workflow.continuation.load_control import top_of
 from contact1d.workflow.continuation.marks import unloading
 from contact1d.workflow.continuation.outcome import Outcome, Reading
+from contact1d.workflow.continuation.reduction import Reduction
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.continuation.trust import require_no_contradiction
 from contact1d.workflow.deck.steps import Phase
@@ -83,21 +84,6 @@ class PullOffExperiment(Scripted[PullOff]):
             results["adhesion_force_first"] = _marks(unloadings[0], scene, settings, preload)["adhesion_force"]
         return results
 
-    def asked(self, trace: Trace, scene: Scene) -> Sequence[tuple[float, float]]:
-        """Return pairs (prescribed preload, force reached) [FU], compression positive, one for each cycle."""
-        return [(self.given(scene).preload, float(leg.force[-1])) for leg in trace.phases("loading").legs]
-
-    def tables(self, trace: Trace, scene: Scene, settings: Settings) -> Mapping[str, Mapping[str, tuple[float, ...]]]:
-        """Return {"cycles": columns of cycles.csv}, "cycle", from 1 on, and "adhesion_force", a positive tension [FU].
-
-        {} of a single cycle.
-        """
-        unloadings, preload = _unloadings(trace), self.given(scene).preload
-        if len(unloadings) == 1:
-            return {}
-        forces = tuple(_marks(leg, scene, settings, preload)["adhesion_force"].value for leg in unloadings)
-        return {"cycles": {"cycle": tuple(map(float, range(1, len(unloadings) + 1))), "adhesion_force": forces}}
-
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """Return phases at the preload, at F = 0, and at 12 tensions up to 1.2 times the expected pull-off force.
 
@@ -111,18 +97,27 @@ class PullOffExperiment(Scripted[PullOff]):
             held_phase("pulling", scene, settings, tensions, tension, state=True),
         )
 
-    def finish(self, outcome: Outcome, scene: Scene, settings: Settings) -> Outcome:
-        """Return the outcome; where the scene gives cycles, with a column "cycle", the cycle of each state from 1 on.
+    def finish(self, outcome: Outcome, case: Reduction, trace: Trace) -> Outcome:
+        """Return the outcome with a check of the preload of each cycle, and with what there is of several cycles.
+
+        Where the scene gives cycles, the curve has a column "cycle", the cycle of each state from 1 on; of more than
+        one there is a table "cycles" with "cycle" and "adhesion_force", a positive tension [FU].
 
         Raises:
             UntrustedError: a state has more tension than the force maximum and its uncertainty.
         """
+        scene, settings, given = case.scene, case.settings, self.given(case.scene)
         force = outcome.results["adhesion_force"]
         require_no_contradiction(settings, force.value, force.uncertainty - force.given, outcome.states)
-        if self.given(scene).cycles is None:
-            return outcome
-        numbers = tuple(float(state.phase.partition("_")[2] or 1) for state in outcome.states)
-        return replace(outcome, columns={**outcome.columns, "cycle": numbers})
+        preloads = [(given.preload, float(leg.force[-1])) for leg in trace.phases("loading").legs]
+        checks = consistency.asked(scene, preloads, outcome.states)
+        columns, tables, unloadings = {}, {}, _unloadings(trace)
+        if given.cycles is not None:
+            columns["cycle"] = tuple(float(state.phase.partition("_")[2] or 1) for state in outcome.states)
+        if len(unloadings) > 1:
+            forces = tuple(_marks(leg, scene, settings, given.preload)["adhesion_force"].value for leg in unloadings)
+            tables["cycles"] = {"cycle": tuple(map(float, range(1, len(unloadings) + 1))), "adhesion_force": forces}
+        return outcome.adding(columns=columns, tables=tables, consistency=checks)
 
     def advice(self, scene: Scene) -> str:
         """Return the advice by the method and the interaction, as a sentence without a full stop.

@@ -120,7 +120,7 @@ def with_checks(scene: Scene, outcome: Outcome, pressures: Mapping[str, BodyPres
         pressures: on the three-dimensional body, by state.
     """
     checks = pressure(scene, outcome, pressures) | closed_form(scene, reported(scene, outcome).exact)
-    return replace(outcome, consistency={**outcome.consistency, **checks})
+    return outcome.adding(consistency=checks)
 
 
 def require_consistency(outcome: Outcome) -> None:
