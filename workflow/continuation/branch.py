@@ -11,14 +11,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from functools import cache
+from functools import cache, cached_property
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.curve_marks import Peak, promised, rivals
 from contact1d.digits import apart
-from contact1d.workflow.continuation.context import ContactBranch, RunContext
+from contact1d.workflow.continuation.context import ContactBranch
 from contact1d.workflow.continuation.marks import POSITION_FACTOR, peak_of, radius_rate
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Search, Trace, of_states
@@ -40,20 +41,22 @@ JUMPS = (
 
 
 class Branch(ContactBranch):
-    """The states of a contact under displacement control.
+    """The states of a contact under displacement control."""
 
-    Attributes:
-        tolerance: relative error of a force maximum that a search may leave.
-    """
+    @property
+    def driver(self) -> Self:
+        """This branch, which a script drives itself."""
+        return self
 
-    def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
-        """Prepare a contact under displacement control; LAMMPS starts with the `with` statement.
+    @property
+    def tolerance(self) -> float:
+        """Relative error of a force maximum that a search may leave, a share of the tolerance."""
+        return 0.3 * self.settings.tolerance
 
-        `meanwhile` is called while LAMMPS reads the bodies.
-        """
-        super().__init__(context, meanwhile)
-        self.tolerance = 0.3 * self.settings.tolerance  # the share of a search
-        self._expected = cache(self.model.displacement_at)
+    @cached_property
+    def _expected(self) -> Callable[[float], float]:
+        """The displacement [LU] of the reduced model under a force [FU], compression positive; cached."""
+        return cache(self.model.displacement_at)
 
     @property
     def unloading(self) -> Trace:

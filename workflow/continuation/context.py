@@ -165,6 +165,10 @@ class ContactBranch:
         given: what is prescribed: "displacement", "force" over time, a "load", or "" of a free motion.
     """
 
+    unbalance: float | None = None
+    moves, given = False, "displacement"
+    _direction, _turned, _phase = 0, False, ""
+
     def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
         """Prepare a contact without states; LAMMPS starts with the `with` statement.
 
@@ -177,11 +181,7 @@ class ContactBranch:
         self.legs: list[int] = []
         self.searches: dict[int, Search] = {}
         self.marked: dict[str, State] = {}
-        self.unbalance: float | None = None
-        self.moves = False
         self.wanted: dict[int, float] = {}
-        self.given = "displacement"
-        self._direction, self._turned, self._phase = 0, False, ""
         self._open = ExitStack()
 
     def __enter__(self) -> Self:
@@ -207,7 +207,11 @@ class ContactBranch:
     @property
     def leg(self) -> list[State]:
         """The states since the loading last turned, in order, as a new list; empty before the first load step."""
-        return [state for state, leg in zip(self.states, self.legs, strict=True) if leg == self._number]
+        return self.of_leg(self._number)
+
+    def of_leg(self, number: int) -> list[State]:
+        """Return the states of the leg of a number, from 0 on, in order; empty without any."""
+        return [state for state, leg in zip(self.states, self.legs, strict=True) if leg == number]
 
     @property
     def scale(self) -> float:
@@ -245,10 +249,6 @@ class ContactBranch:
         Other branches override it.
         """
         raise UntrustedError('a plate under a load has no prescribed displacement: use method = "quasistatic"')
-
-    def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
-        """Raise UntrustedError, always: quasi-static load steps take no time. Searches and load control override it."""
-        raise UntrustedError('a load step at rest takes no time: use method = "dynamic"')
 
     def follow(self, history: History) -> None:
         """Raise UntrustedError, always: these load steps are not planned on a rigid plane, where it is overridden."""

@@ -75,9 +75,6 @@ class Driver(Protocol):
 
         Compression is positive. In LAMMPS, displacement control needs the displacement and load control the force
         (AssertionError for None); on the reduced model the displacement has priority.
-
-        Raises:
-            UntrustedError: a contact that is planned on a rigid plane, whose load steps take no time.
         """
 
     def follow(self, history: History) -> None:

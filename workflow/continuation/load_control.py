@@ -13,13 +13,14 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.curve_marks import are_apart
 from contact1d.analysis.polynomial import lowest_minimum, through, value
-from contact1d.workflow.continuation.context import ContactBranch, RunContext
+from contact1d.workflow.continuation.context import ContactBranch
 from contact1d.workflow.continuation.holding import Held, Start, hold, overshoot, press
 from contact1d.workflow.continuation.trace import Search
 from contact1d.workflow.continuation.trust import ThroughError, UntrustedError
@@ -116,14 +117,13 @@ class LoadBranch(ContactBranch):
         given: "load".
     """
 
-    def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
-        """Prepare a contact under load control, without states; LAMMPS starts with the `with` statement.
+    unbalance, given = 0.0, "load"
+    _held: Held | None = None
 
-        `meanwhile` is called while LAMMPS reads the bodies.
-        """
-        super().__init__(context, meanwhile)
-        self.unbalance, self.given = 0.0, "load"
-        self._held: Held | None = None
+    @property
+    def driver(self) -> Self:
+        """This branch, which a script drives itself."""
+        return self
 
     def reach(self, force: float, scale: float) -> None:
         """Hold a force [FU], compression positive, at rest within a tenth of the tolerance of `scale` [FU].

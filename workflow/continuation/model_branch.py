@@ -52,6 +52,9 @@ class ModelBranch:
         dense: positions for each step that the scene gives.
         shift: of the displacements that it gives [LU].
         marks: names under which states are reported, by the number of the state.
+        wanted: force [FU] that a state was to carry, by its number.
+        peaks: numbers of the states at force maxima.
+        given: what is prescribed, "displacement" or "force" over time.
     """
 
     def __init__(self, scene: Scene, settings: Settings, model: Particles, dense: int, shift: float) -> None:
@@ -62,10 +65,12 @@ class ModelBranch:
         self.scene, self.settings, self.model, self.dense, self.shift = scene, settings, model, dense, shift
         self._phase, self._leg = "", -1
         self._rises: bool | None = None
-        self._given = "displacement"
+        self.given = "displacement"
         self._rows: list[Row] = []
         self._beyond = np.empty(0)
         self.marks: dict[int, list[str]] = {}
+        self.wanted: dict[int, float] = {}
+        self.peaks: list[int] = []
 
     @property
     def scale(self) -> float:
@@ -129,6 +134,7 @@ class ModelBranch:
         start = self._rows[-1].displacement if begun else 0.0
         self._turn(end > start)
         self._add(np.linspace(start, end, steps + 1)[begun:])
+        self.wanted[self.last] = force
 
     def hold(self, duration: float, displacement: float | None, force: float | None) -> None:
         """Hold a displacement [LU], or a force [FU] on a free plate, for a time [TU]: add the first and the last state.
@@ -156,7 +162,7 @@ class ModelBranch:
         """
         history = history.denser(self.dense)
         self._leg += 1
-        self._given = "force" if history.by_force else self._given
+        self.given = "force" if history.by_force else self.given
         self._add_path(history.phases, history.path(self.model))
         ends = last_steps(history.phases)
         self.marks |= {ends[phase]: [mark] for phase, mark in history.marks.items() if phase in ends}
@@ -201,6 +207,7 @@ class ModelBranch:
                 last -= near.size - 1 - int(np.argmax(tensions))
         self._add(positions[:last])
         self._beyond = positions[last:]
+        self.peaks.append(self.last)
 
     def _peak(self, positions: Array, end: float, zooms: int = 2, fine: int = 30) -> tuple[float, float]:
         """Return (displacement of the force maximum, distance of dense positions about it), both [LU].
@@ -242,14 +249,9 @@ class ModelBranch:
         """The number of the last state, from 0 on, over all states; −1 without states."""
         return len(self._rows) - 1
 
-    @property
-    def held(self) -> float:
-        """The force [FU], compression positive, of a contact in unloading at the displacement of the last state.
-
-        Raises:
-            IndexError: there are no states.
-        """
-        return float(self.model.held(np.asarray([self._rows[-1].displacement]))[0])
+    def held(self, state: int) -> float:
+        """Return F [FU], compression positive, of a state by its number, as in unloading from the deepest one."""
+        return float(self.model.held(np.asarray([self._rows[state].displacement]))[0])
 
     @property
     def phases(self) -> list[str]:
@@ -288,7 +290,7 @@ class ModelBranch:
         phases, legs, path = self.phases, self.legs, self.path
         rule = radius_rule(self.scene, self.settings.tolerance)
         trace = of_model(phases, legs, path, self.model.follow(path), rule, self.model)
-        trace = replace(trace, given=self._given)
+        trace = replace(trace, given=self.given)
         return trace if whole else trace.chosen([i for i, name in enumerate(phases) if name != UNSEEN])
 
     def _turn(self, rises: bool) -> None:

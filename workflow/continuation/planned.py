@@ -9,7 +9,7 @@ are positive in compression.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from contact1d.analysis.pressure import Profile, ZonedProfile
 from contact1d.workflow.continuation import consistency
 from contact1d.workflow.continuation.contact import Contact
-from contact1d.workflow.continuation.context import ContactBranch, RunContext
+from contact1d.workflow.continuation.context import ContactBranch
 from contact1d.workflow.continuation.model_branch import ModelBranch
 from contact1d.workflow.continuation.outcome import Agreement
 from contact1d.workflow.continuation.reduction import Reduction
@@ -28,7 +28,7 @@ from contact1d.workflow.continuation.trust import DigitsError, TensionError, req
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import Phase, last_steps, phase_names, swept
 from contact1d.workflow.laws.particles import Particles
-from contact1d.workflow.laws.path import Followed, History, Path
+from contact1d.workflow.laws.path import Followed, Path
 from contact1d.workflow.scene import Bodies
 
 Array = NDArray[np.float64]
@@ -155,60 +155,10 @@ class PlannedBranch(ContactBranch):
 
     plan: Plan
 
-    def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
-        """Prepare a contact whose load steps are planned on the reduced model; LAMMPS starts with the `with` statement.
-
-        `meanwhile` is called while LAMMPS reads the bodies.
-        """
-        super().__init__(context, meanwhile)
-        self._driven = ModelBranch(self.scene, self.settings, self.model, 1, 0.0)
-        self._largest: float | None = None
-
-    def begin(self, name: str) -> None:
-        """Begin a phase of this name with the next planned load step; the plan numbers a repeated name."""
-        self._driven.begin(name)
-
-    def visit(self, positions: Sequence[float] | Array, along: Sequence[float] | None = None) -> None:
-        """Plan load steps at displacements [LU], compression positive, and positions `along` x [LU]; None: 0.
-
-        LAMMPS does not run yet, and there are no states.
-        """
-        self._driven.visit(positions, along)
-
-    def reach(self, force: float, scale: float) -> None:
-        """Plan load steps until the model carries a force [FU], compression positive; `scale` is ignored.
-
-        LAMMPS does not run yet.
-
-        Raises:
-            TensionError: a tension that exceeds the force maximum of the model, by more than the relative
-                tolerance.
-        """
-        self._driven.reach(force, scale)
-        if force < 0.0 and self._driven.held > (1.0 - self.settings.tolerance) * force:
-            raise TensionError(force, self.scale)
-        self.wanted[self._driven.last] = force
-
-    def maximum(self) -> None:
-        """Plan load steps to the force maximum of the model, its largest tension; the last of them is at it."""
-        self._driven.maximum()
-        self._largest = max(self._largest or 0.0, -self._driven.held)
-
-    def open(self) -> None:
-        """Plan load steps beyond the force maximum, until the bodies are apart."""
-        self._driven.open()
-
-    def follow(self, history: History) -> None:
-        """Plan the load steps of a history of displacements [LU] or forces [FU] over time [TU].
-
-        Of forces, the load steps are at the displacements at which the model carries them.
-        """
-        self._driven.follow(history)
-        self.given = "force" if history.by_force else self.given
-
-    def mark(self, name: str) -> None:
-        """Report the last planned load step under a name; its state is there once LAMMPS has run."""
-        self._driven.mark(name)
+    @cached_property
+    def driver(self) -> ModelBranch:
+        """The reduced model, on which a script plans the load steps."""
+        return ModelBranch(self.scene, self.settings, self.model, 1, 0.0)
 
     def checks(self, case: Reduction, doubt: float) -> dict[str, Agreement]:
         """Return the checks of the states by name: "balance", "plan" and "energy".
@@ -223,15 +173,20 @@ class PlannedBranch(ContactBranch):
         return super().checks(case, doubt) | self.plan.checks(case, self.states, doubt)
 
     def finish(self) -> None:
-        """Run all planned load steps in LAMMPS, and only then set `plan`, `states`, `legs` and `marked`.
+        """Run all planned load steps in LAMMPS, and only then set `plan`, `states` and all that belongs to them.
 
         Raises:
+            TensionError: a tension exceeds the force maximum of the model by more than the relative tolerance.
             EngineError: LAMMPS failed.
             UntrustedError: a state is no result; a force maximum is below the round-off error of positions.
         """
-        self.plan = Plan.of(self.contact.deck, self._driven)
-        self.states, self.legs = self.plan.measured(self.contact), self._driven.legs
-        self.marked = {name: self.states[i] for i, names in self._driven.marks.items() for name in names}
+        driven = self.driver
+        for state, force in driven.wanted.items():
+            if force < 0.0 and driven.held(state) > (1.0 - self.settings.tolerance) * force:
+                raise TensionError(force, self.scale)
+        self.plan, self.given, self.wanted = Plan.of(self.contact.deck, driven), driven.given, driven.wanted
+        self.states, self.legs = self.plan.measured(self.contact), driven.legs
+        self.marked = {name: self.states[i] for i, names in driven.marks.items() for name in names}
         self._require_digits()
 
     def _require_digits(self) -> None:
@@ -244,7 +199,8 @@ class PlannedBranch(ContactBranch):
             DigitsError: names both [FU].
         """
         digits = self.states[-1].residual * self.settings.chains.upper
-        if self._largest is not None and self._largest <= digits:
+        tensions = [-self.driver.held(state) for state in self.driver.peaks]
+        if tensions and max(tensions) <= digits:
             raise DigitsError(
                 f"the force maximum, about {self.scale:.2g} FU, is too small compared with {digits:.2g} FU, the "
                 "round-off error of the contact force",

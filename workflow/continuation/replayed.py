@@ -9,14 +9,13 @@ are positive in compression.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from contact1d.analysis.curve_marks import Peak, rivals, smooth_crossing
 from contact1d.workflow.continuation.branch import Branch
-from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.marks import early_detachment, missed_tension
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trust import UntrustedError
@@ -48,15 +47,9 @@ class Stretch:
 class ReplayedBranch(Branch):
     """The states of a contact whose pairs snap."""
 
-    def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
-        """Prepare a contact whose load steps are repeated from the start; LAMMPS starts with the `with` statement.
-
-        `meanwhile` is called while LAMMPS reads the bodies.
-        """
-        super().__init__(context, meanwhile)
-        self._passed: tuple[Phase, ...] = ()
-        self._stretches: list[Stretch] = []
-        self._top: Stretch | None = None
+    _passed: tuple[Phase, ...] = ()
+    _stretches: tuple[Stretch, ...] = ()
+    _top: Stretch | None = None
 
     def mark(self, name: str) -> None:
         """Report the last state under a name, and have its atoms written to states.lammpstrj.
@@ -113,7 +106,7 @@ class ReplayedBranch(Branch):
         change.
         """
         if self._top:
-            self._passed, self._stretches, self._top = self.contact.phases, [], None
+            self._passed, self._stretches, self._top = self.contact.phases, (), None
         return super()._turn(rises)
 
     def _record_target(self, force: float) -> None:
@@ -124,7 +117,7 @@ class ReplayedBranch(Branch):
         """
         super()._record_target(force)
         phase = self._last.phase.partition("_")[0]
-        self._stretches.append(Stretch(self._number, phase, len(self.states) - 1, force))
+        self._stretches += (Stretch(self._number, phase, len(self.states) - 1, force),)
 
     def _about_maximum(self, window: float, first: bool, count: int = 8) -> list[float]:
         """Return displacements [LU] of the unloading: of the present states, and in a window about its force maximum.
@@ -164,14 +157,7 @@ class ReplayedBranch(Branch):
             return self.peak.position if is_top else self.states[stretch.last].displacement
         if stretch.leg == self._number:
             return smooth_crossing(*self.unloading.lists, stretch.force)
-        return _displacement_of(self._of_leg(stretch.leg), stretch.force)
-
-    def _of_leg(self, number: int) -> list[State]:
-        """Return the states between two turns of the loading, part `number` of the path from 0 on, in order.
-
-        [] where there is no such part.
-        """
-        return [state for state, leg in zip(self.states, self.legs, strict=True) if leg == number]
+        return _displacement_of(self.of_leg(stretch.leg), stretch.force)
 
     def _replay(self, falling: list[float]) -> None:
         """Close the contact and repeat its load steps in a new one, the last unloading at displacements `falling` [LU].
@@ -190,7 +176,7 @@ class ReplayedBranch(Branch):
         stretches = [*self._stretches, Stretch(self._number, SEPARATING, 0)]
         for stretch in stretches:
             is_last = stretch.leg == self._number
-            positions = falling if is_last else [state.displacement for state in self._of_leg(stretch.leg)]
+            positions = falling if is_last else [state.displacement for state in self.of_leg(stretch.leg)]
             end = self._end(stretch)
             sign = 1.0 if end > start else -1.0
             rows = [d for d in positions if sign * (d - start) > near and sign * (end - d) > near]

@@ -184,7 +184,7 @@ class Scripted(Experiment[K]):
         """
         scene = context.deck.scene
         with driver_of(context, lambda: case.lattice) as branch:
-            self.script(branch, scene)
+            self.script(branch.driver, scene)
             branch.finish()
         return branch, branch.trace()
 
