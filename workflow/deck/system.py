@@ -10,7 +10,7 @@ and other writers round positions: hence this small one.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TextIO
 
@@ -24,6 +24,8 @@ from contact1d.workflow.deck.effects import number, sphere_radius
 from contact1d.workflow.deck.lattice import Body, bodies, period
 from contact1d.workflow.deck.parts import margins
 from contact1d.workflow.model.motion import inertia
+from contact1d.workflow.model.settings import Settings
+from contact1d.workflow.scene import Scene
 
 Integers = NDArray[np.int64]
 PARTICLES = {"lower": 1, "upper": 2}
@@ -52,55 +54,49 @@ class System:
     bond_names: tuple[str, ...]
     masses: tuple[float, ...]
     box: NDArray[np.float64]
-    radius: float = 0.0
+    radius: float
 
 
-def assemble(
-    bodies: Sequence[Body],
-    neighbours: bool,
-    particle_mass: float,
-    anchor_mass: float,
-    margin: tuple[float, float, float],
-    driver: bool = False,
-    period: float = 0.0,
-) -> System:
-    """Return the atoms and bonds of the bodies, and the box around them.
+def assemble(scene: Scene, settings: Settings) -> System:
+    """Return the atoms and bonds of the bodies of a scene, and the box around them.
 
-    Atoms are numbered from 1, particles first, then anchors, far anchors and driver, each of the lower body first.
-    Particles have bonds to their anchors and far anchors, if they have any; kinds without bonds have no type. Atoms are
-    points (radius 0). The masses are those of atom types 1 to 4, with far anchors or a driver to 6, far anchors with
-    1e-12 of an anchor's, with a driver to 7, an anchor's.
-
-    Args:
-        bodies: (lower, upper), or on a rigid plane (upper,).
-        neighbours: whether neighbouring particles are bonded, of bodies with anchors.
-        particle_mass: [MU].
-        anchor_mass: [MU]; the plate's mass over its number of anchors.
-        margin: free space along x, y and z [LU] between atoms and the walls of the box, on each side.
-        driver: whether the plate has a driver, in the middle of the upper anchors.
-        period: length of a periodic box along x [LU], which is then around 0; 0 where the box is not periodic.
+    Atoms are numbered from 1, particles first, then anchors, far anchors and driver, each of the lower body first. The
+    driver, of a cantilever, is in the middle of the upper anchors. Particles have bonds to their anchors and far
+    anchors, if they have any, and with [neighbours] to each other; kinds without bonds have no type. The masses are
+    those of atom types 1 to 4, with far anchors or a driver to 6, far anchors with 1e-12 of an anchor's, with a driver
+    to 7, an anchor's; an anchor has its part of the mass of a plate. Around the atoms is free space up to the walls of
+    the box; a periodic box is around 0 along x.
     """
-    far, groups = len(bodies[-1].far_anchors) > 0, _groups(bodies, driver)
+    parts, driver = bodies(scene, settings), bool(scene.cantilever)
+    far, groups = len(parts[-1].far_anchors) > 0, _groups(parts, driver)
     positions = np.concatenate([*groups.values()])
     types = np.repeat([*groups], [*map(len, groups.values())])
     atoms = {kind: 1 + np.flatnonzero(types == kind) for kind in groups}
-    anchored = [body.name for body in bodies if len(body.anchors)]
+    anchored = [body.name for body in parts if len(body.anchors)]
     chains = [atoms[PARTICLES[name]] for name in anchored]
     pairs = {"bulk": [(chain, atoms[ANCHORS[name]]) for name, chain in zip(anchored, chains, strict=True)]}
-    if neighbours:
-        pairs["neighbours"] = [_nexts(chain, bool(period)) for chain in chains]
+    if scene.neighbours:
+        pairs["neighbours"] = [_nexts(chain, scene.bodies.periodic) for chain in chains]
     if far:
         pairs["far"] = [(chain, atoms[FAR_ANCHORS[name]]) for name, chain in zip(anchored, chains, strict=True)]
     names = tuple(filter(pairs.get, pairs))  # kinds without bonds have no type
     bonds = [np.empty((0, 3), dtype=np.int64)]
     bonds += [_bonds(kind, *pair) for kind, name in enumerate(names, 1) for pair in pairs[name]]
+    particle_mass, plate_mass = inertia(scene, settings)
+    anchor_mass = plate_mass / settings.chains.upper if scene.plate else particle_mass
+    if scene.stands and scene.plate:
+        # There are no anchors, so that particles have the mass of the plate.
+        particle_mass = anchor_mass + particle_mass * (not scene.experiment.is_massless)
     masses: tuple[float, ...] = (particle_mass, particle_mass, anchor_mass, anchor_mass)
     if far or driver:
         masses += 2 * (1e-12 * anchor_mass,) + (anchor_mass,) * driver  # far anchors add nothing to the plate's inertia
+    margin = margins(scene, settings)
     box = np.stack([positions.min(axis=0) - margin, positions.max(axis=0) + margin])
-    if period:
-        box[:, 0] = -0.5 * period, 0.5 * period
-    return System(types, positions, np.concatenate(bonds), names, masses, box)
+    if scene.bodies.periodic:
+        half = 0.5 * period(scene, settings)
+        box[:, 0] = -half, half
+    radius = sphere_radius(scene, settings)
+    return System(types, positions, np.concatenate(bonds), names, masses, box, radius)
 
 
 def _groups(bodies: Sequence[Body], driver: bool) -> dict[int, NDArray[np.float64]]:
@@ -185,21 +181,7 @@ def write_system(deck: Deck, folder: Path) -> None:
     contact law needs, such as adhesion.cells, where it has any.
     """
     scene, settings = deck.written
-    particle_mass, plate_mass = inertia(scene, settings)
-    anchor_mass = plate_mass / settings.chains.upper if scene.plate else particle_mass
-    if scene.stands and scene.plate:
-        # There are no anchors, so that particles have the mass of the plate.
-        particle_mass = anchor_mass + particle_mass * (not scene.experiment.is_massless)
-    system = assemble(
-        bodies(scene, settings),
-        bool(scene.neighbours),
-        particle_mass,
-        anchor_mass,
-        margins(scene, settings),
-        driver=bool(scene.cantilever),
-        period=period(scene, settings) if scene.bodies.periodic else 0.0,
-    )
-    write_data(replace(system, radius=sphere_radius(scene, settings)), scene.title, folder / "system.data")
+    write_data(assemble(scene, settings), scene.title, folder / "system.data")
     if settings.forces.table:
         write_table(settings.forces.table, settings.forces.table_from, folder / "interaction.table")
     x, unit = bodies(deck.scene, deck.settings)[0].particles[:, 0], deck.units.to_deck(1.0, "LU")

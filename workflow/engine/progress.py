@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import sys
 import time
-from typing import Any, Protocol, TextIO
+from typing import Any, TextIO
 
 
-class Progress(Protocol):
-    """A listener to a run."""
+class Progress:
+    """A listener to a run, which shows nothing by itself."""
 
     def phase(self, name: str, expected_steps: int | None = None, counted: str = "step") -> None:
         """Begin a phase called `name`, of `expected_steps` steps; None where the number is unknown.
@@ -29,24 +29,14 @@ class Progress(Protocol):
         """End the display of the run."""
 
 
-class Silent:
+class Silent(Progress):
     """A listener that shows nothing."""
 
-    def phase(self, name: str, expected_steps: int | None = None, counted: str = "step") -> None:
-        """Ignore the beginning of a phase."""
 
-    def advance(self, steps: int) -> None:
-        """Ignore the steps that are done."""
-
-    def note(self, text: str) -> None:
-        """Ignore the line of text."""
-
-    def close(self) -> None:
-        """Do nothing, as there is nothing to close."""
-
-
-class Lines:
+class Lines(Progress):
     """Plain lines for a log file or a pipe: one at the start of a phase, then at most one every few seconds.
+
+    To close it does nothing: the stream belongs to the caller.
 
     Args:
         stream: where to write.
@@ -92,11 +82,8 @@ class Lines:
         """Write the line at once, however new the last one is."""
         print(text, file=self._stream, flush=True)
 
-    def close(self) -> None:
-        """Do nothing: the stream stays open, as it belongs to the caller, and later calls still write."""
 
-
-class Bar:
+class Bar(Progress):
     """A bar on a terminal: phase, steps, their rate, expected remaining time.
 
     Args:
