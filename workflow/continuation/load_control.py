@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from typing import Self
 
 import numpy as np
@@ -212,7 +211,10 @@ class LoadBranch(ContactBranch):
                 again; a load does not come to rest, or bodies went through each other.
         """
         self._begin_phase()
-        search = LoadSearch(self.settings.tolerance, self.scale, partial(_overshoot, self), [self._latest])
+        settings, mass, guess = self.settings, self.scene.bodies.mass, self.scale
+        search = LoadSearch(
+            settings.tolerance, guess, lambda held: overshoot(settings, mass, -held, -guess), [self._latest]
+        )
         start = Start.KEPT
         for _ in range(most_loads):
             result = hold(self.contact, -search.next(), search.guess, start)
@@ -263,14 +265,6 @@ class LoadBranch(ContactBranch):
         """Keep an outcome as the latest, with its unbalanced force, and add only its last state to the states."""
         self._held, self.unbalance = held, held.unbalance
         self._append([held.last])
-
-
-def _overshoot(branch: LoadBranch, tension: float) -> float:
-    """Return by how much of its path a plate overshoots from rest under a tension to the expected pull-off force.
-
-    `tension`: positive [FU]; the result is 0 … 1 (dimensionless), 0 where the plate does not oscillate.
-    """
-    return overshoot(branch.settings, branch.scene.bodies.mass, -tension, -branch.scale)
 
 
 def top_of(displacement: Array, force: Array, longest: float = 5.0) -> tuple[float, float] | None:

@@ -178,7 +178,8 @@ def early_detachment(branch: Trace, peak: Peak, settings: Settings) -> float:
     Of a maximum at the last state, due to the residual force alone. 0 where no pair snaps.
     """
     d = branch.displacement
-    return settings.premature_detachment(float(d[peak.index] - d[min(peak.index + 1, len(d) - 1)]))
+    move = float(d[peak.index] - d[min(peak.index + 1, len(d) - 1)])
+    return settings.law.premature_detachment(move, settings.forces.residual)
 
 
 def missed_tension(branch: Trace, peak: Peak, settings: Settings, positions: int = 200) -> float:

@@ -206,9 +206,8 @@ class Trace:
             ValueError: there are no states.
         """
         _, last = np.unique(self.displacement[::-1], return_index=True)
-        falling = (len(self) - 1 - last)[::-1]
-        limit = max((limit for limit in self.model.limits if limit < self.displacement.max()), default=-np.inf)
-        return self.chosen(falling[self.displacement[falling] >= limit])
+        falling = self.chosen((len(self) - 1 - last)[::-1])
+        return falling.chosen(np.flatnonzero(falling.displacement >= falling.limit))
 
     def chosen(self, states: Sequence[int] | NDArray[np.intp]) -> Trace:
         """Return the trace of the states of these numbers, in this order, with their part of the perturbation.

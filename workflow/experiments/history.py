@@ -68,13 +68,11 @@ class HistoryExperiment(Scripted[History]):
             "force": Reading(float(force[last]), FORCE, prescribed=by_force, scale=float(np.abs(force).max())),
         }
         parted = not touches(trace)[last]
-        if not parted and (radius := trace.radius(last)):
-            results["contact_radius"] = Reading(radius, LENGTH)
-            results["mean_pressure"] = Reading(float(force[last]) / (math.pi * radius**2), MEAN_PRESSURE)
+        if not parted:
+            results |= contact_at_end(trace)
         if trace.phase[-1].startswith("holding"):
-            free, unit = (d, LENGTH) if by_force else (force, FORCE)
             first = next((i for i in range(last, -1, -1) if not trace.phase[i].startswith("holding")), 0)
-            results["relaxation"] = Reading(float(abs(free[last] - free[first])), unit, scale=float(np.abs(free).max()))
+            results["relaxation"] = relaxation(trace, first, by_force)
         if parted and force.any():
             if not touches(trace)[0]:
                 whole = _work(d, force) if law_of(scene).is_lossless else None
@@ -114,6 +112,23 @@ class HistoryExperiment(Scripted[History]):
     def advice(self, scene: Scene) -> str:
         """Return the advice to use more load steps, or a smaller spacing, as a sentence without a full stop."""
         return f"Use more experiment.steps, or {finer_spacing(scene)}"
+
+
+def contact_at_end(trace: Trace) -> dict[str, Reading]:
+    """Return "contact_radius" [LU] and "mean_pressure" [FU/LU²] of the last state; {} without contact or width."""
+    if not (radius := trace.radius(len(trace) - 1)):
+        return {}
+    pressure = float(trace.force[-1]) / (math.pi * radius**2)
+    return {"contact_radius": Reading(radius, LENGTH), "mean_pressure": Reading(pressure, MEAN_PRESSURE)}
+
+
+def relaxation(trace: Trace, first: int, by_force: bool) -> Reading:
+    """Return the change ≥ 0 from state `first` to the last one of the displacement [LU], or of the force [FU].
+
+    It is the one that is not prescribed; its scale is the largest value of the trace.
+    """
+    free, unit = (trace.displacement, LENGTH) if by_force else (trace.force, FORCE)
+    return Reading(float(abs(free[-1] - free[first])), unit, scale=float(np.abs(free).max()))
 
 
 def _load_steps(scene: Scene) -> LoadHistory:
@@ -206,7 +221,7 @@ def _forces_with_edges(trace: Trace, corner: int, states: Sequence[int]) -> list
         states: numbers of the states.
     """
     law, force = trace.model.law, [float(trace.force[i]) for i in states]
-    radius, modulus = trace.radius(corner) or 0.0, law.stiffness / law.spacing
+    radius, modulus = trace.radius(corner) or 0.0, law.modulus
     if trace.model.shares_edges or radius >= law.profile.reach:
         return force
     corrected = []

@@ -5,7 +5,6 @@ d [LU] and F [FU] are positive in compression, a is the contact radius [LU].
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 
 from contact1d.workflow.continuation.driver import Driver
@@ -13,9 +12,10 @@ from contact1d.workflow.continuation.outcome import Reading
 from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.deck.steps import DisplaceInTime, Phase, Row, UnderLoad
 from contact1d.workflow.experiments.experiment import Scripted
+from contact1d.workflow.experiments.history import contact_at_end, relaxation
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Hold, Scene
-from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE
+from contact1d.workflow.units import FORCE, LENGTH
 
 
 class HoldExperiment(Scripted[Hold]):
@@ -39,18 +39,12 @@ class HoldExperiment(Scripted[Hold]):
         also "contact_radius" [LU] and "mean_pressure" [FU/LU²].
         """
         trace, by_force = trace.phases("holding"), self.given(scene).force is not None
-        last = len(trace) - 1
-        free, unit = (trace.displacement, LENGTH) if by_force else (trace.force, FORCE)
-        force = float(trace.force[last])
-        results = {
-            "displacement": Reading(float(trace.displacement[last]), LENGTH, prescribed=not by_force),
-            "force": Reading(force, FORCE),
-            "relaxation": Reading(float(abs(free[last] - free[0])), unit, scale=float(abs(free).max())),
+        return {
+            "displacement": Reading(float(trace.displacement[-1]), LENGTH, prescribed=not by_force),
+            "force": Reading(float(trace.force[-1]), FORCE),
+            "relaxation": relaxation(trace, 0, by_force),
+            **contact_at_end(trace),
         }
-        if radius := trace.radius(last):
-            results["contact_radius"] = Reading(radius, LENGTH)
-            results["mean_pressure"] = Reading(force / (math.pi * radius**2), MEAN_PRESSURE)
-        return results
 
     def expected(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """Return one phase, "holding", of the load steps that run.

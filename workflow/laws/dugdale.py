@@ -94,7 +94,7 @@ class Dugdale:
         def error(edge: Array) -> Array:
             """Return the gap at c less the range, (m,) [LU], of contacts whose attraction ends with the body."""
             width = np.sqrt((self.end - edge) * (self.end + edge))
-            return self.gap_error(edge, width, self.profile.height(edge) - self.ratio * width)
+            return self.gap_error(edge, width, self.smooth(edge, width))
 
         if float(error(np.zeros(1))[0]) < 0.0:
             raise covered(self.end)
@@ -161,14 +161,26 @@ class Dugdale:
         elastic = displacement * angle - self._pressed(edge, width) - self.ratio * ahead
         return np.asarray(self.surface.height(c) - displacement + 2.0 / math.pi * elastic - self.range)
 
+    def smooth(self, edge: Array, width: Array) -> Array:
+        """Return d, (m,) [LU], without a singular stress at `edge` a, with `width` s = √(c² − a²), (m,) [LU]."""
+        return np.asarray(self.profile.height(edge) - self.ratio * width)
+
     def states(self, edge: Array, width: Array) -> Zone:
         """Return the states (a, c, d, F), (m,) each, of contacts with `edge` a and `width` s = √(c² − a²), (m,) [LU].
 
         Their displacement d is that without a singular stress at a; the gap at c may differ from the range. F is
         positive in compression.
         """
-        displacement = self.profile.height(edge) - self.ratio * width
+        displacement = self.smooth(edge, width)
         return Zone(edge, np.hypot(edge, width), displacement, self.forces(edge, width, displacement))
+
+    def equilibria(self, edge: Array) -> Zone:
+        """Return the states (a, c, d, F), (m,) each, in equilibrium of contacts of the radii `edge` a, (m,) [LU].
+
+        Raises:
+            SettingsError: the attraction exceeds the body.
+        """
+        return self.states(edge, self.widths(edge))
 
     def forces(self, edge: Array, width: Array, displacement: Array) -> Array:
         """Return F, (m,) [FU], compression positive, at `edge` a, `width` s and displacement d, (m,) [LU].
@@ -190,7 +202,7 @@ class Dugdale:
 
         def error(width: Array, edge: Array) -> Array:
             """Return the gap at c less the range, (m,) [LU]."""
-            return self.gap_error(edge, width, self.profile.height(edge) - self.ratio * width)
+            return self.gap_error(edge, width, self.smooth(edge, width))
 
         most = np.sqrt((self.end - edge) * (self.end + edge))
         high = np.minimum(self.range / max(self.ratio, TINY) + math.sqrt(self.range * self.known), most)

@@ -214,10 +214,12 @@ class Jkr(Law):
         """
         return max(displacement, -self.fixed_grips[1])
 
-    @property
-    def modulus(self) -> float:
-        """Plane-strain modulus E* [FU/LU²] of the springs: stiffness of a particle over the spacing."""
-        return self.stiffness / self.spacing
+    def opened(self, x: Array, body: Profile | None = None) -> Array:
+        """Return the displacement h = g − Δl, (n,) [LU], in equilibrium at contact radii x, (n,) [LU].
+
+        g is the transformed profile of the `body`, by default that of the law.
+        """
+        return np.asarray((body or self.profile).height(x) - elongation(x, self.modulus, self.work))
 
     @cached_property
     def _grid(self) -> tuple[Array, Array, Array, int]:
@@ -228,23 +230,19 @@ class Jkr(Law):
         as the body, the last two radii are the same, with a far larger h at the last.
         """
 
-        def opened(x: Array) -> Array:
-            """Return the displacement h = g − Δl, (n,) [LU], in equilibrium at contact radii x, (n,) [LU]."""
-            return np.asarray(self.profile.height(x) - elongation(x, self.modulus, self.work))
-
         # The first position lies so many decades inside that the least h is far (30 times) outside of it.
         for level in (1, 2, 3, 4):
             inner = np.geomspace(1e-3**level * self.known, self.known, level * POINTS)
             x = beside_kinks(np.append(0.0, inner), self.profile)
-            least = int(np.argmin(opened(x)))
+            least = int(np.argmin(self.opened(x)))
             if x[least] > 30.0 * inner[0]:
                 break
         near, best = x, least
         for _ in range(4):  # between the neighbours of the best position
             near = np.linspace(near[max(best - 1, 0)], near[min(best + 1, near.size - 1)], 41)
-            best = int(np.argmin(opened(near)))
+            best = int(np.argmin(self.opened(near)))
         x = np.unique(np.append(x, near[best]))
-        g, h = self.profile.height(x), opened(x)
+        g, h = self.profile.height(x), self.opened(x)
         area = np.concatenate([[0.0], np.cumsum(0.5 * (g[1:] + g[:-1]) * np.diff(x))])
         if self.known == self.profile.reach:  # a contact gets no wider than the body
             far = h[-1:] + FARTHEST_RATIO * self.spacing
@@ -321,7 +319,7 @@ class Jkr(Law):
             It is h = g − Δl at x, or at pull-off under fixed grips where x is inside of that.
             """
             outer = np.minimum(np.maximum(position, least), body.reach)
-            return np.asarray(body.height(outer) - elongation(outer, self.modulus, self.work))
+            return self.opened(outer, body)
 
         inner, center, outer = (threshold(radius + part * half) for part in (-1.0, 0.0, 1.0))
         width = np.maximum(outer - inner, narrowest)

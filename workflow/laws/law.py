@@ -96,12 +96,19 @@ class Law(ABC):
     bend: float = 0.0
     outer: Array | None = None
 
-    def __getstate__(self) -> dict[str, Any]:
-        """Return {name: value} of the fields of the dataclass, for pickling.
-
-        Cached results are left out, since they hold functions, which cannot be pickled.
-        """
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """{name: value} of the fields of the dataclass, to make another law of; without cached results."""
         return {entry.name: getattr(self, entry.name) for entry in fields(self)}
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what is pickled: the fields alone, since cached results hold functions, which cannot be pickled."""
+        return self.parameters
+
+    @property
+    def modulus(self) -> float:
+        """Plane-strain modulus E* [FU/LU²] of springs on a rigid plane: stiffness of a particle over the spacing."""
+        return self.stiffness / self.spacing
 
     @classmethod
     @abstractmethod

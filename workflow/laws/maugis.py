@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
 
@@ -115,7 +115,7 @@ class Maugis(Zoned):
         edge = np.concatenate([np.linspace(0.0, first, 40, endpoint=False), np.geomspace(first, self.known, 400)])
         edge = beside_kinks(edge, self.profile)
         edge = np.unique(np.concatenate([edge, self._folds(edge)]))
-        return self.equations.states(edge, self.equations.widths(edge))
+        return self.equations.equilibria(edge)
 
     def _folds(self, edge: Array) -> Array:
         """Return the contact radii, (k,) [LU], at which d has an extremum along a rising grid `edge` of them, (n,)
@@ -125,13 +125,13 @@ class Maugis(Zoned):
         """
         from scipy.optimize import elementwise
 
-        d = self.equations.states(edge, self.equations.widths(edge)).displacement
+        d = self.equations.equilibria(edge).displacement
         slope = np.sign(np.diff(d))
         turns = np.flatnonzero(slope[1:] != slope[:-1]) + 1
         if not turns.size:
             return turns.astype(np.float64)
         extrema = elementwise.find_minimum(
-            lambda a, sign: sign * self.equations.states(a, self.equations.widths(a)).displacement,
+            lambda a, sign: sign * self.equations.equilibria(a).displacement,
             (edge[turns - 1], edge[turns], edge[turns + 1]),
             args=(np.sign(slope[turns]),),
         )
@@ -327,7 +327,7 @@ class Maugis(Zoned):
 
         def force(edge: Array) -> Array:
             """Return F, (m,) [FU], in equilibrium at radii a, (m,) [LU]."""
-            return self.equations.states(edge, self.equations.widths(edge)).force
+            return self.equations.equilibria(edge).force
 
         maximum = elementwise.find_minimum(force, tuple(nodes.edge[peak + i : peak + i + 1] for i in (-1, 0, 1)))
         return float(maximum.x[0])
@@ -457,8 +457,7 @@ def _with_range(jkr: Jkr, reach: float, surface: Profile, wanted: float, load: f
             f"an adhesion.range of {given} LU is too short to be resolved beside this contact, at least {most} LU are "
             "needed: the contact is JKR's, which has none: leave adhesion.range out"
         )
-    parameters = {entry.name: getattr(jkr, entry.name) for entry in fields(jkr)}
-    parameters |= {"range": reach, "surface": surface}
+    parameters = jkr.parameters | {"range": reach, "surface": surface}
     end = Maugis(**parameters | {"known": jkr.profile.reach}).equations.widest()
     known = min(jkr.known, end)
     while True:
@@ -554,7 +553,7 @@ class MaugisCells(ZonedCells):
         """
         law, edge = self.law, np.asarray([self.law.critical_radius])
         if edge[0] > 0.0:
-            return float(law.equations.states(edge, law.equations.widths(edge)).displacement[0])
+            return float(law.equations.equilibria(edge).displacement[0])
         return float(law.held.displacement[int(np.argmin(law.held.force))])
 
     @property

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 from itertools import pairwise
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.laws.dugdale import Dugdale, Zone
-from contact1d.workflow.laws.jkr import Jkr, elongation
+from contact1d.workflow.laws.jkr import Jkr
 from contact1d.workflow.laws.numerics import ROUND_OFF
 from contact1d.workflow.laws.path import History, Path
 from contact1d.workflow.laws.zoned import Zoned, ZonedCells
@@ -62,8 +62,7 @@ class Receding(Zoned):
                 f"the contact is JKR's within {more:.1g}: an adhesion.rate whose velocity is so far above "
                 f"experiment.velocity, {speed:.4g} LU/TU, changes nothing that is resolved: leave it out"
             )
-        parameters = {entry.name: getattr(jkr, entry.name) for entry in fields(jkr)}
-        return cls(**parameters, surface=scene.bodies.profile, rate=rate)
+        return cls(**jkr.parameters, surface=scene.bodies.profile, rate=rate)
 
     def particles(self, x: Array, deepest: float) -> RecedingCells:
         """Return the cells at positions x, (n,) [LU]; `deepest`: largest expected displacement [LU]."""
@@ -89,7 +88,7 @@ class Receding(Zoned):
 
         def error(edge: Array, d: Array) -> Array:
             """Return h(a) − d, (m,) [LU]; 0 in equilibrium."""
-            return np.asarray(self.profile.height(edge) - elongation(edge, self.modulus, self.work) - d)
+            return self.opened(edge) - d
 
         root = elementwise.find_root(error, ends, args=(displacements,))
         return np.where(root.success, root.x, super().radii(displacements))

@@ -277,7 +277,7 @@ class RelaxingSprings(Particles):
         push = displacement - law.profile.height(edge) + retarded * velocity
         resolved = push > 1e-6 * np.abs(displacement)  # less is round-off of the edge
         grows = (edge > 0.0) & (velocity >= 0.0) & resolved & (retarded > 0.0)
-        return np.where(grows, law.stiffness / law.spacing * push, 0.0)
+        return np.where(grows, law.modulus * push, 0.0)
 
     def _layers(self, edge: Array, spent: Array, velocity: Array) -> Array:
         """Return the line load of the Prony series, (m,) [FU/LU] ≥ 0, just inside a growing contact edge.
@@ -290,10 +290,9 @@ class RelaxingSprings(Particles):
             spent: durations of the load steps, (m,) [TU].
             velocity: of the body, (m,) [LU/TU].
         """
-        stiffness, spacing = self.law.stiffness, self.law.spacing
-        grown = np.maximum(np.diff(edge, prepend=0.0), 0.0) / spent / spacing
+        grown = np.maximum(np.diff(edge, prepend=0.0), 0.0) / spent / self.law.spacing
         arms = (term.share * term.time * np.exp(-term.time * grown) for term in self.law.material.terms)
-        return np.asarray(stiffness / spacing * np.maximum(velocity, 0.0) * sum(arms) * (grown > 0.0))
+        return np.asarray(self.law.modulus * np.maximum(velocity, 0.0) * sum(arms) * (grown > 0.0))
 
     @cached_property
     def _outline(self) -> tuple[Array, Array]:

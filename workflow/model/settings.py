@@ -148,13 +148,6 @@ class Settings:
         ends = np.unique(np.linspace(1, total, min(states, total - 1) + 1).round())
         return [int(steps) for steps in np.diff(ends, prepend=0.0)]
 
-    def premature_detachment(self, move: float) -> float:
-        """Return by how much of its gap [LU] ≥ 0 a joined pair separates too early under increments `move` [LU].
-
-        It includes the residual force of a relaxation. 0 where no pair snaps.
-        """
-        return self.law.premature_detachment(move, self.forces.residual)
-
     def in_smaller_steps(self, part: float) -> Settings:
         """Return a copy with increments and moves, also those of a relaxation, scaled by a factor `part`.
 
