@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.friction import interval, standard_error
 from contact1d.workflow.continuation.outcome import LATTICE, Reading, Result, unmet
-from contact1d.workflow.continuation.trust import UntrustedError
+from contact1d.workflow.errors import UntrustedError
 from contact1d.workflow.experiments.series import Series, measured
 from contact1d.workflow.experiments.thermal import require_balance
 

@@ -77,7 +77,7 @@ def plain(scene: Scene, tolerance: float, folder: Path, tuned: bool) -> tuple[fl
             holds = held(contact, -tension, scale)
             contact.finish()
         low, high = (tension, high) if holds else (low, tension)
-    return 0.5 * (low + high), context.clock.lammps_cpu_seconds
+    return 0.5 * (low + high), context.clock.times["lammps_cpu_s"]
 
 
 def rows_of(tolerance: float, seconds: Mapping[str, float], errors: Mapping[str, float]) -> list[Row]:

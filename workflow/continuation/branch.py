@@ -23,8 +23,8 @@ from contact1d.workflow.continuation.context import ContactBranch
 from contact1d.workflow.continuation.marks import POSITION_FACTOR, peak_of, radius_rate
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Search, Trace, of_states
-from contact1d.workflow.continuation.trust import TensionError, UntrustedError
 from contact1d.workflow.deck.steps import Displace, DisplaceInTime, displacements
+from contact1d.workflow.errors import TensionError, UntrustedError
 
 Array = NDArray[np.float64]
 MOST_INCREMENTS = 10_000

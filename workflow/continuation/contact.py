@@ -91,6 +91,11 @@ class Contact:
         self._heat_is_reported = self._heat_is_reported or HEAT_FRAGMENT in fragments
         self.session.execute("", phase=name, expected_steps=expected_steps)
 
+    def begin_phase(self, phase: Phase) -> Sequence[Row]:
+        """Begin a phase and return its load steps, none of which has been run."""
+        self.begin(phase.name, phase.begin, sum(getattr(row, "steps", 0) for row in phase.rows) or None)
+        return phase.rows
+
     def row(self, row: Row, trusted: bool = True) -> State:
         """Run one load step of the current phase and return its measured state.
 
@@ -169,21 +174,17 @@ class Contact:
                 unless `relaxed`.
         """
         if self.deck.stepped:
-            self._phases, rows = [*phases], [(phase.name, row) for phase in phases for row in phase.rows]
+            self._phases, named = [*phases], [(phase.name, row) for phase in phases for row in phase.rows]
             self.session.execute("", phase=phases[0].name)
-            states = self._states_of_run(self.deck.schedule(phases), rows, 0, meanwhile)
+            states = self._states_of_run(self.deck.schedule(phases), named, 0, meanwhile)
             self.rows_seconds = self.session.lammps_seconds
             (self.session.folder / FRAMES).unlink(missing_ok=True)
             return states
         states = []
         trusted = not self.scene.noise
         for phase in phases:
-            steps = sum(getattr(row, "steps", 0) for row in phase.rows)
-            self.begin(phase.name, phase.begin, steps or None)
-            if relaxed:
-                states += [self._relaxed(row) for row in phase.rows]
-            else:
-                states += self.rows(phase.rows, trusted)
+            rows = self.begin_phase(phase)
+            states += [self._relaxed(row) for row in rows] if relaxed else self.rows(rows, trusted)
             if phase.state:
                 self.write_state()
         self.finish()
@@ -279,9 +280,9 @@ class Contact:
         Raises:
             EngineError: particles were lost, or a number is not finite.
         """
-        path, columns = self.session.folder / FRAMES, 4 if self.scene.experiment.goes_along else 3
+        path, along = self.session.folder / FRAMES, self.scene.experiment.goes_along
         try:
-            frames, end = last_frames(path, count, len(self._x), columns, self._read, part)
+            frames, end = last_frames(path, count, len(self._x), 4 if along else 3, self._read, part)
         except ValueError:
             raise self._lost("atoms are missing", self.session.timestep) from None
         if not np.isfinite(frames).all():
@@ -290,9 +291,7 @@ class Contact:
         heights = units.from_deck(frames[:, :, 0], "LU")
         pressures = units.from_deck(frames[:, :, 1], "FU") / spacing
         surfaces = np.where(pressures != 0.0, 0.0, heights)
-        if columns == 3:
-            return [Profile(self._x, none, z, p, none) for z, p in zip(surfaces, pressures, strict=True)], end
-        shears = units.from_deck(frames[:, :, 2], "FU") / spacing
+        shears = units.from_deck(frames[:, :, 2], "FU") / spacing if along else np.broadcast_to(none, pressures.shape)
         return [Profile(self._x, none, z, p, q) for z, p, q in zip(surfaces, pressures, shears, strict=True)], end
 
     def _compute_radii(self) -> None:

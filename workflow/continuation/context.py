@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import shutil
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -22,12 +22,12 @@ from contact1d.workflow.continuation.outcome import Agreement, Outcome
 from contact1d.workflow.continuation.reduction import Reduction
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Array, Search, Trace, of_states
-from contact1d.workflow.continuation.trust import UntrustedError
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import Fly, Launch, Phase, numbered
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.engine.session import Engine
+from contact1d.workflow.errors import UntrustedError
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import History
 from contact1d.workflow.model.free import FLIGHT, STRETCHES, is_over, stretch
@@ -41,32 +41,20 @@ class Clock:
     """The time that contacts took, also those of other threads.
 
     Attributes:
-        lammps_seconds, lammps_cpu_seconds: in LAMMPS, by the clock and on its processors [s].
-        rows_seconds: the part of lammps_seconds in load steps, without the deck's head and the files of states [s].
-        steps: timesteps.
+        times: "lammps_s" and "lammps_cpu_s" in LAMMPS, by the clock and on its processors [s]; "rows_s", the part of
+            lammps_s in load steps, without the deck's head and the files of states [s]; "steps", of timesteps.
     """
 
     def __init__(self) -> None:
         """Begin with no time and no timesteps; a lock makes additions from several threads safe."""
-        self.lammps_seconds = self.lammps_cpu_seconds = self.rows_seconds = 0.0
-        self.steps = 0
+        self.times: dict[str, float] = {"lammps_s": 0.0, "lammps_cpu_s": 0.0, "rows_s": 0.0, "steps": 0}
         self._lock = threading.Lock()
 
-    @property
-    def taken(self) -> tuple[float, float, float, int]:
-        """(Time in LAMMPS, on its processors, in load steps [s], number of timesteps): the arguments of `add`."""
-        return self.lammps_seconds, self.lammps_cpu_seconds, self.rows_seconds, self.steps
-
-    def add(self, lammps: float, cpu: float, rows: float, steps: int) -> None:
-        """Add the times [s] in LAMMPS, on its processors and in load steps, and the timesteps of a contact to the sums.
-
-        Threads may add at the same time.
-        """
+    def add(self, times: Mapping[str, float]) -> None:
+        """Add the times [s] and the timesteps of a contact, by name, to the sums; threads may add at the same time."""
         with self._lock:
-            self.lammps_seconds += lammps
-            self.lammps_cpu_seconds += cpu
-            self.rows_seconds += rows
-            self.steps += steps
+            for name, time in times.items():
+                self.times[name] += time
 
 
 @dataclass
@@ -118,8 +106,7 @@ class RunContext:
                 contact = Contact(self.deck, session, meanwhile)
                 yield contact
             finally:
-                rows = contact.rows_seconds if contact else 0.0
-                self.clock.add(session.lammps_seconds, session.lammps_cpu_seconds, rows, session.steps)
+                self.clock.add(session.taken | {"rows_s": contact.rows_seconds if contact else 0.0})
                 self.phase, self.timestep = session.phase, session.timestep
 
     @contextmanager
@@ -137,12 +124,8 @@ class RunContext:
             write_system(deck, folder)
             yield context
         finally:
-            self.add_time_of(context)
+            self.clock.add(context.clock.times)
             shutil.rmtree(folder, ignore_errors=True)
-
-    def add_time_of(self, context: RunContext) -> None:
-        """Add the time used so far by another context, possibly in another thread, to `clock`."""
-        self.clock.add(*context.clock.taken)
 
 
 class ContactBranch:

@@ -18,8 +18,9 @@ from enum import IntEnum
 
 from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.state import State
-from contact1d.workflow.continuation.trust import RestlessError, ThroughError, require_trust
+from contact1d.workflow.continuation.trust import require_trust
 from contact1d.workflow.deck.steps import Hold, Phase
+from contact1d.workflow.errors import RestlessError, ThroughError
 from contact1d.workflow.model.dynamics import SOFTENING
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene

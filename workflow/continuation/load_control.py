@@ -22,8 +22,8 @@ from contact1d.analysis.polynomial import lowest_minimum, through, value
 from contact1d.workflow.continuation.context import ContactBranch
 from contact1d.workflow.continuation.holding import Held, Start, hold, overshoot, press
 from contact1d.workflow.continuation.trace import Search
-from contact1d.workflow.continuation.trust import ThroughError, UntrustedError
 from contact1d.workflow.deck.steps import UnderLoad
+from contact1d.workflow.errors import ThroughError, UntrustedError
 
 Array = NDArray[np.float64]
 FIRST_RISE = 2.0

@@ -24,9 +24,10 @@ from contact1d.workflow.continuation.model_branch import ModelBranch
 from contact1d.workflow.continuation.outcome import Agreement
 from contact1d.workflow.continuation.reduction import Reduction
 from contact1d.workflow.continuation.state import State
-from contact1d.workflow.continuation.trust import DigitsError, TensionError, require_trust
+from contact1d.workflow.continuation.trust import require_trust
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import Phase, last_steps, phase_names, swept
+from contact1d.workflow.errors import DigitsError, TensionError
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import Followed, Path
 from contact1d.workflow.scene import Bodies

@@ -18,8 +18,8 @@ from contact1d.analysis.curve_marks import Peak, rivals, smooth_crossing
 from contact1d.workflow.continuation.branch import Branch
 from contact1d.workflow.continuation.marks import early_detachment, missed_tension
 from contact1d.workflow.continuation.state import State
-from contact1d.workflow.continuation.trust import UntrustedError
 from contact1d.workflow.deck.steps import Phase, displacements, numbered
+from contact1d.workflow.errors import UntrustedError
 
 SEPARATING = "separating"
 """Phase of the load steps beyond a force maximum."""

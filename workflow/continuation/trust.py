@@ -11,15 +11,7 @@ from collections.abc import Iterable
 from contact1d.analysis.pressure import end_pressure_share
 from contact1d.digits import apart
 from contact1d.workflow.continuation.state import State
-from contact1d.workflow.errors import ChainEndError as ChainEndError
-from contact1d.workflow.errors import DigitsError as DigitsError
-from contact1d.workflow.errors import OffEndError as OffEndError
-from contact1d.workflow.errors import PartedError as PartedError
-from contact1d.workflow.errors import RestlessError as RestlessError
-from contact1d.workflow.errors import TensionError as TensionError
-from contact1d.workflow.errors import ThroughError as ThroughError
-from contact1d.workflow.errors import UnsteadyError as UnsteadyError
-from contact1d.workflow.errors import UntrustedError as UntrustedError
+from contact1d.workflow.errors import ChainEndError, DigitsError, ThroughError, UntrustedError
 from contact1d.workflow.model.chain import decay_length, reflected
 from contact1d.workflow.model.settings import Settings, settings_for
 from contact1d.workflow.scene import Damping, Plate, Scene

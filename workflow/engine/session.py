@@ -217,6 +217,11 @@ class Session:
         facts = self._ask("about", tuple(styles))
         return Installation(facts["version"], tuple(facts["packages"]), facts["mpi"], tuple(facts["missing"]))
 
+    @property
+    def taken(self) -> dict[str, float]:
+        """Times in LAMMPS so far, "lammps_s" by the clock and "lammps_cpu_s" of its processors [s], and its "steps"."""
+        return {"lammps_s": self.lammps_seconds, "lammps_cpu_s": self.lammps_cpu_seconds, "steps": self.steps}
+
     def close(self) -> None:
         """Close the instance and keep the process for the next session; nothing where the session failed or was closed.
 

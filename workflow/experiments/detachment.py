@@ -23,13 +23,14 @@ from contact1d.workflow.continuation.contact import BATCH
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.outcome import Outcome, Reading
 from contact1d.workflow.continuation.state import State
-from contact1d.workflow.continuation.trust import UntrustedError, doubts, require_trust
+from contact1d.workflow.continuation.trust import doubts, require_trust
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import DrawnOff, Phase, Row, UnderLoad
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Silent
 from contact1d.workflow.engine.session import LOG
-from contact1d.workflow.experiments.series import Series, begin_phase, measured, recorded
+from contact1d.workflow.errors import UntrustedError
+from contact1d.workflow.experiments.series import Series, measured, recorded
 from contact1d.workflow.experiments.thermal import RUN_IN_SAMPLES, run_in, sample_columns
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Noise, PullOff, Scene
@@ -216,7 +217,7 @@ def _seeded_pull(context: RunContext, experiment: PullOff, number: int, stop: th
                 os.replace(folder / LOG, context.folder / LOG)
         raise
     finally:
-        context.add_time_of(repeat)
+        context.clock.add(repeat.clock.times)
     return replace(detachment, phases=(), states=()) if number else detachment
 
 
@@ -235,7 +236,7 @@ def _pull(context: RunContext, experiment: PullOff, stop: threading.Event) -> De
     ramp = load_ramp(scene, settings, experiment)
     *before, pulling = planned_detachment(scene, settings, experiment)
     with context.contact() as contact:
-        states = [state for phase in before for state in contact.rows(begin_phase(contact, phase), trusted=False)]
+        states = [state for phase in before for state in contact.rows(contact.begin_phase(phase), trusted=False)]
         require_trust(scene, settings, states[-1])
         if min(state.displacement for state in states) < ramp.separated:
             raise UntrustedError(

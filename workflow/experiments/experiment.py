@@ -17,9 +17,10 @@ from contact1d.workflow.continuation.planned import Plan, PlannedBranch
 from contact1d.workflow.continuation.reduction import Reduction
 from contact1d.workflow.continuation.replayed import ReplayedBranch
 from contact1d.workflow.continuation.trace import Trace
-from contact1d.workflow.continuation.trust import ThroughError, doubts
+from contact1d.workflow.continuation.trust import doubts
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import Phase
+from contact1d.workflow.errors import ThroughError
 from contact1d.workflow.model.settings import Settings, slower
 from contact1d.workflow.scene import Kind, Scene
 from contact1d.workflow.units import ENERGY

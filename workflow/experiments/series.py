@@ -20,9 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.friction import block_means, standard_error
-from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.outcome import LATTICE, Reading, Result
-from contact1d.workflow.deck.steps import Phase, Row
 
 Array = NDArray[np.float64]
 Reader = Callable[["Series"], Mapping[str, Reading]]
@@ -135,9 +133,3 @@ def measured(
         lattice = reading.errors.get(LATTICE, 0.0)
         results[name] = Result(value, reading.unit, errors, reading.scale, reading.prescribed, lattice)
     return results
-
-
-def begin_phase(contact: Contact, phase: Phase) -> Sequence[Row]:
-    """Begin a phase on a contact and return its load steps, none of which has been run."""
-    contact.begin(phase.name, phase.begin, sum(getattr(row, "steps", 0) for row in phase.rows))
-    return phase.rows

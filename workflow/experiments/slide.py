@@ -18,18 +18,11 @@ from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.holding import MOST_HOLDS, Start, at_rest, hold, hold_row
 from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.continuation.state import State
-from contact1d.workflow.continuation.trust import (
-    OffEndError,
-    PartedError,
-    RestlessError,
-    UnsteadyError,
-    doubts,
-    require_trust,
-)
+from contact1d.workflow.continuation.trust import doubts, require_trust
 from contact1d.workflow.deck.steps import Phase, UnderLoad, numbered
+from contact1d.workflow.errors import OffEndError, PartedError, RestlessError, UnsteadyError
 from contact1d.workflow.experiments.experiment import Experiment
 from contact1d.workflow.experiments.motion import Motion, motion_of
-from contact1d.workflow.experiments.series import begin_phase
 from contact1d.workflow.experiments.thermal import run_in
 from contact1d.workflow.model.dynamics import MOST_ROWS, MOVING_TOLERANCE
 from contact1d.workflow.model.motion import contact_half_width, too_fast
@@ -66,7 +59,7 @@ class SlideExperiment(Experiment[Slide]):
             states = [self.loaded(contact, load)]
             try:
                 for leg in legs:
-                    for row in begin_phase(contact, leg):
+                    for row in contact.begin_phase(leg):
                         state = contact.row(row, trusted=False)
                         _require_contact(scene, settings, state)
                         require_trust(scene, settings, state)
@@ -156,7 +149,7 @@ class ThermalSlide(SlideExperiment):
             EngineError: LAMMPS failed.
         """
         phase = self.loading(contact.scene, contact.settings, force)
-        return contact.rows(begin_phase(contact, phase), trusted=False)[-1]
+        return contact.rows(contact.begin_phase(phase), trusted=False)[-1]
 
 
 def outcome_of(motion: Motion, states: list[State], phases: tuple[Phase, ...]) -> Outcome:

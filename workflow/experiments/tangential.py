@@ -28,10 +28,11 @@ from contact1d.workflow.continuation.driver import Driver
 from contact1d.workflow.continuation.outcome import LATTICE, Outcome, Reading
 from contact1d.workflow.continuation.planned import Plan
 from contact1d.workflow.continuation.trace import Trace, of_states
-from contact1d.workflow.continuation.trust import UntrustedError, doubts
+from contact1d.workflow.continuation.trust import doubts
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.lattice import particle_positions
 from contact1d.workflow.deck.steps import Phase, last_steps, phase_names
+from contact1d.workflow.errors import UntrustedError
 from contact1d.workflow.experiments.experiment import Scripted, finer_spacing
 from contact1d.workflow.laws.friction import JenkinsElements, SlidingSprings, Stop, elements_of, stops, without_stops
 from contact1d.workflow.laws.particles import Particles

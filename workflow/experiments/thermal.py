@@ -20,9 +20,10 @@ from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.outcome import LATTICE, Outcome, Reading, Result
 from contact1d.workflow.continuation.state import State, radius_rule
-from contact1d.workflow.continuation.trust import UntrustedError, doubts, require_trust
+from contact1d.workflow.continuation.trust import doubts, require_trust
 from contact1d.workflow.deck.steps import DisplaceInTime, Phase, Row, UnderLoad
-from contact1d.workflow.experiments.series import Series, begin_phase, measured, recorded
+from contact1d.workflow.errors import UntrustedError
+from contact1d.workflow.experiments.series import Series, measured, recorded
 from contact1d.workflow.laws.radius import RadiusRule
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.units import FORCE, LENGTH, MEAN_PRESSURE
@@ -126,8 +127,8 @@ def thermal_load(context: RunContext, load: float, most_samples: int = 2_000) ->
     settling, sampling = planned_samples(settings, load)
     samples: list[State] = []
     with context.contact() as contact:
-        settled = _sampled_states(contact, begin_phase(contact, settling))
-        rows, error = begin_phase(contact, sampling), math.inf
+        settled = _sampled_states(contact, contact.begin_phase(settling))
+        rows, error = contact.begin_phase(sampling), math.inf
         while error > goal and len(samples) < most_samples:
             samples += _sampled_states(contact, rows)
             blocks = blocks_of(samples)

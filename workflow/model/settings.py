@@ -16,7 +16,7 @@ import numpy as np
 
 from contact1d.digits import apart
 from contact1d.potentials.table import FEWEST_POINTS, Table
-from contact1d.workflow.errors import SettingsError as SettingsError
+from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.laws import law_of
 from contact1d.workflow.laws.law import Law, NotCarriedError, stopped_at
 from contact1d.workflow.laws.pairs import interaction_law, of_pairs

@@ -10,7 +10,7 @@ import numpy as np
 from contact1d.workflow.body.consistency import closed_form, pressure
 from contact1d.workflow.body.traction import BodyPressure
 from contact1d.workflow.continuation.outcome import LATTICE, LOSSES, MODEL, Outcome, Result, in_words, unmet
-from contact1d.workflow.continuation.trust import UntrustedError
+from contact1d.workflow.errors import UntrustedError
 from contact1d.workflow.experiments import kind_of
 from contact1d.workflow.experiments.experiment import finer_spacing
 from contact1d.workflow.scene import Scene

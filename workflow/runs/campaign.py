@@ -12,14 +12,13 @@ from pathlib import Path
 from contact1d.files import PART, AnyPath, write_whole
 from contact1d.workflow.body.derived import formulas, pressures_of, with_body, with_implied
 from contact1d.workflow.continuation.context import RunContext
-from contact1d.workflow.continuation.trust import UntrustedError
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import Phase
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.failure import NO_MEMORY, TOO_LONG, TOO_WIDE
 from contact1d.workflow.engine.progress import Progress, Silent
 from contact1d.workflow.engine.session import EngineError
-from contact1d.workflow.errors import FolderError, RunError, SettingsError
+from contact1d.workflow.errors import FolderError, RunError, SettingsError, UntrustedError
 from contact1d.workflow.experiments import perform, planned
 from contact1d.workflow.experiments.spacing import with_spacing
 from contact1d.workflow.model.chain import MIX_UP, in_words, require_steps
@@ -199,9 +198,7 @@ def _timing(context: RunContext, started: float) -> dict[str, float]:
     Wall times are `total_s`, `lammps_s` of all passes in LAMMPS and of that `rows_s` in load steps; `lammps_cpu_s` is
     the processor time of LAMMPS; `steps` is a number of timesteps. `started` is a reading of time.perf_counter [s].
     """
-    total = time.perf_counter() - started
-    lammps, cpu, rows, steps = context.clock.taken
-    return {"total_s": total, "lammps_s": lammps, "lammps_cpu_s": cpu, "rows_s": rows, "steps": steps}
+    return {"total_s": time.perf_counter() - started} | context.clock.times
 
 
 def _hint(message: str) -> str:

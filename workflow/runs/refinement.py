@@ -11,10 +11,10 @@ from dataclasses import replace
 
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.outcome import LATTICE, Outcome, Refinement, Result, in_words, unmet
-from contact1d.workflow.continuation.trust import UntrustedError, doubts
+from contact1d.workflow.continuation.trust import doubts
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.engine.session import EngineError
-from contact1d.workflow.errors import SettingsError
+from contact1d.workflow.errors import SettingsError, UntrustedError
 from contact1d.workflow.experiments import kind_of, perform
 from contact1d.workflow.model.settings import settings_for
 from contact1d.workflow.scene import Scene
