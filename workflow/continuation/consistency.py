@@ -20,8 +20,8 @@ import numpy as np
 from contact1d.workflow.continuation.outcome import Agreement
 from contact1d.workflow.continuation.reduction import Reduction
 from contact1d.workflow.continuation.state import State
-from contact1d.workflow.laws.particles import Array, Particles
-from contact1d.workflow.laws.path import Path
+from contact1d.workflow.laws.particles import Particles
+from contact1d.workflow.laws.path import Array, Path
 from contact1d.workflow.scene import Scene
 
 AT_REST = 1e-8

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.pressure import Profile, penetration_depth, pressure_profile, smallest_distance
+from contact1d.analysis.pressure import Array, Profile, penetration_depth, pressure_profile, smallest_distance
 from contact1d.workflow.continuation.state import State, radius_rule
 from contact1d.workflow.continuation.trust import is_converged, require_trust
 from contact1d.workflow.deck.deck import Deck
@@ -21,7 +21,6 @@ from contact1d.workflow.engine.failure import NOT_FINITE
 from contact1d.workflow.engine.frames import last_frames
 from contact1d.workflow.engine.session import EngineError, Session
 
-Array = NDArray[np.float64]
 ATOM_UNITS = {"x": "LU", "f": "FU", "v_opposite_x": "FU", "v_opposite_z": "FU"}
 """Quantities that are measured of every atom, and their units."""
 BATCH = 8

@@ -21,7 +21,7 @@ from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.outcome import Agreement, Outcome
 from contact1d.workflow.continuation.reduction import Reduction
 from contact1d.workflow.continuation.state import State
-from contact1d.workflow.continuation.trace import Array, Search, Trace, of_states
+from contact1d.workflow.continuation.trace import Search, Trace, of_states
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import Fly, Launch, Phase, numbered
 from contact1d.workflow.deck.system import write_system
@@ -29,7 +29,7 @@ from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.engine.session import Engine
 from contact1d.workflow.errors import UntrustedError
 from contact1d.workflow.laws.particles import Particles
-from contact1d.workflow.laws.path import History
+from contact1d.workflow.laws.path import Array, History
 from contact1d.workflow.model.free import FLIGHT, STRETCHES, is_over, stretch
 from contact1d.workflow.model.reduced import reduced
 

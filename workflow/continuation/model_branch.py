@@ -12,18 +12,16 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact1d.workflow.continuation.state import radius_rule
 from contact1d.workflow.continuation.trace import Trace, of_model
 from contact1d.workflow.deck.steps import last_steps
 from contact1d.workflow.laws.particles import Particles
-from contact1d.workflow.laws.path import History, Path
+from contact1d.workflow.laws.path import Array, History, Path
 from contact1d.workflow.model.free import impact, swing
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 
-Array = NDArray[np.float64]
 MOST_NUMBERS = 2_000_000
 """Largest number of forces that are computed in a path with dense positions."""
 UNSEEN = ""

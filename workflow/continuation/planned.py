@@ -14,9 +14,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from contact1d.analysis.pressure import Profile, ZonedProfile
+from contact1d.analysis.pressure import Array, Profile, ZonedProfile
 from contact1d.workflow.continuation import consistency
 from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.context import ContactBranch
@@ -31,8 +30,6 @@ from contact1d.workflow.errors import DigitsError, TensionError
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import Followed, Path
 from contact1d.workflow.scene import Bodies
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

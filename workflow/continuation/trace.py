@@ -13,7 +13,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.analysis.pressure import Profile, ZonedProfile
+from contact1d.analysis.pressure import Array, Profile, ZonedProfile
 from contact1d.analysis.radius import ContactRadius
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.laws.particles import Particles
@@ -23,7 +23,6 @@ from contact1d.workflow.model.free import impact
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Impact, Scene
 
-Array = NDArray[np.float64]
 BRANCH_DISTANCE = 0.02
 """Least distance of two displacements over the whole path at which a change exceeds the interpolation error."""
 

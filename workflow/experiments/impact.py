@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact1d.analysis.polynomial import lowest_minimum, through, value
 from contact1d.workflow.continuation import consistency
@@ -20,14 +19,12 @@ from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.deck.steps import Fly, Launch, Phase
 from contact1d.workflow.experiments.experiment import Scripted, finer_spacing
 from contact1d.workflow.experiments.history import contact_time
-from contact1d.workflow.laws.path import Path
+from contact1d.workflow.laws.path import Array, Path
 from contact1d.workflow.model.free import FLIGHT, impact, stretch
 from contact1d.workflow.model.reduced import reduced
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Impact, Plate, Scene
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH, NUMBER
-
-Array = NDArray[np.float64]
 
 
 class ImpactExperiment(Scripted[Impact]):

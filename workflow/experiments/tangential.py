@@ -17,7 +17,6 @@ from operator import itemgetter
 from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact1d.analysis.radius import ContactRadius
 from contact1d.analysis.shear import slip, stick_margin, stick_radius
@@ -42,7 +41,6 @@ from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Friction, Scene, Tangential
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH
 
-Array = NDArray[np.float64]
 PRESSING, FORWARD, BACKWARD = "pressing", "forward", "backward"
 
 

@@ -19,13 +19,11 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact1d.analysis.polynomial import gauss
 from contact1d.workflow.errors import SettingsError
-from contact1d.workflow.laws.shape import Profile, beside_kinks
+from contact1d.workflow.laws.shape import Array, Profile, beside_kinks
 
-Array = NDArray[np.float64]
 DOUBLINGS = 200
 """Most doublings of a bracket, and most iterations of a root finder in it."""
 INSIDE = 1.0 - 1e-6

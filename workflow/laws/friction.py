@@ -13,17 +13,15 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact1d.analysis.shear import Slip, slip
 from contact1d.workflow.laws.numerics import ROUND_OFF
 from contact1d.workflow.laws.pairs import Independent, Springs, on_plane
 from contact1d.workflow.laws.particles import MORE_PHASES
-from contact1d.workflow.laws.path import Followed, Path
+from contact1d.workflow.laws.path import Array, Followed, Path
 from contact1d.workflow.laws.shape import Profile
 from contact1d.workflow.scene import Friction, Scene, Tangential
 
-Array = NDArray[np.float64]
 Stop = tuple[float, float]
 """Displacement and position along x [LU]."""
 

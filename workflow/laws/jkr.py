@@ -32,12 +32,11 @@ from contact1d.workflow.laws.law import FARTHEST_RATIO, SOFTEST_SHARE, Law, stop
 from contact1d.workflow.laws.numerics import NARROWEST, ROUND_OFF
 from contact1d.workflow.laws.pairs import springs
 from contact1d.workflow.laws.particles import Particles
-from contact1d.workflow.laws.path import Followed, Path
+from contact1d.workflow.laws.path import Array, Followed, Path
 from contact1d.workflow.laws.radius import Clinging, Held, RadiusRule
 from contact1d.workflow.laws.shape import Profile, beside_kinks
 from contact1d.workflow.scene import Adhesion, Scene
 
-Array = NDArray[np.float64]
 POINTS = 4000
 """Positions at which h and F are tabulated, and those of the integral of an energy."""
 WHOLE = 1.0 - 1e-9

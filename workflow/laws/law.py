@@ -22,13 +22,12 @@ from numpy.typing import NDArray
 
 from contact1d.analysis.curve_marks import tops
 from contact1d.workflow.laws.radius import Compressed, InTension, RadiusRule, ToTheEdge
-from contact1d.workflow.laws.shape import Profile, Tabulated
+from contact1d.workflow.laws.shape import Array, Profile, Tabulated
 from contact1d.workflow.scene import Impact, Scene
 
 if TYPE_CHECKING:
     from contact1d.workflow.laws.particles import Particles
 
-Array = NDArray[np.float64]
 FARTHEST_RATIO = 1e9
 """Largest displacement over cutoff and spacing: LAMMPS limits the number of bins, and coordinates lose digits."""
 DIFFERENCE = 1e-3

@@ -21,13 +21,12 @@ from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.laws.dugdale import DOUBLINGS, Dugdale, Zone, covered
 from contact1d.workflow.laws.jkr import POINTS, Jkr
 from contact1d.workflow.laws.numerics import ROUND_OFF
-from contact1d.workflow.laws.path import Path, legs
+from contact1d.workflow.laws.path import Array, Path, legs
 from contact1d.workflow.laws.radius import WithRange
 from contact1d.workflow.laws.shape import Profile, Splined, beside_kinks
 from contact1d.workflow.laws.zoned import Zoned, ZonedCells
 from contact1d.workflow.scene import Adhesion, Scene
 
-Array = NDArray[np.float64]
 BETWEEN = 10
 """Points of the curve for each solved contact, by cubics: their error is some 1e-8 of F."""
 BEFORE = 1000

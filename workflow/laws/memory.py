@@ -24,13 +24,10 @@ from bisect import bisect_right
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact1d.workflow.laws.numerics import NARROWEST
-from contact1d.workflow.laws.shape import Profile
+from contact1d.workflow.laws.shape import Array, Profile
 from contact1d.workflow.scene import Viscoelasticity
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

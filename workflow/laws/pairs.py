@@ -14,11 +14,10 @@ from contact1d.analysis.theory.adhesion import LENNARD_JONES_STRESS
 from contact1d.potentials import DoubleExponential, Exponential
 from contact1d.workflow.laws.law import Law
 from contact1d.workflow.laws.particles import Particles
-from contact1d.workflow.laws.path import Followed, Path, legs
+from contact1d.workflow.laws.path import Array, Followed, Path, legs
 from contact1d.workflow.laws.shape import Profile
 from contact1d.workflow.scene import Scene
 
-Array = NDArray[np.float64]
 T = TypeVar("T", bound=Law)
 
 

@@ -19,15 +19,13 @@ from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact1d.workflow.laws.law import Law
 from contact1d.workflow.laws.numerics import ROUND_OFF
-from contact1d.workflow.laws.path import Followed, History, Path, equilibria
+from contact1d.workflow.laws.path import Array, Followed, History, Path, equilibria
 from contact1d.workflow.laws.shape import Profile as Undeformed
 from contact1d.workflow.laws.shape import positions_within
 
-Array = NDArray[np.float64]
 MORE_PHASES = (0.375, 0.25, 0.125, 0.0)
 """`Particles.phases` of a contact with several edges, whose errors may cancel at two of them."""
 

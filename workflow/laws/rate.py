@@ -9,17 +9,14 @@ from functools import cached_property, partial
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.laws.dugdale import Dugdale, Zone
 from contact1d.workflow.laws.jkr import Jkr
 from contact1d.workflow.laws.numerics import ROUND_OFF
-from contact1d.workflow.laws.path import History, Path
+from contact1d.workflow.laws.path import Array, History, Path
 from contact1d.workflow.laws.zoned import Zoned, ZonedCells
 from contact1d.workflow.scene import Adhesion, Rate, Scene
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,11 +10,11 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from contact1d.workflow.laws.memory import Array, Edges, Memory, edges_of
+from contact1d.workflow.laws.memory import Edges, Memory, edges_of
 from contact1d.workflow.laws.numerics import ROUND_OFF
 from contact1d.workflow.laws.pairs import Independent, on_plane
 from contact1d.workflow.laws.particles import Particles
-from contact1d.workflow.laws.path import Followed, Path
+from contact1d.workflow.laws.path import Array, Followed, Path
 from contact1d.workflow.laws.radius import Given, InTension, ToTheEdge
 from contact1d.workflow.laws.shape import Profile
 from contact1d.workflow.scene import Scene, Viscoelasticity

@@ -10,16 +10,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact1d.workflow.laws.dugdale import Dugdale, Zone
 from contact1d.workflow.laws.jkr import Jkr
 from contact1d.workflow.laws.particles import Particles
-from contact1d.workflow.laws.path import Followed
+from contact1d.workflow.laws.path import Array, Followed
 from contact1d.workflow.laws.radius import Given
 from contact1d.workflow.laws.shape import Profile
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

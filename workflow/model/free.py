@@ -8,15 +8,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact1d.workflow.laws.particles import Particles
-from contact1d.workflow.laws.path import Path
+from contact1d.workflow.laws.path import Array, Path
 from contact1d.workflow.model.motion import inertia
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
 
-Array = NDArray[np.float64]
 MOST_STEPS = 20_000
 """Most timesteps of an oscillation, beyond which it has ended in equilibrium, and most states of an impact."""
 STRETCHES = 60

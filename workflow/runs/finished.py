@@ -12,9 +12,6 @@ from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from contact1d.analysis import plots
 from contact1d.analysis.atoms import atoms
 from contact1d.analysis.chart import Chart
@@ -36,9 +33,6 @@ if TYPE_CHECKING:
     from ase import Atoms
     from matplotlib.figure import Figure
     from xarray import Dataset
-
-
-Array = NDArray[np.float64]
 
 
 class Results(Named[Quantity]):
