@@ -15,17 +15,15 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact1d.analysis.curve_marks import are_apart
-from contact1d.analysis.polynomial import lowest_minimum, through, value
+from contact1d.analysis.polynomial import Array, lowest_minimum, through, value
 from contact1d.workflow.continuation.context import ContactBranch
 from contact1d.workflow.continuation.holding import Held, Start, hold, overshoot, press
 from contact1d.workflow.continuation.trace import Search
 from contact1d.workflow.deck.steps import UnderLoad
 from contact1d.workflow.errors import ThroughError, UntrustedError
 
-Array = NDArray[np.float64]
 FIRST_RISE = 2.0
 """Rise of the tension that is tried first over the tolerance: rest, table and cutoff use up to one of it themselves."""
 

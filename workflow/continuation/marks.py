@@ -12,7 +12,6 @@ from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact1d.analysis.curve_marks import Peak, crossing, largest_tension, rivals, smooth_crossing
 from contact1d.analysis.polynomial import gauss
@@ -21,7 +20,6 @@ from contact1d.workflow.continuation.trace import BRANCH_DISTANCE, Trace, slope
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH
 
-Array = NDArray[np.float64]
 LAST = 1e-6
 """Distance from the limit point, over the path from F = 0 to there, within which the last load step represents it."""
 MODEL_DIGITS = 1e-6

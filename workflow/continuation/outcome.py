@@ -51,25 +51,17 @@ class Reading:
 
 
 @dataclass(frozen=True)
-class Result:
-    """A number with its errors by source; the uncertainty is their sum, at a coverage of 95 % at least.
+class Result(Reading):
+    """A number with all its errors by source; the uncertainty is their sum, at a coverage of 95 % at least.
+
+    Errors have the names of SOURCES. What the scene prescribes, and what closes a balance, has no required tolerance.
 
     Attributes:
-        value: in `unit`.
-        unit: of the model, as "FU" or "FU·LU"; "1" for a number.
-        errors: by the names of SOURCES, in `unit`.
-        scale: in `unit`, what the uncertainty is compared with, where the value may be 0; None: the value itself.
-        prescribed: whether the scene prescribes it, or it closes a balance: no tolerance is required of it.
         read: part of the discretisation error by interpolation between particles, whatever the settings, in `unit`.
         given: part of "input" by numbers with ± and a noisy profile, in `unit`: of the scene, and no error of the
             program.
     """
 
-    value: float
-    unit: str
-    errors: Mapping[str, float]
-    scale: float | None = None
-    prescribed: bool = False
     read: float = 0.0
     given: float = 0.0
 

@@ -102,9 +102,9 @@ class Scripted(Experiment[K]):
     def is_sampled(self, scene: Scene) -> bool:
         """Return whether the load steps are known beforehand, so that results have a sampling error.
 
-        Here False; True of a history, an impact, and a pull-off at a velocity.
+        Here True where the scene gives the history, as of an impact; a pull-off at a velocity has one, too.
         """
-        return False
+        return scene.experiment.history_is_given
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
         """Return the phases of load steps of the script on the reduced model, on a rigid plane the ones that run.

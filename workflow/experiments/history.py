@@ -34,10 +34,6 @@ class HistoryExperiment(Scripted[History]):
     main_results = ("peak_force", "peak_displacement", "displacement", "force", "contact_radius")
     curve_has_times = True
 
-    def is_sampled(self, scene: Scene) -> bool:
-        """Return True: the load steps of a history are known beforehand, so that results have a sampling error."""
-        return True
-
     def script(self, branch: Driver, scene: Scene) -> None:
         """Follow the load steps of all legs, from the first point of the history on.
 

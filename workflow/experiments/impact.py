@@ -34,10 +34,6 @@ class ImpactExperiment(Scripted[Impact]):
     curve_has_times = True
     branches = {"touching": "impact"}  # noqa: RUF012
 
-    def is_sampled(self, scene: Scene) -> bool:
-        """Return True: states are read at equal times, so that results have a sampling error."""
-        return True
-
     def script(self, branch: Driver, scene: Scene) -> None:
         """Let the body hit the plane and fly on until it separates or sticks; the last state is marked "final"."""
         branch.fly(self.given(scene).velocity)

@@ -18,7 +18,7 @@ import numpy as np
 
 from contact1d.analysis.curve_marks import closes, work_of
 from contact1d.workflow.continuation import consistency
-from contact1d.workflow.continuation.budget import ForceErrors, budgeted, curve_errors, force_errors, of_rows
+from contact1d.workflow.continuation.budget import budgeted, curve_errors, force_errors, of_rows
 from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.context import RunContext
 from contact1d.workflow.continuation.driver import Driver
@@ -77,7 +77,7 @@ class PathExperiment(Scripted[Path]):
         ends = {"deepest": max(reported, key=lambda state: state.displacement), "final": reported[-1]}
         most_tensile = min((states[i] for i in seen), key=lambda state: state.force)
         strongest = (ends["deepest"], most_tensile, ends["final"])
-        errors = self.force_errors(scene, settings, states, strongest)
+        errors = force_errors(scene, settings, states, strongest)
         whole = of_states(states, case.model)
         trace, shown = whole.chosen(seen), replace(errors, common=errors.common[seen], turning=errors.turning[seen])
         repeated = self._in_half_steps(context, case.model)
@@ -121,17 +121,6 @@ class PathExperiment(Scripted[Path]):
             return displacements([position for position, _ in positions])
         steps = math.ceil(14.0 * _relaxation_time(scene, settings) / settings.motion.time_step)
         return tuple(DisplaceInTime(float(position), steps) for position, _ in positions)
-
-    def force_errors(
-        self, scene: Scene, settings: Settings, states: Sequence[State], marked: Sequence[State]
-    ) -> ForceErrors:
-        """Return the errors of the forces of states, (m,) [FU] ≥ 0.
-
-        `common` is alike at neighbouring states: the error of the interaction and the sum of the residual forces,
-        interpolated over displacement between the `marked` states, which have profiles. `turning` is √N times the
-        residual of each state with N particles, whose residual forces are independent of each other.
-        """
-        return force_errors(scene, settings, states, marked)
 
     def closes(self, trace: Trace, settings: Settings) -> bool:
         """Return whether a path ends in its first state: at the same displacement and force, both in contact or apart.
@@ -296,18 +285,6 @@ class ThermalPath(PathExperiment):
     def rows(self, scene: Scene, settings: Settings, positions: Positions) -> tuple[Row, ...]:
         """Return the load steps at each position: 40 of equilibration, and 200 samples where the scene asks for it."""
         return thermal_rows(settings, _relaxation_time(scene, settings), positions)
-
-    def force_errors(
-        self, scene: Scene, settings: Settings, states: Sequence[State], marked: Sequence[State]
-    ) -> ForceErrors:
-        """Return the errors of the forces of mean states, (m,) [FU] ≥ 0.
-
-        `common` is alike at neighbouring states, and interpolated over displacement between the `marked` states, which
-        have profiles. `turning` is two standard errors of each mean force, the residual of the state times the number
-        of particles.
-        """
-        errors = super().force_errors(scene, settings, states, marked)
-        return replace(errors, turning=settings.chains.upper * np.asarray([state.residual for state in states]))
 
     def closes(self, trace: Trace, settings: Settings) -> bool:
         """Return whether a path ends at its first displacement, within round-off, whatever the forces.
