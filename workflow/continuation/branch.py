@@ -92,18 +92,9 @@ class Branch(ContactBranch):
             EngineError: LAMMPS failed.
         """
         self._turn(not self.states or positions[-1] >= self._last.displacement)
-        self._visit(positions)
-        self._record_target(math.nan)
-
-    def _visit(self, positions: Sequence[float] | Array) -> None:
-        """Run load steps at displacements [LU] in any order, and keep their states without a turn of the loading.
-
-        Raises:
-            UntrustedError: a state is not at rest, bodies went through each other, or the contact reaches the
-                chain's end.
-        """
         self._begin_phase()
         self._append(self.contact.rows(displacements([float(position) for position in positions])))
+        self._record_target(math.nan)
 
     def hold(self, duration: float, displacement: float | None, force: float | None, approach_steps: int = 20) -> None:
         """Move to a displacement [LU] in approach steps, then hold it for `duration` [TU]; `force` is ignored.
@@ -228,7 +219,8 @@ class Branch(ContactBranch):
                 steps.
         """
         states = self.leg
-        if beyond is not None and self._is_same(before, beyond):
+        same = SAME * self.scene.bodies.spacing
+        if beyond is not None and abs(before.displacement - beyond.displacement) < same:
             raise UntrustedError(
                 f"the force jumps past {force:.4g} FU at displacement {before.displacement:.6g} LU, from "
                 f"{before.carried:.4g} to {beyond.carried:.4g} FU: an instability, and no state on this path has this "
@@ -243,10 +235,6 @@ class Branch(ContactBranch):
                 f"{states[-1].displacement:.4g} LU and {states[-1].carried:.4g} FU: the ranges of the interaction are "
                 "short compared with the path. Use a force nearer to 0, longer ranges or stiffer springs"
             )
-
-    def _is_same(self, before: State, beyond: State) -> bool:
-        """Return whether two states are at the same displacement, within 1e-12 of the spacing of the lower chain."""
-        return abs(before.displacement - beyond.displacement) < SAME * self.scene.bodies.spacing
 
     # --- the force maximum
 

@@ -24,7 +24,7 @@ REACH = 40.0
 """Reach of the sums, and of the longest cutoff, over the longest range."""
 
 
-def slide_cutoff(law: DoubleExponential, spacing: float, load: float, tolerance: float) -> float:
+def slide_cutoff(law: DoubleExponential, spacing: float, tolerance: float) -> float:
     """Return the cutoff [LU] at which a pair's force is a tenth of the tolerance of the largest tangential force.
 
     The latter is that on a particle that slides over a rigid row of opposite ones. The pair's force is that of the
@@ -34,27 +34,26 @@ def slide_cutoff(law: DoubleExponential, spacing: float, load: float, tolerance:
     Args:
         law: interaction of a pair.
         spacing: distance of neighbours in the row [LU].
-        load: load on a particle [FU], compression positive.
         tolerance: relative tolerance of the force.
     """
-    holding = max(largest_holding_force(law, spacing, load), np.finfo(float).tiny)
+    holding = max(largest_holding_force(law, spacing), np.finfo(float).tiny)
     far = law.repulsion if law.attraction is None else law.attraction
     start = far.range * math.log(far.amplitude / far.range / (0.1 * tolerance * holding))
     return min(max(start, law.longest_range), REACH * law.longest_range)
 
 
-def largest_holding_force(law: DoubleExponential, spacing: float, load: float) -> float:
+def largest_holding_force(law: DoubleExponential, spacing: float) -> float:
     """Return the largest |F_x| [FU] ≥ 0 of a particle that moves over a rigid straight row of opposite particles.
 
-    Its height is fixed at the largest of 400, from 0.01 to 10 times the longest range, at which it carries the `load`
-    [FU], compression positive, or more, midway between two of them; where none does, at the smallest. The maximum is
-    taken over 33 positions along x within half a `spacing` [LU].
+    Its height is fixed at the largest of 400, from 0.01 to 10 times the longest range, at which it is not
+    attracted, midway between two of them; where there is none, at the smallest. The maximum is taken over 33 positions
+    along x within half a `spacing` [LU].
     """
     reach = math.ceil(REACH * law.longest_range / spacing) + 1
     row: Array = np.asarray(spacing * np.arange(-reach, reach + 1), dtype=np.float64)
     heights: Array = np.asarray(law.longest_range * np.geomspace(1e-2, 10.0, 400))
     _, upward = _row_forces(law, 0.5 * spacing - row, heights)
-    carried = np.flatnonzero(upward >= load)
+    carried = np.flatnonzero(upward >= 0.0)
     height = float(heights[carried[-1]] if carried.size else heights[0])
     x: Array = np.linspace(0.0, 0.5 * spacing, 33)
     along = [float(_row_forces(law, position - row, np.asarray([height]))[0][0]) for position in x.tolist()]
@@ -92,7 +91,7 @@ def cutoff_for(scene: Scene, law: DoubleExponential, share: float, tolerance: fl
         return given
     reach = law.cutoff_for(share)
     if scene.experiment.motion_is_result and not reaches_too_far(scene, reach):
-        return max(reach, slide_cutoff(law, scene.bodies.spacing, 0.0, tolerance))
+        return max(reach, slide_cutoff(law, scene.bodies.spacing, tolerance))
     return reach
 
 
