@@ -56,7 +56,6 @@ def curve_errors(
     rows, repeated = case.along(trace), repeated or {}
     measured = {"force": trace.force, "displacement": trace.displacement}
     lattice = rows.lattice_in_time(measured) if "time" in repeated else rows.lattice
-    inputs = rows.inputs if case.has_uncertain_inputs else {}
     columns: dict[str, Values] = {"force": {"solver": solver}}
     if trace.given != "displacement":
         softness = 1.0 / _stiffness(case, trace.displacement)
@@ -64,8 +63,8 @@ def curve_errors(
     for name, errors in columns.items():
         if name in lattice:
             errors[LATTICE] = _above_neighbours(lattice[name])
-        if name in inputs:
-            errors["input"] = inputs[name]
+        if name in rows.inputs:
+            errors["input"] = rows.inputs[name]
         for source, traces in repeated.items():
             errors[source] = MARGIN * sum(_differences(trace, repetition, name) for repetition in traces)
     if trace.given == "load":  # an error of the force moves the body
@@ -200,20 +199,19 @@ def budgeted(
     readings = case.read(trace)
     values = values_of(readings)
     solver = _changes(case.read, values, _perturbed(case, trace, force_error, sampled, length))
-    read = _changes(case.read, values, misread(trace))
+    read = reading_errors(case, trace, values)
     between = sampling_errors(case, trace) if sampled else {}
     repeated = repeated or {}
     repeated_errors = _repetition_errors(case, trace, values, repeated)
     lattice = case.lattice_in_time(values) if "time" in repeated else case.lattice
-    inputs = case.inputs if case.has_uncertain_inputs else {}
     results = {}
     for name, reading in readings.items():
         errors = {"solver": solver[name], LATTICE: lattice.get(name, 0.0) + read[name]}
         errors |= {source: changes[name] for source, changes in repeated_errors.items()}
         for source, error in reading.errors.items():
             errors[source] = errors.get(source, 0.0) + error
-        if name in inputs:
-            errors["input"] = errors.get("input", 0.0) + inputs[name]
+        if name in case.inputs:
+            errors["input"] = errors.get("input", 0.0) + case.inputs[name]
         if name in between:
             errors["sampling"] = max(errors.get("sampling", 0.0), between[name])
         given = in_squares(case.moves, name)
@@ -264,6 +262,11 @@ def _perturbed(case: Reduction, trace: Trace, force_error: ForceErrors, sampled:
     if force_error.law > 0.0 and strength > 0.0:
         traces += [trace.perturbed(radius_factor=1.0 + sign * force_error.law / strength) for sign in SIGNS]
     return traces
+
+
+def reading_errors(case: Reduction, trace: Trace, values: Values) -> Values:
+    """Return by how much `values`, the results of a trace, change with contact radii that are read off by more, ≥ 0."""
+    return _changes(case.read, values, misread(trace))
 
 
 def misread(trace: Trace) -> list[Trace]:

@@ -49,6 +49,11 @@ class Reading:
     scale: float | None = None
     prescribed: bool = False
 
+    @property
+    def size(self) -> float:
+        """What the uncertainty is compared with, in `unit`: `scale` where that is given, else |value|; may be 0."""
+        return abs(self.value) if self.scale is None else self.scale
+
 
 @dataclass(frozen=True)
 class Result(Reading):
@@ -74,11 +79,6 @@ class Result(Reading):
     def uncertainty(self) -> float:
         """The sum of the errors of all sources, in `unit`."""
         return float(sum(self.errors.values()))
-
-    @property
-    def size(self) -> float:
-        """What the uncertainty is compared with, in `unit`: `scale` where that is given, else |value|; may be 0."""
-        return abs(self.value) if self.scale is None else self.scale
 
     @property
     def share(self) -> float:

@@ -185,17 +185,6 @@ class PlannedBranch(ContactBranch):
         self.plan, self.given, self.wanted = Plan.of(self.contact.deck, driven), driven.given, driven.wanted
         self.states, self.legs = self.plan.measured(self.contact), driven.legs
         self.marked = {name: self.states[i] for i, names in driven.marks.items() for name in names}
-        self._require_digits()
-
-    def _require_digits(self) -> None:
-        """Refuse a force maximum of the plan that is at most the round-off error of the contact force.
-
-        That is the residual of the last state times the number of upper particles. Without a search for a maximum
-        nothing is refused.
-
-        Raises:
-            DigitsError: names both [FU].
-        """
         digits = self.states[-1].residual * self.settings.chains.upper
         tensions = [-self.driver.held(state) for state in self.driver.peaks]
         if tensions and max(tensions) <= digits:

@@ -99,12 +99,6 @@ class Reduction:
         self.script(branch)
         return branch
 
-    @property
-    def has_uncertain_inputs(self) -> bool:
-        """Whether the scene has numbers with ±, or its profile deviations or other curves through its points."""
-        profile = self.scene.bodies.profile
-        return bool(self.scene.shares or profile.deviations or profile.alternatives)
-
     @cached_property
     def model(self) -> Particles:
         """The particles of the reduced model, without their neighbours, on the spacing of the chain; cached."""
@@ -267,7 +261,7 @@ class Reduction:
         """The uncertainty ≥ 0 due to the inputs, by name in the result's unit; cached.
 
         Numbers with ± and deviations of the profile add in squares; to the root of their sum the |changes| with other
-        curves through the points of a profile are added. 0 where nothing is uncertain. With `passed` states, by column
+        curves through the points of a profile are added. {} where nothing is uncertain. With `passed` states, by column
         (m,).
 
         Raises:
@@ -275,6 +269,8 @@ class Reduction:
                 an end of a number with ± is no contact.
         """
         profile = self.scene.bodies.profile
+        if not (self.scene.shares or profile.deviations or profile.alternatives):
+            return {}
         models = [model for shape in profile.alternatives if (model := self._model_of(shape))]
         if len(models) < len(profile.alternatives):
             models += [model for shape in profile.coarser if (model := self._model_of(shape))]

@@ -65,8 +65,9 @@ class Series:
 
         Columns and integrals are those of these records.
         """
-        columns = {name: values[records] for name, values in self.columns.items()}
-        integrals = {name: values[records] for name, values in self.integrals.items()}
+        columns, integrals = (
+            {name: values[records] for name, values in part.items()} for part in (self.columns, self.integrals)
+        )
         return Series(columns, integrals, self.smooth)
 
     def every_second(self) -> Series:

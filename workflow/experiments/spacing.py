@@ -16,7 +16,7 @@ import numpy as np
 
 from contact1d.analysis.pressure import Array
 from contact1d.digits import digits_apart
-from contact1d.workflow.continuation.budget import misread
+from contact1d.workflow.continuation.budget import reading_errors
 from contact1d.workflow.continuation.outcome import LATTICE, LOSSES
 from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.experiments import kind_of
@@ -97,11 +97,9 @@ def lattice_error(scene: Scene) -> float:
     if case is None:
         return 0.0
     errors, is_unbounded = [0.0], False
-    misreadings = [case.read(trace) for trace in misread(case.path)]
+    read = reading_errors(case, case.path, case.results)
     for name, reading in case.readings.items():
-        changes = [abs(misreading[name].value - reading.value) for misreading in misreadings if name in misreading]
-        error = case.lattice.get(name, 0.0) + max(changes, default=0.0) + reading.errors.get(LATTICE, 0.0)
-        size = abs(reading.value) if reading.scale is None else reading.scale
+        error, size = case.lattice.get(name, 0.0) + read[name] + reading.errors.get(LATTICE, 0.0), reading.size
         if (reading.prescribed and name not in RADII) or (name.startswith(LOSSES) and error > LARGEST * size):
             continue  # a loss too small for any spacing is not reported, and must not refine the spacing of the rest
         if size:  # areas and mean pressures go with the square of a radius
