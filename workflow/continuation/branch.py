@@ -219,8 +219,8 @@ class Branch(ContactBranch):
                 steps.
         """
         states = self.leg
-        same = SAME * self.scene.bodies.spacing
-        if beyond is not None and abs(before.displacement - beyond.displacement) < same:
+        near = SAME * self.scene.bodies.spacing
+        if beyond is not None and abs(before.displacement - beyond.displacement) < near:
             raise UntrustedError(
                 f"the force jumps past {force:.4g} FU at displacement {before.displacement:.6g} LU, from "
                 f"{before.carried:.4g} to {beyond.carried:.4g} FU: an instability, and no state on this path has this "

@@ -6,10 +6,8 @@ are positive in compression.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
@@ -28,17 +26,6 @@ UNSEEN = ""
 """Phase of states that lead to the first state of a path and are not read."""
 
 
-class Row(NamedTuple):
-    """A load step: phase, leg, displacement and position along x [LU], time [TU], velocity [LU/TU] (NaN: unknown)."""
-
-    phase: str
-    leg: int
-    displacement: float
-    along: float
-    time: float
-    velocity: float
-
-
 class ModelBranch:
     """The states of the model, with positions of the required density; they are computed together at the end.
 
@@ -49,6 +36,8 @@ class ModelBranch:
         model: the particles.
         dense: positions for each step that the scene gives.
         shift: of the displacements that it gives [LU].
+        phases: name of the phase of each state; "" for states that lead to the first one and are not read.
+        legs: how often the loading has turned before each state, from 0 on; −1 for a hold without a move before.
         marks: names under which states are reported, by the number of the state.
         wanted: force [FU] that a state was to carry, by its number.
         peaks: numbers of the states at force maxima.
@@ -64,7 +53,9 @@ class ModelBranch:
         self._phase, self._leg = "", -1
         self._rises: bool | None = None
         self.given = "displacement"
-        self._rows: list[Row] = []
+        self.phases: list[str] = []
+        self.legs: list[int] = []
+        self._paths: list[Path] = []
         self._beyond = np.empty(0)
         self.marks: dict[int, list[str]] = {}
         self.wanted: dict[int, float] = {}
@@ -87,18 +78,18 @@ class ModelBranch:
         loading rises if the last displacement is at least that of the state before.
         """
         wanted = np.asarray(positions, dtype=np.float64) + self.shift
-        before = self._rows[-1].displacement if self._rows else float(wanted[0])
+        before = self._displacement if self.phases else float(wanted[0])
         self._turn(float(wanted[-1]) >= before)
         between = min(self.dense, max(1, MOST_NUMBERS // max(1, wanted.size * self.model.x.size)))
         if between == 1:
             self._add(wanted, along)
             return
-        if not self._rows:
+        if not self.phases:
             self._add(wanted[:1])
             wanted = wanted[1:]
-        dense, leading = self._between(np.append(self._rows[-1].displacement, wanted), between)
+        dense, leading = self._between(np.append(self._displacement, wanted), between)
         phase = self._phase
-        if self._rows[-1].phase == UNSEEN:  # positions before the first state of a path are not read
+        if self.phases[-1] == UNSEEN:  # positions before the first state of a path are not read
             self._phase = UNSEEN
             self._add(dense[:leading])
             dense = dense[leading:]
@@ -128,8 +119,8 @@ class ModelBranch:
         too large a force to the end of the search, a tenth beyond the largest expected displacement. `scale` is
         ignored: the model needs no tolerance. A first call begins at displacement 0.
         """
-        end, begun = self.model.displacement_at(force), bool(self._rows)
-        start = self._rows[-1].displacement if begun else 0.0
+        end, begun = self.model.displacement_at(force), bool(self.phases)
+        start = self._displacement if begun else 0.0
         self._turn(end > start)
         self._add(np.linspace(start, end, steps + 1)[begun:])
         self.wanted[self.last] = force
@@ -148,7 +139,7 @@ class ModelBranch:
             start = 0.0
             if force < 0.0:
                 self.reach(0.0, self.scale)
-                start = self._rows[-1].displacement
+                start = self._displacement
             self._add(swing(self.scene, self.settings, self.model, start, force, duration), time=(0.0, duration))
 
     def follow(self, history: History) -> None:
@@ -187,7 +178,7 @@ class ModelBranch:
                 maximum.
         """
         self._turn(False)
-        zero, apart = self._rows[-1].displacement, self.model.apart
+        zero, apart = self._displacement, self.model.apart
         end = zero + (1.0 - 1e-9) * (apart - zero)  # just before the limit point
         if self.settings.forces.range:
             positions = np.linspace(zero, end, dense * (2 if self.settings.snaps else 1))[1:]
@@ -238,31 +229,18 @@ class ModelBranch:
         Those beyond the maximum are the positions that `maximum` has left, none without it. There must be a state
         before.
         """
-        apart, deepest = self.model.apart, max(row.displacement for row in self._rows)
+        apart, deepest = self.model.apart, float(self.path.displacement.max())
         self._add(np.append(self._beyond, apart - np.asarray([1e-4, 0.05]) * (deepest - apart)))
         self._beyond = np.empty(0)
 
     @property
     def last(self) -> int:
         """The number of the last state, from 0 on, over all states; −1 without states."""
-        return len(self._rows) - 1
+        return len(self.phases) - 1
 
     def held(self, state: int) -> float:
         """Return F [FU], compression positive, of a state by its number, as in unloading from the deepest one."""
-        return float(self.model.held(np.asarray([self._rows[state].displacement]))[0])
-
-    @property
-    def phases(self) -> list[str]:
-        """The name of the phase of each state, in order; "" for states that lead to the first one and are not read."""
-        return [row.phase for row in self._rows]
-
-    @property
-    def legs(self) -> list[int]:
-        """How often the loading has turned before each state, in order, from 0 on.
-
-        It is −1 for a hold without a move before.
-        """
-        return [row.leg for row in self._rows]
+        return float(self.model.held(self.path.displacement[[state]])[0])
 
     @property
     def path(self) -> Path:
@@ -273,9 +251,16 @@ class ModelBranch:
         Raises:
             ValueError: there are no states.
         """
-        columns = list(zip(*self._rows, strict=True))[2:]
-        d, along, time, velocity = (np.asarray(column, dtype=np.float64) for column in columns)
-        return Path(d, along, time, None if np.isnan(velocity).any() else velocity)
+        names = ("displacement", "along", "time")
+        d, along, time = (np.concatenate([getattr(path, name) for path in self._paths]) for name in names)
+        velocities = [path.velocity for path in self._paths if path.velocity is not None]
+        known = len(velocities) == len(self._paths)
+        return Path(d, along, time, np.concatenate(velocities) if known else None)
+
+    @property
+    def _displacement(self) -> float:
+        """Displacement [LU] of the last state; IndexError without states."""
+        return float(self._paths[-1].displacement[-1])
 
     def trace(self, whole: bool = False) -> Trace:
         """Return the states with forces and contact radii of the reduced model, from which results are read.
@@ -307,18 +292,15 @@ class ModelBranch:
         `along`: positions along x [LU], `time` [TU], one for each; None: 0.
         """
         none = np.zeros(len(positions))
-        columns = (none if column is None else np.asarray(column) for column in (along, time))
+        columns = (none if column is None else np.asarray(column, dtype=np.float64) for column in (along, time))
         self._add_path([self._phase] * none.size, Path(positions, *columns))
 
     def _add_path(self, phases: Sequence[str], path: Path) -> None:
-        """Add the states of a path, in the current direction of loading, each with the name of its phase.
-
-        Where the path has no velocities they are NaN.
-        """
-        unknown = np.full(path.time.size, math.nan)
-        columns = path.displacement, path.along, path.time, unknown if path.velocity is None else path.velocity
-        rows = zip(*(column.tolist() for column in columns), strict=True)
-        self._rows += [Row(phase, self._leg, *row) for phase, row in zip(phases, rows, strict=True)]
+        """Add the states of a path, in the current direction of loading, each with the name of its phase."""
+        if phases:
+            self._paths.append(path)
+            self.phases += phases
+            self.legs += [self._leg] * len(phases)
 
 
 Script = Callable[[ModelBranch], object]
