@@ -95,7 +95,7 @@ class Driver(Protocol):
         """
 
     def mark(self, name: str) -> None:
-        """Report the last state, with its profile, under a name.
+        """Report the last state, with its profile, under a name; it is the last one of its phase.
 
         After a force maximum of pairs that snap in LAMMPS it is the state at that maximum.
         """
