@@ -23,7 +23,7 @@ from contact1d.workflow.continuation.reduction import Reduction
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Search, Trace, of_states
 from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.deck.steps import Fly, Launch, Phase, numbered
+from contact1d.workflow.deck.steps import Fly, Launch, numbered
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.engine.session import Engine
@@ -181,11 +181,6 @@ class ContactBranch:
     ) -> None:
         """Close the contact and its LAMMPS instance; an error of the `with` block goes on."""
         self._open.__exit__(kind, error, traceback)
-
-    @property
-    def phases(self) -> tuple[Phase, ...]:
-        """The load steps so far as named phases, in order; () before the first one."""
-        return self.contact.phases
 
     @property
     def leg(self) -> list[State]:

@@ -162,19 +162,19 @@ class Scripted(Experiment[K]):
         scene, settings = context.deck.scene, context.deck.settings
         case = self.reduction(scene, settings)
         branch, trace = self._driven(context, case)
+        states, phases = tuple(branch.states), branch.contact.phases
         # An error of the force changes its sign within half a range: it moves where a flat maximum lies.
-        errors = force_errors(scene, settings, branch.states, branch.marked.values(), branch.unbalance)
+        errors = force_errors(scene, settings, states, branch.marked.values(), branch.unbalance)
         slower = self._slower(context, case, trace)
         length = 0.5 * settings.forces.range
         results = budgeted(case, trace, errors, self.is_sampled(scene), length, repeated=slower)
-        warnings = doubts(scene, settings, tuple(branch.states))
-        states, moves = tuple(branch.states), case.moves
+        warnings = doubts(scene, settings, states)
         columns = {"time": tuple(trace.time.tolist())} if self.curve_has_times else {}
         energies = (result for result in results.values() if result.unit == ENERGY and result.size)
         doubt = min(max((energy.share for energy in energies), default=0.0), 0.1)  # more would check nothing
         checks, rows = branch.checks(case, doubt), curve_errors(case, trace, errors.common, slower)
         outcome = Outcome(
-            results, states, branch.marked, branch.phases, warnings, columns, rows, moves=moves, consistency=checks
+            results, states, branch.marked, phases, warnings, columns, rows, moves=case.moves, consistency=checks
         )
         return self.finish(outcome, case, trace)
 
