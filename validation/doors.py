@@ -32,7 +32,7 @@ from contact1d.workflow.experiments.spacing import with_spacing
 from contact1d.workflow.experiments.thermal import chunk_steps
 from contact1d.workflow.fit.fit import fit
 from contact1d.workflow.fit.many import fit_many
-from contact1d.workflow.identify import Target, estimated, identify, jkr_target, material_scene
+from contact1d.workflow.identify.interaction import Target, estimated, identify, jkr_target, material_scene
 from contact1d.workflow.model.calibration import CALIBRATION
 from contact1d.workflow.model.settings import Settings, settings_for
 from contact1d.workflow.runs import campaign

@@ -72,7 +72,7 @@ def calibrated(folder: Path) -> Scene:
     An identification that is there already, of the same scene and versions, holds.
     """
     scene = read_scene(shipped("scenes/paper.toml"))
-    return _identified(scene, folder) or identify(scene, FIRST_ROW, folder).scene
+    return _identified(scene, folder) or identify(scene, FIRST_ROW, folder)[0].scene
 
 
 def _identified(scene: Scene, folder: Path) -> Scene | None:

@@ -160,25 +160,23 @@ def _scene_of_sphere(given: Mapping[str, float], tolerance: float, out: Path) ->
     """
     modulus, radius = given["contact-modulus"], given["radius"]
     with command("the run", out) as progress:
-        from contact1d.workflow.identify import Target, jkr_target, material_scene
-        from contact1d.workflow.identify import identify as search
+        from contact1d.workflow.identify import interaction
 
         if "surface-energy" in given:
-            target = jkr_target(modulus, given["surface-energy"], radius)
+            target = interaction.jkr_target(modulus, given["surface-energy"], radius)
         else:
-            target = Target(given["adhesion-force"], given["zero-load-radius"])
-        identified = search(
-            *material_scene(modulus, radius, target, given.get("length-unit"), tolerance=tolerance), out, progress
-        )
+            target = interaction.Target(given["adhesion-force"], given["zero-load-radius"])
+        length_unit = given.get("length-unit")
+        start = interaction.material_scene(modulus, radius, target, length_unit, tolerance=tolerance)
+        finished, runs = interaction.identify(*start, out, progress)
     from contact1d.workflow.cli.summary import quantities
     from contact1d.workflow.units import prefixed
 
-    lines = [f"identified in {identified.runs} run{'s' if identified.runs > 1 else ''}"]
+    lines = [f"identified in {runs} run{'s' if runs > 1 else ''}"]
     for (name, wanted), unit in zip(vars(target).items(), ("N", "m"), strict=True):
-        deviation = identified.run.document[name]["si"]["value"] / wanted - 1.0
+        deviation = finished.document[name]["si"]["value"] / wanted - 1.0
         lines.append(f"  {name.replace('_', ' ')}: target {prefixed(wanted, unit)}, deviation {deviation:+.1e}")
-    for name, term in identified.scene.interaction or ():
+    for name, term in finished.scene.interaction or ():
         if name in ("repulsion", "attraction"):
             lines.append(f"  {name:<28} amplitude {term.amplitude:.6g} FU·LU, range {term.range:.6g} LU")
-    finished = identified.run
     print_lines([*lines, *quantities(finished.document)], finished.warnings, finished.folder / "scene.toml")

@@ -16,7 +16,7 @@ from contact1d.workflow.runs.report import results_in
 from contact1d.workflow.units import LENGTH, LINE_PRESSURE, UNKNOWN, Quantity, Scales, prefixed
 
 if TYPE_CHECKING:
-    from contact1d.workflow.identify import MaterialRun
+    from contact1d.workflow.identify.choice import MaterialRun
     from contact1d.workflow.runs.finished import Run
 
 NAMES = {

@@ -78,7 +78,7 @@ def choose(contact: AskedContact) -> Choice:
     """
     theories = theories_of(contact)
     doubts = {} if theories is None else limitations(contact, theories)
-    if contact.model == "particles":
+    if contact.is_of_particles:
         return _particles(contact, theories, doubts)
     experiment: dict[str, Any] = {"kind": "load", "force": contact.load}
     if contact.work_of_adhesion:
@@ -171,5 +171,5 @@ def from_material(source: AnyContact, folder: AnyPath, progress: Progress | None
     if choice.target is None:
         run = advised.run(choice.scene, folder, progress=progress)
     else:
-        run = identify(choice.scene, choice.target, Path(folder), progress).run
+        run = identify(choice.scene, choice.target, Path(folder), progress)[0]
     return MaterialRun(**vars(choice) | {"scene": run.scene, "run": run})

@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from contact1d.workflow.body.cases import ASSUMED_RANGE
 from contact1d.workflow.laws import law_of
@@ -19,13 +19,11 @@ from contact1d.workflow.scene.problems import nearest, shown
 from contact1d.workflow.scene.profile_file import read_profile
 from contact1d.workflow.scene.profiles import Profile as Shape
 from contact1d.workflow.scene.read import set_values
-from contact1d.workflow.scene.si_text import UnitTextError, si_value
+from contact1d.workflow.scene.si_text import si_value
 from contact1d.workflow.scene.tables import SPHERES
 
 AnyContact = str | PathLike[str] | Mapping[str, Any]
 """A material file, by its path, or its tables."""
-Model = Literal["plane", "particles"]
-MODELS: tuple[Model, ...] = ("plane", "particles")
 SCENE_KEYS = {
     "radius": "bodies.profile.radius",
     "profile": "bodies.profile",
@@ -110,12 +108,9 @@ class AskedContact:
         return self.scene.experiment.compression if "load" in self.given else None
 
     @property
-    def model(self) -> Model:
-        """The model: "particles", two chains with a fitted interaction, where the description has it, else "plane".
-
-        "plane" is one chain on a rigid plane.
-        """
-        return "particles" if self.given.get("model") == "particles" else "plane"
+    def is_of_particles(self) -> bool:
+        """Whether the model is two chains of particles with a fitted interaction, else one chain on a rigid plane."""
+        return self.given.get("model") == "particles"
 
 
 def read_contact(source: AnyContact, complete: bool = True) -> AskedContact:
@@ -174,7 +169,7 @@ def _mistakes(data: Mapping[str, Any], complete: bool) -> Iterator[Problem]:
             'write { youngs_modulus = "210 GPa", poisson_ratio = 0.3 }, "steel" or "rigid", or give contact_modulus, E*'
         )
         yield Problem("lower" if "upper" in data else "upper", "missing", hint=hint)
-    if data.get("model", "plane") not in MODELS:
+    if data.get("model", "plane") not in ("plane", "particles"):
         yield Problem("model", 'must be "plane" or "particles"', shown(data["model"]))
     if complete and "load" not in data and not _adheres(data):
         hint = "without attraction a load alone makes a contact; or give surface_energy or work_of_adhesion"
@@ -245,7 +240,7 @@ def _length(data: Mapping[str, Any], key: str, problems: list[Problem]) -> float
         return None
     try:
         value = float(si_value(given, "m")[0] if isinstance(given, str) else given)
-    except (UnitTextError, TypeError, ValueError) as error:
+    except (TypeError, ValueError) as error:
         problems.append(Problem(key, str(error), shown(given)))
         return None
     if not 0.0 <= value < math.inf:

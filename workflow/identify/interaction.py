@@ -31,7 +31,7 @@ from contact1d.workflow.laws.pairs import interaction_law, of_pairs
 from contact1d.workflow.runs.campaign import run
 from contact1d.workflow.runs.finished import Run, load_run
 from contact1d.workflow.runs.scales import UNIT_FIXING_RESULTS, jkr_scales
-from contact1d.workflow.scene import PullOff, Scene, read_scene
+from contact1d.workflow.scene import Scene, read_scene
 from contact1d.workflow.scene.tables import PARABOLA_SHARE, SPHERES
 from contact1d.workflow.units import SI, Scales
 
@@ -59,31 +59,15 @@ class Target:
     zero_load_radius: float
 
 
-def require_reachable(scene: Scene, target: Target) -> None:
-    """Check that springs of the scene's stiffness can reach a target, F_A [FU] and a₀ [LU]; nothing is returned.
-
-    Raises:
-        IdentifyError: they cannot; the message has the nearest zero-load radius and the nearest adhesion force. Or the
-            scene is no pull-off with an attraction, or of no parabola.
-    """
-    if not isinstance(scene.experiment, PullOff) or scene.interaction is None or scene.interaction.attraction is None:
-        raise IdentifyError("only a pull_off with an attraction finds F_A and a₀")
-    if scene.bodies.plane_radius is None:
-        raise IdentifyError("only a parabola has the F_A and a₀ of JKR's sphere")
-    layer = scene.bulk_stiffness / (2.0 * scene.bodies.spacing)
-    require_held(target, layer, scene.bodies.plane_radius, ("FU", "LU"))
-
-
-def require_held(target: Target, layer: float, radius: float, units: tuple[str, str]) -> None:
+def require_held(target: Target, layer: float, radius: float) -> None:
     """Check that a layer of springs can have F_A and a₀ of a target, with any interaction; nothing is returned.
 
     They can up to F_A R₁/(layer a₀³) = 0.95 · 4/(9√3).
 
     Args:
-        target: F_A and a₀, in `units`.
-        layer: stiffness per length of both chains in series [force/length²].
-        radius: R₁ of the chain's parabola [length].
-        units: units of force and length, for the message.
+        target: F_A [N] and a₀ [m].
+        layer: stiffness per length of both chains in series [N/m²].
+        radius: R₁ of the chain's parabola [m].
 
     Raises:
         IdentifyError: it cannot; the message has the nearest zero-load radius and the nearest adhesion force.
@@ -96,11 +80,10 @@ def require_held(target: Target, layer: float, radius: float, units: tuple[str, 
         return
     smallest = rounding * (force * radius / (largest_ratio * layer)) ** (1.0 / 3.0)
     largest = largest_ratio * layer * a_0**3 / radius / rounding
-    newton, metre = units
     raise IdentifyError(
-        f"an adhesion force of {force:.6g} {newton} with a zero-load radius of {a_0:.6g} {metre} is not possible with "
-        "springs of this stiffness. Nearest: the same force with a radius of at least "
-        f"{smallest:.6g} {metre}, or the same radius with a force of at most {largest:.6g} {newton}"
+        f"an adhesion force of {force:.6g} N with a zero-load radius of {a_0:.6g} m is not possible with springs of "
+        f"this stiffness. Nearest: the same force with a radius of at least {smallest:.6g} m, or the same radius with "
+        f"a force of at most {largest:.6g} N"
     )
 
 
@@ -122,7 +105,7 @@ def material_scene(
     Raises:
         IdentifyError: the target is out of reach, or the length unit too coarse or too fine.
     """
-    require_held(target, contact_modulus, PARABOLA_SHARE["mdr"] * radius, ("N", "m"))  # the MDR's springs are E*
+    require_held(target, contact_modulus, PARABOLA_SHARE["mdr"] * radius)  # the MDR's springs are E*
     unit = target.zero_load_radius / 28.5 if length_unit is None else length_unit
     _require_resolved(target.zero_load_radius, unit, radius)
     force_unit = 2.0 * contact_modulus * unit**2
@@ -193,10 +176,8 @@ def estimated(scene: Scene, target: Target) -> Scene:
     The F_A [FU] and a₀ [LU] of a run differ somewhat. Nothing runs.
 
     Raises:
-        IdentifyError: no interaction of this shape, or no springs of this stiffness, have the target; or the scene is
-            no pull-off of a parabola with an attraction.
+        IdentifyError: no interaction of this shape has the target.
     """
-    require_reachable(scene, target)
     return scaled(scene, start(scene, target))
 
 
@@ -227,7 +208,7 @@ def start(scene: Scene, target: Target) -> Array:
     try:
         reach = _root(radius_deviation, 0.0)
     except _NoRootError as error:
-        nearest = target.zero_load_radius * math.exp(error.nearest)
+        nearest = target.zero_load_radius * math.exp(error.args[0])
         raise IdentifyError(
             f"no interaction of this shape has an adhesion force of {target.adhesion_force:.4g} FU together with a "
             f"zero-load radius of {target.zero_load_radius:.4g} LU; nearest: the same force with {nearest:.4g} LU"
@@ -236,12 +217,7 @@ def start(scene: Scene, target: Target) -> Array:
 
 
 class _NoRootError(ValueError):
-    """A function without a change of sign in the searched interval; `nearest` is its value nearest to zero."""
-
-    def __init__(self, nearest: float) -> None:
-        """Store the value of the function nearest to zero, with its sign."""
-        super().__init__(nearest)
-        self.nearest = nearest
+    """A function without a change of sign in the searched interval; its argument is the value nearest to zero."""
 
 
 def _root(
@@ -323,27 +299,10 @@ def _largest_tension(estimate: Law) -> float:
     return float(np.interp(peak, points, estimate.gap))
 
 
-@dataclass(frozen=True)
-class Identified:
-    """A scene whose run reaches its target.
-
-    Attributes:
-        scene: scene with the identified interaction.
-        run: finished run of that scene.
-        deviations: relative deviations of F_A and a₀ from the target.
-        runs: number of runs of the search.
-    """
-
-    scene: Scene
-    run: Run
-    deviations: tuple[float, float]
-    runs: int
-
-
 def identify(
     scene: Scene, target: Target, folder: Path, progress: Progress | None = None, most_runs: int = 8
-) -> Identified:
-    """Return the scene whose run has the F_A and a₀ of `target`, with that run, after scaling its interaction.
+) -> tuple[Run, int]:
+    """Return (finished run that has the F_A and a₀ of `target`, number of runs) after scaling a scene's interaction.
 
     Both are met to 0.3 of the tolerance of the scene. Each run replaces the one before in the folder; none has figures.
 
@@ -361,21 +320,18 @@ def identify(
         RunError: LAMMPS failed, or a result can't be trusted.
         KeyError: a run does not report F_A or a₀.
     """
-    require_reachable(scene, target)
     largest_deviation = 0.3 * scene.accuracy.tolerance
     logarithms = start(scene, target)
     for count in range(1, most_runs + 1):
-        trial = scaled(scene, logarithms)
-        finished = run(trial, folder, figures=False, progress=progress)
+        finished = run(scaled(scene, logarithms), folder, figures=False, progress=progress)
         values = [finished.model.results[name].value for name in UNIT_FIXING_RESULTS]
         errors = np.log(np.asarray(values) / (target.adhesion_force, target.zero_load_radius))
-        deviations = math.expm1(errors[0]), math.expm1(errors[1])
         if np.abs(errors).max() < largest_deviation:
-            return Identified(trial, finished, deviations, count)
+            return finished, count
         logarithms = logarithms - np.linalg.solve(slopes(scene, logarithms), errors)
     raise IdentifyError(
-        f"the search did not converge in {most_runs} runs: deviation {deviations[0]:.1e} of the adhesion force, "
-        f"{deviations[1]:.1e} of a₀. Use a smaller [accuracy] tolerance or more particles in a₀"
+        f"the search did not converge in {most_runs} runs: deviation {math.expm1(errors[0]):.1e} of the adhesion "
+        f"force, {math.expm1(errors[1]):.1e} of a₀. Use a smaller [accuracy] tolerance or more particles in a₀"
     )
 
 

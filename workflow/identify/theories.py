@@ -106,7 +106,7 @@ def limitations(contact: AskedContact, theories: Theories) -> dict[str, str]:
     if roughness > 0.1 * stretch:
         doubts["roughness"] = f"{lengths} at pull-off: the pull-off force is below that of a smooth sphere"
     assumed = "range" not in contact.given
-    if (assumed or contact.model == "particles") and (words := beyond_jkr(theories.sphere, assumed)):
+    if (assumed or contact.is_of_particles) and (words := beyond_jkr(theories.sphere, assumed)):
         doubts["tabor"] = words
     return doubts
 
