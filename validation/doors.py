@@ -51,7 +51,7 @@ from contact1d.workflow.scene import (
     Slide,
     read_scene,
 )
-from contact1d.workflow.sweep.axes import points, read_sweep
+from contact1d.workflow.sweep.axes import read_sweep, scene_of
 from contact1d.workflow.units import Quantity, rounded
 
 IN_TIME: dict[str, Any] = {"damping": {"coefficient": "auto"}, "plate": {}}
@@ -153,9 +153,8 @@ def sweep_points(name: str) -> dict[tuple[float, ...], Scene]:
     plan = read_sweep(shipped(f"sweeps/{name}.toml"))
     varied = [i for i, axis in enumerate(plan.axes) if len(axis.values) > 1]
     found = {}
-    for point in points(plan):
-        assert point.scene is not None, point.reason
-        found[tuple(float(point.values[i]) for i in varied)] = point.scene
+    for values in plan.values():
+        found[tuple(float(values[i]) for i in varied)] = scene_of(plan, values)
     return found
 
 

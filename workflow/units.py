@@ -177,14 +177,6 @@ class Quantity:
         entry = entry.get("si", entry) if in_si else entry
         return cls(entry["value"], entry["uncertainty"], entry["unit"])
 
-    @property
-    def si(self) -> Quantity | None:
-        """This quantity itself; None where its unit is one of those of the model in `SI`, as "FU" or "FU/LU²".
-
-        Any other unit, also "1" and a power of a model unit that `SI` lacks, such as "LU²", gives the quantity itself.
-        """
-        return None if self.unit in SI and self.unit != NUMBER else self
-
     def entry(self) -> dict[str, Any]:
         """Return the entry of this quantity in results.json, a new dict with "value", "uncertainty" and "unit"."""
         return vars(self).copy()
@@ -213,9 +205,7 @@ class Quantity:
         An SI unit has the prefix of the larger one of |value| and uncertainty, a unit of the model none; "1" is left
         out. With an uncertainty of at most 1e-8 of |value| it is the value alone, with up to five digits.
         """
-        factor, unit = (
-            (1.0, self.unit) if self.si is None else scale_of(max(abs(self.value), self.uncertainty), self.unit)
-        )
+        factor, unit = scale_of(max(abs(self.value), self.uncertainty), self.unit)
         if 0.0 <= self.uncertainty <= EXACTNESS * abs(self.value):
             number = f"{self.value * factor:.5g}"
         else:

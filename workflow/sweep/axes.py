@@ -288,39 +288,8 @@ def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
-UNKNOWN_KEY = ("unknown key", "unknown table", "not a path of keys")
+UNKNOWN_KEY = ("unknown key", "unknown table")
 """Messages of problems with a key that is no key of a scene."""
-
-
-@dataclass(frozen=True)
-class Point:
-    """A point of a sweep.
-
-    Attributes:
-        values: the value of each axis, in the order of the axes, as the sweep file has it.
-        scene: its scene; None where the values give no valid one.
-        name: name of its run folder; "" without a scene.
-        reason: why there is no scene; "" where there is one.
-    """
-
-    values: tuple[Any, ...]
-    scene: Scene | None
-    name: str
-    reason: str = ""
-
-
-def points(plan: SweepPlan) -> Iterator[Point]:
-    """Yield the points of a sweep in order, each made as it is needed.
-
-    A point whose values give no valid scene has None as its scene, "" as its name, and the reason in one line.
-    """
-    for values in plan.values():
-        try:
-            scene = _scene(plan, values)
-        except SceneError as error:
-            yield Point(values, None, "", str(error).replace("\n", "; "))
-        else:
-            yield Point(values, scene, name_of(scene))
 
 
 def require_keys(plan: SweepPlan) -> None:
@@ -332,13 +301,14 @@ def require_keys(plan: SweepPlan) -> None:
         SceneError: an axis names no key of the scene.
     """
     try:
-        _scene(plan, next(plan.values()))
+        scene_of(plan, next(plan.values()))
     except SceneError as error:
-        keys = [axis.key for axis in plan.axes]
+        keys = [f"{axis.key}." for axis in plan.axes]
         wrong = [
             problem
             for problem in error.problems
-            if problem.path.startswith("set ") or (problem.message in UNKNOWN_KEY and _is_of_axis(problem.path, keys))
+            if problem.path.startswith("set ")  # a problem of the key itself
+            or (problem.message in UNKNOWN_KEY and any(key.startswith(f"{problem.path}.") for key in keys))
         ]
         if wrong:
             raise SceneError(wrong) from None
@@ -353,7 +323,7 @@ def name_of(scene: Scene) -> str:
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
 
 
-def _scene(plan: SweepPlan, values: tuple[Any, ...]) -> Scene:
+def scene_of(plan: SweepPlan, values: tuple[Any, ...]) -> Scene:
     """Return the checked scene of a point, by its values in the order of the axes.
 
     Raises:
@@ -364,8 +334,3 @@ def _scene(plan: SweepPlan, values: tuple[Any, ...]) -> Scene:
     if problems := set_values(tables, dict(zip(keys, values, strict=True))):
         raise SceneError(problems)
     return read_scene(tables, folder=plan.folder)
-
-
-def _is_of_axis(path: str, keys: list[str]) -> bool:
-    """Return whether a dotted path in a scene is one of the keys, or a table that a key goes through."""
-    return any(key == path or key.startswith(f"{path}.") for key in keys)

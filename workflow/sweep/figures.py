@@ -51,7 +51,8 @@ def sweep_charts(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> dic
     words = {} if along.numbers[0] else {float(place): str(cell) for place, cell in enumerate(along.cells)}
     x = chart.Axis(title_of(plan, along), along.numbers[1] or "1", log=_spans(along.numbers[0]), ticks=words)
     charts = {}
-    for name, points in _points(folder, plan, units, {word: place for place, word in words.items()}).items():
+    points_of_all = _points(folder, plan, units, {word: place for place, word in words.items()})
+    for name, points in points_of_all.groupby("result", sort=False):
         values = points.value[points.form == ""]
         if np.ptp(values) > negligible_change * np.abs(values).max():
             y = chart.Axis(name.replace("_", " "), units[name], log=_spans(values))
@@ -59,14 +60,13 @@ def sweep_charts(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> dic
     return charts
 
 
-def _points(folder: Path, plan: SweepPlan, names: Iterable[str], places: Mapping[str, float]) -> dict[str, DataFrame]:
-    """Return a table by result name, with a row for each value of a run, and for that of each closed form of that run.
+def _points(folder: Path, plan: SweepPlan, names: Iterable[str], places: Mapping[str, float]) -> DataFrame:
+    """Return a table with a row for each result of each run that has a value, and for that of each closed form of it.
 
-    A result without a value has no entry.
-
-    Column `label` has the values of the axes that distinguish lines ("" without any), `form` the name of the closed
-    form ("" of a run), `place` the abscissa: a number of the axis along x, or the position of a word in it. `value` and
-    `uncertainty` are in the units of the sweep's table; of a closed form the uncertainty is 0.
+    Column `result` has the name of the result, `label` the values of the axes that distinguish lines ("" without any),
+    `form` the name of the closed form ("" of a run), `place` the abscissa: a number of the axis along x, or the
+    position of a word in it. `value` and `uncertainty` are in the units of the sweep's table; of a closed form the
+    uncertainty is 0.
 
     Args:
         folder: folder of the sweep, with its table.
@@ -78,18 +78,17 @@ def _points(folder: Path, plan: SweepPlan, names: Iterable[str], places: Mapping
 
     along, series_axes = roles_of(plan)
     titles = {axis.key: title_of(plan, axis) for axis in series_axes}
-    points: dict[str, list[tuple[str, str, float, float, float]]] = {name: [] for name in names}
+    points: list[tuple[str, str, str, float, float, float]] = []
     for row in read_table(folder):
         label = ", ".join(f"{titles[axis.key]} = {label_in(axis, row[axis.key])}" for axis in series_axes)
         place = float(places.get(row[along.key], row[along.key]))
         theory = document_in(folder / row["run"]).get("theory", ())
-        for name in (name for name in points if row[name]):
-            points[name].append((label, "", place, float(row[name]), float(row[f"{name}_uncertainty"])))
+        for name in (name for name in names if row[name]):
+            points.append((name, label, "", place, float(row[name]), float(row[f"{name}_uncertainty"])))
             for form in theory:
                 if entry := form["values"].get(name):
-                    points[name].append((label, form["name"], place, entry.get("si", entry)["value"], 0.0))
-    columns = ["label", "form", "place", "value", "uncertainty"]
-    return {name: DataFrame(rows, columns=columns) for name, rows in points.items() if rows}
+                    points.append((name, label, form["name"], place, entry.get("si", entry)["value"], 0.0))
+    return DataFrame(points, columns=["result", "label", "form", "place", "value", "uncertainty"])
 
 
 def _lines(points: DataFrame) -> list[Series]:

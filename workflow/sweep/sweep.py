@@ -28,7 +28,7 @@ from contact1d.workflow.runs.processors import cores, pool
 from contact1d.workflow.runs.report import RESULTS
 from contact1d.workflow.scene import Scene, SceneError
 from contact1d.workflow.scene.problems import as_toml
-from contact1d.workflow.sweep.axes import AnySweep, SweepPlan, points, read_sweep, require_keys
+from contact1d.workflow.sweep.axes import AnySweep, SweepPlan, name_of, read_sweep, require_keys, scene_of
 from contact1d.workflow.sweep.table import (
     RECORD,
     RUNS,
@@ -179,19 +179,23 @@ def _missing(plan: SweepPlan, folder: Path, rows: list[str | Answer], progress: 
         progress: informed of refusals, of points that are done and of those with the scene of an earlier one.
     """
     seen = set()
-    for point in points(plan):
-        if point.scene is None:
-            rows.append(Answer("refused", point.reason))
-            values = ", ".join(f"{axis.key} = {value}" for axis, value in zip(plan.axes, point.values, strict=True))
-            progress.note(f"{values}: refused: {point.reason}")
+    for values in plan.values():
+        try:
+            scene = scene_of(plan, values)
+        except SceneError as error:
+            reason = str(error).replace("\n", "; ")
+            rows.append(Answer("refused", reason))
+            point = ", ".join(f"{axis.key} = {value}" for axis, value in zip(plan.axes, values, strict=True))
+            progress.note(f"{point}: refused: {reason}")
         else:
-            rows.append(point.name)
-            run_folder = folder / RUNS / point.name
-            if point.name not in seen and answer_in(run_folder) is None:
-                seen.add(point.name)
+            name = name_of(scene)
+            rows.append(name)
+            run_folder = folder / RUNS / name
+            if name not in seen and answer_in(run_folder) is None:
+                seen.add(name)
                 if (run_folder / RESULTS).exists():
-                    progress.note(f"{point.name}: its {RESULTS} is invalid, so it is run again")
-                yield point.scene, run_folder
+                    progress.note(f"{name}: its {RESULTS} is invalid, so it is run again")
+                yield scene, run_folder
                 continue
         progress.advance(1)
 
@@ -259,17 +263,10 @@ def _through(
             except CalledProcessError as error:
                 raise ExecutorError(f"the job was refused: {' '.join(map(str, error.cmd))} gives the reason") from None
             except Exception as error:  # of the executor, such as a cancelled job or a lost node
-                answers = [answer_in(path) or _not_run(error) for _, path in job]
+                words = " ".join(str(error).split()).rstrip(".")
+                lost = Answer("missing", f"its job ended before it ran; start the sweep again: {words}")
+                answers = [answer_in(path) or lost for _, path in job]
             yield from ((path.name, answer) for (_, path), answer in zip(job, answers, strict=True))
-
-
-def _not_run(error: Exception) -> Answer:
-    """Return the outcome `missing` of a point whose job ended before the point ran, with the error as its reason.
-
-    The reason is in one line.
-    """
-    words = " ".join(str(error).split()).rstrip(".")
-    return Answer("missing", f"its job ended before it ran; start the sweep again: {words}")
 
 
 def attempt_all(tasks: Sequence[Task]) -> list[Answer]:
@@ -329,7 +326,6 @@ def _finish(plan: SweepPlan, folder: Path, rows: Sequence[str | Answer], answers
     return Sweep(folder, counts_in(folder), units)
 
 
-EXECUTORS = ("local", "slurm")
 JOB_POINTS = 100
 """Points of a job of Slurm: the start of a job takes as long as some tens of quick runs."""
 
@@ -379,7 +375,7 @@ def workplace_of(
     if executor == "local":
         return Workplace(lambda: pool(count), 1, ahead * count)
     if executor != "slurm":
-        raise ExecutorError(f"there is no executor {executor!r}: take {' or '.join(EXECUTORS)}")
+        raise ExecutorError(f"there is no executor {executor!r}: take local or slurm")
     if find_spec("executorlib") is None:
         raise ExecutorError("Slurm is reached through executorlib: install it with pip install 'contact1d[cluster]'")
     if which("sbatch") is None:
