@@ -23,7 +23,6 @@ import numpy as np
 from contact1d.files import write_whole
 from contact1d.potentials.double_exponential import Array, DoubleExponential
 
-SECTION = "DOUBLE_EXPONENTIAL"
 FEWEST_POINTS = 2_000
 MOST_POINTS = 400_000
 INNER_CELLS = 4
@@ -77,11 +76,11 @@ class Table:
         for distances in the plane below the core, and at the first four entries, r_L < ε, which no pair reaches.
         """
         squared = self.grid()
-        distance = np.sqrt(squared)
-        r = np.sqrt(np.maximum(squared - self.plane_offset**2, self.cell))
+        distance, in_plane = np.sqrt(squared), squared - self.plane_offset**2
+        r = np.sqrt(np.maximum(in_plane, self.cell))
         slope = self.law.force(r) / r
         # Where g is constant, the energy continues with the corresponding force −dE/dr_L = g r_L.
-        inside = 0.5 * slope * np.maximum(self.cell - (squared - self.plane_offset**2), 0.0)
+        inside = 0.5 * slope * np.maximum(self.cell - in_plane, 0.0)
         return distance, self.law.energy(r) - self.law.energy(self.cutoff) + inside, slope * distance
 
     def force(self, r: Array) -> Array:
@@ -168,7 +167,7 @@ def _text(table: Table, closest: float) -> str:
         f"# r_L = sqrt(r^2 + e^2), e = {table.plane_offset:.17g} LU: the bodies lie in planes that far apart\n"
         f"# measured: force within {table.error_beyond(closest):.2e} FU of the law for r >= {closest:.3g} LU;"
         f" smoothed to zero below r = {table.core:.2g} LU\n\n"
-        f"{SECTION}\nN {table.points} RSQ {distance[0]:.17g} {distance[-1]:.17g}\n\n"
+        f"DOUBLE_EXPONENTIAL\nN {table.points} RSQ {distance[0]:.17g} {distance[-1]:.17g}\n\n"
     )
     rows = np.empty((table.points, 4))
     rows.T[:] = np.arange(1, table.points + 1), distance, energy, force

@@ -32,7 +32,7 @@ from contact1d.workflow.experiments.spacing import with_spacing
 from contact1d.workflow.experiments.thermal import chunk_steps
 from contact1d.workflow.fit.fit import fit
 from contact1d.workflow.fit.many import fit_many
-from contact1d.workflow.identify.interaction import Target, estimated, identify, jkr_target, material_scene
+from contact1d.workflow.identify.interaction import Target, identify, jkr_target, material_scene, scaled, start
 from contact1d.workflow.model.calibration import CALIBRATION
 from contact1d.workflow.model.settings import Settings, settings_for
 from contact1d.workflow.runs import campaign
@@ -66,6 +66,11 @@ CPUINFO = Path("/proc/cpuinfo")
 def run(scene: Scene, folder: Path, time_limit: float) -> None:
     """Run a scene as it is, with no advice where it fails. Raises as `contact1d.run`."""
     campaign.run(scene, folder, figures=False, progress=Silent(), time_limit=time_limit)
+
+
+def estimated(scene: Scene, target: Target) -> Scene:
+    """The scene with its interaction scaled so that independent pairs of particles have F_A [FU] and a₀ [LU]."""
+    return scaled(scene, start(scene, target))
 
 
 def finished(scene: Scene, folder: Path) -> Run | None:

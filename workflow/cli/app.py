@@ -45,9 +45,7 @@ app = typer.Typer(
 def _version(wanted: bool) -> None:
     """Print the version and end the program by typer.Exit, if it is `wanted`; else do nothing."""
     if wanted:
-        from importlib.metadata import version
-
-        typer.echo(f"contact1d {version('contact1d')}")
+        typer.echo(f"contact1d {api.__version__}")
         raise typer.Exit
 
 

@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import moved_centre
 from contact1d.workflow.body.theory import in_words
 from contact1d.workflow.runs import inputs
 from contact1d.workflow.runs.report import results_in
-from contact1d.workflow.units import LENGTH, LINE_PRESSURE, UNKNOWN, Quantity, Scales, prefixed
+from contact1d.workflow.units import LENGTH, LINE_PRESSURE, Quantity, prefixed
 
 if TYPE_CHECKING:
     from contact1d.workflow.identify.choice import MaterialRun
@@ -25,6 +24,7 @@ NAMES = {
     "fixed_grips_displacement": "separation at d, fixed grips",
     "zero_load_radius": "zero-load radius a_0",
     "contact_radius": "contact radius a",
+    "loaded_radius": "radius under load",
     "image_contact_radius": "half-width of the image",
     "mean_pressure": "mean pressure",
     "central_pressure": "p(0) on the axis",
@@ -74,47 +74,33 @@ def _reduction(results: Mapping[str, Any]) -> str:
     return f"{reduction}: the plane model of the paper; radii are those of its image"
 
 
-def line_load(run: Run) -> list[str]:
+def line_load(run: Run, columns: int = 64, rows: int = 9) -> list[str]:
     """Return a plot of the line load of the state that is reported first, as lines of text, with a title.
 
-    In SI where the units are known. The run needs its outcome: AssertionError for one that was read from its folder.
-    """
-    assert run.outcome is not None
-    name, profile = next(iter(run.outcome.profiles.items()))
-    return [
-        f"\nline load, {name.replace('_', ' ')} state:",
-        *pressure_plot(profile, run.outcome.radii[name], run.scales),
-    ]
-
-
-def pressure_plot(
-    profile: Profile, radius: float, scales: Scales = UNKNOWN, columns: int = 64, rows: int = 9
-) -> list[str]:
-    """Return a plot of the line load over x as lines of text, compression up, marks at ±a below; in SI by `scales`.
-
-    Without pressure anywhere it is one line that says so; a radius of 0 or wider than the plot has no marks. The marks
-    are about the centre of the contact, where that was displaced by more than a spacing. The last line has the units
-    and the width, which has all |p| above 1 % of the largest.
+    It is over x, compression up, with marks at ±a below, in SI where the units are known. Without pressure anywhere it
+    is one line that says so; a radius of 0 or wider than the plot has no marks. The marks are about the centre of the
+    contact, where that was displaced by more than a spacing. The last line has the units and the width, which has all
+    |p| above 1 % of the largest. The run needs its outcome: AssertionError for one that was read from its folder.
 
     Args:
-        profile: line load [FU/LU] over x [LU].
-        radius: contact radius a [LU].
-        scales: of LU and FU; by default unknown: the plot is in these.
+        run: finished run, with the line load [FU/LU] over x [LU] and the contact radius a [LU].
         columns: width of the plot in characters.
         rows: its height, about.
     """
+    assert run.outcome is not None
+    name, profile = next(iter(run.outcome.profiles.items()))
+    radius, lines = run.outcome.radii[name], [f"\nline load, {name.replace('_', ' ')} state:"]
     largest = float(np.max(np.abs(profile.pressure), initial=0.0))
     if largest == 0.0:
-        return ["  no pressure"]
+        return [*lines, "  no pressure"]
     visible = np.abs(profile.pressure) > 0.01 * largest
     half = 1.1 * float(np.max(np.abs(profile.x[visible])))
     x = np.linspace(-half, half, columns)
     pressure = np.interp(x, profile.x, profile.pressure, left=0.0, right=0.0)
     step = (pressure.max() - min(pressure.min(), 0.0)) / rows or 1.0
     top, bottom = math.ceil(max(pressure.max(), 0.0) / step), math.floor(min(pressure.min(), 0.0) / step)
-    load, load_unit = scales.written(float(np.max(np.abs(pressure))), LINE_PRESSURE)
-    length, length_unit = scales.written(half, LENGTH)
-    lines = []
+    load, load_unit = run.scales.written(float(np.max(np.abs(pressure))), LINE_PRESSURE)
+    length, length_unit = run.scales.written(half, LENGTH)
     for level in range(top, bottom - 1, -1):
         is_filled = np.sign(level) * pressure > (abs(level) - 0.5) * step
         bars = "".join(np.where(is_filled, "█", " ")) if level else "─" * columns
@@ -130,7 +116,6 @@ def pressure_plot(
 
 THEORY = {"adhesion_force": "N", "zero_load_radius": "m", "critical_radius": "m", "loaded_radius": "m"}
 """Predictions of the theories, with their units."""
-LABELS = {**NAMES, "loaded_radius": "radius under load"}
 
 
 def regime(done: MaterialRun) -> Iterator[str]:
@@ -174,5 +159,5 @@ def theory_table(done: MaterialRun, width: int = 18) -> Iterator[str]:
     for name, unit in THEORY.items():
         if all(name in marks for marks in theories.values.values()):
             shown = "".join(f"{prefixed(marks[name], unit):<{width}}" for marks in theories.values.values())
-            yield f"  {LABELS[name]:<28} {shown}".rstrip()
+            yield f"  {NAMES[name]:<28} {shown}".rstrip()
     yield "  * holds at this μ, that of the material"

@@ -170,17 +170,6 @@ def jkr_target(contact_modulus: float, surface_energy: float, radius: float) -> 
     return Target(sphere.pull_off_force(), sphere.zero_load_radius())
 
 
-def estimated(scene: Scene, target: Target) -> Scene:
-    """Return the scene with amplitudes and ranges scaled so that independent pairs of particles give the target.
-
-    The F_A [FU] and a₀ [LU] of a run differ somewhat. Nothing runs.
-
-    Raises:
-        IdentifyError: no interaction of this shape has the target.
-    """
-    return scaled(scene, start(scene, target))
-
-
 def start(scene: Scene, target: Target) -> Array:
     """Return the natural logarithms of the factors (of amplitudes, of ranges), (2,), that give the target.
 

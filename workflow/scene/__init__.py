@@ -13,14 +13,14 @@ from contact1d.workflow.scene.effects import (
     Viscoelasticity,
 )
 from contact1d.workflow.scene.experiments import History, Hold, Impact, Load, Path, PullOff, Slide, Tangential
-from contact1d.workflow.scene.kinds import Kind, Span
+from contact1d.workflow.scene.kinds import Kind
 from contact1d.workflow.scene.measured import Measured
 from contact1d.workflow.scene.problems import Problem, SceneError
 from contact1d.workflow.scene.profiles import Profile
 from contact1d.workflow.scene.quantities import Table
 from contact1d.workflow.scene.read import AnyScene, Scene, read_scene, read_tables
-from contact1d.workflow.scene.shapes import Circle, Cone, Ellipsoid, FlatPunch, Parabola, Power, Shape
-from contact1d.workflow.scene.tables import EFFECTS, Bodies, Elastic, Material, Reduction
+from contact1d.workflow.scene.shapes import Parabola, Shape
+from contact1d.workflow.scene.tables import EFFECTS, Bodies, Reduction
 
 __all__ = [
     "EFFECTS",
@@ -28,12 +28,7 @@ __all__ = [
     "AnyScene",
     "Bodies",
     "Cantilever",
-    "Circle",
-    "Cone",
     "Damping",
-    "Elastic",
-    "Ellipsoid",
-    "FlatPunch",
     "Friction",
     "History",
     "Hold",
@@ -41,14 +36,12 @@ __all__ = [
     "Interaction",
     "Kind",
     "Load",
-    "Material",
     "Measured",
     "Neighbours",
     "Noise",
     "Parabola",
     "Path",
     "Plate",
-    "Power",
     "Problem",
     "Profile",
     "PullOff",
@@ -58,7 +51,6 @@ __all__ = [
     "SceneError",
     "Shape",
     "Slide",
-    "Span",
     "Table",
     "Tangential",
     "Viscoelasticity",

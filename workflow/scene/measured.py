@@ -220,11 +220,9 @@ class Measured(Shape):
         nine digits or fewer three with heights moved by half a digit. Of a curve with a given distance of its knots it
         is one, the curve with half of it (ScanError where the points determine none); of another curve there is none.
         """
-        if not self.is_curve:
-            return self.body.alternatives
         if isinstance(self.smooth, float | int):
             return (self.model_copy(update={"smooth": 0.5 * self.smooth}).body,)
-        return ()
+        return self.body.alternatives
 
     @property
     def coarser(self) -> tuple[Shape, ...]:

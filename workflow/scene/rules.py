@@ -74,21 +74,18 @@ def _interaction(d: Draft) -> Rows:
 
 
 def _tension(d: Draft) -> Rows:
-    """Yield the two rules, of the keys force and normal_force, that a force ≤ 0 needs attraction between the bodies.
+    """Yield the rule that a single force of the experiment that is ≤ 0 needs attraction between the bodies.
 
-    A rule is (dotted key, whether it is broken, what is wrong, suggested fix). Both are yielded always, and are broken
-    for a known force or preload ≤ 0 (not compressive) with neither interaction.attraction nor an [adhesion] that the
+    A rule is (dotted key, whether it is broken, what is wrong, suggested fix). It is yielded always, and is broken for
+    a known force or preload ≤ 0 (not compressive) with neither interaction.attraction nor an [adhesion] that the
     experiment allows.
     """
-    force = d[f"experiment.{d.experiment.load_key}"]
-    adheres = "adhesion" in d and "adhesion" not in d.experiment.excludes
-    broken = force is not None and force <= 0.0 and not adheres and "interaction.attraction" not in d
-    for key, tensile in (
-        ("force", "a tensile force needs interaction.attraction, or on a rigid plane [adhesion]"),
-        ("normal_force", "a force of 0 or a tensile one needs interaction.attraction"),
-    ):
-        yield (f"experiment.{key}", broken,
-               "must be greater than 0 (FU) without attraction: compression is positive", f"raise it; {tensile}")
+    key, adheres = f"experiment.{d.experiment.load_key}", "adhesion" in d and "adhesion" not in d.experiment.excludes
+    tensile = "a tensile force needs interaction.attraction, or on a rigid plane [adhesion]"
+    if d.experiment.motion_is_result:
+        tensile = "a force of 0 or a tensile one needs interaction.attraction"
+    yield (key, d[key] is not None and d[key] <= 0.0 and not adheres and "interaction.attraction" not in d,
+           "must be greater than 0 (FU) without attraction: compression is positive", f"raise it; {tensile}")
 
 
 def _normal_loads(d: Draft) -> Rows:

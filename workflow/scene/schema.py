@@ -82,15 +82,10 @@ def meaning(table: type[Table], name: str) -> str:
     return f"{key.description}; must be {described(key.allowed)}"
 
 
-def scene_schema() -> Node:
-    """Return the JSON schema (draft 7) of a scene file, as a new dict without references."""
-    named = {"title": "contact1d scene", "description": "A scene of contact1d."}
-    return {"$schema": DIALECT} | _table(Tables) | named
-
-
 def schema_text() -> str:
-    """Return the JSON schema (draft 7) of a scene file, as indented text with a line break at its end."""
-    return json.dumps(scene_schema(), indent=1, ensure_ascii=False) + "\n"
+    """Return the JSON schema (draft 7) of a scene file, without references, indented, with a line break at the end."""
+    named = {"title": "contact1d scene", "description": "A scene of contact1d."}
+    return json.dumps({"$schema": DIALECT} | _table(Tables) | named, indent=1, ensure_ascii=False) + "\n"
 
 
 def _nodes(allowed: Allowed) -> Node:
