@@ -12,6 +12,7 @@ from shlex import quote
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from typer import Argument, Option
 
 import contact1d as api
 from contact1d.workflow.cli.ending import (
@@ -59,10 +60,10 @@ def _cite(wanted: bool) -> None:
 @app.callback()
 def contact1d(
     version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and exit.")
+        bool, Option("--version", callback=_version, is_eager=True, help="Show the version and exit.")
     ] = False,
     cite: Annotated[
-        bool, typer.Option("--cite", callback=_cite, is_eager=True, help="Show what to cite, in BibTeX, and exit.")
+        bool, Option("--cite", callback=_cite, is_eager=True, help="Show what to cite, in BibTeX, and exit.")
     ] = False,
 ) -> None:
     """Contact, adhesion and friction with the one-dimensional particle model of Geike and Popov, on LAMMPS.
@@ -98,13 +99,13 @@ Format = StrEnum("Format", ["PNG", "SVG", "PDF"])
 
 SceneFile = Annotated[
     Path,
-    typer.Argument(
+    Argument(
         metavar="SCENE", help="A scene file (TOML); `new` writes one.", show_default=False, autocompletion=scene_files
     ),
 ]
 Set = Annotated[
     list[str] | None,
-    typer.Option(
+    Option(
         "--set",
         metavar="TABLE.KEY=VALUE",
         help="Change one value of the scene, as often as needed: `--set bodies.profile.radius=2000`.",
@@ -113,33 +114,33 @@ Set = Annotated[
 ]
 Without = Annotated[
     list[str] | None,
-    typer.Option(
+    Option(
         metavar="EFFECT",
         help="Leave out an effect's table: `--without noise`.",
         show_default=False,
         autocompletion=effect_names,
     ),
 ]
-Figures = Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the figures.")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print the numbers only.")]
-FigureFormat = Annotated[Format, typer.Option("--format", help="File format of the figures.")]
+Figures = Annotated[bool, Option("--figures/--no-figures", help="Draw the figures.")]
+Quiet = Annotated[bool, Option("--quiet", "-q", help="Print the numbers only.")]
+FigureFormat = Annotated[Format, Option("--format", help="File format of the figures.")]
 
 
 def run(
     scene: SceneFile,
     out: Annotated[
         Path | None,
-        typer.Option(help="Run folder; an earlier run in it is replaced.", show_default="runs/<name of the scene>"),
+        Option(help="Run folder; an earlier run in it is replaced.", show_default="runs/<name of the scene>"),
     ] = None,
     set_: Set = None,
     without: Without = None,
     figures: Figures = True,
     format_: FigureFormat = Format.PNG,
-    time_limit: Annotated[float, typer.Option(min=0.1, help="Seconds of wall time for LAMMPS, per pass.")] = 3600.0,
+    time_limit: Annotated[float, Option(min=0.1, help="Seconds of wall time for LAMMPS, per pass.")] = 3600.0,
     workers: Annotated[
-        int | None, typer.Option(min=1, help="Repeats of a thermal pull-off in parallel.", show_default="processors")
+        int | None, Option(min=1, help="Repeats of a thermal pull-off in parallel.", show_default="processors")
     ] = None,
-    ranks: Annotated[int, typer.Option(min=1, help="MPI ranks (processors) that share one large contact.")] = 1,
+    ranks: Annotated[int, Option(min=1, help="MPI ranks (processors) that share one large contact.")] = 1,
     quiet: Quiet = False,
 ) -> None:
     """Run a scene and print its numbers, each with its uncertainty.
@@ -173,7 +174,7 @@ def run(
 
 def deck(
     scene: SceneFile,
-    out: Annotated[Path, typer.Option(help="Folder for in.lammps, system.data and the table.", show_default=False)],
+    out: Annotated[Path, Option(help="Folder for in.lammps, system.data and the table.", show_default=False)],
     set_: Set = None,
     without: Without = None,
 ) -> None:
@@ -207,21 +208,21 @@ def doctor() -> None:
 def sweep(
     file: Annotated[
         Path,
-        typer.Argument(metavar="SWEEP", help="A sweep file (TOML).", show_default=False, autocompletion=scene_files),
+        Argument(metavar="SWEEP", help="A sweep file (TOML).", show_default=False, autocompletion=scene_files),
     ],
     out: Annotated[
         Path | None,
-        typer.Option(help="Folder of the sweep; its finished points stay.", show_default="sweeps/<name of the file>"),
+        Option(help="Folder of the sweep; its finished points stay.", show_default="sweeps/<name of the file>"),
     ] = None,
-    executor: Annotated[str, typer.Option(help="`local`: processes here; `slurm`: jobs of a cluster.")] = "local",
+    executor: Annotated[str, Option(help="`local`: processes here; `slurm`: jobs of a cluster.")] = "local",
     workers: Annotated[
-        int | None, typer.Option(min=1, help="Processes or jobs in parallel.", show_default="processors")
+        int | None, Option(min=1, help="Processes or jobs in parallel.", show_default="processors")
     ] = None,
-    partition: Annotated[str | None, typer.Option(help="Partition of Slurm.", show_default="its default")] = None,
+    partition: Annotated[str | None, Option(help="Partition of Slurm.", show_default="its default")] = None,
     figures: Figures = True,
     format_: FigureFormat = Format.PNG,
-    parquet: Annotated[bool, typer.Option("--parquet", help="Write the table as Parquet as well.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print the summary only.")] = False,
+    parquet: Annotated[bool, Option("--parquet", help="Write the table as Parquet as well.")] = False,
+    quiet: Annotated[bool, Option("--quiet", "-q", help="Print the summary only.")] = False,
 ) -> None:
     """Run a scene at each point of a sweep; one table, results.csv, has all results.
 
@@ -241,10 +242,10 @@ def sweep(
 
 
 def fit(
-    file: Annotated[Path, typer.Argument(metavar="FIT", help="A fit file (TOML).", show_default=False)],
-    out: Annotated[Path | None, typer.Option(help="Folder.", show_default="fits/<name of the file>")] = None,
+    file: Annotated[Path, Argument(metavar="FIT", help="A fit file (TOML).", show_default=False)],
+    out: Annotated[Path | None, Option(help="Folder.", show_default="fits/<name of the file>")] = None,
     workers: Annotated[
-        int | None, typer.Option(min=1, help="Processes, of several curves.", show_default="processors")
+        int | None, Option(min=1, help="Processes, of several curves.", show_default="processors")
     ] = None,
     quiet: Quiet = False,
 ) -> None:
@@ -275,12 +276,12 @@ def cost(
     scene: SceneFile,
     out: Annotated[
         Path | None,
-        typer.Option(help="Folder for cost.json and cost.png.", show_default="costs/<name of the scene>"),
+        Option(help="Folder for cost.json and cost.png.", show_default="costs/<name of the scene>"),
     ] = None,
     set_: Set = None,
     without: Without = None,
-    repeats: Annotated[int, typer.Option(min=1, help="Runs of each variant; times are their medians.")] = 3,
-    workers: Annotated[int | None, typer.Option(min=1, help="Runs in parallel.", show_default="processors")] = None,
+    repeats: Annotated[int, Option(min=1, help="Runs of each variant; times are their medians.")] = 3,
+    workers: Annotated[int | None, Option(min=1, help="Runs in parallel.", show_default="processors")] = None,
 ) -> None:
     """Measure the cost of accuracy: true error and CPU time of a scene over its tolerance, settings and effects.
 
@@ -306,11 +307,9 @@ def cost(
 def report(
     folders: Annotated[
         list[Path],
-        typer.Argument(
-            metavar="DIR…", help="Run folders, shown together, or one of a sweep or fit.", show_default=False
-        ),
+        Argument(metavar="DIR…", help="Run folders, shown together, or one of a sweep or fit.", show_default=False),
     ],
-    out: Annotated[Path, typer.Option(help="HTML file to write.")] = Path("report.html"),
+    out: Annotated[Path, Option(help="HTML file to write.")] = Path("report.html"),
 ) -> None:
     """Write a page of runs, a sweep or a fit, with interactive figures; it needs no network and no other file.
 
@@ -324,12 +323,12 @@ def report(
 
 
 def animate(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="The folder of a finished run.", show_default=False)],
+    folder: Annotated[Path, Argument(metavar="DIR", help="The folder of a finished run.", show_default=False)],
     out: Annotated[
-        Path | None, typer.Option(help="File to write, .gif or .mp4.", show_default="way.gif in the folder")
+        Path | None, Option(help="File to write, .gif or .mp4.", show_default="way.gif in the folder")
     ] = None,
-    speed: Annotated[int, typer.Option(min=1, max=50, help="States per second.")] = 10,
-    ovito: Annotated[bool, typer.Option("--ovito", help="Write a script for OVITO into the folder instead.")] = False,
+    speed: Annotated[int, Option(min=1, max=50, help="States per second.")] = 10,
+    ovito: Annotated[bool, Option("--ovito", help="Write a script for OVITO into the folder instead.")] = False,
 ) -> None:
     """Write an animation of the loading history of a run: bodies and springs, particles coloured by pressure, force.
 
@@ -351,12 +350,12 @@ Profile = StrEnum("Profile", ["PARABOLA", "CIRCLE", "ELLIPSOID", "CONE", "FLAT_P
 
 
 def new(
-    name: Annotated[Path, typer.Argument(metavar="NAME", help="File to write; .toml is added if absent.")],
-    kind: Annotated[Kind, typer.Option(help="The experiment.")] = Kind.PULL_OFF,
-    profile: Annotated[Profile | None, typer.Option(help="Shape of the upper body.", show_default="parabola")] = None,
+    name: Annotated[Path, Argument(metavar="NAME", help="File to write; .toml is added if absent.")],
+    kind: Annotated[Kind, Option(help="The experiment.")] = Kind.PULL_OFF,
+    profile: Annotated[Profile | None, Option(help="Shape of the upper body.", show_default="parabola")] = None,
     material: Annotated[
         str | None,
-        typer.Option(metavar="UPPER/LOWER", help="Of `contact1d materials`, or `rigid`.", show_default="steel/glass"),
+        Option(metavar="UPPER/LOWER", help="Of `contact1d materials`, or `rigid`.", show_default="steel/glass"),
     ] = None,
 ) -> None:
     """Write a scene file in SI to start from: it runs as it is, with every key explained and its allowed values.
@@ -381,8 +380,8 @@ def materials() -> None:
 
 
 def terms(
-    table: Annotated[Path, typer.Argument(metavar="TABLE", help="E over t, or E' and E'' over f (CSV with units).")],
-    out: Annotated[Path, typer.Option(help="New file for the terms.")] = Path("terms.csv"),
+    table: Annotated[Path, Argument(metavar="TABLE", help="E over t, or E' and E'' over f (CSV with units).")],
+    out: Annotated[Path, Option(help="New file for the terms.")] = Path("terms.csv"),
 ) -> None:
     """Find the terms of a Prony series in a table of a relaxation, for `viscoelasticity.terms = { file = … }`.
 
@@ -397,7 +396,7 @@ def terms(
 
 
 def schema(
-    out: Annotated[Path | None, typer.Option(help="Write it to this new file.", show_default="printed")] = None,
+    out: Annotated[Path | None, Option(help="Write it to this new file.", show_default="printed")] = None,
 ) -> None:
     """Print the JSON schema of scene files, with which an editor completes keys, explains them and marks mistakes.
 
