@@ -102,7 +102,7 @@ def read(path: Path, overrides: list[str] | None, without: list[str] | None, pro
     from contact1d.workflow.scene import SceneError, read_scene
 
     try:
-        return read_scene(path, tuple(overrides or ()), tuple(without or ()))
+        return read_scene(path, overrides or (), without or ())
     except SceneError as error:
         if progress is not None and error.changes:
             from contact1d.workflow.runs.advised import edited, mended

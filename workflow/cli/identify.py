@@ -170,7 +170,7 @@ def _scene_of_sphere(given: Mapping[str, float], tolerance: float, out: Path) ->
     from contact1d.workflow.units import prefixed
 
     lines = [f"identified in {runs} run{'s' if runs > 1 else ''}"]
-    for (name, wanted), unit in zip(vars(target).items(), ("N", "m"), strict=True):
+    for (name, wanted), unit in zip(target._asdict().items(), ("N", "m"), strict=True):
         deviation = finished.document[name]["si"]["value"] / wanted - 1.0
         lines.append(f"  {name.replace('_', ' ')}: target {prefixed(wanted, unit)}, deviation {deviation:+.1e}")
     for name, term in finished.scene.interaction or ():

@@ -13,9 +13,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,8 +45,7 @@ class IdentifyError(Contact1dError, ValueError):
     """A target that the model can't reach, with the nearest possible one in the message."""
 
 
-@dataclass(frozen=True)
-class Target:
+class Target(NamedTuple):
     """Required results of a run.
 
     Attributes:
@@ -75,7 +73,7 @@ def require_held(target: Target, layer: float, radius: float) -> None:
     brittle_limit = 4.0 / (9.0 * math.sqrt(3.0))
     largest_ratio = 0.95 * brittle_limit  # beyond it the range would be so short that each pair snaps by itself
     rounding = 1.0 + 1e-5  # the nearest values are possible as they are printed, with six digits
-    force, a_0 = target.adhesion_force, target.zero_load_radius
+    force, a_0 = target
     if force * radius / (layer * a_0**3) <= largest_ratio:
         return
     smallest = rounding * (force * radius / (largest_ratio * layer)) ** (1.0 / 3.0)
@@ -179,7 +177,7 @@ def start(scene: Scene, target: Target) -> Array:
     Raises:
         IdentifyError: no interaction of this shape has the target; the message has the nearest a₀ at the same F_A.
     """
-    amplitude, wanted = 0.0, np.log([target.adhesion_force, target.zero_load_radius])
+    amplitude, wanted = 0.0, np.log(target)
 
     def deviations(amplitude: float, reach: float) -> Array:
         """Return ln F_A/F_A* and ln a₀/a₀* of independent pairs from the target, (2,), at two logarithms of factors."""
@@ -314,7 +312,7 @@ def identify(
     for count in range(1, most_runs + 1):
         finished = run(scaled(scene, logarithms), folder, figures=False, progress=progress)
         values = [finished.model.results[name].value for name in UNIT_FIXING_RESULTS]
-        errors = np.log(np.asarray(values) / (target.adhesion_force, target.zero_load_radius))
+        errors = np.log(np.divide(values, target))
         if np.abs(errors).max() < largest_deviation:
             return finished, count
         logarithms = logarithms - np.linalg.solve(slopes(scene, logarithms), errors)

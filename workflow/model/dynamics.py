@@ -116,10 +116,9 @@ def motion_of(
     # The drag on a motion is part of the result, so it is one and the same throughout.
     is_automatic = scene.damping == Damping(coefficient="auto")
     product = _product(scene, tolerance, still_step)
-    bond_drag = sum(effect.bond_drag(scene.bulk_stiffness) for effect in scene.present)
     step = min(
-        longest_step(product, stiffest, bodies.mass, damping + bond_drag),
-        longest_step(product, _plate_stiffness(scene, particles), plate_mass, plate_damping + particles * bond_drag),
+        longest_step(product, stiffest, bodies.mass, damping),
+        longest_step(product, _plate_stiffness(scene, particles), plate_mass, plate_damping),
     )
     if isinstance(scene.experiment, Impact):
         # A thousandth of the time to the deepest displacement at the impact velocity, less below the tolerance.

@@ -80,13 +80,6 @@ class Effect(Table):
         """
         return 0.0
 
-    def bond_drag(self, stiffness: float) -> float:
-        """Return the drag [FU·TU/LU] parallel to a bulk spring of this stiffness [FU/LU]: 0 for every effect.
-
-        It would limit the timestep.
-        """
-        return 0.0
-
     def largest_phase(self, tolerance: float) -> float:
         """Return the largest ω·Δt [rad] with which the effect is exact to a relative tolerance.
 

@@ -13,7 +13,7 @@ from importlib.util import find_spec
 from itertools import chain, islice, repeat
 from pathlib import Path
 from shutil import which
-from subprocess import CalledProcessError
+from subprocess import CalledProcessError, run
 from typing import TYPE_CHECKING, Any
 from warnings import catch_warnings, simplefilter
 
@@ -27,7 +27,7 @@ from contact1d.workflow.runs.many import attempt
 from contact1d.workflow.runs.processors import cores, pool
 from contact1d.workflow.runs.report import RESULTS
 from contact1d.workflow.scene import Scene, SceneError
-from contact1d.workflow.scene.problems import as_toml
+from contact1d.workflow.scene.problems import as_toml, tables_as_toml
 from contact1d.workflow.sweep.axes import AnySweep, SweepPlan, name_of, read_sweep, require_keys, scene_of
 from contact1d.workflow.sweep.table import (
     RECORD,
@@ -147,8 +147,7 @@ def _record(plan: SweepPlan) -> str:
     """Return the text of a sweep file, TOML, for a sweep: each axis by its values, and its base scene as [base]."""
     head = f"title = {as_toml(plan.title)}\ncombine = {as_toml(plan.combine)}\n"
     axes = "".join(f"\n[[axes]]\nkey = {as_toml(a.key)}\nvalues = {as_toml(list(a.values))}\n" for a in plan.axes)
-    base = "".join(f"{key} = {as_toml(value)}\n" for key, value in plan.base.items())
-    return f"{head}{axes}\n[base]\n{base}"
+    return head + axes + tables_as_toml({"base": plan.base})
 
 
 def _continues(folder: Path, record: str, progress: Progress) -> bool:
@@ -407,8 +406,6 @@ def _partition(wanted: str | None) -> str:
         ExecutorError: Slurm doesn't answer, or has no such partition.
         FileNotFoundError: there is no `sinfo` on this machine.
     """
-    from subprocess import run
-
     listed = run(["sinfo", "--noheader", "--format=%P"], capture_output=True, text=True, check=False)
     names = listed.stdout.split()
     if not names:
